@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace excavplan {
+
+enum class ErrorKind {
+  bad_input,  ///< an argument or an option breaks its documented rule
+  bad_file,   ///< a file is missing, unreadable or not what it claims to be
+};
+
+/// The only exception this library throws on purpose.
+///
+/// Thrown for what the caller could have prevented; the text names what is wrong, where, its value
+/// and the rule. What depends on the site or the machine, such as a pose out of reach or a density
+/// out of range, is a value in the result types.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  ErrorKind kind() const noexcept { return kind_; }
+
+ private:
+  ErrorKind kind_;
+};
+
+/// Something the user should know about a result that is nevertheless given.
+struct Warning {
+  std::string code;     ///< stable, for programs: "density_above_range"
+  std::string message;  ///< for people: what was found, its value, what it means
+};
+
+}  // namespace excavplan

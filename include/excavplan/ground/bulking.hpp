@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <excavplan/ground/volume_change.hpp>
+
+namespace excavplan {
+
+/// Bulking factor k = V_after / V_before (the paper's eq. 1) and its standard deviation by the
+/// delta method, covariance included: u_k^2 = u_a^2 + u_b^2 - 2 cov / (V_a V_b).
+///
+/// @return nothing if no hole was found or no dumped soil is in the scans, which a warning in
+///         `change` says
+std::optional<Measured> bulking_factor(const VolumeChange& change);
+
+/// Frees a bulking factor measured from height maps of the soil that fell back into the cut.
+///
+/// k = f + (1 - f) k_measured, f = loose soil lying in the pit / volume of the cut
+/// (reference/soil-mechanics section 3.5).
+double free_of_fallback(double bulking_measured, double fallback_fraction);
+
+}  // namespace excavplan

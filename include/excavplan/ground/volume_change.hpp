@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/error.hpp>
+#include <excavplan/ground/height_map.hpp>
+
+namespace excavplan {
+
+/// A figure with its standard deviation, in the unit of the figure.
+struct Measured {
+  double value = 0.0;
+  double sd = 0.0;
+};
+
+enum class ZoneKind {
+  dig,    ///< the hole
+  spill,  ///< soil that rose beside the hole
+  dump,   ///< soil that rose away from the hole
+  other,  ///< changed, but neither: left out of every volume
+};
+
+/// A connected piece of ground that truly changed.
+struct ChangeZone {
+  ZoneKind kind = ZoneKind::other;
+  Measured volume;             ///< of the change, > 0 where the ground rose [m^3]
+  double area = 0.0;           ///< [m^2]
+  double unknown_share = 0.0;  ///< share of its cells that no scan saw and that were filled [-]
+  Rectangle extent;
+};
+
+/// What happened in one surveyed area.
+struct AreaChange {
+  HeightMap difference;   ///< after - before [m], less the datum; NaN where either is unknown
+  Eigen::ArrayXXi zone;   ///< index into VolumeChange::zones, -1 for stable ground
+  double noise_sd = 0.0;  ///< of one stable cell of `difference` [m]
+  double datum = 0.0;     ///< median change of the stable ground, taken off `difference` [m]
+};
+
+/// Settings of measure_change(). Thresholds follow reference/point-cloud-volume section 4.
+struct ChangeOptions {
+  std::optional<Rectangle> dig_area;   ///< only falling ground in here is the hole
+  std::optional<Rectangle> dump_area;  ///< only rising ground in here is the heap
+  double detection = 5.0;  ///< a zone holds a 3 x 3 mean of at least this many of its sd [-], > 0
+  double growth = 3.0;     ///< and grows to cells of this many sd [-], in (0, detection]
+  double min_zone_area = 0.03;  ///< smaller zones are noise [m^2], >= 0
+  double margin = 0.10;  ///< zones are widened by this, to keep their feathered edge [m], >= 0
+  double spill_distance = 0.6;     ///< rising ground this near to the hole is spill [m], >= 0
+  double max_unknown_share = 0.2;  ///< a zone with more unknown cells draws a warning [-]
+};
+
+/// Volumes of one dig [m^3]: before = excavated, after = spilled + dumped (the paper's eqs. 3, 4).
+struct VolumeChange {
+  Measured excavated;
+  Measured spilled;
+  Measured dumped;
+  Measured before;
+  Measured after;
+  double covariance_before_after = 0.0;  ///< [m^6]
+  std::vector<ChangeZone> zones;
+  std::vector<AreaChange> areas;  ///< one for a whole scene, two for a dig and a dump area
+  std::vector<Warning> warnings;
+};
+
+/// Volumes from two maps of the whole scene.
+///
+/// Takes the datum from the ground that did not change, finds the connected zones whose change
+/// exceeds the noise found on that ground, fills their unknown cells by a membrane through the
+/// known difference, and sums the signed difference inside each zone, which unlike
+/// the sum of positive parts is free of clipping bias.
+///
+/// @throws Error (bad_input) if the maps are not on one grid, share fewer than 100 known cells,
+///         or an option is out of range
+VolumeChange measure_change(const HeightMap& before, const HeightMap& after,
+                            const ChangeOptions& options = {});
+
+/// A map of one area before and after.
+struct SurfacePair {
+  HeightMap before;
+  HeightMap after;
+};
+
+/// Volumes from separate maps of the dig area and of the dump area (the paper's four clouds).
+///
+/// @throws Error (bad_input) as measure_change()
+VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
+                            const ChangeOptions& options = {});
+
+}  // namespace excavplan

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <excavplan/machine/machine.hpp>
+
+/// @file
+/// One dig as three numbers, and as the poses and postures that follow from them.
+///
+///     DigParameters -> DigPath -> Trajectory (trajectory.hpp)
+///
+/// Path rules: the paper, section 2.3.2; geometry: reference/optimiser-ik-reliability B3.
+
+namespace excavplan {
+
+/// The paper's three numbers.
+///
+///     machine              start
+///       |<----- start_x ----->*
+///     --+--------------------/------ ground
+///          scoop   drag     /  penetrate
+///            (____<--------/
+struct DigParameters {
+  double penetration_angle = 0.0;   ///< of the line of penetration below the horizontal [rad]
+  double penetration_length = 0.0;  ///< along that line [m]
+  double drag_length = 0.0;         ///< horizontal, towards the machine [m]
+};
+
+/// The paper's fixed path of its simulation experiments: [pi/4, 0.35 m, 1.5 m] (section 3.1).
+DigParameters paper_fixed_path();
+
+/// Ties one number of DigParameters to its name and its search range.
+struct DigParameterInfo {
+  const char* name;  ///< as in the JSON of the tools
+  const char* unit;
+  double DigParameters::*field;
+  double lower;  ///< of the search
+  double upper;
+};
+
+/// One row per number, in order. The bounds are ours: the paper's Table 3 is not published as text;
+/// they are those of reference/optimiser-ik-reliability A3 (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m).
+const std::array<DigParameterInfo, 3>& dig_parameter_table();
+
+enum class DigPhase { approach, penetrate, drag, scoop, lift };
+const char* name(DigPhase phase);
+
+/// The bucket at one point of the path and the joints that hold it there.
+struct DigPose {
+  DigPhase phase = DigPhase::penetrate;
+  BucketPose bucket;
+  JointAngles joints = JointAngles::Zero();
+};
+
+/// A dig that the machine can drive. Poses are in the order in which they are visited; the last
+/// pose of a phase is the first of the next and is stored once, with the earlier phase.
+struct DigPath {
+  DigParameters parameters;
+  double start_x = 0.0;         ///< where the tip meets the ground [m]
+  double ground_z = 0.0;        ///< height of the ground there [m]
+  std::vector<DigPose> poses;   ///< penetrate, drag, scoop, lift; at least two
+  double heel_clearance = 0.0;  ///< smallest floor angle during the drag [rad]
+  LimitMargin limit_margin;     ///< smallest over all poses
+  double overcut = 0.0;         ///< how far the scoop goes below the drag line [m], >= 0
+};
+
+/// Why a dig cannot be driven: the first thing that fails.
+struct Infeasible {
+  enum class Reason {
+    bad_parameter,  ///< not finite or negative, or the angle is not in (0, pi/2)
+    out_of_reach,   ///< too far or too near
+    joint_limit,
+    heel_contact,  ///< the floor presses on the ground behind the cut
+    too_deep,      ///< below DigPathOptions::max_depth
+    too_near_tracks,
+    unknown_ground,  ///< the start point lies on ground of unknown height
+    lift_blocked,    ///< the bucket cannot be lifted clear of the ground
+  };
+  Reason reason = Reason::bad_parameter;
+  DigPhase phase = DigPhase::penetrate;
+  double distance = 0.0;  ///< travelled in that phase: [m], [rad] while scooping
+  double value = 0.0;     ///< what was found
+  double limit = 0.0;     ///< what was allowed, in the unit of value
+  std::string message;    ///< all of this in one sentence
+};
+
+/// Height of the ground in the boom plane at x [m]; NaN where unknown.
+using GroundProfile = std::function<double(double x)>;
+
+struct DigPathOptions {
+  double step = 0.025;  ///< largest tip travel between poses [m], > 0; at most 10000 poses a phase
+  double min_heel_clearance =
+      0.0;                    ///< in the drag [rad]; the penetration has exactly 0 by definition
+  double max_depth = 2.0;     ///< below the ground at the start point [m], > 0; ours
+  double track_margin = 0.5;  ///< the tip stays this far ahead of the tracks [m]; ours
+  double lift_clearance =
+      0.3;  ///< the lowest point of the bucket ends this far above the ground [m]; ours
+};
+
+/// Lays out penetration, drag, scoop and lift, and solves the joints of every pose in closed form.
+///
+/// Penetrate: the floor is parallel to the line of penetration. Drag: the tip moves level, the
+/// angle between arm and bucket stays. Scoop: only the bucket turns, until the line from bucket pin
+/// to tip is level, which levels the mouth within a few degrees. Lift (not in the paper): the boom
+/// rises, the bucket keeps its attitude, until it is clear.
+///
+/// @throws Error (bad_input) if an option is out of range; bad parameters are a value
+std::variant<DigPath, Infeasible> make_dig_path(const Machine& machine,
+                                                const DigParameters& parameters, double start_x,
+                                                const GroundProfile& ground,
+                                                const DigPathOptions& options = {});
+
+/// Chooses the start point by a scan of the reach: the one with the largest smallest margin to the
+/// joint limits (and to heel contact), ties to the middle (reference/optimiser-ik-reliability B4).
+///
+/// @return the path from there, or why the best of the failing start points fails
+std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
+                                                         const DigParameters& parameters,
+                                                         const GroundProfile& ground,
+                                                         const DigPathOptions& options = {});
+
+}  // namespace excavplan

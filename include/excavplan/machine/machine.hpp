@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+/// @file
+/// The excavator in its boom plane: x forward from the swing axis, z up from the ground.
+///
+/// Joint angles (boom, arm, bucket) follow the machine's own convention: zero boom is level, zero
+/// arm and bucket continue the link before, positive turns down and curls in. A direction in the
+/// plane is (cos, sin) of its angle, counter-clockwise from +x:
+///
+///     boom pin -> arm pin     at  phi1 = -boom
+///     arm pin  -> bucket pin  at  phi2 = -boom - arm
+///     bucket pin -> tip       at  phi3 = -boom - arm - bucket
+///
+/// The floor angle of the bucket is 0 when its floor is level and positive when the heel is above
+/// the tip; it is the clearance under the heel in a level drag. floor_angle = phi3 + pi - beta,
+/// where beta is the angle between the floor and the line from tip to bucket pin.
+
+namespace excavplan {
+
+enum class Joint { boom, arm, bucket };
+const char* name(Joint joint);
+
+/// (boom, arm, bucket) [rad]; also torques [N m] and rates [rad/s] in the same order and sense.
+using JointAngles = Eigen::Vector3d;
+
+/// A link's mass and where its centre is: `along` the line from its pin to the next pin (or tip)
+/// and `across`, counter-clockwise of that line [m].
+struct LinkMass {
+  double mass = 0.0;  ///< [kg]
+  double along = 0.0;
+  double across = 0.0;
+};
+
+struct JointLimits {
+  double lower = 0.0;         ///< [rad]
+  double upper = 0.0;         ///< [rad]
+  double speed = 0.0;         ///< [rad/s], > 0
+  double acceleration = 0.0;  ///< [rad/s^2], > 0
+  double torque = 0.0;        ///< [N m], > 0
+};
+
+/// The bucket as its side profile swept over its width.
+struct Bucket {
+  /// Corners of the cavity, (along, across) of the line from bucket pin to tip, counter-clockwise
+  /// [m]. The first is the tip, the second the heel (end of the floor), the last the top edge; the
+  /// side from the last to the first is the open mouth. Convex.
+  std::vector<Eigen::Vector2d> profile;
+  double width_outside = 0.0;   ///< cuts this wide [m]
+  double width_inside = 0.0;    ///< holds this wide [m]
+  double edge_thickness = 0.0;  ///< of the lip [m]
+  double edge_angle = 0.0;      ///< wedge angle of the lip: the smallest rake it can have [rad]
+};
+
+/// A machine read from a file; immutable after that.
+struct Machine {
+  std::string name;
+  Eigen::Vector2d boom_pin = Eigen::Vector2d::Zero();  ///< x, z [m]
+  double boom_length = 0.0;                            ///< boom pin to arm pin [m]
+  double arm_length = 0.0;                             ///< arm pin to bucket pin [m]
+  double bucket_length = 0.0;                          ///< bucket pin to tooth tip [m]
+  double track_front = 0.0;  ///< x of the foremost part of the undercarriage [m]
+  std::array<JointLimits, 3> limits;
+  std::array<LinkMass, 3> links;
+  Bucket bucket;
+
+  double beta() const;  ///< angle between bucket floor and the line from tip to bucket pin [rad]
+};
+
+/// Reads a machine file (docs/formats.md); every number in it names its source.
+///
+/// @throws Error (bad_file) naming file, key, value and rule; among the rules: lengths and masses
+///         positive, limits in order, profile convex, counter-clockwise, tip at (bucket_length, 0)
+Machine load_machine(const std::string& path);
+
+/// Where the tip is and how the bucket stands.
+struct BucketPose {
+  double x = 0.0;            ///< of the tip [m]
+  double z = 0.0;            ///< of the tip [m]
+  double floor_angle = 0.0;  ///< [rad]
+};
+
+/// Pins and tip for one posture [m].
+struct LinkPositions {
+  Eigen::Vector2d arm_pin;
+  Eigen::Vector2d bucket_pin;
+  Eigen::Vector2d tip;
+  double phi1 = 0.0, phi2 = 0.0, phi3 = 0.0;  ///< directions of the links [rad]
+};
+
+LinkPositions link_positions(const Machine& machine, const JointAngles& joints);
+BucketPose forward_kinematics(const Machine& machine, const JointAngles& joints);
+
+/// Why a pose cannot be held.
+struct Unreachable {
+  enum class Reason { too_far, too_near, joint_limit };
+  Reason reason = Reason::too_far;
+  Joint joint = Joint::boom;  ///< for joint_limit
+  double excess = 0.0;        ///< [m] beyond the reach, or [rad] beyond the limit, > 0
+};
+
+/// Closed form for the planar chain, elbow above the line from boom pin to bucket pin, exact to
+/// rounding; NaN in the pose gives too_far. Limits are checked.
+std::variant<JointAngles, Unreachable> inverse_kinematics(const Machine& machine,
+                                                          const BucketPose& pose);
+
+/// The same with the bucket angle held instead of the floor angle: the posture that puts the tip at
+/// (x, z) with joint angle `bucket`.
+std::variant<JointAngles, Unreachable> inverse_kinematics_fixed_bucket(const Machine& machine,
+                                                                       double x, double z,
+                                                                       double bucket);
+
+/// By how much the posture keeps within the limits: the smallest distance to a limit [rad],
+/// negative outside, and its joint.
+struct LimitMargin {
+  double margin = 0.0;
+  Joint joint = Joint::boom;
+};
+LimitMargin limit_margin(const Machine& machine, const JointAngles& joints);
+
+/// Torque the joints must give to hold a force (x, z) [N] that acts on the bucket at `point` [m]:
+/// minus the transposed Jacobian times the force.
+JointAngles torque_against_force(const Machine& machine, const LinkPositions& at,
+                                 const Eigen::Vector2d& point, const Eigen::Vector2d& force);
+
+/// Torque the joints must give to hold the weight of boom, arm and bucket.
+JointAngles torque_against_link_weight(const Machine& machine, const LinkPositions& at);
+
+/// A point of the bucket frame (along, across) in the boom plane.
+Eigen::Vector2d bucket_point(const LinkPositions& at, const Eigen::Vector2d& along_across);
+
+/// Capacity of the bucket held with its mouth level: struck, and heaped with slopes of
+/// `slope` on all four sides (ISO 7451 rates excavator buckets at 1:1, slope = pi / 4) [m^3].
+double struck_capacity(const Machine& machine);
+double heaped_capacity(const Machine& machine, double slope = 0.7853981633974483);
+
+}  // namespace excavplan

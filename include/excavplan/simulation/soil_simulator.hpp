@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/machine/dig_path.hpp>
+
+namespace excavplan {
+
+/// Ground in two layers on one grid. Unknown cells are NaN in `bank`; nothing moves on or off them.
+struct Terrain {
+  HeightMap bank;         ///< top of the undisturbed soil [m]
+  Eigen::ArrayXXd loose;  ///< thickness of the loose soil on it [m], >= 0, same size
+
+  HeightMap surface() const;  ///< bank + loose
+};
+
+/// Undisturbed ground of this surface, with no loose soil.
+Terrain undisturbed(const HeightMap& surface);
+
+/// Energy of one dig [J]: design section 5. Every total is the sum over boom, arm and bucket of the
+/// integral of max(0, torque * rate) over penetrate, drag and scoop; no energy comes back.
+struct EnergyLedger {
+  double total = 0.0;
+  std::array<double, 3> by_phase{};  ///< penetrate, drag, scoop
+  std::array<double, 3> by_joint{};  ///< boom, arm, bucket
+  double soil = 0.0;                 ///< share of the total that the soil's resistance took
+  double payload = 0.0;              ///< share that the soil carried took
+  double links = 0.0;  ///< share that the weight of the links took; the three add up to the total
+  double lift = 0.0;   ///< of the lift clear of the ground, not part of the total
+};
+
+/// Where the soil went. Bank volumes are undisturbed, loose volumes are swollen [m^3].
+struct SoilLedger {
+  double bank_cut = 0.0;           ///< undisturbed soil cut
+  double loose_cut = 0.0;          ///< loose soil cut again
+  double payload = 0.0;            ///< loose, in the bucket once it is clear of the ground
+  double spilled = 0.0;            ///< loose, left on ground that was not cut
+  double fallen_back = 0.0;        ///< loose, lying in the pit at the end
+  double fallback_fraction = 0.0;  ///< fallen_back / bank_cut [-]
+  double solids_before = 0.0;      ///< dry mass of the map above the deepest point of the path [kg]
+  double solids_after = 0.0;       ///< the same plus what is in the bucket [kg]
+};
+
+/// The machine could not go on. A result, not an error.
+struct Stall {
+  DigPhase phase = DigPhase::penetrate;
+  Joint joint = Joint::boom;
+  double travelled = 0.0;  ///< tip travel from the start of the dig [m]
+  double torque = 0.0;     ///< that was asked of the joint [N m]
+};
+
+/// Forces at one pose.
+struct ForceSample {
+  DigPhase phase = DigPhase::penetrate;
+  double travelled = 0.0;                          ///< tip travel [m]
+  Eigen::Vector2d soil = Eigen::Vector2d::Zero();  ///< of the soil on the bucket (x, z) [N]
+  JointAngles torque = JointAngles::Zero();        ///< of the joints [N m]
+  double bucket_fill = 0.0;                        ///< loose [m^3]
+};
+
+struct DigResult {
+  Terrain terrain;              ///< afterwards, on the grid it had before
+  double payload_mass = 0.0;    ///< moist [kg]
+  double payload_volume = 0.0;  ///< loose [m^3]
+  EnergyLedger energy;
+  SoilLedger soil;
+  double peak_force = 0.0;  ///< largest force of the soil on the bucket [N]
+  std::optional<Stall> stall;
+  std::vector<ForceSample> history;  ///< empty unless asked for
+
+  /// The paper's eq. 7, f = payload mass / energy [kg/J]; 0 without energy.
+  double efficiency() const { return energy.total > 0.0 ? payload_mass / energy.total : 0.0; }
+};
+
+struct DigOptions {
+  bool history = false;
+  std::optional<Eigen::Vector2d> dump_at;  ///< heap the payload here; else it stays in the bucket
+};
+
+/// A simulation of one dig on one terrain, ours or yours.
+///
+/// An implementation returns the same bytes for the same arguments, may be called from several
+/// threads at once, conserves solids to 1e-9, and leaves unknown cells unknown.
+/// tests/soil_simulator_contract.hpp checks this for any implementation.
+class SoilSimulator {
+ public:
+  virtual ~SoilSimulator() = default;
+
+  /// @throws Error (bad_input) if the path leaves the map or its known cells, the map is empty, or
+  ///         the dump point lies off the map
+  virtual DigResult dig(const Terrain& terrain, const DigPath& path,
+                        const DigOptions& options = {}) const = 0;
+};
+
+/// Volumes of a dig straight from the height maps, cell by cell, as the paper does in its
+/// simulator.
+struct HeightMapVolumes {
+  double excavated = 0.0;       ///< ground that fell [m^3]
+  double spilled = 0.0;         ///< ground that rose away from the heap [m^3]
+  double dumped = 0.0;          ///< ground that rose within `dump_radius` of the dump point [m^3]
+  double bulking_factor = 0.0;  ///< (spilled + dumped) / excavated; 0 if nothing was excavated
+};
+HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,
+                                    const Eigen::Vector2d& dump_at, double dump_radius = 2.0);
+
+}  // namespace excavplan

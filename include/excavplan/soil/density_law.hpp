@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <excavplan/error.hpp>
+#include <excavplan/ground/volume_change.hpp>
+
+/// @file
+/// From the bulking factor k to the relative density d [%] and back.
+///
+/// The paper fits a straight line d = a k + b. Solids that are conserved give a hyperbola: soil of
+/// void ratio e that ends in one loose state has k = (1 + e_loose) / (1 + e), so
+/// k = B + A / (1 - r d / 100), with r = (e_max - e_min) / (1 + e_max) and B = 0. The hyperbola is
+/// exact where the line is 4 to 8 points off (reference/soil-mechanics section 3); B takes up clods
+/// (B > 0) or soil that fell back into the cut (B < 0).
+
+namespace excavplan {
+
+/// One dig of known density.
+struct BulkingSample {
+  double bulking_factor = 0.0;   ///< [-]
+  double density_percent = 0.0;  ///< 0 .. 100
+};
+
+/// d = a k + b.
+struct DensityLine {
+  double a = 0.0;            ///< [%]
+  double b = 0.0;            ///< [%]
+  double r2 = 0.0;           ///< coefficient of determination of d [-]
+  double residual_sd = 0.0;  ///< scatter of d about the law [%]
+};
+
+/// k = B + A / (1 - r d / 100), d = 100 / r (1 - A / (k - B)).
+struct DensityClosedForm {
+  double A = 0.0;  ///< [-], > 0
+  double B = 0.0;  ///< [-]
+  double r = 0.0;  ///< [-], in (0, 1)
+  double r2 = 0.0;
+  double residual_sd = 0.0;  ///< [%]
+};
+
+using DensityForm = std::variant<DensityLine, DensityClosedForm>;
+
+/// A law with its origin. `form` is what estimate_density() uses.
+struct DensityLaw {
+  std::string name;
+  std::string source;
+  DensityForm form;
+};
+
+/// Reads a law file (docs/formats.md) and takes the form that its key "use" names.
+///
+/// @throws Error (bad_file) naming file, key, value and rule
+DensityLaw load_density_law(const std::string& path);
+
+double density_of_bulking(const DensityForm& form, double bulking_factor);  ///< [%], unclamped
+double bulking_of_density(const DensityForm& form, double density_percent);
+double density_slope(const DensityForm& form, double bulking_factor);  ///< dd/dk [%]
+
+/// Relative density [%] with what is known about its error.
+struct DensityEstimate {
+  double percent = 0.0;      ///< inside 0 .. 100
+  double raw_percent = 0.0;  ///< as the law gives it
+  double sd_percent = 0.0;   ///< delta method: (dd/dk sd_k)^2 + residual_sd^2
+  std::array<double, 2> interval_percent = {0.0, 100.0};  ///< 95 %, inside 0 .. 100
+  bool trustworthy = true;
+  std::vector<Warning> warnings;
+};
+
+/// Estimates the density. Outside 0 .. 100 % the clamped and the raw value are given with a
+/// warning; further outside than the error explains (1.96 sd) the estimate is not trustworthy.
+///
+/// @throws Error (bad_input) unless the bulking factor is finite and positive and its sd is >= 0
+DensityEstimate estimate_density(const DensityLaw& law, const Measured& bulking_factor);
+
+/// Least-squares line of d on k. @throws Error (bad_input) with fewer than 3 different factors
+DensityLine fit_line(const std::vector<BulkingSample>& samples);
+
+/// Least-squares hyperbola of k on d (A and B linear, r by NLopt).
+/// @throws Error (bad_input) with fewer than 4 different densities, or where none fits (k must grow
+/// with d)
+DensityClosedForm fit_closed_form(const std::vector<BulkingSample>& samples);
+
+/// What calibrate-density finds, and what a law file holds.
+struct DensityCalibration {
+  std::string name;
+  std::string source;
+  std::string use;   ///< key of the form that serves: "line", "closed_form", "..._as_measured"
+  DensityLine line;  ///< on k freed of fallback where it is known
+  DensityClosedForm closed_form;
+  std::optional<DensityLine> line_as_measured;  ///< on k as height maps give it
+  std::optional<DensityClosedForm> closed_form_as_measured;
+  struct Sample {
+    double density_percent = 0.0;
+    double bulking_factor = 0.0;           ///< freed of fallback
+    double bulking_factor_measured = 0.0;  ///< from height maps
+    double bulking_factor_true = 0.0;      ///< from the dry mass balance; 0 where unknown
+    double fallback_fraction = 0.0;
+  };
+  std::vector<Sample> samples;
+};
+
+/// The text of a law file. @throws nothing
+std::string to_json(const DensityCalibration& calibration);
+
+}  // namespace excavplan
