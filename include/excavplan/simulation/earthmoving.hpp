@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+/// @file
+/// The fundamental equation of earthmoving: the force of soil that fails along a plane ahead of a
+/// tool.
+///
+///     P / b = gamma t^2 N_gamma + c t N_c + q t N_q + Q N_Q + c_a t N_ca
+///
+/// P is the resultant on the tool's face, at the soil-tool friction angle to its normal. Sources:
+/// Reece 1964; McKyes, Soil Cutting and Tillage, 1985; slope terms derived from the same wedge
+/// (docs/methods.md#earthmoving). Angles in [rad].
+
+namespace excavplan {
+
+/// The wedge between tool face, failure plane and surface.
+struct CuttingWedge {
+  double rake = 0.0;           ///< rho, between the tool's face and the surface ahead, in (0, pi)
+  double friction = 0.0;       ///< phi, inside the soil
+  double tool_friction = 0.0;  ///< delta, between soil and tool
+  double slope = 0.0;          ///< alpha, of the surface along the travel, positive uphill
+};
+
+struct EarthmovingFactors {
+  double gamma = 0.0;
+  double c = 0.0;
+  double q = 0.0;  ///< of a surcharge pressure
+  double Q = 0.0;  ///< of a surcharge weight per width; use q or Q
+  double ca = 0.0;
+  double failure = 0.0;  ///< beta, of the failure plane from the surface
+  double D = 0.0;        ///< common denominator
+};
+
+/// Factors for a given failure angle. Nothing if that wedge cannot slide (denominator <= 0).
+std::optional<EarthmovingFactors> earthmoving_factors(const CuttingWedge& wedge, double failure);
+
+/// The failure angle of least N_gamma (McKyes 1985), found to 1e-8 rad.
+///
+/// @return nothing if no wedge can slide: rake + tool friction + friction too near to pi
+std::optional<double> critical_failure_angle(const CuttingWedge& wedge);
+
+/// Factors of the horizontal force per width of a narrow blade with side crescents (McKyes and
+/// Ali 1977), level ground. `width_ratio` is b / t. The upper band of the force of a bucket, whose
+/// side plates suppress the crescents; side planes are the default.
+EarthmovingFactors crescent_factors(const CuttingWedge& wedge, double failure, double width_ratio);
+
+/// Cohesion and friction on the two vertical side planes of a wedge of depth t [N]
+/// (Perumpral type; docs/methods.md#earthmoving): to be added to P times side_plane_share().
+struct SoilStrength {
+  double unit_weight = 0.0;  ///< [N/m^3]
+  double cohesion = 0.0;     ///< [Pa]
+  double adhesion = 0.0;     ///< [Pa]
+};
+double side_plane_force(const CuttingWedge& wedge, const EarthmovingFactors& factors,
+                        const SoilStrength& strength, double depth);
+double side_plane_share(const CuttingWedge& wedge, const EarthmovingFactors& factors);
+
+/// Factors at the critical failure angle over all rakes and slopes, tabulated once for a soil.
+class CriticalWedges {
+ public:
+  /// @throws Error (bad_input) unless 0 <= tool_friction <= friction < 60 deg
+  CriticalWedges(double friction, double tool_friction);
+
+  /// Rake is held inside 10 .. 120 deg and 20 deg below the rake at which no wedge can slide, slope
+  /// inside -(friction - 5 deg) .. 40 deg.
+  EarthmovingFactors at(double rake, double slope) const;
+
+ private:
+  double friction_;
+  double tool_friction_;
+  double highest_rake_;
+  double lowest_slope_;
+  double slope_step_;
+  std::vector<double> failure_;  ///< [rake index * slopes + slope index]
+};
+
+/// Passive pressure on a blunt edge over the pressure of the soil against it, A(x) of
+/// Balovnev 1983 for an edge at angle x.
+double blunt_edge_ratio(double edge_angle, double friction, double tool_friction);
+
+}  // namespace excavplan

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/planner.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <excavplan/error.hpp>
+
+namespace excavplan {
+namespace {
+
+using Eigen::Index;
+
+constexpr double half_width =
+    1.5;  // of the ground planned on [m]; ours: the bucket and its windrows
+
+Rectangle reachable_ground(const Machine& machine) {
+  const double reach =
+      machine.boom_pin.x() + machine.boom_length + machine.arm_length + machine.bucket_length;
+  return {machine.track_front - 1.0, -half_width, reach + 0.5, half_width};
+}
+
+/// True if every cell the bucket passes, and the one ahead of it, is known.
+bool known_under(const Terrain& terrain, const Machine& machine, const DigPath& path) {
+  double x_min = path.start_x;
+  for (const DigPose& pose : path.poses) x_min = std::min(x_min, pose.bucket.x);
+  const HeightMap& bank = terrain.bank;
+  const auto cells = [&](double from, double to, double origin, Index count) {
+    const auto begin = static_cast<Index>(std::floor((from - origin) / bank.cell));
+    const auto end = static_cast<Index>(std::ceil((to - origin) / bank.cell));
+    return begin >= 0 && end <= count ? Eigen::seqN(begin, end - begin)
+                                      : Eigen::seqN(Index{0}, Index{0});
+  };
+  const double half = 0.5 * machine.bucket.width_outside;
+  // The simulator looks a quarter metre ahead of the lip for support and slope.
+  const auto cols = cells(x_min - 0.25, path.start_x + bank.cell, bank.origin.x(), bank.z.cols());
+  const auto rows = cells(-half, half, bank.origin.y(), bank.z.rows());
+  return cols.size() > 0 && rows.size() > 0 && !bank.z(rows, cols).isNaN().any();
+}
+
+SearchBox search_box() {
+  SearchBox box{Eigen::VectorXd(3), Eigen::VectorXd(3)};
+  for (Index i = 0; i < 3; ++i) {
+    const DigParameterInfo& info = dig_parameter_table()[static_cast<std::size_t>(i)];
+    box.lower(i) = info.lower;
+    box.upper(i) = info.upper;
+  }
+  return box;
+}
+
+DigParameters parameters_of(const Eigen::VectorXd& genes) {
+  DigParameters parameters;
+  for (Index i = 0; i < 3; ++i) {
+    parameters.*dig_parameter_table()[static_cast<std::size_t>(i)].field = genes(i);
+  }
+  return parameters;
+}
+
+Eigen::VectorXd genes_of(const DigParameters& parameters) {
+  Eigen::VectorXd genes(3);
+  for (Index i = 0; i < 3; ++i) {
+    genes(i) = parameters.*dig_parameter_table()[static_cast<std::size_t>(i)].field;
+  }
+  return genes;
+}
+
+}  // namespace
+
+std::string describe(const DigFailure& failure) {
+  if (const auto* infeasible = std::get_if<Infeasible>(&failure)) return infeasible->message;
+  const Stall& stall = std::get<Stall>(failure);
+  return std::string("the ") + name(stall.joint) + " stalls in the phase " + name(stall.phase) +
+         " after " + std::to_string(stall.travelled) + " m: it would need " +
+         std::to_string(std::abs(stall.torque) / 1000.0) + " kN m";
+}
+
+Terrain level_planning_ground(const Machine& machine, double cell) {
+  return undisturbed(flat_ground(reachable_ground(machine), cell));
+}
+
+Terrain planning_ground(const Machine& machine, const HeightMap& surface) {
+  const Rectangle wanted = reachable_ground(machine);
+  const auto range = [&](double from, double to, double origin, Index count) {
+    const double begin =
+        std::clamp(std::floor((from - origin) / surface.cell), 0.0, static_cast<double>(count));
+    const double end =
+        std::clamp(std::ceil((to - origin) / surface.cell), begin, static_cast<double>(count));
+    return Eigen::seqN(static_cast<Index>(begin), static_cast<Index>(end - begin));
+  };
+  const auto cols = range(wanted.x_min, wanted.x_max, surface.origin.x(), surface.z.cols());
+  const auto rows = range(wanted.y_min, wanted.y_max, surface.origin.y(), surface.z.rows());
+  HeightMap ground;
+  ground.cell = surface.cell;
+  ground.origin =
+      surface.origin + surface.cell * Eigen::Vector2d(static_cast<double>(cols.first()),
+                                                      static_cast<double>(rows.first()));
+  ground.z = surface.z(rows, cols);
+  if (ground.z.size() == 0 || ground.z.isNaN().all()) {
+    throw Error(
+        ErrorKind::bad_input,
+        "terrain: no known ground within the machine's reach, x = " + std::to_string(wanted.x_min) +
+            " .. " + std::to_string(wanted.x_max) + " m, y = " + std::to_string(wanted.y_min) +
+            " .. " + std::to_string(wanted.y_max) + " m in the site frame");
+  }
+  return undisturbed(ground);
+}
+
+GroundProfile boom_plane_profile(const HeightMap& surface) {
+  const auto row = static_cast<Index>(std::floor(-surface.origin.y() / surface.cell - 0.5));
+  const Index first = std::clamp<Index>(row, 0, std::max<Index>(0, surface.z.rows() - 2));
+  HeightMap strip = surface;
+  strip.origin.y() += surface.cell * static_cast<double>(first);
+  strip.z = surface.z.middleRows(first, std::min<Index>(2, surface.z.rows() - first)).eval();
+  return [strip](double x) { return height_at(strip, x, 0.0); };
+}
+
+std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
+                                                  const SoilSimulator& simulator,
+                                                  const Terrain& terrain,
+                                                  const DigParameters& parameters,
+                                                  std::optional<double> start_x) {
+  const GroundProfile ground = boom_plane_profile(terrain.surface());
+  const auto laid_out = start_x ? make_dig_path(machine, parameters, *start_x, ground)
+                                : make_dig_path_anywhere(machine, parameters, ground);
+  if (const auto* infeasible = std::get_if<Infeasible>(&laid_out)) return DigFailure(*infeasible);
+  const DigPath& path = std::get<DigPath>(laid_out);
+  if (!known_under(terrain, machine, path)) {
+    Infeasible unknown;
+    unknown.reason = Infeasible::Reason::unknown_ground;
+    unknown.value = path.start_x;
+    unknown.message = "the path runs over ground that is unknown or off the map";
+    return DigFailure(unknown);
+  }
+  const DigResult result = simulator.dig(terrain, path);
+  if (result.stall) return DigFailure(*result.stall);
+  return PlannedDig{parameters,          path.start_x,
+                    result.payload_mass, result.payload_volume,
+                    result.energy.total, time_dig_path(machine, path).dig_duration()};
+}
+
+std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
+                                          const Terrain& terrain, const DigSearchOptions& options) {
+  const SearchBox box = search_box();
+  const Objective efficiency = [&](const Eigen::VectorXd& genes) -> std::optional<double> {
+    const auto outcome = evaluate_dig(machine, simulator, terrain, parameters_of(genes));
+    const auto* dig = std::get_if<PlannedDig>(&outcome);
+    return dig ? std::optional(dig->efficiency()) : std::nullopt;
+  };
+  GeneticOptions genetic = options.genetic;
+  if (options.known_good) genetic.start.push_back(genes_of(*options.known_good));
+  const auto found = search_genetic(box, efficiency, genetic);
+  if (!found) return std::nullopt;
+
+  DigSearchResult result;
+  result.evaluations = found->evaluations;
+  result.infeasible = found->infeasible;
+  result.stopped = found->stopped;
+  result.history = found->history;
+  Eigen::VectorXd best = found->best;
+  if (options.polish_evaluations > 0 && !found->stopped) {
+    const SearchResult polished = polish(box, efficiency, best, options.polish_evaluations);
+    best = polished.best;
+    result.evaluations += polished.evaluations;
+    result.infeasible += polished.infeasible;
+  }
+  result.dig = std::get<PlannedDig>(evaluate_dig(machine, simulator, terrain, parameters_of(best)));
+  return result;
+}
+
+}  // namespace excavplan
