@@ -67,6 +67,13 @@ double hit(const HeightMap& surface, const Eigen::Vector3d& from, const Eigen::V
 
 }  // namespace
 
+DepthCamera camera_above(const Eigen::Vector2d& ground_point, double ground_z) {
+  DepthCamera camera;
+  camera.position = {ground_point.x(), ground_point.y() - 0.3, ground_z + 2.8};
+  camera.target = {ground_point.x(), ground_point.y(), ground_z};
+  return camera;
+}
+
 std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const DepthCamera& camera,
                                           std::uint64_t seed) {
   check(camera);

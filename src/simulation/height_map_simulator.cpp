@@ -247,8 +247,10 @@ class Dig {
     result_.soil.bank_cut += bank_volume * area;
     result_.soil.loose_cut += loose_volume * area;
     fill_ += (bank_volume * swell_ + loose_volume) * area;
-    moving_.include(first_row_, col);
-    moving_.include(first_row_ + cover_.size() - 1, col);
+    for (CellBlock* block : {&moving_, &passed_}) {
+      block->include(first_row_, col);
+      block->include(first_row_ + cover_.size() - 1, col);
+    }
   }
 
   /// What the bucket cannot hold falls off the lip.
@@ -318,7 +320,8 @@ class Dig {
   /// Earthmoving equation per strip of the edge, in the frame of the motion.
   Resistance push_wedge(const Vector2d& tip, Index col, const Attitude& attitude,
                         const Vector2d& motion) const {
-    const double rake = std::max(attitude.floor + attitude.climb, machine_.bucket.edge_angle);
+    const double rake =
+        std::max({attitude.floor, attitude.floor + attitude.climb, machine_.bucket.edge_angle});
     const EarthmovingFactors n = wedges_.at(rake, surface_slope(col));
     const double face = rake + bank_.tool_friction_angle;
     const double turn = std::clamp(attitude.climb, 0.0, 0.5 * pi);
@@ -473,6 +476,10 @@ class Dig {
   void come_clear(const DigPose& last) {
     const double phi3 = last.bucket.floor_angle - pi + machine_.beta();
     overflow(last.bucket.x, phi3, 0.0, {slopes_.heap, slopes_.heap});
+    if (!passed_.empty()) {
+      moving_.include(passed_.row_begin, passed_.col_begin);
+      moving_.include(passed_.row_end - 1, passed_.col_end - 1);
+    }
     slump(result_.terrain, moving_, limits_, sweeps_at_the_end);
     result_.payload_volume = fill_;
     result_.payload_mass = fill_ * loose_.bulk_density;
@@ -529,6 +536,7 @@ class Dig {
   double travelled_ = 0.0;
   double deepest_ = 0.0;
   CellBlock moving_;  ///< cells that may not be at rest
+  CellBlock passed_;  ///< cells the lip has passed, whose walls the bucket holds until it is out
 };
 
 /// Side view of the bucket's cavity in the boom plane, relative to the tip.

@@ -25,6 +25,10 @@ struct DepthCamera {
   double max_range = 6.0;  ///< [m]; ours
 };
 
+/// A camera that looks down on a patch of ground from 2.8 m, a little from the side, its long image
+/// axis along x; ours: near enough for 1 % of bulking factor, high enough to see a dig whole.
+DepthCamera camera_above(const Eigen::Vector2d& ground_point, double ground_z);
+
 /// The points that the camera sees of a surface, in the site frame [m].
 ///
 /// Casts one ray per pixel at the bilinear surface of `surface`; what is hidden from the camera is

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/calibration.hpp>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+#include <excavplan/ground/bulking.hpp>
+#include <excavplan/planning/planner.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+
+namespace excavplan {
+namespace {
+
+constexpr double heap_room = 2.0;  // around a dump point [m]; ours: a bucketful spreads about 1 m
+
+DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
+                                   const CalibrationOptions& options) {
+  const Eigen::Vector2d dump_at = default_dump_point();
+  const Terrain ground = level_scene(machine, dump_at, options.cell);
+  const auto laid_out =
+      make_dig_path_anywhere(machine, options.path, boom_plane_profile(ground.surface()));
+  if (const auto* infeasible = std::get_if<Infeasible>(&laid_out)) {
+    throw Error(ErrorKind::bad_input, "calibration: " + infeasible->message);
+  }
+  DigOptions dig;
+  dig.dump_at = dump_at;
+  const HeightMapSimulator simulator(machine, soil, density);
+  const DigResult result = simulator.dig(ground, std::get<DigPath>(laid_out), dig);
+  if (result.stall) throw Error(ErrorKind::bad_input, "calibration: " + describe(*result.stall));
+
+  DensityCalibration::Sample sample;
+  sample.density_percent = density;
+  sample.bulking_factor_measured =
+      height_map_volumes(ground, result.terrain, dump_at).bulking_factor;
+  sample.fallback_fraction = result.soil.fallback_fraction;
+  sample.bulking_factor =
+      free_of_fallback(sample.bulking_factor_measured, sample.fallback_fraction);
+  sample.bulking_factor_true = bulking_of_density(soil, density);
+  return sample;
+}
+
+std::vector<BulkingSample> pairs(const std::vector<DensityCalibration::Sample>& samples,
+                                 double DensityCalibration::Sample::*factor) {
+  std::vector<BulkingSample> pairs;
+  for (const auto& sample : samples) pairs.push_back({sample.*factor, sample.density_percent});
+  return pairs;
+}
+
+}  // namespace
+
+Eigen::Vector2d default_dump_point() { return {5.5, 4.0}; }
+
+Terrain level_scene(const Machine& machine, const Eigen::Vector2d& dump_at, double cell) {
+  Rectangle extent = level_planning_ground(machine, 0.5).bank.extent();
+  extent.x_min = std::min(extent.x_min, dump_at.x() - heap_room);
+  extent.x_max = std::max(extent.x_max, dump_at.x() + heap_room);
+  extent.y_min = std::min(extent.y_min, dump_at.y() - heap_room);
+  extent.y_max = std::max(extent.y_max, dump_at.y() + heap_room);
+  return undisturbed(flat_ground(extent, cell));
+}
+
+DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
+                                     const CalibrationOptions& options) {
+  DensityCalibration calibration;
+  std::vector<double> densities = options.densities_percent;
+  if (densities.empty()) {
+    for (int i = 0; i <= 20; ++i) densities.push_back(5.0 * i);
+  }
+  for (const double density : densities) {
+    calibration.samples.push_back(measure(machine, soil, density, options));
+  }
+  using Sample = DensityCalibration::Sample;
+  const auto freed = pairs(calibration.samples, &Sample::bulking_factor);
+  const auto measured = pairs(calibration.samples, &Sample::bulking_factor_measured);
+  calibration.name = machine.name + "-" + soil.name;
+  calibration.source = "digs of the built-in simulator, " + machine.name + " in " + soil.name;
+  calibration.use = "closed_form_as_measured";
+  calibration.line = fit_line(freed);
+  calibration.closed_form = fit_closed_form(freed);
+  calibration.line_as_measured = fit_line(measured);
+  calibration.closed_form_as_measured = fit_closed_form(measured);
+  return calibration;
+}
+
+}  // namespace excavplan
