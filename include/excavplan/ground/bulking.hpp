@@ -18,7 +18,9 @@ std::optional<Measured> bulking_factor(const VolumeChange& change);
 /// Frees a bulking factor measured from height maps of the soil that fell back into the cut.
 ///
 /// k = f + (1 - f) k_measured, f = loose soil lying in the pit / volume of the cut
-/// (reference/soil-mechanics section 3.5).
+/// (docs/methods.md#density-law).
+///
+/// @throws Error (bad_input) unless 0 <= f < 1
 double free_of_fallback(double bulking_measured, double fallback_fraction);
 
 }  // namespace excavplan

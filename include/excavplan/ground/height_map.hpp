@@ -49,4 +49,11 @@ double height_at(const HeightMap& map, double x, double y);
 /// True if both maps have the same origin, cell and size, to 1e-9 of a cell.
 bool same_grid(const HeightMap& a, const HeightMap& b);
 
+/// A surface on another grid, bilinear between its cells: fills enclosed unknown cells by a
+/// membrane through their rims first; what lies outside the survey stays NaN. For maps that are
+/// coarser than the work needs.
+///
+/// @throws Error (bad_input) as flat_ground()
+HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell);
+
 }  // namespace excavplan

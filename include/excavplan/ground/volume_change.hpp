@@ -38,11 +38,12 @@ struct ChangeZone {
 struct AreaChange {
   HeightMap difference;   ///< after - before [m], less the datum; NaN where either is unknown
   Eigen::ArrayXXi zone;   ///< index into VolumeChange::zones, -1 for stable ground
-  double noise_sd = 0.0;  ///< of one stable cell of `difference` [m]
-  double datum = 0.0;     ///< median change of the stable ground, taken off `difference` [m]
+  double noise_sd = 0.0;  ///< of one stable cell of `difference`, at least 0.1 mm [m]
+  double datum = 0.0;     ///< robust mean change of the stable ground, taken off `difference` [m]
 };
 
-/// Settings of measure_change(). Thresholds follow reference/point-cloud-volume section 4.
+/// Settings of measure_change(). The defaults are ours, found by experiment
+/// (docs/methods.md#volumes).
 struct ChangeOptions {
   std::optional<Rectangle> dig_area;   ///< only falling ground in here is the hole
   std::optional<Rectangle> dump_area;  ///< only rising ground in here is the heap
@@ -72,7 +73,17 @@ struct VolumeChange {
 /// Takes the datum from the ground that did not change, finds the connected zones whose change
 /// exceeds the noise found on that ground, fills their unknown cells by a membrane through the
 /// known difference, and sums the signed difference inside each zone, which unlike
-/// the sum of positive parts is free of clipping bias.
+/// the sum of positive parts is free of clipping bias. Standard deviations hold the noise with its
+/// correlation, the common error of the datum, and the error of filled cells.
+///
+/// Without a dig area the hole is the zone that lost most, with what fell within the spill distance
+/// of it; without a dump area the heap is the zone that rose most away from the hole, with what
+/// rose within the spill distance of that, or if nothing did, the largest rise beside the hole that
+/// holds at least half of what was dug. Zones belong to a given area by their centre.
+///
+/// Warnings: no_hole_found, no_dumped_soil (less than half of the dug volume rose), looks_swapped
+/// (after / before below 0.97 beyond its error, or above 3), other_change, zone_at_border,
+/// zone_partly_unseen, little_stable_ground.
 ///
 /// @throws Error (bad_input) if the maps are not on one grid, share fewer than 100 known cells,
 ///         or an option is out of range

@@ -16,7 +16,7 @@
 ///
 ///     DigParameters -> DigPath -> Trajectory (trajectory.hpp)
 ///
-/// Path rules: the paper, section 2.3.2; geometry: reference/optimiser-ik-reliability B3.
+/// Path rules: the paper, section 2.3.2; geometry: docs/methods.md#path.
 
 namespace excavplan {
 
@@ -45,8 +45,8 @@ struct DigParameterInfo {
   double upper;
 };
 
-/// One row per number, in order. The bounds are ours: the paper's Table 3 is not published as text;
-/// they are those of reference/optimiser-ik-reliability A3 (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m).
+/// One row per number, in order. The bounds (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m) are ours: the
+/// paper's own search range is in its Table 3, which is not published as text.
 const std::array<DigParameterInfo, 3>& dig_parameter_table();
 
 enum class DigPhase { approach, penetrate, drag, scoop, lift };
@@ -80,15 +80,16 @@ struct Infeasible {
     heel_contact,  ///< the floor presses on the ground behind the cut
     too_deep,      ///< below DigPathOptions::max_depth
     too_near_tracks,
-    unknown_ground,  ///< the start point lies on ground of unknown height
+    unknown_ground,  ///< at the start point, whose x is `value`
     lift_blocked,    ///< the bucket cannot be lifted clear of the ground
   };
   Reason reason = Reason::bad_parameter;
   DigPhase phase = DigPhase::penetrate;
-  double distance = 0.0;  ///< travelled in that phase: [m], [rad] while scooping
-  double value = 0.0;     ///< what was found
-  double limit = 0.0;     ///< what was allowed, in the unit of value
-  std::string message;    ///< all of this in one sentence
+  Joint joint = Joint::boom;  ///< for joint_limit
+  double distance = 0.0;      ///< travelled in that phase: [m], [rad] while scooping
+  double value = 0.0;         ///< what was found
+  double limit = 0.0;         ///< what was allowed, in the unit of value
+  std::string message;        ///< all of this in one sentence
 };
 
 /// Height of the ground in the boom plane at x [m]; NaN where unknown.
@@ -109,7 +110,9 @@ struct DigPathOptions {
 /// Penetrate: the floor is parallel to the line of penetration. Drag: the tip moves level, the
 /// angle between arm and bucket stays. Scoop: only the bucket turns, until the line from bucket pin
 /// to tip is level, which levels the mouth within a few degrees. Lift (not in the paper): the boom
-/// rises, the bucket keeps its attitude, until it is clear.
+/// rises, the bucket keeps its attitude, until it is clear of the highest known ground under it; a
+/// bucket that comes to its limit out of the ground opens from there on. A phase of length 0 is
+/// left out. Checks are made at the poses.
 ///
 /// @throws Error (bad_input) if an option is out of range; bad parameters are a value
 std::variant<DigPath, Infeasible> make_dig_path(const Machine& machine,
@@ -118,7 +121,7 @@ std::variant<DigPath, Infeasible> make_dig_path(const Machine& machine,
                                                 const DigPathOptions& options = {});
 
 /// Chooses the start point by a scan of the reach: the one with the largest smallest margin to the
-/// joint limits (and to heel contact), ties to the middle (reference/optimiser-ik-reliability B4).
+/// joint limits (and to heel contact), ties to the middle (docs/methods.md#path).
 ///
 /// @return the path from there, or why the best of the failing start points fails
 std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,

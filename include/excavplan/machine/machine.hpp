@@ -72,13 +72,16 @@ struct Machine {
   std::array<LinkMass, 3> links;
   Bucket bucket;
 
+  /// Boom pin to tip with all links in one line: nothing is ever further away [m].
+  double full_length() const { return boom_length + arm_length + bucket_length; }
   double beta() const;  ///< angle between bucket floor and the line from tip to bucket pin [rad]
 };
 
 /// Reads a machine file (docs/formats.md); every number in it names its source.
 ///
 /// @throws Error (bad_file) naming file, key, value and rule; among the rules: lengths and masses
-///         positive, limits in order, profile convex, counter-clockwise, tip at (bucket_length, 0)
+///         positive, limits in order, arm limits in 0 .. pi (the elbow never turns over), profile
+///         convex, counter-clockwise, tip at (bucket_length, 0)
 Machine load_machine(const std::string& path);
 
 /// Where the tip is and how the bucket stands.
@@ -103,17 +106,22 @@ BucketPose forward_kinematics(const Machine& machine, const JointAngles& joints)
 struct Unreachable {
   enum class Reason { too_far, too_near, joint_limit };
   Reason reason = Reason::too_far;
-  Joint joint = Joint::boom;  ///< for joint_limit
-  double excess = 0.0;        ///< [m] beyond the reach, or [rad] beyond the limit, > 0
+  Joint joint = Joint::boom;  ///< for joint_limit: the one furthest outside
+  /// What the pose asks for: the joint angle [rad], or the distance from the boom pin to the bucket
+  /// pin [m] (to the tip where the bucket angle is held).
+  double value = 0.0;
+  double limit = 0.0;   ///< what the machine allows of it
+  double excess = 0.0;  ///< |value - limit|, > 0
 };
 
 /// Closed form for the planar chain, elbow above the line from boom pin to bucket pin, exact to
-/// rounding; NaN in the pose gives too_far. Limits are checked.
+/// rounding; NaN in the pose gives too_far. Limits are checked, and the answer is within them
+/// (what is outside by rounding, 1e-12 rad, is put onto the limit).
 std::variant<JointAngles, Unreachable> inverse_kinematics(const Machine& machine,
                                                           const BucketPose& pose);
 
 /// The same with the bucket angle held instead of the floor angle: the posture that puts the tip at
-/// (x, z) with joint angle `bucket`.
+/// (x, z) with joint angle `bucket`, elbow above the line from boom pin to tip.
 std::variant<JointAngles, Unreachable> inverse_kinematics_fixed_bucket(const Machine& machine,
                                                                        double x, double z,
                                                                        double bucket);

@@ -31,7 +31,10 @@ struct TrajectoryOptions {
 
 /// Times a path as fast as the joint speeds and accelerations allow, by a forward and a backward
 /// pass over its poses, with a stop at every change of phase, where the direction of the joints
-/// jumps.
+/// jumps. Differences of the samples keep the limits exactly.
+///
+/// The points are the poses of the path, but for poses that do not move (left out) and phases of a
+/// single step (which get a point halfway).
 ///
 /// @throws Error (bad_input) if the option is out of range or the path has fewer than two poses
 Trajectory time_dig_path(const Machine& machine, const DigPath& path,

@@ -17,8 +17,8 @@ namespace excavplan {
 /// swing of a machine that does not move (x, y) [m]; ours.
 Eigen::Vector2d default_dump_point();
 
-/// Level ground that holds the digs of a machine and a heap at `dump_at`.
-Terrain level_scene(const Machine& machine, const Eigen::Vector2d& dump_at, double cell = 0.05);
+/// Ground that holds the digs of a machine and a heap at `dump_at`.
+Rectangle scene_extent(const Machine& machine, const Eigen::Vector2d& dump_at);
 
 struct CalibrationOptions {
   std::vector<double> densities_percent;  ///< empty: 0, 5 .. 100, as the paper does

@@ -32,14 +32,12 @@ struct PlannedDig {
 using DigFailure = std::variant<Infeasible, Stall>;
 std::string describe(const DigFailure& failure);
 
-/// Ground to plan on: level, from near the tracks to the reach of the machine, one bucket's width
-/// and a windrow wide on both sides of the boom plane.
-Terrain level_planning_ground(const Machine& machine, double cell = 0.05);
+/// Ground that matters for a dig: from near the tracks to the machine's reach, one bucket and its
+/// windrows wide on both sides of the boom plane.
+Rectangle planning_extent(const Machine& machine);
 
-/// The same cut out of a measured surface in the site frame, on its cells.
-///
-/// @throws Error (bad_input) if the surface holds no known ground within the machine's reach
-Terrain planning_ground(const Machine& machine, const HeightMap& surface);
+/// planning_extent() as level ground.
+Terrain level_planning_ground(const Machine& machine, double cell = 0.05);
 
 /// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the row
 /// of cells it needs.

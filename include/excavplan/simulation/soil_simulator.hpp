@@ -110,4 +110,8 @@ struct HeightMapVolumes {
 HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,
                                     const Eigen::Vector2d& dump_at, double dump_radius = 2.0);
 
+/// Slope of the heap that rose at `at`, mean of its flank between a quarter and three quarters of
+/// its radius over 36 directions [rad]; NaN if nothing rose there.
+double heap_slope(const Terrain& before, const Terrain& after, const Eigen::Vector2d& at);
+
 }  // namespace excavplan

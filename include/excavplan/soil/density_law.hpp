@@ -17,8 +17,8 @@
 /// The paper fits a straight line d = a k + b. Solids that are conserved give a hyperbola: soil of
 /// void ratio e that ends in one loose state has k = (1 + e_loose) / (1 + e), so
 /// k = B + A / (1 - r d / 100), with r = (e_max - e_min) / (1 + e_max) and B = 0. The hyperbola is
-/// exact where the line is 4 to 8 points off (reference/soil-mechanics section 3); B takes up clods
-/// (B > 0) or soil that fell back into the cut (B < 0).
+/// exact where the line is 4 to 8 points off (docs/methods.md#density-law). Clods make B > 0, soil
+/// that fell back into the cut makes B < 0.
 
 namespace excavplan {
 
@@ -59,8 +59,13 @@ struct DensityLaw {
 /// @throws Error (bad_file) naming file, key, value and rule
 DensityLaw load_density_law(const std::string& path);
 
-double density_of_bulking(const DensityForm& form, double bulking_factor);  ///< [%], unclamped
+/// Relative density by the law as it stands [%], also outside 0 .. 100. The closed form has none at
+/// k <= B and runs to minus infinity above it: it ends at -1000 %, and its slope there.
+double density_of_bulking(const DensityForm& form, double bulking_factor);
+
+/// The inverse. @throws Error (bad_input) if the closed form has no factor, d >= 100 / r
 double bulking_of_density(const DensityForm& form, double density_percent);
+
 double density_slope(const DensityForm& form, double bulking_factor);  ///< dd/dk [%]
 
 /// Relative density [%] with what is known about its error.
@@ -79,12 +84,13 @@ struct DensityEstimate {
 /// @throws Error (bad_input) unless the bulking factor is finite and positive and its sd is >= 0
 DensityEstimate estimate_density(const DensityLaw& law, const Measured& bulking_factor);
 
-/// Least-squares line of d on k. @throws Error (bad_input) with fewer than 3 different factors
+/// Least-squares line of d on k.
+/// @throws Error (bad_input) with fewer than 3 different factors, a factor that is not positive, a
+/// density outside 0 .. 100, or where none fits (k must grow with d)
 DensityLine fit_line(const std::vector<BulkingSample>& samples);
 
 /// Least-squares hyperbola of k on d (A and B linear, r by NLopt).
-/// @throws Error (bad_input) with fewer than 4 different densities, or where none fits (k must grow
-/// with d)
+/// @throws Error (bad_input) as fit_line(), with fewer than 4 different densities
 DensityClosedForm fit_closed_form(const std::vector<BulkingSample>& samples);
 
 /// What calibrate-density finds, and what a law file holds.
@@ -99,7 +105,7 @@ struct DensityCalibration {
   struct Sample {
     double density_percent = 0.0;
     double bulking_factor = 0.0;           ///< freed of fallback
-    double bulking_factor_measured = 0.0;  ///< from height maps
+    double bulking_factor_measured = 0.0;  ///< from height maps; 0 where unknown
     double bulking_factor_true = 0.0;      ///< from the dry mass balance; 0 where unknown
     double fallback_fraction = 0.0;
   };

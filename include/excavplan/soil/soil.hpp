@@ -12,7 +12,7 @@ inline constexpr double water_density = 1000.0;  ///< [kg/m^3]
 /// How the penetration resistance of a soil follows from its state.
 enum class ConeIndexLaw {
   bulk_density,  ///< q = reference * exp(rate * (bulk density - reference density))
-  stress,        ///< q = factor * reference * (vertical stress / kPa)^exponent * exp(rate * d)
+  stress,        ///< q = reference * (vertical stress / kPa)^exponent * exp(rate * d)
 };
 
 /// A kind of soil: what stays when its density changes. `d` is the relative density in 0 .. 1.
@@ -59,10 +59,13 @@ SoilKind load_soil(const std::string& path);
 /// State of undisturbed soil. @throws Error (bad_input) unless 0 <= density_percent <= 100
 SoilState bank_state(const SoilKind& soil, double density_percent);
 
-/// State of dug soil: void_ratio_loose, cohesion lost, friction of the loosest state.
+/// State of dug soil: void_ratio_loose, cohesion and adhesion lost, friction of the loosest state.
 SoilState loose_state(const SoilKind& soil);
 
 /// Penetration resistance (cone index) at a depth below the surface [Pa].
+///
+/// The stress law takes the overburden (unit weight times depth) for the vertical stress and at
+/// least that of 1 cm, so that the surface itself resists too.
 double cone_index(const SoilKind& soil, const SoilState& state, double depth);
 
 /// Bulking factor if all soil goes from the bank at this density to the loose state:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,16 +27,18 @@ enum class CloudFormat { pcd_ascii, pcd_binary, ply_ascii, ply_binary, xyz };
 /// text; the format is told from the content, not from the name.
 ///
 /// x, y and z may be float32, float64 or integers; other fields are skipped. Every rule of
-/// docs/formats.md#clouds is checked before memory is asked for.
+/// docs/formats.md#clouds is checked before memory is asked for; a file that would take more than
+/// `memory_limit` [byte] in all is refused.
 ///
 /// @throws Error (bad_file) naming file, line or byte, what was found and what was expected
-Cloud read_cloud(const std::string& path);
+Cloud read_cloud(const std::string& path, std::uint64_t memory_limit = std::uint64_t{4} << 30);
 
 /// Writes a cloud; binary formats hold float64 if a coordinate needs it (float32 would move a point
 /// by more than 0.1 mm), else float32.
 ///
 /// The file appears whole or not at all (written beside, then renamed).
-/// @throws Error (bad_file) if the file cannot be written
+/// @throws Error (bad_file) if the file cannot be written; (bad_input) if the cloud's width and
+/// height do not fit its points
 void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format);
 
 /// The format a file name asks for: .pcd and .ply binary, .xyz .txt .asc text.
@@ -44,7 +47,7 @@ CloudFormat cloud_format_of_name(const std::string& path);
 
 /// Reads a 4 x 4 matrix of text that takes a scan into the site frame.
 /// @throws Error (bad_file) if it is not 16 numbers, the last row is not 0 0 0 1, or it is not
-/// rigid
+/// rigid to 1e-4
 Eigen::Matrix4d read_frame(const std::string& path);
 
 void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);
@@ -57,29 +60,41 @@ struct CloudSummary {
       Eigen::Vector3d::Zero();  ///< over the finite points [m]; NaN if there are none
   Eigen::Vector3d min = Eigen::Vector3d::Zero();
   Eigen::Vector3d max = Eigen::Vector3d::Zero();
-  double density = 0.0;     ///< points per m^2 of occupied ground
+  double density = 0.0;     ///< points per m^2 of occupied ground; NaN if they have no area
   std::string frame_guess;  ///< "site (z up, ground near 0)", "map (large coordinates)", "camera (z
                             ///< forward)", "unknown"
 };
+
+/// The frame is a guess for people, never acted upon: "map" if the centroid is over 10 km from the
+/// origin in plan, "camera" if nearly all points lie within 60 degrees of the z axis, ahead, "site"
+/// if the layer of 0.25 m with most points is within 0.5 m of zero and the cloud is wider than
+/// high.
 CloudSummary summarise(const Cloud& cloud);
 
 /// Settings of rasterise().
 struct RasterOptions {
-  double cell = 0.05;  ///< [m], > 0
-  double outlier_distance =
-      4.0;  ///< points farther from the cell's median than this many robust sd are left out [-]
+  double cell = 0.05;             ///< [m], > 0
+  double outlier_distance = 4.0;  ///< points this many robust sd beyond the heights found around
+                                  ///< their cell are left out [-], > 0
 };
 
-/// One height per cell of the grid that starts at `extent` (its lower corner snapped to a multiple
-/// of the cell): the mean of the points near the cell's median, moved to the cell's centre by the
-/// local slope; NaN without points.
+/// One height per cell of the grid that covers `extent`, its lower corner snapped down to a
+/// multiple of the cell, so that clouds rasterised with one extent share one grid.
+///
+/// The height is the mean of the cell's points that are no outliers, moved to the cell's centre by
+/// the local slope where the points tell it; NaN without points. Outliers lie outside the band
+/// [low - g, high + g], low and high the extreme medians of the 3 x 3 neighbourhood but for one on
+/// each side, g = outlier_distance * noise + (high - low) / 2, noise the lower quartile of the
+/// cells' robust sd: the two levels of a cell that a wall crosses both lie inside it, so that the
+/// volume between two maps stays unbiased. Where few cells hold five points nothing is left out,
+/// nor is a point that is alone in its cell.
 ///
 /// @throws Error (bad_input) if an option is out of range or the map would hold more than 100
 /// million cells
 HeightMap rasterise(const Cloud& cloud, const Rectangle& extent, const RasterOptions& options = {});
 
-/// Plan extent of the finite points, without the farthest 0.1 % on each side, widened to what holds
-/// them.
+/// Plan extent of the finite points without the farthest 0.1 % on each side; contains() holds for
+/// all others.
 /// @throws Error (bad_input) if no point is finite
 Rectangle plan_extent(const Cloud& cloud);
 

@@ -1,0 +1,497 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/machine/dig_path.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include <excavplan/error.hpp>
+
+#include "../json_file.hpp"
+
+namespace excavplan {
+namespace {
+
+using Reason = Infeasible::Reason;
+
+constexpr double pi = 3.141592653589793;
+constexpr int most_poses = 10000;      // a phase
+constexpr int scan_poses = 12;         // a phase, while start points are compared
+constexpr double scan_lift = 0.1;      // tip travel between poses of a lift, likewise [m]
+constexpr int scan_per_metre = 20;     // start points
+constexpr double scan_tie = 1e-9;      // margins closer than this count as equal [rad]
+constexpr double same_posture = 1e-6;  // joints closer than this [rad]
+constexpr int ground_intervals = 16;   // where the ground is looked up under the bucket
+
+// ---- messages -----------------------------------------------------------------------------------
+
+std::string decimals(double value, int digits) {
+  char text[400];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr;
+  return {text, end};
+}
+
+std::string metres(double value) { return decimals(value, 3) + " m"; }
+std::string degrees(double value) { return decimals(value * 180.0 / pi, 2) + " deg"; }
+
+std::string explain_reach(const Infeasible& stop) {
+  const std::string what =
+      stop.phase == DigPhase::drag ? "the tip, its bucket angle held," : "the bucket pin";
+  return what + " would be " + metres(stop.value) + " from the boom pin, it must be at " +
+         (stop.value > stop.limit ? "most " : "least ") + metres(stop.limit);
+}
+
+std::string explain_cause(const Infeasible& stop) {
+  switch (stop.reason) {
+    case Reason::out_of_reach:
+      return explain_reach(stop);
+    case Reason::joint_limit:
+      return std::string("the ") + name(stop.joint) + " would be at " + degrees(stop.value) +
+             ", its limit is " + degrees(stop.limit);
+    case Reason::heel_contact:
+      return "the bucket floor stands at " + degrees(stop.value) +
+             " to the cut, its heel needs at least " + degrees(stop.limit);
+    case Reason::too_deep:
+      return "the tip is " + metres(stop.value) + " below the ground at the start, it may go " +
+             metres(stop.limit);
+    case Reason::too_near_tracks:
+      return "the tip is at x = " + metres(stop.value) + ", it must stay beyond " +
+             metres(stop.limit);
+    case Reason::lift_blocked:
+      return std::string("the ") + name(stop.joint) + " is at its limit with the bucket " +
+             metres(stop.value) + " above the ground, it must get " + metres(stop.limit) + " above";
+    case Reason::unknown_ground:
+      return "the height of the ground at the start point, x = " + metres(stop.value) +
+             ", is not known";
+    case Reason::bad_parameter:
+      break;
+  }
+  return "a parameter breaks its rule";
+}
+
+std::string explain(const Infeasible& stop) {
+  const std::string distance =
+      stop.phase == DigPhase::scoop ? degrees(stop.distance) : metres(stop.distance);
+  return std::string(name(stop.phase)) + ", after " + distance + ": " + explain_cause(stop);
+}
+
+// ---- rules for the input ------------------------------------------------------------------------
+
+void require(bool holds, const char* option, double value, const char* rule) {
+  if (holds) return;
+  throw Error(ErrorKind::bad_input, std::string("DigPathOptions::") + option + " is " +
+                                        number_text(value) + ", must be " + rule);
+}
+
+void check(const DigPathOptions& options) {
+  require(options.step > 0.0 && std::isfinite(options.step), "step", options.step,
+          "above 0 m and finite");
+  require(options.min_heel_clearance >= 0.0 && options.min_heel_clearance < pi / 2.0,
+          "min_heel_clearance", options.min_heel_clearance, "in 0 .. pi/2 rad");
+  require(options.max_depth > 0.0, "max_depth", options.max_depth, "above 0 m");
+  require(std::isfinite(options.track_margin), "track_margin", options.track_margin, "finite");
+  require(options.lift_clearance >= 0.0 && std::isfinite(options.lift_clearance), "lift_clearance",
+          options.lift_clearance, "at least 0 m and finite");
+}
+
+Infeasible bad_parameter(DigPhase phase, double value, double limit, const std::string& message) {
+  Infeasible stop;
+  stop.phase = phase;
+  stop.value = value;
+  stop.limit = limit;
+  stop.message = message;
+  return stop;
+}
+
+std::optional<Infeasible> find_bad_parameter(const DigParameters& parameters, double start_x) {
+  const double angle = parameters.penetration_angle;
+  if (!(angle > 0.0 && angle < pi / 2.0)) {
+    return bad_parameter(
+        DigPhase::penetrate, angle, angle > 0.0 ? pi / 2.0 : 0.0,
+        "the penetration angle is " + degrees(angle) + ", must be above 0 and below 90 deg");
+  }
+  const std::array<std::tuple<DigPhase, const char*, double>, 2> lengths = {{
+      {DigPhase::penetrate, "the penetration length is ", parameters.penetration_length},
+      {DigPhase::drag, "the drag length is ", parameters.drag_length},
+  }};
+  for (const auto& [phase, text, length] : lengths) {
+    if (length >= 0.0 && std::isfinite(length)) continue;
+    return bad_parameter(phase, length, 0.0,
+                         text + metres(length) + ", must be at least 0 and finite");
+  }
+  if (!std::isfinite(start_x)) {
+    return bad_parameter(DigPhase::penetrate, start_x, 0.0,
+                         "the start point is at x = " + metres(start_x) + ", must be finite");
+  }
+  return std::nullopt;
+}
+
+// ---- the path -----------------------------------------------------------------------------------
+
+enum class Sampling { full, scan };
+
+/// Lays one dig out phase by phase. Every phase adds its poses and returns what stops it, if
+/// anything; messages are left to the caller, who may not want them.
+class Layout {
+ public:
+  Layout(const Machine& machine, const DigParameters& parameters, const GroundProfile& ground,
+         const DigPathOptions& options, Sampling sampling)
+      : machine_(machine),
+        ground_(ground),
+        options_(options),
+        sampling_(sampling),
+        beta_(machine.beta()) {
+    path_.parameters = parameters;
+  }
+
+  std::optional<Infeasible> lay_out(double start_x) {
+    path_.start_x = start_x;
+    path_.ground_z = ground_(start_x);
+    path_.poses.clear();
+    path_.limit_margin = {std::numeric_limits<double>::infinity(), Joint::boom};
+    if (!std::isfinite(path_.ground_z)) {
+      return stop(Reason::unknown_ground, first_phase(), 0.0, start_x, 0.0);
+    }
+    if (auto stopped = penetrate()) return stopped;
+    if (auto stopped = drag()) return stopped;
+    if (auto stopped = scoop()) return stopped;
+    return lift();
+  }
+
+  DigPath take() { return std::move(path_); }
+
+  /// What the choice of the start point makes as large as it can [rad].
+  double margin() const {
+    const double joints = path_.limit_margin.margin;
+    if (path_.parameters.drag_length == 0.0) return joints;
+    return std::min(joints, path_.heel_clearance - options_.min_heel_clearance);
+  }
+
+ private:
+  std::optional<Infeasible> penetrate();
+  std::optional<Infeasible> drag();
+  std::optional<Infeasible> scoop();
+  std::optional<Infeasible> lift();
+
+  DigPhase first_phase() const {
+    if (path_.parameters.penetration_length > 0.0) return DigPhase::penetrate;
+    return path_.parameters.drag_length > 0.0 ? DigPhase::drag : DigPhase::scoop;
+  }
+
+  static Infeasible stop(Reason reason, DigPhase phase, double distance, double value,
+                         double limit) {
+    Infeasible stopped;
+    stopped.reason = reason;
+    stopped.phase = phase;
+    stopped.distance = distance;
+    stopped.value = value;
+    stopped.limit = limit;
+    return stopped;
+  }
+
+  static Infeasible stop(DigPhase phase, double distance, const Unreachable& unreachable) {
+    const bool by_joint = unreachable.reason == Unreachable::Reason::joint_limit;
+    Infeasible stopped = stop(by_joint ? Reason::joint_limit : Reason::out_of_reach, phase,
+                              distance, unreachable.value, unreachable.limit);
+    stopped.joint = unreachable.joint;
+    return stopped;
+  }
+
+  std::optional<Infeasible> add(double distance, const DigPose& pose);
+  int steps(double tip_travel) const;
+  /// No straight line longer than this stays within reach.
+  double longest_line() const { return 2.0 * machine_.full_length(); }
+  double height_above_ground(const JointAngles& joints) const;
+
+  const Machine& machine_;
+  const GroundProfile& ground_;
+  const DigPathOptions& options_;
+  Sampling sampling_;
+  double beta_;
+  DigPath path_;
+};
+
+int Layout::steps(double tip_travel) const {
+  const double needed = std::max(1.0, std::ceil(tip_travel / options_.step));
+  if (sampling_ == Sampling::scan) return static_cast<int>(std::min<double>(needed, scan_poses));
+  require(needed <= most_poses, "step", options_.step,
+          "so large that no phase has more than 10000 poses");
+  return static_cast<int>(needed);
+}
+
+std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
+  const double depth = path_.ground_z - pose.bucket.z;
+  if (depth > options_.max_depth) {
+    return stop(Reason::too_deep, pose.phase, distance, depth, options_.max_depth);
+  }
+  const double foremost = machine_.track_front + options_.track_margin;
+  if (pose.bucket.x < foremost) {
+    return stop(Reason::too_near_tracks, pose.phase, distance, pose.bucket.x, foremost);
+  }
+  const LimitMargin margin = limit_margin(machine_, pose.joints);
+  if (margin.margin < path_.limit_margin.margin) path_.limit_margin = margin;
+  path_.poses.push_back(pose);
+  return std::nullopt;
+}
+
+/// The tip goes down a straight line with the bucket floor along it. An empty line still gives the
+/// first pose of the path.
+std::optional<Infeasible> Layout::penetrate() {
+  const double angle = path_.parameters.penetration_angle;
+  const double length = std::min(path_.parameters.penetration_length, longest_line());
+  const int count = length > 0.0 ? steps(length) : 0;
+  for (int i = 0; i <= count; ++i) {
+    const double s = count > 0 ? length * i / count : 0.0;
+    DigPose pose;
+    pose.phase = first_phase();
+    pose.bucket = {path_.start_x - s * std::cos(angle), path_.ground_z - s * std::sin(angle),
+                   angle};
+    const auto joints = inverse_kinematics(machine_, pose.bucket);
+    if (const auto* failed = std::get_if<Unreachable>(&joints)) {
+      return stop(pose.phase, s, *failed);
+    }
+    pose.joints = std::get<JointAngles>(joints);
+    if (auto stopped = add(s, pose)) return stopped;
+  }
+  return std::nullopt;
+}
+
+/// The tip moves level, the bucket does not turn in the arm; so it turns in the world, and its heel
+/// comes down on the ground.
+std::optional<Infeasible> Layout::drag() {
+  const DigPose start = path_.poses.back();
+  path_.heel_clearance = start.bucket.floor_angle;
+  const double length = std::min(path_.parameters.drag_length, longest_line());
+  const int count = length > 0.0 ? steps(length) : -1;
+  for (int i = 0; i <= count; ++i) {
+    const double s = length * i / count;
+    DigPose pose = start;
+    pose.phase = DigPhase::drag;
+    pose.bucket.x -= s;
+    const auto joints =
+        inverse_kinematics_fixed_bucket(machine_, pose.bucket.x, pose.bucket.z, start.joints[2]);
+    if (const auto* failed = std::get_if<Unreachable>(&joints)) {
+      return stop(pose.phase, s, *failed);
+    }
+    pose.joints = std::get<JointAngles>(joints);
+    if (i == 0 && (pose.joints - start.joints).norm() > same_posture) {  // arm folded past the tip
+      const double nearest =
+          std::hypot(pose.bucket.x - machine_.boom_pin.x(), pose.bucket.z - machine_.boom_pin.y());
+      return stop(Reason::out_of_reach, pose.phase, s, nearest, nearest);
+    }
+    pose.bucket.floor_angle += start.joints.sum() - pose.joints.sum();
+    path_.heel_clearance = std::min(path_.heel_clearance, pose.bucket.floor_angle);
+    if (pose.bucket.floor_angle < options_.min_heel_clearance) {
+      return stop(Reason::heel_contact, pose.phase, s, pose.bucket.floor_angle,
+                  options_.min_heel_clearance);
+    }
+    if (i == 0) continue;  // stored by the penetration
+    if (auto stopped = add(s, pose)) return stopped;
+  }
+  return std::nullopt;
+}
+
+/// Only the bucket turns, until the line from bucket pin to tip is level.
+std::optional<Infeasible> Layout::scoop() {
+  const DigPose start = path_.poses.back();
+  const LinkPositions at = link_positions(machine_, start.joints);
+  const double turn = start.bucket.floor_angle + beta_;
+  const double allowed = machine_.limits[2].upper - start.joints[2];
+  const int count = steps(turn * machine_.bucket_length);
+  for (int i = 1; i <= count; ++i) {
+    const double turned = std::min(turn * i / count, allowed);
+    const double phi3 = start.bucket.floor_angle - turned + beta_ - pi;
+    DigPose pose;
+    pose.phase = DigPhase::scoop;
+    pose.joints = start.joints + JointAngles(0.0, 0.0, turned);
+    pose.bucket = {at.bucket_pin.x() + machine_.bucket_length * std::cos(phi3),
+                   at.bucket_pin.y() + machine_.bucket_length * std::sin(phi3),
+                   start.bucket.floor_angle - turned};
+    if (auto stopped = add(turned, pose)) return stopped;
+    if (turn * i / count > allowed) {
+      Infeasible stopped = stop(Reason::joint_limit, DigPhase::scoop, allowed,
+                                start.joints[2] + turn, machine_.limits[2].upper);
+      stopped.joint = Joint::bucket;
+      return stopped;
+    }
+  }
+  const bool passes_bottom = turn > pi / 2.0;
+  const double deepest = at.bucket_pin.y() - machine_.bucket_length;
+  path_.overcut = passes_bottom ? start.bucket.z - deepest : 0.0;
+  return std::nullopt;
+}
+
+/// Of the lowest corner of the bucket over the highest known ground under it.
+double Layout::height_above_ground(const JointAngles& joints) const {
+  const LinkPositions at = link_positions(machine_, joints);
+  Eigen::Vector2d low = at.tip;
+  double right = at.tip.x();
+  for (const Eigen::Vector2d& corner : machine_.bucket.profile) {
+    const Eigen::Vector2d point = bucket_point(at, corner);
+    low = low.cwiseMin(point);
+    right = std::max(right, point.x());
+  }
+  double highest = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= ground_intervals; ++i) {
+    const double height = ground_(low.x() + (right - low.x()) * i / ground_intervals);
+    if (std::isfinite(height)) highest = std::max(highest, height);
+  }
+  return low.y() - (std::isfinite(highest) ? highest : path_.ground_z);
+}
+
+/// The boom rises and the bucket turns back by as much. Once the bucket is out of the ground it may
+/// stay at its limit.
+std::optional<Infeasible> Layout::lift() {
+  DigPose pose = path_.poses.back();
+  pose.phase = DigPhase::lift;
+  const double radius =
+      (link_positions(machine_, pose.joints).bucket_pin - machine_.boom_pin).norm() +
+      machine_.bucket_length;
+  const double step =
+      sampling_ == Sampling::scan ? std::max(options_.step, scan_lift) : options_.step;
+  const double boom_start = pose.joints[0];
+  double height = height_above_ground(pose.joints);
+  while (height < options_.lift_clearance) {
+    const double travelled = (boom_start - pose.joints[0]) * radius;
+    require(travelled < most_poses * step, "step", options_.step,
+            "so large that no phase has more than 10000 poses");
+    const double boom = std::max(pose.joints[0] - step / radius, machine_.limits[0].lower);
+    const double bucket = pose.joints[2] + pose.joints[0] - boom;
+    const bool boom_ends = boom == pose.joints[0];
+    const bool bucket_ends = bucket > machine_.limits[2].upper && height <= 0.0;
+    if (boom_ends || bucket_ends) {
+      Infeasible stopped =
+          stop(Reason::lift_blocked, DigPhase::lift, travelled, height, options_.lift_clearance);
+      stopped.joint = boom_ends ? Joint::boom : Joint::bucket;
+      return stopped;
+    }
+    pose.joints[0] = boom;
+    pose.joints[2] = std::min(bucket, machine_.limits[2].upper);
+    pose.bucket = forward_kinematics(machine_, pose.joints);
+    if (auto stopped = add((boom_start - boom) * radius, pose)) return stopped;
+    height = height_above_ground(pose.joints);
+  }
+  return std::nullopt;
+}
+
+// ---- the start point ----------------------------------------------------------------------------
+
+struct Candidate {
+  double start_x = 0.0;
+  double margin = 0.0;  ///< if it can be driven
+};
+
+struct Scan {
+  std::vector<Candidate> drivable;
+  double best_failing = 0.0;  ///< start point that gets furthest
+};
+
+/// Of equals the one in the middle.
+std::size_t middle_of(const std::vector<std::size_t>& equals) { return equals[equals.size() / 2]; }
+
+Scan scan_start_points(Layout& layout, int first, int last) {
+  using Progress = std::pair<DigPhase, double>;
+  Scan scan;
+  std::vector<std::pair<double, Progress>> failing;
+  for (int i = first; i <= last; ++i) {
+    const double start_x = static_cast<double>(i) / scan_per_metre;
+    if (const auto stopped = layout.lay_out(start_x)) {
+      failing.emplace_back(start_x, Progress(stopped->phase, stopped->distance));
+    } else {
+      scan.drivable.push_back({start_x, layout.margin()});
+    }
+  }
+  Progress furthest(DigPhase::approach, 0.0);
+  for (const auto& entry : failing) furthest = std::max(furthest, entry.second);
+  std::vector<std::size_t> equals;
+  for (std::size_t i = 0; i < failing.size(); ++i) {
+    if (failing[i].second == furthest) equals.push_back(i);
+  }
+  if (!equals.empty()) scan.best_failing = failing[middle_of(equals)].first;
+  return scan;
+}
+
+std::size_t widest_margin(const std::vector<Candidate>& candidates) {
+  double widest = -std::numeric_limits<double>::infinity();
+  for (const Candidate& candidate : candidates) widest = std::max(widest, candidate.margin);
+  std::vector<std::size_t> equals;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].margin >= widest - scan_tie) equals.push_back(i);
+  }
+  return middle_of(equals);
+}
+
+}  // namespace
+
+DigParameters paper_fixed_path() { return {pi / 4.0, 0.35, 1.5}; }
+
+const std::array<DigParameterInfo, 3>& dig_parameter_table() {
+  static const std::array<DigParameterInfo, 3> table = {{
+      {"penetration_angle_rad", "rad", &DigParameters::penetration_angle, 0.2, 1.4},
+      {"penetration_length_m", "m", &DigParameters::penetration_length, 0.1, 0.9},
+      {"drag_length_m", "m", &DigParameters::drag_length, 0.3, 3.0},
+  }};
+  return table;
+}
+
+const char* name(DigPhase phase) {
+  switch (phase) {
+    case DigPhase::approach:
+      return "approach";
+    case DigPhase::penetrate:
+      return "penetrate";
+    case DigPhase::drag:
+      return "drag";
+    case DigPhase::scoop:
+      return "scoop";
+    case DigPhase::lift:
+      return "lift";
+  }
+  return "unknown phase";
+}
+
+std::variant<DigPath, Infeasible> make_dig_path(const Machine& machine,
+                                                const DigParameters& parameters, double start_x,
+                                                const GroundProfile& ground,
+                                                const DigPathOptions& options) {
+  check(options);
+  if (auto bad = find_bad_parameter(parameters, start_x)) return *std::move(bad);
+  Layout layout(machine, parameters, ground, options, Sampling::full);
+  if (auto stopped = layout.lay_out(start_x)) {
+    stopped->message = explain(*stopped);
+    return *std::move(stopped);
+  }
+  return layout.take();
+}
+
+std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
+                                                         const DigParameters& parameters,
+                                                         const GroundProfile& ground,
+                                                         const DigPathOptions& options) {
+  check(options);
+  if (auto bad = find_bad_parameter(parameters, 0.0)) return *std::move(bad);
+  const double reach = machine.full_length();
+  const double nearest =
+      std::max(machine.track_front + options.track_margin, machine.boom_pin.x() - reach);
+  const double furthest = machine.boom_pin.x() + reach;
+  if (nearest > furthest) return make_dig_path(machine, parameters, furthest, ground, options);
+
+  Layout layout(machine, parameters, ground, options, Sampling::scan);
+  Scan scan = scan_start_points(layout, static_cast<int>(std::ceil(nearest * scan_per_metre)),
+                                static_cast<int>(std::floor(furthest * scan_per_metre)));
+  while (!scan.drivable.empty()) {
+    const std::size_t chosen = widest_margin(scan.drivable);
+    scan.best_failing = scan.drivable[chosen].start_x;
+    auto path = make_dig_path(machine, parameters, scan.best_failing, ground, options);
+    if (std::holds_alternative<DigPath>(path) || scan.drivable.size() == 1) return path;
+    scan.drivable.erase(scan.drivable.begin() + static_cast<std::ptrdiff_t>(chosen));
+  }
+  return make_dig_path(machine, parameters, scan.best_failing, ground, options);
+}
+
+}  // namespace excavplan
