@@ -18,7 +18,7 @@ constexpr double heap_room = 2.0;  // around a dump point [m]; ours: a bucketful
 DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
                                    const CalibrationOptions& options) {
   const Eigen::Vector2d dump_at = default_dump_point();
-  const Terrain ground = level_scene(machine, dump_at, options.cell);
+  const Terrain ground = undisturbed(flat_ground(scene_extent(machine, dump_at), options.cell));
   const auto laid_out =
       make_dig_path_anywhere(machine, options.path, boom_plane_profile(ground.surface()));
   if (const auto* infeasible = std::get_if<Infeasible>(&laid_out)) {
@@ -52,13 +52,13 @@ std::vector<BulkingSample> pairs(const std::vector<DensityCalibration::Sample>& 
 
 Eigen::Vector2d default_dump_point() { return {5.5, 4.0}; }
 
-Terrain level_scene(const Machine& machine, const Eigen::Vector2d& dump_at, double cell) {
-  Rectangle extent = level_planning_ground(machine, 0.5).bank.extent();
+Rectangle scene_extent(const Machine& machine, const Eigen::Vector2d& dump_at) {
+  Rectangle extent = planning_extent(machine);
   extent.x_min = std::min(extent.x_min, dump_at.x() - heap_room);
   extent.x_max = std::max(extent.x_max, dump_at.x() + heap_room);
   extent.y_min = std::min(extent.y_min, dump_at.y() - heap_room);
   extent.y_max = std::max(extent.y_max, dump_at.y() + heap_room);
-  return undisturbed(flat_ground(extent, cell));
+  return extent;
 }
 
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,

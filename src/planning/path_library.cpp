@@ -3,6 +3,7 @@
 #include <excavplan/planning/path_library.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <excavplan/error.hpp>
@@ -33,6 +34,16 @@ PathLibraryEntry read_entry(JsonObject object) {
   object.ignore("efficiency_kg_per_kj");
   object.done();
   return entry;
+}
+
+/// True if the two digs are of different kinds: a blend of them would be neither.
+bool far_apart(const PlannedDig& a, const PlannedDig& b) {
+  constexpr double near = 0.2;  // of a number's search range; ours
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
+    if (step > near * (info.upper - info.lower)) return true;
+  }
+  return false;
 }
 
 PlannedDig blend(const PlannedDig& a, const PlannedDig& b, double share) {
@@ -134,6 +145,7 @@ PlannedDig look_up(const PathLibrary& library, double density_percent) {
   const auto below = above - 1;
   const double share = (density_percent - below->density_percent) /
                        (above->density_percent - below->density_percent);
+  if (far_apart(below->dig, above->dig)) return share < 0.5 ? below->dig : above->dig;
   return blend(below->dig, above->dig, share);
 }
 

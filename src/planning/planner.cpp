@@ -6,8 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include <excavplan/error.hpp>
-
 namespace excavplan {
 namespace {
 
@@ -15,12 +13,6 @@ using Eigen::Index;
 
 constexpr double half_width =
     1.5;  // of the ground planned on [m]; ours: the bucket and its windrows
-
-Rectangle reachable_ground(const Machine& machine) {
-  const double reach =
-      machine.boom_pin.x() + machine.boom_length + machine.arm_length + machine.bucket_length;
-  return {machine.track_front - 1.0, -half_width, reach + 0.5, half_width};
-}
 
 /// True if every cell the bucket passes, and the one ahead of it, is known.
 bool known_under(const Terrain& terrain, const Machine& machine, const DigPath& path) {
@@ -76,35 +68,13 @@ std::string describe(const DigFailure& failure) {
          std::to_string(std::abs(stall.torque) / 1000.0) + " kN m";
 }
 
-Terrain level_planning_ground(const Machine& machine, double cell) {
-  return undisturbed(flat_ground(reachable_ground(machine), cell));
+Rectangle planning_extent(const Machine& machine) {
+  return {machine.track_front - 1.0, -half_width,
+          machine.boom_pin.x() + machine.full_length() + 0.5, half_width};
 }
 
-Terrain planning_ground(const Machine& machine, const HeightMap& surface) {
-  const Rectangle wanted = reachable_ground(machine);
-  const auto range = [&](double from, double to, double origin, Index count) {
-    const double begin =
-        std::clamp(std::floor((from - origin) / surface.cell), 0.0, static_cast<double>(count));
-    const double end =
-        std::clamp(std::ceil((to - origin) / surface.cell), begin, static_cast<double>(count));
-    return Eigen::seqN(static_cast<Index>(begin), static_cast<Index>(end - begin));
-  };
-  const auto cols = range(wanted.x_min, wanted.x_max, surface.origin.x(), surface.z.cols());
-  const auto rows = range(wanted.y_min, wanted.y_max, surface.origin.y(), surface.z.rows());
-  HeightMap ground;
-  ground.cell = surface.cell;
-  ground.origin =
-      surface.origin + surface.cell * Eigen::Vector2d(static_cast<double>(cols.first()),
-                                                      static_cast<double>(rows.first()));
-  ground.z = surface.z(rows, cols);
-  if (ground.z.size() == 0 || ground.z.isNaN().all()) {
-    throw Error(
-        ErrorKind::bad_input,
-        "terrain: no known ground within the machine's reach, x = " + std::to_string(wanted.x_min) +
-            " .. " + std::to_string(wanted.x_max) + " m, y = " + std::to_string(wanted.y_min) +
-            " .. " + std::to_string(wanted.y_max) + " m in the site frame");
-  }
-  return undisturbed(ground);
+Terrain level_planning_ground(const Machine& machine, double cell) {
+  return undisturbed(flat_ground(planning_extent(machine), cell));
 }
 
 GroundProfile boom_plane_profile(const HeightMap& surface) {

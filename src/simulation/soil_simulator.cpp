@@ -5,6 +5,9 @@
 #include <cmath>
 
 namespace excavplan {
+namespace {
+constexpr double pi = 3.14159265358979323846;
+}  // namespace
 
 HeightMap Terrain::surface() const {
   HeightMap map = bank;
@@ -38,6 +41,23 @@ HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,
     volumes.bulking_factor = (volumes.spilled + volumes.dumped) / volumes.excavated;
   }
   return volumes;
+}
+
+double heap_slope(const Terrain& before, const Terrain& after, const Eigen::Vector2d& at) {
+  HeightMap rise = after.surface();
+  rise.z -= before.surface().z;
+  const double height = height_at(rise, at.x(), at.y());
+  const double volume = height_map_volumes(before, after, at).dumped;
+  if (!(height > 0.0 && volume > 0.0)) return std::nan("");
+  const double radius = std::sqrt(3.0 * volume / (pi * height));  // of a cone
+  double sum = 0.0;
+  for (int i = 0; i < 36; ++i) {
+    const Eigen::Vector2d out(std::cos(i * pi / 18.0), std::sin(i * pi / 18.0));
+    const Eigen::Vector2d inner = at + 0.25 * radius * out;
+    const Eigen::Vector2d outer = at + 0.75 * radius * out;
+    sum += height_at(rise, inner.x(), inner.y()) - height_at(rise, outer.x(), outer.y());
+  }
+  return std::atan(sum / 36.0 / (0.5 * radius));
 }
 
 }  // namespace excavplan

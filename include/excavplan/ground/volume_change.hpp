@@ -25,6 +25,8 @@ enum class ZoneKind {
   other,  ///< changed, but neither: left out of every volume
 };
 
+const char* name(ZoneKind kind);
+
 /// A connected piece of ground that truly changed.
 struct ChangeZone {
   ZoneKind kind = ZoneKind::other;
@@ -81,9 +83,10 @@ struct VolumeChange {
 /// rose within the spill distance of that, or if nothing did, the largest rise beside the hole that
 /// holds at least half of what was dug. Zones belong to a given area by their centre.
 ///
-/// Warnings: no_hole_found, no_dumped_soil (less than half of the dug volume rose), looks_swapped
-/// (after / before below 0.97 beyond its error, or above 3), other_change, zone_at_border,
-/// zone_partly_unseen, little_stable_ground.
+/// Warnings: no_hole_found; no_dumped_soil (less than half of the dug volume rose, or less than a
+/// fifth away from the hole); looks_swapped (after / before below 0.97 beyond its error, or above
+/// 3); other_change; zone_at_border; zone_partly_unseen; little_stable_ground (under 40 %);
+/// scans_do_not_fit (noise above 0.1 m).
 ///
 /// @throws Error (bad_input) if the maps are not on one grid, share fewer than 100 known cells,
 ///         or an option is out of range

@@ -96,13 +96,17 @@ struct Infeasible {
 using GroundProfile = std::function<double(double x)>;
 
 struct DigPathOptions {
-  double step = 0.025;  ///< largest tip travel between poses [m], > 0; at most 10000 poses a phase
-  double min_heel_clearance =
-      0.0;                    ///< in the drag [rad]; the penetration has exactly 0 by definition
-  double max_depth = 2.0;     ///< below the ground at the start point [m], > 0; ours
-  double track_margin = 0.5;  ///< the tip stays this far ahead of the tracks [m]; ours
-  double lift_clearance =
-      0.3;  ///< the lowest point of the bucket ends this far above the ground [m]; ours
+  /// Largest tip travel between poses [m], > 0; at most 10000 poses a phase.
+  double step = 0.025;
+  /// Of the floor above the cut in the drag [rad]; 2 deg, ours, for a machine that does not track
+  /// exactly. The penetration has exactly 0 by definition.
+  double min_heel_clearance = 0.035;
+  /// Below the ground at the start point [m], > 0; ours.
+  double max_depth = 2.0;
+  /// The tip stays this far ahead of the tracks [m]; ours.
+  double track_margin = 0.5;
+  /// The lowest point of the bucket ends this far above the ground [m]; ours.
+  double lift_clearance = 0.3;
 };
 
 /// Lays out penetration, drag, scoop and lift, and solves the joints of every pose in closed form.

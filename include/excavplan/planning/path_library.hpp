@@ -37,7 +37,9 @@ PathLibrary load_path_library(const std::string& path);
 /// The text of a library file; the same library gives the same bytes.
 std::string to_json(const PathLibrary& library);
 
-/// The dig for a density: parameters and expectations linear between the two entries around it.
+/// The dig for a density: parameters and expectations linear between the two entries around it; the
+/// nearer of the two where they differ by more than a fifth of a search range, because the optimum
+/// has jumped between them.
 ///
 /// @throws Error (bad_input) if the density is outside the densities of the library
 PlannedDig look_up(const PathLibrary& library, double density_percent);

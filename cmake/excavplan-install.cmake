@@ -1,0 +1,59 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+
+# Installs the libraries as components of find_package(excavplan), the pkg-config files and the data.
+
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/excavplan)
+set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH pkgconfig_prefix /${pkgconfig_dir} /)
+
+# excavplan_install(NAME SUMMARY text REQUIRES_PUBLIC packages... REQUIRES packages... LINKS flags...):
+# library, headers, CMake targets and pkg-config file of one component. Compiling against it needs
+# the pkg-config packages REQUIRES_PUBLIC, linking also REQUIRES and LINKS.
+function(excavplan_install name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SUMMARY" "REQUIRES_PUBLIC;REQUIRES;LINKS")
+  install(TARGETS excavplan_${name} EXPORT excavplan-${name}-targets FILE_SET HEADERS)
+  install(EXPORT excavplan-${name}-targets NAMESPACE excavplan:: DESTINATION ${package_dir})
+
+  set(library excavplan_${name})
+  set(summary ${arg_SUMMARY})
+  list(JOIN arg_REQUIRES_PUBLIC " " requires)
+  list(JOIN arg_REQUIRES " " requires_private)
+  list(JOIN arg_LINKS " " links_private)
+  set(links "")
+  if(NOT BUILD_SHARED_LIBS)  # a static library needs them at every link, not only with --static
+    string(APPEND requires " ${requires_private}")
+    set(requires_private "")
+    set(links ${links_private})
+    set(links_private "")
+  endif()
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/excavplan.pc.in excavplan-${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/excavplan-${name}.pc DESTINATION ${pkgconfig_dir})
+endfunction()
+
+excavplan_install(planning
+  SUMMARY "Soil, machine, simulation and planning of digs"
+  REQUIRES_PUBLIC eigen3 REQUIRES nlopt LINKS -lpthread)
+excavplan_install(clouds
+  SUMMARY "Point clouds in and out, and height maps from them"
+  REQUIRES_PUBLIC excavplan-planning)
+if(EXCAVPLAN_SURVEY)
+  excavplan_install(survey
+    SUMMARY "The paper's volume method and depth images"
+    REQUIRES_PUBLIC excavplan-clouds
+    REQUIRES pcl_filters pcl_search pcl_octree pcl_common
+    LINKS -lopencv_imgcodecs -lopencv_core)
+endif()
+
+configure_package_config_file(cmake/excavplan-config.cmake.in excavplan-config.cmake
+  INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_DATADIR)
+write_basic_package_version_file(excavplan-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(
+  FILES
+    ${PROJECT_BINARY_DIR}/excavplan-config.cmake
+    ${PROJECT_BINARY_DIR}/excavplan-config-version.cmake
+    cmake/excavplan-opencv.cmake
+  DESTINATION ${package_dir})
+install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/excavplan)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

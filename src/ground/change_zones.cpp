@@ -1,0 +1,314 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/change_zones.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ground/grid_cells.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double least_noise = 1e-4;             // ours: no survey of soil is better [m]
+constexpr double mad_to_sd = 1.4826;             // of a normal distribution
+constexpr double clip = 4.0;                     // residuals beyond are not noise [sd]
+constexpr std::size_t fewest_stable_cells = 25;  // ours: noise and datum cannot be told from fewer
+constexpr int most_rounds = 8;
+constexpr int stable = -1;
+
+/// A value for the middle of a distribution and the spread about it.
+struct Spread {
+  double middle = 0.0;
+  double sd = 0.0;
+};
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Spread median_and_mad(std::vector<double> values) {
+  Spread spread;
+  spread.middle = median(values);
+  for (double& value : values) value = std::abs(value - spread.middle);
+  spread.sd = mad_to_sd * median(values);
+  return spread;
+}
+
+/// The densest quarter of the values: finds stable ground even where most of it changed. Where two
+/// quarters are equally dense, as on maps without noise, the one nearer to no change serves.
+Spread densest_quarter(std::vector<double> values) {
+  constexpr double quarter_of_normal = 0.3186;  // sd: half of the values within 0.3186 sd
+  std::sort(values.begin(), values.end());
+  const std::size_t count = std::max<std::size_t>(values.size() / 4, 1);
+  double narrowest = std::numeric_limits<double>::infinity();
+  double middle = 0.0;
+  for (std::size_t i = 0; i + count < values.size(); ++i) {
+    const double width = values[i + count] - values[i];
+    const double centre = 0.5 * (values[i + count] + values[i]);
+    const bool equal = std::abs(width - narrowest) < 0.01 * least_noise;
+    if (equal ? std::abs(centre) < std::abs(middle) : width < narrowest) {
+      narrowest = std::min(width, narrowest);
+      middle = centre;
+    }
+  }
+  return {middle, 0.5 * narrowest / quarter_of_normal};
+}
+
+/// Mean of the known cells of each 3 x 3 block; `evidence` is the square root of the share known.
+struct Smoothed {
+  Eigen::ArrayXXd mean;
+  Eigen::ArrayXXd evidence;
+};
+
+Smoothed smooth(const Eigen::ArrayXXd& z) {
+  Smoothed smoothed;
+  smoothed.mean = Eigen::ArrayXXd::Constant(z.rows(), z.cols(), nan);
+  smoothed.evidence = Eigen::ArrayXXd::Zero(z.rows(), z.cols());
+  for_each_cell(z, [&](Cell cell) {
+    if (std::isnan(z(cell.row, cell.col))) return;
+    const Eigen::Index row = std::max<Eigen::Index>(cell.row - 1, 0);
+    const Eigen::Index col = std::max<Eigen::Index>(cell.col - 1, 0);
+    double sum = 0.0;
+    int count = 0;
+    for (Eigen::Index c = col; c <= std::min(cell.col + 1, z.cols() - 1); ++c) {
+      for (Eigen::Index r = row; r <= std::min(cell.row + 1, z.rows() - 1); ++r) {
+        if (std::isnan(z(r, c))) continue;
+        sum += z(r, c);
+        ++count;
+      }
+    }
+    smoothed.mean(cell.row, cell.col) = sum / count;
+    smoothed.evidence(cell.row, cell.col) = std::sqrt(count / 9.0);
+  });
+  return smoothed;
+}
+
+/// Gives every free cell the label of the nearest labelled cell within `radius` cells.
+Eigen::ArrayXXi widened(const Eigen::ArrayXXi& label, double radius) {
+  const auto reach = static_cast<Eigen::Index>(
+      std::min(std::floor(radius), static_cast<double>(std::max(label.rows(), label.cols()))));
+  const double radius_squared = radius * radius;
+  Eigen::ArrayXXi wide = label;
+  Eigen::ArrayXXd nearest = Eigen::ArrayXXd::Constant(label.rows(), label.cols(),
+                                                      std::numeric_limits<double>::infinity());
+  const auto stamp = [&](Cell from) {
+    for (Eigen::Index c = std::max<Eigen::Index>(from.col - reach, 0);
+         c <= std::min(from.col + reach, label.cols() - 1); ++c) {
+      for (Eigen::Index r = std::max<Eigen::Index>(from.row - reach, 0);
+           r <= std::min(from.row + reach, label.rows() - 1); ++r) {
+        const auto away =
+            static_cast<double>((r - from.row) * (r - from.row) + (c - from.col) * (c - from.col));
+        if (label(r, c) >= 0 || away > radius_squared || away >= nearest(r, c)) continue;
+        nearest(r, c) = away;
+        wide(r, c) = label(from.row, from.col);
+      }
+    }
+  };
+  for_each_cell(label, [&](Cell cell) {
+    if (label(cell.row, cell.col) < 0) return;
+    bool edge = false;
+    for_each_neighbour(label, cell, [&](Cell n) { edge = edge || label(n.row, n.col) < 0; });
+    if (edge) stamp(cell);
+  });
+  return wide;
+}
+
+/// Finds zones and the noise of the ground between them, each from the other.
+class ChangeFinder {
+ public:
+  ChangeFinder(Eigen::ArrayXXd difference, double cell, const ChangeOptions& options)
+      : cell_(cell), options_(options) {
+    found_.difference = std::move(difference);
+    found_.filled = fill_holes(found_.difference);
+    smoothed_ = smooth(found_.difference);
+  }
+
+  ChangedGround find() {
+    std::vector<double> changes = values(smoothed_.mean, [](Cell) { return true; });
+    known_cells_ = changes.size();
+    const Spread start = densest_quarter(std::move(changes));
+    found_.datum = start.middle;
+    smooth_sd_ = std::max(start.sd, least_noise);
+    found_.noise_sd = 3.0 * smooth_sd_;  // a mean of nine; replaced where stable ground is left
+    for (int round = 0; round < most_rounds; ++round) {
+      const Eigen::ArrayXXi before = found_.zone;
+      find_zones();
+      if (before.size() > 0 && (before == found_.zone).all()) break;
+      learn_from_stable_ground();
+    }
+    found_.difference -= found_.datum;
+    find_correlation();
+    return std::move(found_);
+  }
+
+ private:
+  bool is_known(Cell cell) const {
+    return found_.filled.hole(cell.row, cell.col) < 0 &&
+           !std::isnan(found_.difference(cell.row, cell.col));
+  }
+  bool is_stable(Cell cell) const {
+    return is_known(cell) && found_.zone(cell.row, cell.col) == stable;
+  }
+
+  template <typename Wanted>
+  std::vector<double> values(const Eigen::ArrayXXd& field, Wanted wanted) const {
+    std::vector<double> taken;
+    for_each_cell(field, [&](Cell cell) {
+      if (is_known(cell) && wanted(cell)) taken.push_back(field(cell.row, cell.col));
+    });
+    return taken;
+  }
+
+  /// Change of the block around a cell in standard deviations of stable ground.
+  double significance(Cell cell) const {
+    return (smoothed_.mean(cell.row, cell.col) - found_.datum) *
+           smoothed_.evidence(cell.row, cell.col) / smooth_sd_;
+  }
+
+  void find_zones() {
+    constexpr int unvisited = -1;
+    constexpr int too_small = -2;
+    Eigen::ArrayXXi label =
+        Eigen::ArrayXXi::Constant(smoothed_.mean.rows(), smoothed_.mean.cols(), unvisited);
+    found_.zone_is_cut.clear();
+    for_each_cell(label, [&](Cell seed) {
+      if (label(seed.row, seed.col) != unvisited || !is_known(seed)) return;
+      const double change = significance(seed);
+      if (std::abs(change) < options_.detection) return;
+      const double sign = change > 0.0 ? 1.0 : -1.0;
+      const int index = static_cast<int>(found_.zone_is_cut.size());
+      const std::vector<Cell> cells = mark_connected(label, seed, index, [&](Cell cell) {
+        return significance(cell) * sign >= options_.growth;
+      });
+      if (static_cast<double>(cells.size()) * cell_ * cell_ < options_.min_zone_area) {
+        for (const Cell cell : cells) label(cell.row, cell.col) = too_small;
+      } else {
+        found_.zone_is_cut.push_back(reaches_the_edge(cells));
+      }
+    });
+    label = (label == too_small).select(stable, label);
+    found_.zone = found_.difference.isNaN().select(stable, widened(label, options_.margin / cell_));
+  }
+
+  bool reaches_the_edge(const std::vector<Cell>& cells) const {
+    return std::any_of(cells.begin(), cells.end(), [&](Cell cell) {
+      bool edge = on_border(found_.difference, cell);
+      for_each_neighbour(found_.difference, cell, [&](Cell n) {
+        edge = edge || std::isnan(found_.difference(n.row, n.col));
+      });
+      return edge;
+    });
+  }
+
+  void learn_from_stable_ground() {
+    const auto on_stable = [&](Cell cell) { return is_stable(cell); };
+    const std::vector<double> changes = values(found_.difference, on_stable);
+    found_.stable_share = static_cast<double>(changes.size()) / static_cast<double>(known_cells_);
+    if (changes.size() < fewest_stable_cells) return;
+    const Spread spread = median_and_mad(changes);
+    found_.noise_sd = std::max(spread.sd, least_noise);
+    found_.datum = clipped_mean(changes, spread.middle);
+    std::vector<double> weighted;
+    for_each_cell(found_.zone, [&](Cell cell) {
+      if (is_stable(cell)) weighted.push_back(significance(cell) * smooth_sd_);
+    });
+    smooth_sd_ = std::max(median_and_mad(std::move(weighted)).sd, least_noise);
+  }
+
+  double clipped_mean(const std::vector<double>& changes, double middle) const {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const double change : changes) {
+      if (std::abs(change - middle) > clip * found_.noise_sd) continue;
+      sum += change;
+      count += 1.0;
+    }
+    return sum / count;
+  }
+
+  /// Correlation of the stable residuals at ever larger lags until it can no longer be told from
+  /// none (Bartlett's bound), taken for isotropic and summed over the plane.
+  void find_correlation() {
+    Eigen::ArrayXXd residual = found_.difference;
+    double stable_cells = 0.0;
+    for_each_cell(residual, [&](Cell cell) {
+      double& value = residual(cell.row, cell.col);
+      const double bound = clip * found_.noise_sd;
+      value = is_stable(cell) ? std::clamp(value, -bound, bound) : nan;
+      stable_cells += is_stable(cell) ? 1.0 : 0.0;
+    });
+    const double variance = products(residual, 0, 0).mean();
+    double squares = 1.0;
+    const auto farthest = std::min(residual.rows(), residual.cols()) / 3;
+    for (Eigen::Index lag = 1; lag <= farthest && variance > 0.0; ++lag) {
+      Products both = products(residual, lag, 0);
+      both += products(residual, 0, lag);
+      const double rho = both.count > 0.0 ? both.mean() / variance : 0.0;
+      if (both.count == 0.0 || rho < 2.0 * std::sqrt(squares / both.count)) break;
+      const double ring = 6.283185307179586 * static_cast<double>(lag);
+      found_.correlation += ring * rho;
+      squares += ring * rho * rho;
+    }
+    found_.datum_sd = found_.noise_sd * std::sqrt(found_.correlation / std::max(stable_cells, 1.0));
+  }
+
+  struct Products {
+    double sum = 0.0;
+    double count = 0.0;
+    double mean() const { return count > 0.0 ? sum / count : 0.0; }
+    void operator+=(const Products& other) {
+      sum += other.sum;
+      count += other.count;
+    }
+  };
+
+  static Products products(const Eigen::ArrayXXd& field, Eigen::Index down, Eigen::Index right) {
+    Products found;
+    for (Eigen::Index col = 0; col + right < field.cols(); ++col) {
+      for (Eigen::Index row = 0; row + down < field.rows(); ++row) {
+        const double product = field(row, col) * field(row + down, col + right);
+        if (std::isnan(product)) continue;
+        found.sum += product;
+        found.count += 1.0;
+      }
+    }
+    return found;
+  }
+
+  double cell_;
+  const ChangeOptions& options_;
+  ChangedGround found_;
+  Smoothed smoothed_;
+  std::size_t known_cells_ = 0;
+  double smooth_sd_ = least_noise;  // of a 3 x 3 mean on stable ground [m]
+};
+
+}  // namespace
+
+ChangedGround find_change(Eigen::ArrayXXd difference, double cell, const ChangeOptions& options) {
+  return ChangeFinder(std::move(difference), cell, options).find();
+}
+
+std::vector<bool> zones_near(const Eigen::ArrayXXi& zone, const std::vector<bool>& chosen,
+                             double distance_cells) {
+  std::vector<bool> near = chosen;
+  Eigen::ArrayXXi source = zone;
+  for_each_cell(zone, [&](Cell cell) {
+    const int index = zone(cell.row, cell.col);
+    source(cell.row, cell.col) = index >= 0 && chosen[static_cast<std::size_t>(index)] ? 0 : stable;
+  });
+  const Eigen::ArrayXXi reached = widened(source, distance_cells);
+  for_each_cell(zone, [&](Cell cell) {
+    const int index = zone(cell.row, cell.col);
+    if (index >= 0 && reached(cell.row, cell.col) == 0)
+      near[static_cast<std::size_t>(index)] = true;
+  });
+  return near;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+/// @file
+/// Walks over the cells of a grid. Private to the library.
+
+namespace excavplan {
+
+struct Cell {
+  Eigen::Index row;
+  Eigen::Index col;
+};
+
+template <typename Array, typename Visit>
+void for_each_cell(const Array& grid, Visit visit) {
+  for (Eigen::Index col = 0; col < grid.cols(); ++col) {
+    for (Eigen::Index row = 0; row < grid.rows(); ++row) visit(Cell{row, col});
+  }
+}
+
+/// The up to four cells that share an edge with `cell`.
+template <typename Array, typename Visit>
+void for_each_neighbour(const Array& grid, Cell cell, Visit visit) {
+  if (cell.row > 0) visit(Cell{cell.row - 1, cell.col});
+  if (cell.row + 1 < grid.rows()) visit(Cell{cell.row + 1, cell.col});
+  if (cell.col > 0) visit(Cell{cell.row, cell.col - 1});
+  if (cell.col + 1 < grid.cols()) visit(Cell{cell.row, cell.col + 1});
+}
+
+template <typename Array>
+bool on_border(const Array& grid, Cell cell) {
+  return cell.row == 0 || cell.col == 0 || cell.row + 1 == grid.rows() ||
+         cell.col + 1 == grid.cols();
+}
+
+/// Gives `mark` to the edge-connected cells around `seed` whose label is `free` and which `joins`
+/// accepts, and returns them.
+template <typename Joins>
+std::vector<Cell> mark_connected(Eigen::ArrayXXi& label, Cell seed, int mark, Joins joins) {
+  const int free = label(seed.row, seed.col);
+  std::vector<Cell> cells = {seed};
+  label(seed.row, seed.col) = mark;
+  for (std::size_t next = 0; next < cells.size(); ++next) {
+    for_each_neighbour(label, cells[next], [&](Cell n) {
+      if (label(n.row, n.col) != free || !joins(n)) return;
+      label(n.row, n.col) = mark;
+      cells.push_back(n);
+    });
+  }
+  return cells;
+}
+
+}  // namespace excavplan

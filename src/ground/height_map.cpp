@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/ground/height_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <excavplan/error.hpp>
+
+#include "ground/grid_cells.hpp"
+#include "ground/hole_filling.hpp"
+
+#include "json_file.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double grid_tolerance = 1e-9;  // of a cell
+constexpr double most_cells = 1e8;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The two cell centres around a place on one axis and the weight of the second.
+struct Bracket {
+  Eigen::Index first;
+  Eigen::Index second;
+  double weight;
+};
+
+Bracket bracket(double cells_from_first_centre, Eigen::Index count) {
+  const auto last = static_cast<double>(count - 1);
+  const double place = std::clamp(cells_from_first_centre, 0.0, last);
+  const auto first = static_cast<Eigen::Index>(place);
+  return {first, std::min(first + 1, count - 1), place - static_cast<double>(first)};
+}
+
+}  // namespace
+
+HeightMap flat_ground(const Rectangle& extent, double cell, double height) {
+  const double width = extent.x_max - extent.x_min;
+  const double depth = extent.y_max - extent.y_min;
+  if (!(width > 0.0 && depth > 0.0 && std::isfinite(width) && std::isfinite(depth))) {
+    throw Error(ErrorKind::bad_input, "extent of the map is " + number_text(width) + " m x " +
+                                          number_text(depth) + " m, must be positive and finite");
+  }
+  if (!(cell > 0.0 && std::isfinite(cell))) {
+    throw Error(ErrorKind::bad_input, "cell is " + number_text(cell) + " m, must be positive");
+  }
+  const double cols = std::max(1.0, std::ceil(width / cell - grid_tolerance));
+  const double rows = std::max(1.0, std::ceil(depth / cell - grid_tolerance));
+  if (!(rows * cols <= most_cells)) {
+    throw Error(ErrorKind::bad_input,
+                "a map of " + number_text(width) + " m x " + number_text(depth) +
+                    " m in cells of " + number_text(cell) + " m holds " + number_text(rows * cols) +
+                    " cells, most are " + number_text(most_cells));
+  }
+  HeightMap map;
+  map.origin = {extent.x_min, extent.y_min};
+  map.cell = cell;
+  map.z = Eigen::ArrayXXd::Constant(static_cast<Eigen::Index>(rows),
+                                    static_cast<Eigen::Index>(cols), height);
+  return map;
+}
+
+double height_at(const HeightMap& map, double x, double y) {
+  const double u = (x - map.origin.x()) / map.cell;
+  const double v = (y - map.origin.y()) / map.cell;
+  const bool inside = u >= 0.0 && v >= 0.0 && u <= static_cast<double>(map.z.cols()) &&
+                      v <= static_cast<double>(map.z.rows());
+  if (!inside || map.z.size() == 0) return nan;
+  const Bracket col = bracket(u - 0.5, map.z.cols());
+  const Bracket row = bracket(v - 0.5, map.z.rows());
+  // A centre of no weight must not pass on its NaN.
+  const auto mix = [](double first, double second, double weight) {
+    return weight == 0.0 ? first : (1.0 - weight) * first + weight * second;
+  };
+  const auto along_x = [&](Eigen::Index r) {
+    return mix(map.z(r, col.first), map.z(r, col.second), col.weight);
+  };
+  return mix(along_x(row.first), along_x(row.second), row.weight);
+}
+
+bool same_grid(const HeightMap& a, const HeightMap& b) {
+  const double tolerance = grid_tolerance * a.cell;
+  return a.z.rows() == b.z.rows() && a.z.cols() == b.z.cols() &&
+         std::abs(a.cell - b.cell) <= tolerance &&
+         ((a.origin - b.origin).array().abs() <= tolerance).all();
+}
+
+HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell) {
+  HeightMap whole = map;
+  fill_holes(whole.z);
+  HeightMap result = flat_ground(extent, cell);
+  for_each_cell(result.z, [&](Cell at) {
+    result.z(at.row, at.col) = height_at(whole, result.x(at.col), result.y(at.row));
+  });
+  return result;
+}
+
+}  // namespace excavplan

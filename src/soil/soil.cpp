@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/soil/soil.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <excavplan/error.hpp>
+
+#include "json_file.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double quarter_pi = 0.7853981633974483;
+constexpr double steepest_friction = 1.05;       // 60 deg; no soil has more [rad]
+constexpr double least_overburden_depth = 0.01;  // the stress law ends here: q -> 0 at the surface
+constexpr double pascal_per_kilopascal = 1000.0;
+
+void read_cone_index(JsonObject law, SoilKind& soil) {
+  const std::string name = law.text("law");
+  soil.cone_index_reference = law.number("reference_pa", 1.0, 1e9);
+  if (name == "bulk_density") {
+    soil.cone_index_law = ConeIndexLaw::bulk_density;
+    soil.cone_index_rate = law.number("rate_m3_per_kg", 0.0, 0.1);
+    soil.cone_index_reference_density = law.number("reference_density_kg_m3", 1.0, 1e4);
+  } else if (name == "stress") {
+    soil.cone_index_law = ConeIndexLaw::stress;
+    soil.cone_index_rate = law.number("rate", 0.0, 20.0);
+    soil.cone_index_stress_exponent = law.number("stress_exponent", 0.0, 2.0);
+  } else {
+    law.fail("law", "is '" + name + "', must be 'bulk_density' or 'stress'");
+  }
+  law.done();
+}
+
+/// Rules that bind several keys.
+void check_consistency(const JsonObject& file, const SoilKind& soil) {
+  const std::string e_max = number_text(soil.void_ratio_max);
+  const std::string e_min = number_text(soil.void_ratio_min);
+  if (soil.void_ratio_min >= soil.void_ratio_max) {
+    file.fail("void_ratio_min", "is " + e_min + ", must be below void_ratio_max (" + e_max + ")");
+  }
+  if (soil.void_ratio_loose <= soil.void_ratio_min || soil.void_ratio_loose > soil.void_ratio_max) {
+    file.fail("void_ratio_loose", "is " + number_text(soil.void_ratio_loose) +
+                                      ", must be above void_ratio_min (" + e_min +
+                                      ") and not above void_ratio_max (" + e_max + ")");
+  }
+  const double saturation = soil.water_content * soil.specific_gravity / soil.void_ratio_min;
+  if (saturation > 1.0) {
+    file.fail("water_content", "is " + number_text(soil.water_content) +
+                                   ", which fills the pores of the densest state " +
+                                   number_text(saturation) + " times over; must not exceed 1");
+  }
+  const double densest = soil.friction_loosest + soil.friction_gain;
+  if (densest < 0.0 || densest > steepest_friction) {
+    file.fail("friction_gain_rad", "is " + number_text(soil.friction_gain) +
+                                       ", which makes the friction angle of the densest state " +
+                                       number_text(densest) + " rad; must be in 0 .. " +
+                                       number_text(steepest_friction));
+  }
+}
+
+double void_ratio(const SoilKind& soil, double density_percent) {
+  if (!(density_percent >= 0.0 && density_percent <= 100.0)) {
+    throw Error(ErrorKind::bad_input, "relative density is " + number_text(density_percent) +
+                                          " %, must be in 0 .. 100 %");
+  }
+  const double d = density_percent / 100.0;
+  return soil.void_ratio_max - d * (soil.void_ratio_max - soil.void_ratio_min);
+}
+
+/// The phase relations: everything that follows from the void ratio alone.
+SoilState state_of_void_ratio(const SoilKind& soil, double e) {
+  SoilState state;
+  state.relative_density = (soil.void_ratio_max - e) / (soil.void_ratio_max - soil.void_ratio_min);
+  state.void_ratio = e;
+  state.dry_density = soil.specific_gravity * water_density / (1.0 + e);
+  state.bulk_density = state.dry_density * (1.0 + soil.water_content);
+  state.unit_weight = state.bulk_density * gravity;
+  state.saturation = soil.water_content * soil.specific_gravity / e;
+  return state;
+}
+
+void set_strength(const SoilKind& soil, double cohesion, double friction, SoilState& state) {
+  state.cohesion = cohesion;
+  state.adhesion = soil.adhesion_ratio * cohesion;
+  state.friction_angle = friction;
+  state.tool_friction_angle = soil.tool_friction_ratio * friction;
+}
+
+}  // namespace
+
+SoilKind load_soil(const std::string& path) {
+  JsonObject file = JsonObject::open(path, "excavplan-soil");
+  file.ignore("sources");
+  SoilKind soil;
+  soil.name = file.text("name");
+  soil.specific_gravity = file.number("specific_gravity", 0.5, 10.0);
+  soil.water_content = file.number("water_content", 0.0, 10.0);
+  soil.void_ratio_max = file.number("void_ratio_max", 0.01, 20.0);
+  soil.void_ratio_min = file.number("void_ratio_min", 0.01, 20.0);
+  soil.void_ratio_loose = file.number("void_ratio_loose", 0.01, 20.0);
+  soil.cohesion_loosest = file.number("cohesion_loosest_pa", 0.0, 1e6);
+  soil.cohesion_growth = file.number("cohesion_growth", 0.0, 10.0);
+  soil.friction_loosest = file.number("friction_loosest_rad", 0.0, steepest_friction);
+  soil.friction_gain = file.number("friction_gain_rad", -steepest_friction, steepest_friction);
+  soil.tool_friction_ratio = file.number("tool_friction_ratio", 0.0, 1.0);
+  soil.adhesion_ratio = file.number("adhesion_ratio", 0.0, 1.0);
+  soil.angle_of_repose = file.number("angle_of_repose_rad", 0.05, steepest_friction);
+  read_cone_index(file.object("cone_index"), soil);
+  file.done();
+  check_consistency(file, soil);
+  return soil;
+}
+
+SoilState bank_state(const SoilKind& soil, double density_percent) {
+  SoilState state = state_of_void_ratio(soil, void_ratio(soil, density_percent));
+  const double d = density_percent / 100.0;
+  set_strength(soil, soil.cohesion_loosest * std::exp(soil.cohesion_growth * d),
+               soil.friction_loosest + soil.friction_gain * d, state);
+  return state;
+}
+
+SoilState loose_state(const SoilKind& soil) {
+  SoilState state = state_of_void_ratio(soil, soil.void_ratio_loose);
+  set_strength(soil, 0.0, soil.friction_loosest, state);
+  return state;
+}
+
+double cone_index(const SoilKind& soil, const SoilState& state, double depth) {
+  if (soil.cone_index_law == ConeIndexLaw::bulk_density) {
+    return soil.cone_index_reference *
+           std::exp(soil.cone_index_rate *
+                    (state.bulk_density - soil.cone_index_reference_density));
+  }
+  const double vertical_stress = state.unit_weight * std::max(depth, least_overburden_depth);
+  return soil.cone_index_reference *
+         std::pow(vertical_stress / pascal_per_kilopascal, soil.cone_index_stress_exponent) *
+         std::exp(soil.cone_index_rate * state.relative_density);
+}
+
+double bulking_of_density(const SoilKind& soil, double density_percent) {
+  return (1.0 + soil.void_ratio_loose) / (1.0 + void_ratio(soil, density_percent));
+}
+
+double critical_height(const SoilState& state) {
+  return 4.0 * state.cohesion / state.unit_weight *
+         std::tan(quarter_pi + 0.5 * state.friction_angle);
+}
+
+}  // namespace excavplan

@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+cmake_minimum_required(VERSION 3.24)
+
+# The architecture as a test: run with cmake -D ROOT=<source directory> -P layering.cmake
+
+# What a room may include of the others; itself is always allowed.
+set(rooms ground soil machine simulation planning survey)
+set(ground_may_use "")
+set(soil_may_use ground)
+set(machine_may_use "")
+set(simulation_may_use ground soil machine)
+set(planning_may_use ground soil machine simulation)
+set(survey_may_use ground)
+
+# Headers that belong to no room; all may include them.
+set(base error random data_files json_file parallel)
+
+# Where a third-party header may be included: in no public header any of them.
+set(third_parties "pcl/" "opencv2/" "nlopt" "nlohmann/" "CLI/")
+set(third_party_places
+  "^(src/survey/paper_method|tests/paper_method_test)\\.cpp$"
+  "^(src/survey/depth_image|tests/depth_image_test)\\.cpp$"
+  "^src/(soil|planning)/[a-z_]+\\.cpp$"
+  "^(src/json_file\\.hpp|src/.*\\.cpp|tools/.*|tests/.*)$"
+  "^tools/tool\\.cpp$")
+
+function(check_third_parties file line)
+  foreach(header place IN ZIP_LISTS third_parties third_party_places)
+    if(line MATCHES "[<\"]${header}" AND NOT file MATCHES "${place}")
+      message(SEND_ERROR "${file}: has no place for: ${line}")
+    endif()
+  endforeach()
+endfunction()
+
+function(check_rooms file line)
+  if(NOT file MATCHES "^(include/excavplan|src)/([a-z_]+)/")
+    set(room "")
+  else()
+    set(room ${CMAKE_MATCH_2})
+    if(NOT room IN_LIST rooms)
+      message(SEND_ERROR "${file}: '${room}' is no room of this house")
+    endif()
+  endif()
+  if(NOT line MATCHES "(<excavplan/|\")([a-z_/.]+)\\.hpp[>\"]")
+    return()
+  endif()
+  set(header ${CMAKE_MATCH_2})
+  if(header MATCHES "^([a-z_]+)/")
+    set(used ${CMAKE_MATCH_1})
+    if(NOT used STREQUAL room AND NOT used IN_LIST ${room}_may_use)
+      message(SEND_ERROR "${file}: must not use the room ${used}: ${line}")
+    endif()
+  elseif(line MATCHES "<" AND NOT header IN_LIST base)
+    message(SEND_ERROR "${file}: ${header} is neither in a room nor a base header: ${line}")
+  elseif(NOT header IN_LIST base AND NOT EXISTS ${ROOT}/src/${room}/${header}.hpp)
+    message(SEND_ERROR "${file}: not a header of its own room: ${line}")
+  endif()
+endfunction()
+
+# The library answers by values and exceptions: it prints nothing and never ends the program.
+function(check_manners file)
+  file(STRINGS ${ROOT}/${file} lines
+    REGEX "(^|[^a-zA-Z_])(std::)?(cout|cerr|clog|printf|fprintf|puts|perror|abort|exit|_Exit|quick_exit|terminate)($|[^a-zA-Z_])")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "//.*$" "" code "${line}")
+    string(REGEX REPLACE "\"[^\"]*\"" "" code "${code}")
+    if(code MATCHES "(cout|cerr|clog)($|[^a-zA-Z_])|(^|[^a-zA-Z_])[f]?(printf|puts|perror|abort|exit|_Exit|quick_exit|terminate) *\\(")
+      message(SEND_ERROR "${file}: the library neither prints nor exits: ${line}")
+    endif()
+  endforeach()
+endfunction()
+
+file(GLOB_RECURSE sources RELATIVE ${ROOT}
+  ${ROOT}/include/*.hpp ${ROOT}/src/*.hpp ${ROOT}/src/*.cpp ${ROOT}/tools/*.hpp ${ROOT}/tools/*.cpp
+  ${ROOT}/tests/*.hpp ${ROOT}/tests/*.cpp ${ROOT}/benchmarks/*.cpp ${ROOT}/docs/*.cpp)
+list(LENGTH sources count)
+if(count LESS 30)
+  message(SEND_ERROR "only ${count} source files under '${ROOT}': nothing was checked")
+endif()
+
+foreach(file IN LISTS sources)
+  file(STRINGS ${ROOT}/${file} includes REGEX "^ *# *include")
+  foreach(line IN LISTS includes)
+    check_third_parties(${file} "${line}")
+    if(file MATCHES "^(include|src)/")
+      check_rooms(${file} "${line}")
+    endif()
+  endforeach()
+  if(file MATCHES "^(include|src)/")
+    check_manners(${file})
+  endif()
+  file(STRINGS ${ROOT}/${file} head LIMIT_COUNT 2)
+  if(NOT head MATCHES "SPDX-FileCopyrightText: .*;.*SPDX-License-Identifier: Apache-2.0")
+    message(SEND_ERROR "${file}: lacks its two SPDX lines")
+  endif()
+endforeach()

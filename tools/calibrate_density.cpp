@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <excavplan/planning/calibration.hpp>
+
+#include "json_file.hpp"
+#include "results.hpp"
+#include "table.hpp"
+#include "tool.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+const About about = {
+    "calibrate-density",
+    "finds the law that turns a bulking factor into a relative density: from digs of the simulator "
+    "at known densities, or from measured samples.",
+    {{"calibrate-density --out loam.json", "dig the simulator at 0, 5 .. 100 %"},
+     {"calibrate-density --samples digs.csv --out site.json",
+      "fit your own digs; the file has the columns bulking_factor,density_percent"},
+     {"estimate-density before.pcd after.pcd --law site.json", "use the law"}}};
+
+struct Inputs {
+  std::optional<std::string> samples;
+  std::string soil = "loam";
+  std::string machine = "zx120";
+  std::string densities = "0:5:100";
+  std::optional<DigParameters> path;
+  double cell = 0.05;
+  std::optional<std::string> out;
+};
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  arguments.file("samples", inputs.samples,
+                 "measured samples, CSV with the columns bulking_factor,density_percent");
+  arguments.soil(inputs.soil);
+  arguments.machine(inputs.machine);
+  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
+                 "relative densities to dig [%], or a list a,b,c");
+  arguments.option("path", inputs.path, "dig path (default: the paper's 45deg,0.35m,1.5m)");
+  arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
+  arguments.file("out", inputs.out, "law file to write, for estimate-density --law");
+}
+
+DensityCalibration from_samples(const std::string& file) {
+  const Table table = Table::read(file);
+  const auto& factors = table.column("bulking_factor");
+  const auto& densities = table.column("density_percent");
+  DensityCalibration calibration;
+  std::vector<BulkingSample> samples;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    samples.push_back({factors[i], densities[i]});
+    DensityCalibration::Sample sample;
+    sample.density_percent = densities[i];
+    sample.bulking_factor = factors[i];
+    calibration.samples.push_back(sample);
+  }
+  calibration.name = "samples";
+  calibration.source = std::to_string(samples.size()) + " measured samples";
+  calibration.use = "closed_form";
+  calibration.line = fit_line(samples);
+  calibration.closed_form = fit_closed_form(samples);
+  return calibration;
+}
+
+DensityCalibration from_simulator(const Inputs& inputs) {
+  CalibrationOptions options;
+  options.densities_percent = parse_densities("--densities", inputs.densities);
+  options.cell = inputs.cell;
+  if (inputs.path) options.path = *inputs.path;
+  return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);
+}
+
+std::string text(const DensityLine& line) {
+  return "d = " + readable(line.a, 5) + " k " + (line.b < 0 ? "- " : "+ ") +
+         readable(std::abs(line.b), 5) + " %, R2 " + readable(line.r2, 4) + ", scatter " +
+         readable(line.residual_sd, 2) + " points";
+}
+
+std::string text(const DensityClosedForm& form) {
+  const double B = std::abs(form.B) < 1e-9 ? 0.0 : form.B;  // rounding of an exact fit
+  return "k = " + readable(B, 4) + " + " + readable(form.A, 4) + " / (1 - " + readable(form.r, 4) +
+         " d), R2 " + readable(form.r2, 5) + ", scatter " +
+         (form.residual_sd < 0.01 ? "below 0.01" : readable(form.residual_sd, 2)) + " points";
+}
+
+Outcome work(const Inputs& inputs) {
+  const DensityCalibration calibration =
+      inputs.samples ? from_samples(*inputs.samples) : from_simulator(inputs);
+  const std::string file = to_json(calibration);
+  if (inputs.out) write_file(*inputs.out, file);
+  Outcome outcome;
+  outcome.json = nlohmann::ordered_json::parse(file);
+  outcome.json.erase("format");
+  outcome.json.erase("version");
+  outcome.lines = {"line                     " + text(calibration.line),
+                   "closed form              " + text(calibration.closed_form)};
+  if (calibration.line_as_measured && calibration.closed_form_as_measured) {
+    outcome.lines.push_back("line, as measured        " + text(*calibration.line_as_measured));
+    outcome.lines.push_back("closed form, as measured " +
+                            text(*calibration.closed_form_as_measured));
+    outcome.lines.emplace_back(
+        "As measured: k from height maps, where soil that fell back into the pit hides part of "
+        "it.");
+  }
+  return outcome;
+}
+
+}  // namespace
+}  // namespace excavplan::tools
+
+int main(int argc, char** argv) {
+  using namespace excavplan::tools;
+  Inputs inputs;
+  return run_tool(
+      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
+      [&](Console&) { return work(inputs); });
+}

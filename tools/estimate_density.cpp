@@ -1,0 +1,367 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <excavplan/ground/bulking.hpp>
+#include <excavplan/soil/density_law.hpp>
+#include <excavplan/survey/cloud.hpp>
+
+#ifdef EXCAVPLAN_SURVEY
+#include <excavplan/survey/paper_method.hpp>
+#endif
+
+#include "figures.hpp"
+#include "json_file.hpp"
+#include "results.hpp"
+#include "tool.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+const About about = {
+    "estimate-density",
+    "estimates the relative density of soil from scans of the ground before and after one dig: "
+    "volumes of hole, spill and heap, bulking factor, density, each with its standard deviation.",
+    {{"estimate-density before.pcd after.pcd", "two scans that show dig and heap"},
+     {"estimate-density dig0.ply dig1.ply --dump-before heap0.ply --dump-after heap1.ply",
+      "separate scans of the dig area and of the dump area"},
+     {"estimate-density before.pcd after.pcd --json --plot change.svg",
+      "figures for a program, a picture for you"}},
+    true};
+
+struct Inputs {
+  std::string before;
+  std::string after;
+  std::optional<std::string> dump_before;
+  std::optional<std::string> dump_after;
+  std::optional<std::string> before_frame;
+  std::optional<std::string> after_frame;
+  ChangeOptions change;
+  std::string method = "surface";
+  std::optional<double> cell;
+  std::string law = "default";
+  std::optional<std::string> plot;
+};
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  arguments.positional("BEFORE", inputs.before, "cloud before the dig: PCD, PLY or XYZ");
+  arguments.positional("AFTER", inputs.after, "cloud after it");
+  arguments.file("dump-before", inputs.dump_before,
+                 "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
+  arguments.file("dump-after", inputs.dump_after, "cloud of the dump area after");
+  arguments.option("dig-area", inputs.change.dig_area, "where the hole is (default: found)");
+  arguments.option("dump-area", inputs.change.dump_area, "where the heap is (default: found)");
+  arguments.file("before-frame", inputs.before_frame,
+                 "4 x 4 matrix that takes the clouds before into the site frame");
+  arguments.file("after-frame", inputs.after_frame, "the same for the clouds after");
+  arguments.choice("method", inputs.method, {"surface", "paper"},
+                   "surface: signed change of one height map; paper: the pipeline as published");
+  arguments.option("cell", inputs.cell, Quantity::length,
+                   "cell of the height map, voxel of the paper's method (default: from the density "
+                   "of the points, at least 0.05)");
+  arguments.text("law", "NAME|FILE", inputs.law,
+                 "density law: default (built-in simulator, ZX120 in loam), paper, or a law file");
+  arguments.plot(inputs.plot, "the height change with its zones");
+}
+
+// ---- Clouds to volumes ------------------------------------------------------------------------
+
+Cloud read_in_site_frame(const std::string& file, const std::optional<std::string>& frame) {
+  Cloud cloud = read_cloud(file);
+  if (frame) transform(cloud, read_frame(*frame));
+  if (summarise(cloud).finite_points < 100) {
+    throw Error(ErrorKind::bad_file, file + ": holds fewer than 100 finite points");
+  }
+  return cloud;
+}
+
+/// The clouds of one area, before and after, with their files for messages.
+struct CloudPair {
+  std::string before_file;
+  std::string after_file;
+  Cloud before;
+  Cloud after;
+};
+
+std::string text(const Rectangle& r) {
+  return "x " + readable(r.x_min) + " .. " + readable(r.x_max) + ", y " + readable(r.y_min) +
+         " .. " + readable(r.y_max) + " m";
+}
+
+Rectangle overlap(const CloudPair& pair) {
+  const Rectangle a = plan_extent(pair.before);
+  const Rectangle b = plan_extent(pair.after);
+  const Rectangle both = {std::max(a.x_min, b.x_min), std::max(a.y_min, b.y_min),
+                          std::min(a.x_max, b.x_max), std::min(a.y_max, b.y_max)};
+  if (!(both.x_max - both.x_min > 0.2 && both.y_max - both.y_min > 0.2)) {
+    throw Error(ErrorKind::bad_file, pair.before_file + " and " + pair.after_file +
+                                         " do not overlap: " + text(a) + " and " + text(b) +
+                                         "; --before-frame and --after-frame bring them into one "
+                                         "frame");
+  }
+  return both;
+}
+
+/// Six points per cell in the sparser cloud, 5 cm at least; ours.
+double cell_for(const CloudPair& pair) {
+  const double density = std::min(summarise(pair.before).density, summarise(pair.after).density);
+  return std::max(0.05, std::sqrt(6.0 / density));
+}
+
+SurfacePair surfaces(const CloudPair& pair, double cell) {
+  RasterOptions raster;
+  raster.cell = cell;
+  const Rectangle extent = overlap(pair);
+  return {rasterise(pair.before, extent, raster), rasterise(pair.after, extent, raster)};
+}
+
+/// Errors of the change are about what the files show.
+template <typename Measure>
+VolumeChange measured(const std::string& files, const Measure& measure) {
+  try {
+    return measure();
+  } catch (const Error& error) {
+    throw Error(ErrorKind::bad_file, files + ": " + error.what());
+  }
+}
+
+struct Survey {
+  CloudPair dig;
+  std::optional<CloudPair> dump;
+  double cell = 0.05;
+};
+
+Survey read_survey(const Inputs& inputs) {
+  if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
+    throw Error(ErrorKind::bad_input, "--dump-before and --dump-after go together");
+  }
+  Survey survey;
+  const auto pair = [&](const std::string& before, const std::string& after) {
+    return CloudPair{before, after, read_in_site_frame(before, inputs.before_frame),
+                     read_in_site_frame(after, inputs.after_frame)};
+  };
+  survey.dig = pair(inputs.before, inputs.after);
+  survey.cell = cell_for(survey.dig);
+  if (inputs.dump_before) {
+    survey.dump = pair(*inputs.dump_before, *inputs.dump_after);
+    survey.cell = std::max(survey.cell, cell_for(*survey.dump));
+  }
+  if (inputs.cell) survey.cell = *inputs.cell;
+  return survey;
+}
+
+VolumeChange surface_change(const Inputs& inputs, const Survey& survey) {
+  const SurfacePair dig = surfaces(survey.dig, survey.cell);
+  const std::string files = inputs.before + ", " + inputs.after;
+  if (!survey.dump) {
+    return measured(files, [&] { return measure_change(dig.before, dig.after, inputs.change); });
+  }
+  const SurfacePair dump = surfaces(*survey.dump, survey.cell);
+  return measured(files, [&] { return measure_change(dig, dump, inputs.change); });
+}
+
+void refuse_swapped(const VolumeChange& change, const Inputs& inputs) {
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == "looks_swapped") {
+      throw Error(ErrorKind::bad_file,
+                  inputs.before + ", " + inputs.after + ": " + warning.message);
+    }
+  }
+}
+
+#ifdef EXCAVPLAN_SURVEY
+
+/// Extent of the zones of some kinds, with room around it.
+std::optional<Rectangle> extent_of(const VolumeChange& change,
+                                   std::initializer_list<ZoneKind> kinds) {
+  std::optional<Rectangle> extent;
+  for (const ChangeZone& zone : change.zones) {
+    if (std::find(kinds.begin(), kinds.end(), zone.kind) == kinds.end()) continue;
+    const Rectangle& r = zone.extent;
+    const Rectangle e = extent.value_or(r);
+    extent = Rectangle{std::min(e.x_min, r.x_min), std::min(e.y_min, r.y_min),
+                       std::max(e.x_max, r.x_max), std::max(e.y_max, r.y_max)};
+  }
+  if (!extent) return extent;
+  constexpr double room = 0.3;  // [m], ours
+  return Rectangle{extent->x_min - room, extent->y_min - room, extent->x_max + room,
+                   extent->y_max + room};
+}
+
+/// Points inside, with the ground's median height at z = 0 as the method expects it.
+Cloud levelled(const Cloud& cloud, const std::optional<Rectangle>& area, double ground) {
+  Cloud result;
+  for (const Eigen::Vector3d& p : cloud.points) {
+    if (!p.allFinite() || (area && !area->contains(p.x(), p.y()))) continue;
+    result.points.emplace_back(p.x(), p.y(), p.z() - ground);
+  }
+  result.width = result.points.size();
+  return result;
+}
+
+double median_height(const Cloud& cloud) {
+  std::vector<double> z;
+  for (const Eigen::Vector3d& p : cloud.points) {
+    if (p.allFinite()) z.push_back(p.z());
+  }
+  const auto middle = z.begin() + static_cast<std::ptrdiff_t>(z.size() / 2);
+  std::nth_element(z.begin(), middle, z.end());
+  return *middle;
+}
+
+VolumeChange paper_change(const Inputs& inputs, const Survey& survey, const VolumeChange& surface) {
+  PaperMethodOptions options;
+  options.leaf = survey.cell;
+  const CloudPair& heap = survey.dump ? *survey.dump : survey.dig;
+  auto dig_area = inputs.change.dig_area;
+  auto dump_area = inputs.change.dump_area;
+  if (!survey.dump) {
+    if (!dig_area) dig_area = extent_of(surface, {ZoneKind::dig, ZoneKind::spill});
+    if (!dump_area) dump_area = extent_of(surface, {ZoneKind::dump});
+  }
+  const bool no_heap = !survey.dump && !dump_area;
+  const double dig_ground = median_height(survey.dig.before);
+  const double heap_ground = median_height(heap.before);
+  const Cloud still = levelled(survey.dig.before, dig_area, dig_ground);  // nothing rises in it
+  VolumeChange change = measured(inputs.before + ", " + inputs.after, [&] {
+    return paper_volumes(still, levelled(survey.dig.after, dig_area, dig_ground),
+                         no_heap ? still : levelled(heap.before, dump_area, heap_ground),
+                         no_heap ? still : levelled(heap.after, dump_area, heap_ground), options);
+  });
+  for (const Warning& warning : surface.warnings) change.warnings.push_back(warning);
+  return change;
+}
+
+#else
+
+VolumeChange paper_change(const Inputs&, const Survey&, const VolumeChange&) {
+  throw Error(ErrorKind::bad_input,
+              "--method: paper needs PCL, and this program was built without it "
+              "(EXCAVPLAN_SURVEY=OFF)");
+}
+
+#endif
+
+// ---- Volumes to density -----------------------------------------------------------------------
+
+DensityLaw law_named(const std::string& name) {
+  return load_density_law(shipped_or_file("laws", name == "default" ? "zx120-loam" : name));
+}
+
+struct Estimate {
+  std::optional<Measured> bulking;
+  std::optional<DensityEstimate> density;
+  bool trustworthy = true;
+  std::vector<Warning> warnings;
+};
+
+Estimate estimate(const VolumeChange& change, const DensityLaw& law) {
+  Estimate result;
+  result.warnings = change.warnings;
+  result.bulking = bulking_factor(change);
+  if (result.bulking) {
+    Measured k = *result.bulking;
+    if (std::isnan(k.sd)) k.sd = 0.0;  // the paper's method knows none: the law's scatter is left
+    result.density = estimate_density(law, k);
+    result.trustworthy = result.density->trustworthy;
+    for (const Warning& warning : result.density->warnings) result.warnings.push_back(warning);
+  } else {
+    result.trustworthy = false;
+  }
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == "zone_at_border" || warning.code == "zone_partly_unseen") {
+      result.trustworthy = false;
+    }
+  }
+  return result;
+}
+
+nlohmann::ordered_json estimate_json(const VolumeChange& change, const Estimate& result,
+                                     const DensityLaw& law) {
+  nlohmann::ordered_json json;
+  json["volume"] = volumes_json(change);
+  json["bulking_factor"] = nullptr;
+  json["bulking_factor_sd"] = nullptr;
+  json["density_percent"] = nullptr;
+  json["density_raw_percent"] = nullptr;
+  json["density_sd_percent"] = nullptr;
+  json["density_interval_percent"] = nullptr;
+  if (result.bulking) {
+    json["bulking_factor"] = result.bulking->value;
+    json["bulking_factor_sd"] = result.bulking->sd;
+    json["density_percent"] = result.density->percent;
+    json["density_raw_percent"] = result.density->raw_percent;
+    json["density_sd_percent"] = result.density->sd_percent;
+    json["density_interval_percent"] = result.density->interval_percent;
+  }
+  json["law"] = law.name;
+  json["trustworthy"] = result.trustworthy;
+  return json;
+}
+
+nlohmann::ordered_json zones_json(const VolumeChange& change) {
+  auto list = nlohmann::ordered_json::array();
+  for (const ChangeZone& zone : change.zones) {
+    list.push_back(
+        {{"kind", name(zone.kind)},
+         {"volume_m3", zone.volume.value},
+         {"volume_sd_m3", zone.volume.sd},
+         {"area_m2", zone.area},
+         {"unseen_share", zone.unknown_share},
+         {"extent_m",
+          {zone.extent.x_min, zone.extent.y_min, zone.extent.x_max, zone.extent.y_max}}});
+  }
+  return list;
+}
+
+std::vector<std::string> estimate_lines(const VolumeChange& change, const Estimate& result,
+                                        const DensityLaw& law) {
+  const auto volume = [](const Measured& v) { return readable(v.value, v.sd) + " m3"; };
+  std::vector<std::string> lines = {"hole       " + volume(change.excavated),
+                                    "spill      " + volume(change.spilled),
+                                    "heap       " + volume(change.dumped)};
+  if (!result.bulking) {
+    lines.emplace_back("bulking    unknown, and so is the density");
+    return lines;
+  }
+  const DensityEstimate& d = *result.density;
+  lines.push_back("bulking    " + readable(result.bulking->value, result.bulking->sd));
+  lines.push_back("density    " + readable(d.percent, d.sd_percent) + " %, 95 % interval " +
+                  readable(d.interval_percent[0]) + " .. " + readable(d.interval_percent[1]) +
+                  " %");
+  lines.push_back("law        " + law.name + (result.trustworthy ? "" : " (NOT TRUSTWORTHY)"));
+  return lines;
+}
+
+Outcome work(const Inputs& inputs) {
+  const DensityLaw law = law_named(inputs.law);
+  const Survey survey = read_survey(inputs);
+  const VolumeChange surface = surface_change(inputs, survey);
+  refuse_swapped(surface, inputs);
+  const bool paper = inputs.method == "paper";
+  const VolumeChange change = paper ? paper_change(inputs, survey, surface) : surface;
+  const Estimate result = estimate(change, law);
+
+  Outcome outcome;
+  outcome.json = estimate_json(change, result, law);
+  outcome.json["method"] = inputs.method;
+  outcome.json["cell_m"] = survey.cell;
+  outcome.json["zones"] = zones_json(surface);
+  outcome.lines = estimate_lines(change, result, law);
+  outcome.warnings = result.warnings;
+  outcome.trustworthy = result.trustworthy;
+  if (inputs.plot) write_file(*inputs.plot, height_change_figure(surface, outcome.lines));
+  return outcome;
+}
+
+}  // namespace
+}  // namespace excavplan::tools
+
+int main(int argc, char** argv) {
+  using namespace excavplan::tools;
+  Inputs inputs;
+  return run_tool(
+      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
+      [&](Console&) { return work(inputs); });
+}

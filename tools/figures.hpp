@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/machine/dig_path.hpp>
+
+/// @file
+/// The pictures behind --plot, as SVG text.
+
+namespace excavplan::tools {
+
+/// Height change of each surveyed area with the outline of its zones; `notes` stand beside it.
+std::string height_change_figure(const VolumeChange& change, const std::vector<std::string>& notes);
+
+/// Ground in the boom plane, as boom_plane_profile() gives it.
+struct DigSection {
+  GroundProfile before;
+  GroundProfile after = {};  ///< empty if nothing was dug
+};
+
+/// Section in the boom plane: ground before and after, path of the tip by phase, the bucket at the
+/// ends of the phases, the machine's links at the start.
+std::string dig_figure(const Machine& machine, const DigPath& path, const DigSection& ground,
+                       const std::string& title, const std::vector<std::string>& notes);
+
+}  // namespace excavplan::tools

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <excavplan/survey/cloud.hpp>
+
+#include "tool.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+struct Inputs {
+  std::string file;
+  std::optional<std::string> frame;
+  std::optional<std::string> out;
+  bool ascii = false;
+};
+
+const About about = {
+    "inspect-cloud",
+    "Shows what is in a scan (PCD, PLY or XYZ text, told from the content), and writes it in "
+    "another format or frame.",
+    {{"inspect-cloud scan.pcd", "points, extent, density and a guess of the frame"},
+     {"inspect-cloud scan.xyz --out scan.ply", "the same, and the points as binary PLY"},
+     {"inspect-cloud scan.pcd --frame scan_frame.txt --out site.pcd", "into the site frame"}}};
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  arguments.positional("FILE", inputs.file, "scan to look at");
+  arguments.file("frame", inputs.frame,
+                 "4 x 4 text matrix that takes the scan into the site frame; applied first");
+  arguments.file("out", inputs.out, "write the cloud here: .pcd, .ply, .xyz, .txt or .asc");
+  arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text with every digit");
+}
+
+CloudFormat format_of(const std::string& path, bool ascii) {
+  const CloudFormat format = cloud_format_of_name(path);
+  if (!ascii) return format;
+  if (format == CloudFormat::pcd_binary) return CloudFormat::pcd_ascii;
+  if (format == CloudFormat::ply_binary) return CloudFormat::ply_ascii;
+  return format;
+}
+
+nlohmann::ordered_json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+std::string range(const std::string& axis, double low, double high) {
+  return axis + " " + readable(low, 4) + " .. " + readable(high, 4) + " m (" +
+         readable(high - low) + " m)";
+}
+
+std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& cloud,
+                                          const CloudSummary& summary) {
+  std::string points = std::to_string(summary.points) + " points";
+  if (cloud.height > 1) {
+    points += " (" + std::to_string(cloud.width) + " x " + std::to_string(cloud.height) + ")";
+  }
+  std::vector<std::string> lines = {inputs.file + ": " + points + ", " +
+                                    std::to_string(summary.finite_points) + " finite"};
+  if (summary.finite_points > 0) {
+    const char* const axes[] = {"x", "y", "z"};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      lines.push_back("  " + range(axes[i], summary.min[i], summary.max[i]));
+    }
+    if (std::isfinite(summary.density)) {
+      lines.push_back("  " + readable(summary.density) + " points per m^2 of ground");
+    }
+    lines.push_back("  frame, by the look of it: " + summary.frame_guess);
+  }
+  if (inputs.out) lines.push_back("written to " + *inputs.out);
+  return lines;
+}
+
+Outcome inspect(const Inputs& inputs) {
+  const auto format =
+      inputs.out ? std::optional(format_of(*inputs.out, inputs.ascii)) : std::nullopt;
+  if (inputs.ascii && !inputs.out) {
+    throw Error(ErrorKind::bad_input, "--ascii says how to write --out, which is missing");
+  }
+  Cloud cloud = read_cloud(inputs.file);
+  if (inputs.frame) transform(cloud, read_frame(*inputs.frame));
+  const CloudSummary summary = summarise(cloud);
+  if (format) write_cloud(*inputs.out, cloud, *format);
+
+  Outcome outcome;
+  outcome.json = {{"file", inputs.file},
+                  {"points", summary.points},
+                  {"width", cloud.width},
+                  {"height", cloud.height},
+                  {"finite_points", summary.finite_points},
+                  {"centroid_m", to_json(summary.centroid)},
+                  {"min_m", to_json(summary.min)},
+                  {"max_m", to_json(summary.max)},
+                  {"density_per_m2", summary.density},
+                  {"frame_guess", summary.frame_guess}};
+  if (inputs.out) outcome.json["out"] = *inputs.out;
+  outcome.lines = lines_for_people(inputs, cloud, summary);
+  if (summary.finite_points == 0) {
+    outcome.warnings.push_back({"no_finite_points", inputs.file + " holds no finite point"});
+  }
+  return outcome;
+}
+
+}  // namespace
+}  // namespace excavplan::tools
+
+int main(int argc, char** argv) {
+  using namespace excavplan::tools;
+  Inputs inputs;
+  return run_tool(
+      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
+      [&](Console&) { return inspect(inputs); });
+}

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/machine/dig_path.hpp>
+
+/// @file
+/// Numbers with units, from people and for people. `what` names the option in messages.
+
+namespace excavplan::tools {
+
+/// What a number on the command line measures. A bare number is in the SI unit.
+enum class Quantity { length, angle, area, volume, mass, time, energy, density, percent, ratio };
+
+const char* placeholder(Quantity quantity);  ///< "LENGTH"
+const char* unit(Quantity quantity);         ///< "m"
+
+/// "5cm", "45deg", "0.35" in the SI unit.
+/// @throws Error (bad_input) naming `what`, the text and what is understood
+double parse_quantity(const std::string& what, const std::string& text, Quantity quantity);
+
+/// "45deg,0.35m,1.5m". @throws Error (bad_input)
+DigParameters parse_dig_path(const std::string& what, const std::string& text);
+
+/// "xmin,ymin,xmax,ymax". @throws Error (bad_input)
+Rectangle parse_rectangle(const std::string& what, const std::string& text);
+
+/// "x,y". @throws Error (bad_input)
+Eigen::Vector2d parse_point(const std::string& what, const std::string& text);
+
+/// A number for people: at least `digits` significant ones, never an exponent.
+std::string readable(double value, int digits = 3);
+
+/// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
+std::string readable(double value, double sd);
+
+}  // namespace excavplan::tools

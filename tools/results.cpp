@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "results.hpp"
+
+#include <cmath>
+
+#include <excavplan/error.hpp>
+
+#include "quantity.hpp"
+#include "tool.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+constexpr double degrees = 57.29577951308232;
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+nlohmann::ordered_json volumes_json(const VolumeChange& change) {
+  nlohmann::ordered_json json;
+  const auto add = [&](const char* name, const Measured& volume) {
+    json[std::string(name) + "_m3"] = volume.value;
+    json[std::string(name) + "_sd_m3"] = volume.sd;
+  };
+  add("excavated", change.excavated);
+  add("spilled", change.spilled);
+  add("dumped", change.dumped);
+  add("before", change.before);
+  add("after", change.after);
+  return json;
+}
+
+nlohmann::ordered_json path_json(const PlannedDig& dig) {
+  nlohmann::ordered_json json = to_json(dig.parameters);
+  json["start_x_m"] = dig.start_x;
+  return json;
+}
+
+nlohmann::ordered_json dig_json(const PlannedDig& dig) {
+  return {{"path", path_json(dig)},
+          {"payload_mass_kg", dig.payload_mass},
+          {"payload_volume_m3", dig.payload_volume},
+          {"energy_kj", dig.energy / 1000.0},
+          {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()},
+          {"duration_s", dig.duration}};
+}
+
+std::string path_text(const PlannedDig& dig) {
+  return readable(degrees * dig.parameters.penetration_angle) + " deg, " +
+         readable(dig.parameters.penetration_length) + " m, " +
+         readable(dig.parameters.drag_length) + " m from x = " + readable(dig.start_x) + " m";
+}
+
+std::vector<std::string> dig_lines(const PlannedDig& dig) {
+  return {"path         " + path_text(dig),
+          "payload      " + readable(dig.payload_mass) + " kg, " + readable(dig.payload_volume) +
+              " m3 loose",
+          "energy       " + readable(dig.energy / 1000.0) + " kJ",
+          "efficiency   " + readable(1000.0 * dig.efficiency()) + " kg/kJ",
+          "duration     " + readable(dig.duration) + " s"};
+}
+
+std::vector<double> parse_densities(const std::string& what, const std::string& text) {
+  std::vector<double> densities;
+  const auto number = [&](const std::string& word) {
+    return parse_quantity(what, word, Quantity::percent);
+  };
+  const auto range = split(text, ':');
+  if (range.size() == 1) {
+    for (const std::string& word : split(text, ',')) densities.push_back(number(word));
+    return densities;
+  }
+  const double step = range.size() == 3 ? number(range[1]) : 0.0;
+  if (range.size() != 3 || !(step >= 0.01)) {
+    throw Error(ErrorKind::bad_input,
+                what + ": '" + text + "' is not first:step:last with a step of 0.01 or more");
+  }
+  const double first = number(range[0]);
+  const auto steps = static_cast<int>(std::floor((number(range[2]) - first) / step + 1e-9));
+  for (int i = 0; i <= steps; ++i) densities.push_back(first + i * step);
+  if (densities.empty()) {
+    throw Error(ErrorKind::bad_input, what + ": '" + text + "' holds no density");
+  }
+  return densities;
+}
+
+std::string html_report(const std::string& title, const std::vector<std::string>& svgs,
+                        const std::vector<std::string>& lines, const nlohmann::ordered_json& json) {
+  std::string page =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(title) +
+      "</title>\n<style>body{font:16px/1.5 sans-serif;max-width:1100px;margin:2em auto;"
+      "padding:0 1em;color:#222}svg{max-width:100%;height:auto}pre{background:#f4f4f2;"
+      "padding:1em;overflow:auto}</style></head><body>\n<h1>" +
+      escaped(title) + "</h1>\n<pre>";
+  for (const std::string& line : lines) page += escaped(line) + "\n";
+  page += "</pre>\n";
+  for (const std::string& svg : svgs) page += svg.substr(svg.find("<svg")) + "\n";
+  return page + "<h2>All figures</h2>\n<pre>" + escaped(json.dump(2)) + "</pre>\n</body></html>\n";
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/calibration.hpp>
+#include <excavplan/planning/path_library.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+
+#include "json_file.hpp"
+#include "results.hpp"
+#include "tool.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+const About about = {
+    "run-experiment",
+    "repeats the paper's simulation experiment (section 3): dig once along the fixed path, "
+    "estimate "
+    "the density from the height maps, dig again along the path planned for it, compare.",
+    {{"run-experiment", "soft, medium and hard loam (10, 40, 80 %), paths from the library"},
+     {"run-experiment --search --densities 0:10:100", "search each path, eleven densities"},
+     {"run-experiment --json", "all figures for a program"}}};
+
+struct Inputs {
+  std::string densities = "paper";
+  std::optional<DigParameters> path;
+  std::string soil = "loam";
+  std::string machine = "zx120";
+  std::optional<std::string> library;
+  std::string law = "default";
+  bool search = false;
+  double cell = 0.05;
+  std::uint64_t seed = 1;
+  std::uint64_t threads = 0;
+};
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
+                 "relative densities [%], or a list a,b,c; \"paper\": soft 10, medium 40, hard 80");
+  arguments.file("library", inputs.library,
+                 "path library (default: the shipped one of the machine and the soil)");
+  arguments.text(
+      "law", "NAME|FILE", inputs.law,
+      "density law: default (the shipped one of the machine and the soil), paper, or a law file");
+  arguments.flag("search", inputs.search, "search each path instead of looking it up");
+  arguments.option("path", inputs.path, "fixed path (default: the paper's 45deg,0.35m,1.5m)");
+  arguments.soil(inputs.soil);
+  arguments.machine(inputs.machine);
+  arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
+  arguments.option("seed", inputs.seed, "seed of the searches");
+  arguments.option("threads", inputs.threads, "threads, 0 for one per core");
+}
+
+struct Condition {
+  std::string name;
+  double density = 0.0;
+};
+
+/// The densities of the paper's Table 1 are not published as text: these are ours.
+std::vector<Condition> conditions_of(const Inputs& inputs) {
+  if (inputs.densities == "paper") return {{"soft", 10.0}, {"medium", 40.0}, {"hard", 80.0}};
+  std::vector<Condition> conditions;
+  for (const double density : parse_densities("--densities", inputs.densities)) {
+    conditions.push_back({readable(density) + " %", density});
+  }
+  return conditions;
+}
+
+/// What stays the same for all conditions.
+struct Setting {
+  Machine machine;
+  SoilKind soil;
+  DensityLaw law;
+  std::optional<PathLibrary> library;
+  DigParameters fixed;
+  Terrain ground;
+};
+
+PlannedDig dig_or_fail(const Setting& setting, const HeightMapSimulator& simulator,
+                       const DigParameters& parameters) {
+  const auto outcome = evaluate_dig(setting.machine, simulator, setting.ground, parameters);
+  if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
+    throw Error(ErrorKind::bad_input, describe(*failure));
+  }
+  return std::get<PlannedDig>(outcome);
+}
+
+PlannedDig planned_dig(const Inputs& inputs, const Setting& setting, double estimated_density) {
+  if (setting.library) return look_up(*setting.library, estimated_density);
+  DigSearchOptions search;
+  search.genetic.seed = inputs.seed;
+  search.genetic.threads = static_cast<unsigned>(inputs.threads);
+  const HeightMapSimulator simulator(setting.machine, setting.soil, estimated_density);
+  const auto found = search_dig(setting.machine, simulator, setting.ground, search);
+  if (!found) throw Error(ErrorKind::bad_input, "no dig is feasible");
+  return found->dig;
+}
+
+struct Row {
+  nlohmann::ordered_json json;
+  std::string line;
+};
+
+Row run(const Inputs& inputs, const Setting& setting, const Condition& condition) {
+  // 1-2: dig once along the fixed path, measure k from the height maps.
+  const Terrain scene =
+      undisturbed(flat_ground(scene_extent(setting.machine, default_dump_point()), inputs.cell));
+  const HeightMapSimulator simulator(setting.machine, setting.soil, condition.density);
+  const PlannedDig fixed = dig_or_fail(setting, simulator, setting.fixed);
+  const auto path = make_dig_path(setting.machine, fixed.parameters, fixed.start_x,
+                                  boom_plane_profile(scene.surface()));
+  DigOptions dump;
+  dump.dump_at = default_dump_point();
+  const DigResult result = simulator.dig(scene, std::get<DigPath>(path), dump);
+  const HeightMapVolumes volumes = height_map_volumes(scene, result.terrain, *dump.dump_at);
+  // 3: choose the path for the density estimated from it.
+  const DensityEstimate estimate = estimate_density(setting.law, {volumes.bulking_factor, 0.0});
+  const PlannedDig chosen = planned_dig(inputs, setting, estimate.percent);
+  // 4: dig again in the true soil.
+  const PlannedDig planned = dig_or_fail(setting, simulator, chosen.parameters);
+  const double gain = 100.0 * (planned.efficiency() / fixed.efficiency() - 1.0);
+
+  const nlohmann::ordered_json volume = {{"excavated_m3", volumes.excavated},
+                                         {"spilled_m3", volumes.spilled},
+                                         {"dumped_m3", volumes.dumped}};
+  Row row;
+  row.json = {{"name", condition.name},
+              {"density_percent", condition.density},
+              {"volume", volume},
+              {"bulking_factor", volumes.bulking_factor},
+              {"density_estimated_percent", estimate.percent},
+              {"fixed", dig_json(fixed)},
+              {"planned", dig_json(planned)},
+              {"gain_percent", gain}};
+  row.line = condition.name + ": density " + readable(condition.density) + " %, k " +
+             readable(volumes.bulking_factor, 4) + ", estimated " + readable(estimate.percent) +
+             " %; fixed " + readable(1000.0 * fixed.efficiency()) + " kg/kJ, planned " +
+             readable(1000.0 * planned.efficiency()) + " kg/kJ (" + path_text(planned) +
+             "), gain " + readable(gain) + " %";
+  return row;
+}
+
+Setting setting_of(const Inputs& inputs) {
+  Setting setting;
+  setting.machine = machine_named(inputs.machine);
+  setting.soil = soil_named(inputs.soil);
+  const std::string pair = setting.machine.name + "-" + setting.soil.name;
+  setting.law =
+      load_density_law(shipped_or_file("laws", inputs.law == "default" ? pair : inputs.law));
+  if (!inputs.search) {
+    setting.library =
+        load_path_library(inputs.library ? *inputs.library : shipped_or_file("libraries", pair));
+  }
+  setting.fixed = inputs.path.value_or(paper_fixed_path());
+  setting.ground = level_planning_ground(setting.machine, inputs.cell);
+  return setting;
+}
+
+Outcome work(const Inputs& inputs, Console& console) {
+  const Setting setting = setting_of(inputs);
+  const std::vector<Condition> conditions = conditions_of(inputs);
+  Outcome outcome;
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    console.progress(static_cast<double>(i) / static_cast<double>(conditions.size()),
+                     conditions[i].name);
+    Row row = run(inputs, setting, conditions[i]);
+    outcome.json["conditions"].push_back(std::move(row.json));
+    outcome.lines.push_back(std::move(row.line));
+  }
+  outcome.json["law"] = setting.law.name;
+  outcome.json["start_rule"] = "largest margin to joint limits and heel contact, for both paths";
+  return outcome;
+}
+
+}  // namespace
+}  // namespace excavplan::tools
+
+int main(int argc, char** argv) {
+  using namespace excavplan::tools;
+  Inputs inputs;
+  return run_tool(
+      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
+      [&](Console& console) { return work(inputs, console); });
+}

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/error.hpp>
+#include <excavplan/planning/planner.hpp>
+
+namespace excavplan::tools {
+
+/// A measured ground from the command line.
+struct TerrainInput {
+  std::optional<std::string> cloud;
+  std::optional<std::string>
+      frame;  ///< file with the matrix that takes the cloud into the site frame
+};
+
+/// Ground to dig on and what is to be said about it.
+struct Site {
+  Terrain ground;
+  std::vector<Warning> warnings;
+};
+
+/// The ground of `extent` on cells of this size: measured if a cloud is given, else level. A cloud
+/// with fewer than 2 points per cell is rasterised on larger cells and interpolated, which a
+/// warning says.
+///
+/// @throws Error (bad_file) if the cloud cannot be read or holds no point in the extent
+Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell);
+
+}  // namespace excavplan::tools
