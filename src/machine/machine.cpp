@@ -212,6 +212,7 @@ Machine load_machine(const std::string& path) {
   JsonObject file = JsonObject::open(path, "excavplan-machine");
   Machine machine;
   machine.name = file.text("name");
+  file.ignore("description");
   read_geometry(file.object("geometry"), machine);
   JsonObject joints = file.object("joints");
   JsonObject links = file.object("links");

@@ -21,8 +21,7 @@ PathLibraryEntry read_entry(JsonObject object) {
   entry.density_percent = object.number("density_percent", 0.0, 100.0);
   JsonObject path = object.object("path");
   for (const DigParameterInfo& info : dig_parameter_table()) {
-    entry.dig.parameters.*info.field =
-        path.number(info.name + std::string("_") + info.unit, info.lower, info.upper);
+    entry.dig.parameters.*info.field = path.number(info.name, info.lower, info.upper);
   }
   entry.dig.start_x = path.number("start_x_m");
   path.done();
@@ -112,7 +111,7 @@ std::string to_json(const PathLibrary& library) {
   for (const PathLibraryEntry& entry : library.entries) {
     nlohmann::ordered_json path;
     for (const DigParameterInfo& info : dig_parameter_table()) {
-      path[info.name + std::string("_") + info.unit] = entry.dig.parameters.*info.field;
+      path[info.name] = entry.dig.parameters.*info.field;
     }
     path["start_x_m"] = entry.dig.start_x;
     file["entries"].push_back({{"density_percent", entry.density_percent},
