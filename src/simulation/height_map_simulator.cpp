@@ -305,8 +305,7 @@ class Dig {
     const double friction =
         bank_.adhesion + at_rest_pressure(depth) * std::tan(bank_.tool_friction_angle);
     const double plates = 2.0 * buried * bucket.width_outside + 2.0 * side_plate_area(depth, floor);
-    const double lip =
-        cone_index(soil_, bank_, depth) * bucket.edge_thickness * bucket.width_outside;
+    const double lip = cone_index(soil_, bank_, depth) * lip_area();
     r.lip_force = -motion * (lip + friction * plates);
     r.face_point = tip;
     return r;
@@ -345,7 +344,7 @@ class Dig {
       r.borne_weight += width * 0.5 * bank_.unit_weight * strip.bank * strip.bank / std::tan(rake);
     }
     const double depth = depth_sum / machine_.bucket.width_outside;
-    along += std::cos(turn) * confinement(rake, n, depth) + edge_force(depth) +
+    along += std::cos(turn) * confinement(rake, n, depth) + edge_force(depth, attitude.climb) +
              2.0 * side_plate_area(depth, std::max(attitude.floor, machine_.bucket.edge_angle)) *
                  (bank_.adhesion + at_rest_pressure(depth) * std::tan(bank_.tool_friction_angle));
     const Vector2d up(-motion.y(),
@@ -384,15 +383,19 @@ class Dig {
            side_plane_share(wedge, n) * std::sin(rake + bank_.tool_friction_angle);
   }
 
-  /// Blunt lip in soil that yields towards the surface (Balovnev 1983, thin edge).
-  double edge_force(double depth) const {
+  double lip_area() const { return machine_.bucket.edge_thickness * machine_.bucket.width_outside; }
+
+  /// Blunt lip in soil that yields towards the surface (Balovnev 1983, thin edge); the part of a
+  /// motion that goes down meets soil that cannot yield, and the cone index.
+  double edge_force(double depth, double climb) const {
     if (!(depth > 0.0)) return 0.0;
     const double phi = bank_.friction_angle;
     const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
     const double pressure = 0.5 * machine_.bucket.edge_thickness * bank_.unit_weight +
                             bank_.cohesion / std::tan(phi) + depth * bank_.unit_weight * active;
-    return machine_.bucket.width_outside * machine_.bucket.edge_thickness * pressure *
-           blunt_edge_ratio(0.5 * pi, phi, bank_.tool_friction_angle);
+    const double yielding = pressure * blunt_edge_ratio(0.5 * pi, phi, bank_.tool_friction_angle);
+    const double plunge = std::max(0.0, -std::sin(climb));
+    return lip_area() * ((1.0 - plunge) * yielding + plunge * cone_index(soil_, bank_, depth));
   }
 
   /// Mean pressure at rest on a vertical face down to this depth (Jaky 1944: K_0 = 1 - sin phi).

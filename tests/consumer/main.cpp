@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
+#include <variant>
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 int main() {
@@ -12,18 +13,34 @@ int main() {
   try {
     const Machine machine = load_machine(find_data_file("machines/zx120.json"));
     const SoilKind loam = load_soil(find_data_file("soils/loam.json"));
-    const HeightMapSimulator simulator(machine, loam, 40.0);
+    const double density_percent = 40.0;  // from estimate-density, or measured otherwise
 
+    // Look the dig up: the best one for this density on level ground.
+    PlannedDig dig =
+        look_up(load_path_library(find_data_file("libraries/zx120-loam.json")), density_percent);
+
+    // Or search it on the ground as it is; undisturbed(height_map) makes a Terrain of your own map.
+    const Terrain ground = level_planning_ground(machine);
+    const HeightMapSimulator simulator(machine, loam, density_percent);
     DigSearchOptions options;
-    options.genetic.population = 10;  // a quick search; the defaults find more
-    options.genetic.generations = 3;
-    const auto found = search_dig(machine, simulator, level_planning_ground(machine, 0.1), options);
-    if (!found) {
-      std::printf("no dig is feasible\n");
+    options.known_good = dig.parameters;
+    options.genetic.generations = 5;  // the default, 20, takes about a second
+    if (const auto found = search_dig(machine, simulator, ground, options)) dig = found->dig;
+
+    // What the joints have to do.
+    const auto path =
+        make_dig_path(machine, dig.parameters, dig.start_x, boom_plane_profile(ground.surface()));
+    if (const auto* reason = std::get_if<Infeasible>(&path)) {
+      std::printf("cannot be driven: %s\n", reason->message.c_str());
       return 1;
     }
-    std::printf("start at %.2f m, lift %.0f kg for %.1f kJ\n", found->dig.start_x,
-                found->dig.payload_mass, found->dig.energy / 1000.0);
+    const Trajectory trajectory = time_dig_path(machine, std::get<DigPath>(path));
+    std::printf("lifts %.0f kg for %.1f kJ in %.1f s\n", dig.payload_mass, dig.energy / 1000.0,
+                trajectory.dig_duration());
+    for (const TrajectoryPoint& point : trajectory.points) {
+      std::printf("%.3f s: boom %.3f, arm %.3f, bucket %.3f rad\n", point.time, point.joints(0),
+                  point.joints(1), point.joints(2));
+    }
   } catch (const Error& error) {
     std::printf("%s\n", error.what());
     return 1;

@@ -23,6 +23,16 @@ function(check_program program)
   endif()
 endfunction()
 
+# The README shows this program: to the letter.
+file(READ ${CMAKE_CURRENT_LIST_DIR}/main.cpp program)
+string(FIND "${program}" "#include" start)
+string(SUBSTRING "${program}" ${start} -1 program)
+file(READ ${CMAKE_CURRENT_LIST_DIR}/../../README.md readme)
+string(FIND "${readme}" "${program}" shown)
+if(shown EQUAL -1)
+  message(FATAL_ERROR "README.md does not show tests/consumer/main.cpp as it is")
+endif()
+
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 
