@@ -90,6 +90,7 @@ TEST(HeatMap, DrawsRunsOfCellsAndLeavesUnknownOnesOut) {
   const std::string svg = to_svg({"", {panel}, ColourBar{0.5, "change [m]"}, {}});
   EXPECT_NE(svg.find("<path fill=\"#053061\" d=\"M0 0h2v1h-2z\"/>"), std::string::npos);
   EXPECT_NE(svg.find("<path fill=\"#67001f\" d=\"M3 0h1v1h-1z\"/>"), std::string::npos);
+  EXPECT_EQ(count(svg, "v1h-"), 2U);
   EXPECT_NE(svg.find(">not seen</text>"), std::string::npos);
 }
 

@@ -37,6 +37,7 @@ struct Inputs {
   std::optional<std::string> dump_after;
   std::optional<std::string> before_frame;
   std::optional<std::string> after_frame;
+  std::optional<Rectangle> area;
   ChangeOptions change;
   std::string method = "surface";
   std::optional<double> cell;
@@ -50,6 +51,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("dump-before", inputs.dump_before,
                  "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
   arguments.file("dump-after", inputs.dump_after, "cloud of the dump area after");
+  arguments.option("area", inputs.area, "leave out everything outside (default: what both see)");
   arguments.option("dig-area", inputs.change.dig_area, "where the hole is (default: found)");
   arguments.option("dump-area", inputs.change.dump_area, "where the heap is (default: found)");
   arguments.file("before-frame", inputs.before_frame,
@@ -67,11 +69,20 @@ void declare(Arguments& arguments, Inputs& inputs) {
 
 // ---- Clouds to volumes ------------------------------------------------------------------------
 
-Cloud read_in_site_frame(const std::string& file, const std::optional<std::string>& frame) {
+Cloud read_in_site_frame(const std::string& file, const std::optional<std::string>& frame,
+                         const std::optional<Rectangle>& area) {
   Cloud cloud = read_cloud(file);
   if (frame) transform(cloud, read_frame(*frame));
+  if (area) {
+    const auto outside = [&](const Eigen::Vector3d& p) { return !area->contains(p.x(), p.y()); };
+    cloud.points.erase(std::remove_if(cloud.points.begin(), cloud.points.end(), outside),
+                       cloud.points.end());
+    cloud.width = cloud.points.size();
+    cloud.height = 1;
+  }
   if (summarise(cloud).finite_points < 100) {
-    throw Error(ErrorKind::bad_file, file + ": holds fewer than 100 finite points");
+    throw Error(ErrorKind::bad_file,
+                file + ": holds fewer than 100 finite points" + (area ? " inside --area" : ""));
   }
   return cloud;
 }
@@ -138,8 +149,8 @@ Survey read_survey(const Inputs& inputs) {
   }
   Survey survey;
   const auto pair = [&](const std::string& before, const std::string& after) {
-    return CloudPair{before, after, read_in_site_frame(before, inputs.before_frame),
-                     read_in_site_frame(after, inputs.after_frame)};
+    return CloudPair{before, after, read_in_site_frame(before, inputs.before_frame, inputs.area),
+                     read_in_site_frame(after, inputs.after_frame, inputs.area)};
   };
   survey.dig = pair(inputs.before, inputs.after);
   survey.cell = cell_for(survey.dig);

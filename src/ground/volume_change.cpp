@@ -297,16 +297,39 @@ std::string place_of(const ZoneSum& zone) {
   return "(" + hundredths(zone.centre.x()) + ", " + hundredths(zone.centre.y()) + ") m";
 }
 
-void warn_of_zone(const ZoneSum& zone, ZoneKind kind, const ChangeOptions& options,
-                  std::vector<Warning>& warnings) {
-  const std::string what = std::string("ground that ") + (zone.volume > 0.0 ? "rose" : "fell") +
-                           " by " + litres_as_m3(std::abs(zone.volume)) + " over " +
-                           hundredths(zone.area) + " m^2 around " + place_of(zone);
-  if (kind == ZoneKind::other) {
-    warnings.push_back(
-        {"other_change", what + " is neither hole, spill nor heap: left out of every volume"});
-    return;
+std::string text_of(const ZoneSum& zone) {
+  return std::string("ground that ") + (zone.volume > 0.0 ? "rose" : "fell") + " by " +
+         litres_as_m3(std::abs(zone.volume)) + " over " + hundredths(zone.area) + " m^2 around " +
+         place_of(zone);
+}
+
+/// One warning however many there are: a scene full of leaves must not bury what matters.
+void warn_of_others(const std::vector<Area>& areas, std::vector<Warning>& warnings) {
+  const ZoneSum* largest = nullptr;
+  int count = 0;
+  double sum = 0.0;
+  for (const Area& area : areas) {
+    for (std::size_t i = 0; i < area.zones.size(); ++i) {
+      if (area.kinds[i] != ZoneKind::other) continue;
+      const ZoneSum& zone = area.zones[i];
+      if (largest == nullptr || std::abs(zone.volume) > std::abs(largest->volume)) largest = &zone;
+      sum += std::abs(zone.volume);
+      ++count;
+    }
   }
+  if (count == 0) return;
+  std::string message =
+      text_of(*largest) + " is neither hole, spill nor heap: left out of every volume";
+  if (count > 1) {
+    message += ", like what changed at " + std::to_string(count - 1) + " more places, " +
+               litres_as_m3(sum) + " in all";
+  }
+  warnings.push_back({"other_change", message});
+}
+
+void warn_of_zone(const ZoneSum& zone, const ChangeOptions& options,
+                  std::vector<Warning>& warnings) {
+  const std::string what = text_of(zone);
   if (zone.is_cut) {
     warnings.push_back({"zone_at_border", what + " reaches the edge of the surveyed ground: part "
                                                  "of it may be missing from its volume"});
@@ -382,7 +405,7 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
     zone.unknown_share = sum.unknown / sum.area;
     zone.extent = sum.extent;
     change.zones.push_back(zone);
-    warn_of_zone(sum, zone.kind, options, change.warnings);
+    if (zone.kind != ZoneKind::other) warn_of_zone(sum, options, change.warnings);
   }
   warn_of_ground(area.ground, change.warnings);
   AreaChange result;
@@ -400,6 +423,7 @@ VolumeChange result_of(std::vector<Area> areas, const ChangeOptions& options) {
   VolumeChange change;
   sum_volumes(areas, change);
   warn_of_balance(change);
+  warn_of_others(areas, change.warnings);
   for (Area& area : areas) report(area, options, change);
   return change;
 }
