@@ -59,8 +59,12 @@ DensityCalibration from_samples(const std::string& file) {
   calibration.name = "samples";
   calibration.source = std::to_string(samples.size()) + " measured samples";
   calibration.use = "closed_form";
-  calibration.line = fit_line(samples);
-  calibration.closed_form = fit_closed_form(samples);
+  try {
+    calibration.line = fit_line(samples);
+    calibration.closed_form = fit_closed_form(samples);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::bad_file, file + ": " + error.what());
+  }
   return calibration;
 }
 

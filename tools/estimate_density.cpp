@@ -14,6 +14,7 @@
 #include "figures.hpp"
 #include "json_file.hpp"
 #include "results.hpp"
+#include "scans.hpp"
 #include "tool.hpp"
 
 namespace excavplan::tools {
@@ -35,9 +36,7 @@ struct Inputs {
   std::string after;
   std::optional<std::string> dump_before;
   std::optional<std::string> dump_after;
-  std::optional<std::string> before_frame;
-  std::optional<std::string> after_frame;
-  std::optional<Rectangle> area;
+  ScanFrames frames;
   ChangeOptions change;
   std::string method = "surface";
   std::optional<double> cell;
@@ -51,12 +50,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("dump-before", inputs.dump_before,
                  "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
   arguments.file("dump-after", inputs.dump_after, "cloud of the dump area after");
-  arguments.option("area", inputs.area, "leave out everything outside (default: what both see)");
+  arguments.option("area", inputs.frames.area,
+                   "leave out everything outside (default: what both see)");
   arguments.option("dig-area", inputs.change.dig_area, "where the hole is (default: found)");
   arguments.option("dump-area", inputs.change.dump_area, "where the heap is (default: found)");
-  arguments.file("before-frame", inputs.before_frame,
+  arguments.file("before-frame", inputs.frames.before,
                  "4 x 4 matrix that takes the clouds before into the site frame");
-  arguments.file("after-frame", inputs.after_frame, "the same for the clouds after");
+  arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
   arguments.choice("method", inputs.method, {"surface", "paper"},
                    "surface: signed change of one height map; paper: the pipeline as published");
   arguments.option("cell", inputs.cell, Quantity::length,
@@ -69,64 +69,6 @@ void declare(Arguments& arguments, Inputs& inputs) {
 
 // ---- Clouds to volumes ------------------------------------------------------------------------
 
-Cloud read_in_site_frame(const std::string& file, const std::optional<std::string>& frame,
-                         const std::optional<Rectangle>& area) {
-  Cloud cloud = read_cloud(file);
-  if (frame) transform(cloud, read_frame(*frame));
-  if (area) {
-    const auto outside = [&](const Eigen::Vector3d& p) { return !area->contains(p.x(), p.y()); };
-    cloud.points.erase(std::remove_if(cloud.points.begin(), cloud.points.end(), outside),
-                       cloud.points.end());
-    cloud.width = cloud.points.size();
-    cloud.height = 1;
-  }
-  if (summarise(cloud).finite_points < 100) {
-    throw Error(ErrorKind::bad_file,
-                file + ": holds fewer than 100 finite points" + (area ? " inside --area" : ""));
-  }
-  return cloud;
-}
-
-/// The clouds of one area, before and after, with their files for messages.
-struct CloudPair {
-  std::string before_file;
-  std::string after_file;
-  Cloud before;
-  Cloud after;
-};
-
-std::string text(const Rectangle& r) {
-  return "x " + readable(r.x_min) + " .. " + readable(r.x_max) + ", y " + readable(r.y_min) +
-         " .. " + readable(r.y_max) + " m";
-}
-
-Rectangle overlap(const CloudPair& pair) {
-  const Rectangle a = plan_extent(pair.before);
-  const Rectangle b = plan_extent(pair.after);
-  const Rectangle both = {std::max(a.x_min, b.x_min), std::max(a.y_min, b.y_min),
-                          std::min(a.x_max, b.x_max), std::min(a.y_max, b.y_max)};
-  if (!(both.x_max - both.x_min > 0.2 && both.y_max - both.y_min > 0.2)) {
-    throw Error(ErrorKind::bad_file, pair.before_file + " and " + pair.after_file +
-                                         " do not overlap: " + text(a) + " and " + text(b) +
-                                         "; --before-frame and --after-frame bring them into one "
-                                         "frame");
-  }
-  return both;
-}
-
-/// Six points per cell in the sparser cloud, 5 cm at least; ours.
-double cell_for(const CloudPair& pair) {
-  const double density = std::min(summarise(pair.before).density, summarise(pair.after).density);
-  return std::max(0.05, std::sqrt(6.0 / density));
-}
-
-SurfacePair surfaces(const CloudPair& pair, double cell) {
-  RasterOptions raster;
-  raster.cell = cell;
-  const Rectangle extent = overlap(pair);
-  return {rasterise(pair.before, extent, raster), rasterise(pair.after, extent, raster)};
-}
-
 /// Errors of the change are about what the files show.
 template <typename Measure>
 VolumeChange measured(const std::string& files, const Measure& measure) {
@@ -138,8 +80,8 @@ VolumeChange measured(const std::string& files, const Measure& measure) {
 }
 
 struct Survey {
-  CloudPair dig;
-  std::optional<CloudPair> dump;
+  ScanPair dig;
+  std::optional<ScanPair> dump;
   double cell = 0.05;
 };
 
@@ -148,14 +90,10 @@ Survey read_survey(const Inputs& inputs) {
     throw Error(ErrorKind::bad_input, "--dump-before and --dump-after go together");
   }
   Survey survey;
-  const auto pair = [&](const std::string& before, const std::string& after) {
-    return CloudPair{before, after, read_in_site_frame(before, inputs.before_frame, inputs.area),
-                     read_in_site_frame(after, inputs.after_frame, inputs.area)};
-  };
-  survey.dig = pair(inputs.before, inputs.after);
+  survey.dig = read_scans(inputs.before, inputs.after, inputs.frames);
   survey.cell = cell_for(survey.dig);
   if (inputs.dump_before) {
-    survey.dump = pair(*inputs.dump_before, *inputs.dump_after);
+    survey.dump = read_scans(*inputs.dump_before, *inputs.dump_after, inputs.frames);
     survey.cell = std::max(survey.cell, cell_for(*survey.dump));
   }
   if (inputs.cell) survey.cell = *inputs.cell;
@@ -164,7 +102,7 @@ Survey read_survey(const Inputs& inputs) {
 
 VolumeChange surface_change(const Inputs& inputs, const Survey& survey) {
   const SurfacePair dig = surfaces(survey.dig, survey.cell);
-  const std::string files = inputs.before + ", " + inputs.after;
+  const std::string files = survey.dig.files();
   if (!survey.dump) {
     return measured(files, [&] { return measure_change(dig.before, dig.after, inputs.change); });
   }
@@ -224,7 +162,7 @@ double median_height(const Cloud& cloud) {
 VolumeChange paper_change(const Inputs& inputs, const Survey& survey, const VolumeChange& surface) {
   PaperMethodOptions options;
   options.leaf = survey.cell;
-  const CloudPair& heap = survey.dump ? *survey.dump : survey.dig;
+  const ScanPair& heap = survey.dump ? *survey.dump : survey.dig;
   auto dig_area = inputs.change.dig_area;
   auto dump_area = inputs.change.dump_area;
   if (!survey.dump) {

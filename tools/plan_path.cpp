@@ -88,7 +88,8 @@ Density density_of(const Inputs& inputs) {
                                                              : ", it is missing") +
                     "; expected a result of estimate-density --json");
   }
-  return {field->get<double>(), json.value("trustworthy", true)};
+  const auto trustworthy = json.find("trustworthy");
+  return {field->get<double>(), trustworthy == json.end() || *trustworthy == true};
 }
 
 PathLibrary library_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {

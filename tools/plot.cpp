@@ -35,29 +35,6 @@ std::string px(double value) {
   return text == "-0" ? "0" : text;
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
 /// Characters, not bytes, of UTF-8 text.
 double text_width(const std::string& text) {
   const auto count = std::count_if(text.begin(), text.end(), [](char c) {
@@ -143,6 +120,29 @@ std::map<int, std::string> colour_runs(const HeightMap& map, double limit) {
 }
 
 }  // namespace
+
+std::string xml_escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
 
 // ---- Panel ------------------------------------------------------------------------------------
 
@@ -238,12 +238,12 @@ class SvgWriter {
                        "\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\"" +
                        " font-size=\"" + px(font) + "\" fill=\"#222222\">\n";
     if (!figure_.title.empty()) {
-      head += "<title>" + escaped(figure_.title) + "</title>\n";
+      head += "<title>" + xml_escaped(figure_.title) + "</title>\n";
     }
     head += "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
     if (!figure_.title.empty()) {
       head += "<text x=\"16\" y=\"30\" font-size=\"" + px(1.25 * font) +
-              "\" font-weight=\"bold\">" + escaped(figure_.title) + "</text>\n";
+              "\" font-weight=\"bold\">" + xml_escaped(figure_.title) + "</text>\n";
     }
     return head + svg_ + "</svg>\n";
   }
@@ -265,7 +265,7 @@ class SvgWriter {
   };
 
   void text(double x, double y, const std::string& content, const std::string& more = "") {
-    svg_ += "<text x=\"" + px(x) + "\" y=\"" + px(y) + '"' + more + '>' + escaped(content) +
+    svg_ += "<text x=\"" + px(x) + "\" y=\"" + px(y) + '"' + more + '>' + xml_escaped(content) +
             "</text>\n";
   }
 

@@ -84,6 +84,9 @@ struct Figure {
 /// The whole file. Equal figures give equal bytes.
 std::string to_svg(const Figure& figure);
 
+/// Text with &, <, > and quotes as XML and HTML want them.
+std::string xml_escaped(const std::string& text);
+
 /// Colour of a value from -1 to 1: red, white, blue, told apart by every kind of colour vision
 /// (ColorBrewer's RdBu, C. Brewer).
 std::string diverging_colour(double value);

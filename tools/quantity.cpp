@@ -133,7 +133,10 @@ Eigen::Vector2d parse_point(const std::string& what, const std::string& text) {
 std::string readable(double value, int digits) {
   if (!std::isfinite(value)) return "unknown";
   const double magnitude = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)));
-  const int decimals = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
+  int decimals = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
+  const double rounding = 0.5 * std::pow(10.0, -decimals);
+  const double carried = std::pow(10.0, magnitude + 1.0);  // 9.9996 is 10.0, not 10.00
+  if (decimals > 0 && std::abs(value) + rounding >= carried) --decimals;
   char text[400];
   const auto end =
       std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr;

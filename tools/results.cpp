@@ -6,6 +6,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "plot.hpp"
 #include "quantity.hpp"
 #include "tool.hpp"
 
@@ -24,26 +25,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
     }
   }
   return parts;
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -108,6 +89,9 @@ std::vector<double> parse_densities(const std::string& what, const std::string& 
                 what + ": '" + text + "' is not first:step:last with a step of 0.01 or more");
   }
   const double first = number(range[0]);
+  if (!(number(range[2]) <= 100.0)) {
+    throw Error(ErrorKind::bad_input, what + ": '" + text + "' goes beyond 100 %");
+  }
   const auto steps = static_cast<int>(std::floor((number(range[2]) - first) / step + 1e-9));
   for (int i = 0; i <= steps; ++i) densities.push_back(first + i * step);
   if (densities.empty()) {
@@ -119,15 +103,17 @@ std::vector<double> parse_densities(const std::string& what, const std::string& 
 std::string html_report(const std::string& title, const std::vector<std::string>& svgs,
                         const std::vector<std::string>& lines, const nlohmann::ordered_json& json) {
   std::string page =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(title) +
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +
+      xml_escaped(title) +
       "</title>\n<style>body{font:16px/1.5 sans-serif;max-width:1100px;margin:2em auto;"
       "padding:0 1em;color:#222}svg{max-width:100%;height:auto}pre{background:#f4f4f2;"
       "padding:1em;overflow:auto}</style></head><body>\n<h1>" +
-      escaped(title) + "</h1>\n<pre>";
-  for (const std::string& line : lines) page += escaped(line) + "\n";
+      xml_escaped(title) + "</h1>\n<pre>";
+  for (const std::string& line : lines) page += xml_escaped(line) + "\n";
   page += "</pre>\n";
   for (const std::string& svg : svgs) page += svg.substr(svg.find("<svg")) + "\n";
-  return page + "<h2>All figures</h2>\n<pre>" + escaped(json.dump(2)) + "</pre>\n</body></html>\n";
+  return page + "<h2>All figures</h2>\n<pre>" + xml_escaped(json.dump(2)) +
+         "</pre>\n</body></html>\n";
 }
 
 }  // namespace excavplan::tools

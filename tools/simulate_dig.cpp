@@ -219,6 +219,9 @@ void write_scans(const Inputs& inputs, const Dug& dug) {
 }
 
 Outcome work(const Inputs& inputs) {
+  for (const auto& file : {inputs.before, inputs.after}) {
+    if (file) cloud_format_of_name(*file);  // refuses a wrong name before anything is written
+  }
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   const Rectangle extent = scene_extent(machine, inputs.dump_at.value_or(default_dump_point()));

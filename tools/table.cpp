@@ -44,6 +44,12 @@ Table Table::read(const std::string& path) {
     const std::string place = path + ": line " + std::to_string(number) + ": ";
     if (table.names_.empty()) {
       table.names_ = words;
+      for (std::size_t i = 0; i < words.size(); ++i) {
+        if (std::find(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(i), words[i]) !=
+            words.begin() + static_cast<std::ptrdiff_t>(i)) {
+          throw Error(ErrorKind::bad_file, place + "column '" + words[i] + "' stands twice");
+        }
+      }
       table.columns_.resize(words.size());
       continue;
     }
