@@ -162,9 +162,10 @@ TEST_F(MeasureEfficiency, ScansAreBroughtIntoTheSiteFrame) {
   const std::string after = folder.write("after.xyz", cone(0.8, 0.45));
   const std::string far = folder.write("far.txt", "1 0 0 20\n0 1 0 0\n0 0 1 0.3\n0 0 0 1\n");
   const Words words = {file, "--dump-before", before, "--dump-after", after, "--before-frame", far};
-  EXPECT_EQ(refusal(3, words),
-            "before.xyz, after.xyz: the scans do not overlap; --before-frame and --after-frame "
-            "bring them into one frame");
+  EXPECT_EQ(
+      refusal(3, words),
+      "before.xyz and after.xyz do not overlap: x 24.0 .. 28.0, y -2.00 .. 1.98 m and x 4.00 .. "
+      "7.98, y -2.00 .. 1.98 m; --before-frame and --after-frame bring them into one frame");
   Words both = words;
   both.insert(both.end(), {"--after-frame", far});
   EXPECT_NEAR(measured(both).at("runs").at(0).at("volume_m3").get<double>(), 0.3016, 0.002);

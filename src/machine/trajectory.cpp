@@ -145,12 +145,13 @@ class Pass {
     squared_.assign(length_.size() + 1, 0.0);
     for (std::size_t k = 1; k < length_.size(); ++k) {
       const JointAngles steepest = slope_[k - 1].cwiseAbs().cwiseMax(slope_[k].cwiseAbs());
+      // The neighbours' curvature as well: else slowing down for it could break the growth behind.
+      const JointAngles bend =
+          curvature_[k - 1].cwiseMax(curvature_[k]).cwiseMax(curvature_[k + 1]);
       double bound = std::numeric_limits<double>::infinity();
       for (int i = 0; i < 3; ++i) {
         if (steepest[i] > 0.0) bound = std::min(bound, std::pow(limits_.speed[i] / steepest[i], 2));
-        if (curvature_[k][i] > 0.0) {
-          bound = std::min(bound, limits_.acceleration[i] / curvature_[k][i]);
-        }
+        if (bend[i] > 0.0) bound = std::min(bound, limits_.acceleration[i] / bend[i]);
       }
       squared_[k] = bound;
     }
