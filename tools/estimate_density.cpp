@@ -211,9 +211,16 @@ Estimate estimate(const VolumeChange& change, const DensityLaw& law) {
   result.bulking = bulking_factor(change);
   if (result.bulking) {
     Measured k = *result.bulking;
-    if (std::isnan(k.sd)) k.sd = 0.0;  // the paper's method knows none: the law's scatter is left
+    const bool known_error = !std::isnan(k.sd);
+    if (!known_error) {
+      k.sd = 0.0;
+      result.warnings.push_back(
+          {"volume_error_unknown",
+           "this method tells no error of its volumes: the interval of the density holds the "
+           "scatter of the law only"});
+    }
     result.density = estimate_density(law, k);
-    result.trustworthy = result.density->trustworthy;
+    result.trustworthy = known_error && result.density->trustworthy;
     for (const Warning& warning : result.density->warnings) result.warnings.push_back(warning);
   } else {
     result.trustworthy = false;

@@ -17,8 +17,7 @@ struct DepthCamera {
   Eigen::Vector3d target = {0.0, 0.0, 0.0};    ///< point on the optical axis [m]
   int width = 256;                             ///< pixels; the image's x axis is level
   int height = 144;
-  double horizontal_view =
-      1.5184;  ///< field of view [rad]; 87 deg: D435i (reference/point-cloud-volume 5)
+  double horizontal_view = 1.5184;  ///< field of view [rad]; 87 deg: D435i (docs/methods.md#sensors)
   double noise =
       0.0027;  ///< sd of the depth at 1 m, grows with range squared [m]; 0.06 px of a D435i
   double dropouts = 0.02;  ///< share of pixels without depth [-]
