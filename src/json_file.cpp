@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -156,6 +157,12 @@ void write_file(const std::string& path, const std::string& content) {
     std::remove(beside.c_str());
     throw Error(ErrorKind::bad_file, path + ": cannot be written");
   }
+}
+
+void require_folder_of(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  if (std::filesystem::is_directory(folder)) return;
+  throw Error(ErrorKind::bad_file, path + ": there is no folder " + folder.string());
 }
 
 std::string read_file(const std::string& path) {

@@ -60,6 +60,9 @@ std::string number_text(double value);
 /// @throws Error (bad_file) if that fails; the old file then still stands
 void write_file(const std::string& path, const std::string& content);
 
+/// @throws Error (bad_file) if the folder that is to hold a file does not exist
+void require_folder_of(const std::string& path);
+
 /// The whole content of a regular file. @throws Error (bad_file)
 std::string read_file(const std::string& path);
 

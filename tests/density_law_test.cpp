@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/soil/density_law.hpp>
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -244,7 +246,7 @@ TEST(DensityEstimate, ImpossibleFactorsAreRefused) {
 
 class LawFile : public testing::Test {
  protected:
-  LawFile() : path_(testing::TempDir() + "excavplan_density_law_test.json") {}
+  LawFile() : path_(testing::TempDir() + "excavplan_law_" + std::to_string(::getpid()) + ".json") {}
   ~LawFile() override { std::remove(path_.c_str()); }
 
   DensityLaw load(const std::string& text) const {
@@ -273,6 +275,9 @@ class LawFile : public testing::Test {
     return made;
   }
 
+  const std::string& path() const { return path_; }
+
+ private:
   std::string path_;
 };
 
@@ -303,7 +308,7 @@ TEST_F(LawFile, BrokenRulesAreNamed) {
                           const std::string& expected) {
     const std::string found = message(text, from, to);
     EXPECT_NE(found.find(expected), std::string::npos) << found;
-    EXPECT_NE(found.find("excavplan_density_law_test.json: "), std::string::npos) << found;
+    EXPECT_NE(found.find(path() + ": "), std::string::npos) << found;
   };
   expect("\"use\": \"closed_form_as_measured\"", "\"use\": \"line_as_measured\"",
          "use: is 'line_as_measured', must name a form in this file");

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/planning/path_library.hpp>
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -27,12 +29,20 @@ PathLibrary small_library() {
           "loam",
           0.05,
           7,
+          50,
+          20,
+          60,
           {entry(0.0, {0.8, 0.30, 1.5}, 400.0), entry(50.0, {0.7, 0.40, 1.9}, 500.0),
            entry(100.0, {1.3, 0.10, 0.3}, 300.0)}};
 }
 
+/// Tests run side by side: one file each.
+std::string library_file() {
+  return testing::TempDir() + "excavplan_library_" + std::to_string(::getpid()) + ".json";
+}
+
 std::string error_of(const std::string& content) {
-  const std::string file = testing::TempDir() + "excavplan_library.json";
+  const std::string file = library_file();
   std::ofstream(file) << content;
   std::string text = "no error";
   try {
@@ -74,7 +84,7 @@ TEST(PathLibrary, OutsideItsDensitiesIsAnError) {
 }
 
 TEST(PathLibrary, FileRoundTripGivesTheSameBytes) {
-  const std::string file = testing::TempDir() + "excavplan_library.json";
+  const std::string file = library_file();
   const std::string text = to_json(small_library());
   write_file(file, text);
   EXPECT_EQ(to_json(load_path_library(file)), text);

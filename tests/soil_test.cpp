@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/soil/soil.hpp>
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -208,7 +210,8 @@ std::string message_of(const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) return "the loam file does not hold " + from;
   text.replace(at, from.size(), to);
-  const std::string path = testing::TempDir() + "excavplan_soil_test.json";
+  const std::string path =
+      testing::TempDir() + "excavplan_soil_" + std::to_string(::getpid()) + ".json";
   std::ofstream(path) << text;
   std::string message = "accepted";
   try {
@@ -251,7 +254,7 @@ TEST(SoilFile, BrokenRulesAreNamedWithFileKeyAndValue) {
     const std::string message = message_of(broken.from, broken.to);
     EXPECT_NE(message.find(broken.expected), std::string::npos)
         << "expected '" << broken.expected << "' in '" << message << "'";
-    EXPECT_NE(message.find("excavplan_soil_test.json: "), std::string::npos) << message;
+    EXPECT_NE(message.find(std::to_string(::getpid()) + ".json: "), std::string::npos) << message;
   }
 }
 

@@ -56,11 +56,17 @@ std::vector<PathLibraryEntry> earlier_entries(const Inputs& inputs, const Machin
   if (!inputs.resume || !std::filesystem::exists(inputs.out)) return {};
   PathLibrary library = load_path_library(inputs.out);
   if (library.machine != machine.name || library.soil != soil.name ||
-      library.seed != inputs.genetic.seed || library.cell != inputs.cell) {
-    throw Error(ErrorKind::bad_input,
-                "--resume: " + inputs.out + " is of machine " + library.machine + ", soil " +
-                    library.soil + ", cell " + number_text(library.cell) + " m, seed " +
-                    std::to_string(library.seed) + ", which is another run than this one");
+      library.seed != inputs.genetic.seed || library.cell != inputs.cell ||
+      library.population != inputs.genetic.population ||
+      library.generations != inputs.genetic.generations ||
+      library.polish_evaluations != inputs.polish) {
+    throw Error(
+        ErrorKind::bad_input,
+        "--resume: " + inputs.out + " is of machine " + library.machine + ", soil " + library.soil +
+            ", cell " + number_text(library.cell) + " m, seed " + std::to_string(library.seed) +
+            ", population " + std::to_string(library.population) + ", generations " +
+            std::to_string(library.generations) + ", polish " +
+            std::to_string(library.polish_evaluations) + ", which is another run than this one");
   }
   return library.entries;
 }
@@ -71,6 +77,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const SoilKind soil = soil_named(inputs.soil);
   const auto densities = parse_densities("--densities", inputs.densities);
 
+  require_folder_of(inputs.out);  // now, not after the search
   LibraryBuildOptions options;
   options.cell = inputs.cell;
   options.search.genetic = inputs.genetic;

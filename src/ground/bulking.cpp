@@ -24,7 +24,8 @@ std::optional<Measured> bulking_factor(const VolumeChange& change) {
                                    relative_before * relative_before -
                                    2.0 * change.covariance_before_after / (before * after);
   const double factor = after / before;
-  return Measured{factor, factor * std::sqrt(std::max(0.0, relative_variance))};
+  // This order keeps an unknown (NaN) variance unknown.
+  return Measured{factor, factor * std::sqrt(std::max(relative_variance, 0.0))};
 }
 
 double free_of_fallback(double bulking_measured, double fallback_fraction) {

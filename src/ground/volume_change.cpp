@@ -17,6 +17,7 @@ namespace {
 constexpr Eigen::Index fewest_known_cells = 100;
 // Ours: error of the mean height of a filled hole, in units of hole radius times rim slope. A
 // membrane over a step that crosses the hole at random is off by 0.12 of the step.
+constexpr double least_warned_share = 0.01;  // of its kind's volume: a speck at the border is none
 constexpr double fill_error = 0.2;
 constexpr double least_stable_share = 0.4;  // ours
 constexpr double largest_noise = 0.1;       // ours: of a cell; coarser than any range sensor [m]
@@ -392,6 +393,21 @@ void warn_of_balance(VolumeChange& change) {
   }
 }
 
+/// Volume of all zones of a kind; infinite for those that do not count.
+double total_of(const VolumeChange& change, ZoneKind kind) {
+  switch (kind) {
+    case ZoneKind::dig:
+      return change.excavated.value;
+    case ZoneKind::spill:
+      return change.spilled.value;
+    case ZoneKind::dump:
+      return change.dumped.value;
+    case ZoneKind::other:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 /// Hands one area's zones over to the result.
 void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
   const int first = static_cast<int>(change.zones.size());
@@ -405,7 +421,9 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
     zone.unknown_share = sum.unknown / sum.area;
     zone.extent = sum.extent;
     change.zones.push_back(zone);
-    if (zone.kind != ZoneKind::other) warn_of_zone(sum, options, change.warnings);
+    if (std::abs(sum.volume) > least_warned_share * total_of(change, zone.kind)) {
+      warn_of_zone(sum, options, change.warnings);
+    }
   }
   warn_of_ground(area.ground, change.warnings);
   AreaChange result;

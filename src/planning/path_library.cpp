@@ -86,6 +86,11 @@ PathLibrary load_path_library(const std::string& path) {
   library.soil = file.text("soil");
   library.cell = file.number("cell_m", 0.0, 1.0);
   library.seed = static_cast<std::uint64_t>(file.number("seed", 0.0, 9007199254740992.0));
+  JsonObject search = file.object("search");
+  library.population = static_cast<int>(search.number("population", 2.0, 1e9));
+  library.generations = static_cast<int>(search.number("generations", 1.0, 1e9));
+  library.polish_evaluations = static_cast<int>(search.number("polish_evaluations", 0.0, 1e9));
+  search.done();
   for (JsonObject& object : file.objects("entries")) {
     library.entries.push_back(read_entry(std::move(object)));
     const std::size_t n = library.entries.size();
@@ -107,6 +112,10 @@ std::string to_json(const PathLibrary& library) {
                                  {"soil", library.soil},
                                  {"cell_m", library.cell},
                                  {"seed", library.seed},
+                                 {"search",
+                                  {{"population", library.population},
+                                   {"generations", library.generations},
+                                   {"polish_evaluations", library.polish_evaluations}}},
                                  {"evaluations", library.evaluations()}};
   for (const PathLibraryEntry& entry : library.entries) {
     nlohmann::ordered_json path;
@@ -152,7 +161,14 @@ PathLibrary build_path_library(const Machine& machine, const SoilKind& soil,
                                const std::vector<double>& densities_percent,
                                const LibraryBuildOptions& options) {
   check(densities_percent);
-  PathLibrary library{machine.name, soil.name, options.cell, options.search.genetic.seed, {}};
+  PathLibrary library{machine.name,
+                      soil.name,
+                      options.cell,
+                      options.search.genetic.seed,
+                      options.search.genetic.population,
+                      options.search.genetic.generations,
+                      options.search.polish_evaluations,
+                      {}};
   const Terrain ground = level_planning_ground(machine, options.cell);
   for (const double density : densities_percent) {
     const auto done = std::find_if(

@@ -25,6 +25,9 @@ struct PathLibrary {
   std::string soil;     ///< name of the soil
   double cell = 0.0;    ///< of the ground it was computed on [m]
   std::uint64_t seed = 0;
+  int population = 0;  ///< of the search
+  int generations = 0;
+  int polish_evaluations = 0;
   std::vector<PathLibraryEntry> entries;  ///< density rising, at least one
 
   int evaluations() const;
