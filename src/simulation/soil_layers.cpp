@@ -3,7 +3,6 @@
 #include "soil_layers.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -14,37 +13,35 @@ namespace {
 
 using Eigen::Index;
 
-struct Neighbour {
-  Index row;
-  Index col;
-  double distance;  ///< in cells
-};
-constexpr double diagonal = 1.4142135623730951;
-constexpr std::array<Neighbour, 8> neighbours = {{{-1, 0, 1.0},
-                                                  {1, 0, 1.0},
-                                                  {0, -1, 1.0},
-                                                  {0, 1, 1.0},
-                                                  {-1, -1, diagonal},
-                                                  {-1, 1, diagonal},
-                                                  {1, -1, diagonal},
-                                                  {1, 1, diagonal}}};
-
-/// Height differences below this are at rest [m]; ours: well under any scan's resolution.
+/// Slopes whose fall over a cell is too high by less than this are at rest [m]; ours: well under
+/// any scan's resolution.
 constexpr double at_rest = 1e-4;
 
+/// The lower neighbour of a cell along one axis and how far it lies below, 0 if none does.
+struct Fall {
+  Index row = 0;
+  Index col = 0;
+  double height = 0.0;
+};
+
+/// Soil slides along the gradient of the surface, taken on each axis to the lower of the two
+/// neighbours (upwind, Rouy and Tourin 1992), so that heaps are as steep in every direction, not
+/// only along the grid.
 class Slump {
  public:
   Slump(Terrain& terrain, const SlopeLimits& limits)
       : bank_(terrain.bank.z), loose_(terrain.loose), cell_(terrain.bank.cell), limits_(limits) {}
 
   /// One pass over the block; returns the cells that moved.
-  CellBlock sweep(const CellBlock& block, bool reversed) {
+  CellBlock sweep(const CellBlock& block, int order) {
     CellBlock moved;
     const Index rows = block.row_end - block.row_begin;
     const Index cols = block.col_end - block.col_begin;
-    for (Index i = 0; i < rows * cols; ++i) {
-      const Index k = reversed ? rows * cols - 1 - i : i;
-      relax(block.row_begin + k % rows, block.col_begin + k / rows, moved);
+    for (Index i = 0; i < cols; ++i) {
+      const Index col = block.col_begin + ((order & 1) != 0 ? cols - 1 - i : i);
+      for (Index j = 0; j < rows; ++j) {
+        relax(block.row_begin + ((order & 2) != 0 ? rows - 1 - j : j), col, moved);
+      }
     }
     return moved;
   }
@@ -54,68 +51,77 @@ class Slump {
 
   void relax(Index row, Index col, CellBlock& moved) {
     if (loose_(row, col) > 0.0) slide_loose(row, col, moved);
-    if (bank_can_fail(row, col)) fail_bank(row, col, moved);
+    if (std::isfinite(limits_.critical_height)) fail_bank(row, col, moved);
   }
 
-  /// Moves loose soil to all lower neighbours in proportion to how far each is too low.
+  /// From height `top` in a cell to the lower neighbour on an axis. On a flank, where the other
+  /// neighbour is higher, the fall is the mean over both sides: the lower side alone looks too
+  /// steep where contours are curved (by 0.35 cells / radius on a cone's diagonal). But never much
+  /// less than that side, or stairs could stand.
+  Fall fall(double top, Index row, Index col, Index row_step, Index col_step) const {
+    constexpr double least = 0.85;  // of the fall on the lower side; ours
+    const double before = drop(top, row - row_step, col - col_step);
+    const double after = drop(top, row + row_step, col + col_step);
+    const bool down_before = before >= after;
+    const double lower = down_before ? before : after;
+    const double other = down_before ? after : before;
+    if (!(lower > 0.0)) return {row, col, 0.0};
+    const double height = other < 0.0 ? std::max(0.5 * (lower - other), least * lower) : lower;
+    return {down_before ? row - row_step : row + row_step,
+            down_before ? col - col_step : col + col_step, std::min(height, lower)};
+  }
+
+  /// From height `top` down to a cell; 0 to cells that are unknown or off the map.
+  double drop(double top, Index row, Index col) const {
+    if (row < 0 || col < 0 || row >= bank_.rows() || col >= bank_.cols()) return 0.0;
+    const double drop = top - height(row, col);
+    return std::isnan(drop) ? 0.0 : drop;
+  }
+
+  /// How much has to leave a cell so that it falls no steeper than `slope`, if the share of each
+  /// axis arrives swollen by `swell` below; 0 if it does not.
+  double excess(const Fall& x, const Fall& y, double slope, double swell) const {
+    const double steepness = std::hypot(x.height, y.height);
+    const double too_steep = steepness - slope * cell_;
+    if (!(too_steep > at_rest)) return 0.0;
+    const double sum = x.height + y.height;
+    const double closing =
+        x.height * (1.0 + swell * x.height / sum) + y.height * (1.0 + swell * y.height / sum);
+    return too_steep * steepness / closing;
+  }
+
   void slide_loose(Index row, Index col, CellBlock& moved) {
-    const double here = height(row, col);
-    std::array<double, 8> excess{};
-    double sum = 0.0;
-    double largest = 0.0;
-    for (std::size_t n = 0; n < neighbours.size(); ++n) {
-      const Index r = row + neighbours[n].row;
-      const Index c = col + neighbours[n].col;
-      if (!inside(r, c)) continue;
-      const double too_high =
-          here - height(r, c) - limits_.loose_slope * neighbours[n].distance * cell_;
-      if (!(too_high > at_rest)) continue;  // also where the neighbour is unknown
-      excess[n] = too_high;
-      sum += too_high;
-      largest = std::max(largest, too_high);
-    }
-    if (largest == 0.0) return;
-    const double leaving = std::min(loose_(row, col), 0.5 * largest);
-    for (std::size_t n = 0; n < neighbours.size(); ++n) {
-      if (excess[n] == 0.0) continue;
-      const double share = leaving * excess[n] / sum;
-      loose_(row + neighbours[n].row, col + neighbours[n].col) += share;
+    const double top = height(row, col);
+    const Fall x = fall(top, row, col, 0, 1);
+    const Fall y = fall(top, row, col, 1, 0);
+    const double leaving = std::min(loose_(row, col), excess(x, y, limits_.loose_slope, 1.0));
+    if (!(leaving > 0.0)) return;
+    for (const Fall& to : {x, y}) {
+      if (to.height == 0.0) continue;
+      const double share = leaving * to.height / (x.height + y.height);
+      loose_(to.row, to.col) += share;
       loose_(row, col) -= share;
-      moved.include(row + neighbours[n].row, col + neighbours[n].col);
+      moved.include(to.row, to.col);
     }
     loose_(row, col) = std::max(0.0, loose_(row, col));
     moved.include(row, col);
   }
 
-  bool bank_can_fail(Index row, Index col) const {
-    const double stands = limits_.critical_height + limits_.bank_slope * cell_;
-    for (std::size_t n = 0; n < 4; ++n) {
-      const Index r = row + neighbours[n].row;
-      const Index c = col + neighbours[n].col;
-      if (inside(r, c) && bank_(row, col) - height(r, c) > stands + at_rest) return true;
-    }
-    return false;
-  }
-
   /// Breaks undisturbed soil off a wall that is too high; it falls to the foot as loose soil.
   void fail_bank(Index row, Index col, CellBlock& moved) {
-    for (std::size_t n = 0; n < 4; ++n) {
-      const Index r = row + neighbours[n].row;
-      const Index c = col + neighbours[n].col;
-      if (!inside(r, c)) continue;
-      const double too_high =
-          bank_(row, col) - height(r, c) - limits_.critical_height - limits_.bank_slope * cell_;
-      if (!(too_high > at_rest)) continue;
-      const double broken = too_high / (1.0 + limits_.swell);
-      bank_(row, col) -= broken;
-      loose_(r, c) += broken * limits_.swell;
-      moved.include(row, col);
-      moved.include(r, c);
+    const double top = bank_(row, col) - limits_.critical_height;
+    const Fall x = fall(top, row, col, 0, 1);
+    const Fall y = fall(top, row, col, 1, 0);
+    if (x.height + y.height == 0.0) return;
+    const double broken = excess(x, y, limits_.bank_slope, limits_.swell);
+    if (!(broken > 0.0)) return;
+    bank_(row, col) -= broken;
+    for (const Fall& to : {x, y}) {
+      if (to.height == 0.0) continue;
+      loose_(to.row, to.col) += limits_.swell * broken * to.height / (x.height + y.height);
+      moved.include(to.row, to.col);
     }
-  }
-
-  bool inside(Index row, Index col) const {
-    return row >= 0 && col >= 0 && row < bank_.rows() && col < bank_.cols();
+    moved.include(row, col);
   }
 
   Eigen::ArrayXXd& bank_;
@@ -149,7 +155,7 @@ void CellBlock::include(Index row, Index col) {
 CellBlock slump(Terrain& terrain, CellBlock block, const SlopeLimits& limits, int sweeps) {
   Slump slide(terrain, limits);
   for (int i = 0; i < sweeps && !block.empty(); ++i) {
-    block = slide.sweep(widened(block, terrain), i % 2 == 1);
+    block = slide.sweep(widened(block, terrain), i % 4);
   }
   return block;
 }
