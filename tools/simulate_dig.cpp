@@ -192,9 +192,10 @@ std::vector<std::string> dug_lines(const SoilKind& soil, double density, const D
   std::vector<std::string> lines =
       dig_lines({dug.path.parameters, dug.path.start_x, result.payload_mass, result.payload_volume,
                  result.energy.total, dug.duration});
-  lines.push_back("  of which   soil " + readable(result.energy.soil / 1000.0) + ", payload " +
-                  readable(result.energy.payload / 1000.0) + ", links " +
-                  readable(result.energy.links / 1000.0) + " kJ");
+  const std::string shares = "  of which   soil " + readable(result.energy.soil / 1000.0) +
+                             ", payload " + readable(result.energy.payload / 1000.0) + ", links " +
+                             readable(result.energy.links / 1000.0) + " kJ";
+  lines.insert(lines.begin() + 3, shares);  // below the energy
   lines.push_back("peak force   " + readable(result.peak_force / 1000.0) + " kN");
   lines.push_back("volumes      hole " + readable(dug.volumes.excavated) + ", spill " +
                   readable(dug.volumes.spilled) + ", heap " + readable(dug.volumes.dumped) + " m3");

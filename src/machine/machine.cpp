@@ -140,6 +140,65 @@ Bucket read_bucket(JsonObject file, double bucket_length) {
   return bucket;
 }
 
+PolarPin read_pin(JsonObject& file) {
+  PolarPin pin;
+  pin.distance = positive(file, "distance_m", longest);
+  pin.angle = file.number("angle_rad", -pi, pi);
+  file.ignore("sources");
+  return pin;
+}
+
+PolarPin read_lone_pin(JsonObject file) {
+  const PolarPin pin = read_pin(file);
+  file.done();
+  return pin;
+}
+
+Bar read_bar(JsonObject file) {
+  Bar bar;
+  bar.pin = read_pin(file);
+  bar.length = positive(file, "length_m", longest);
+  file.done();
+  return bar;
+}
+
+int read_count(JsonObject& file) {
+  const double count = file.number("count");
+  if (count != 1.0 && count != 2.0) {
+    file.fail("count", "is " + number_text(count) + ", must be 1 or 2");
+  }
+  return static_cast<int>(count);
+}
+
+CylinderGeometry read_cylinder(JsonObject file) {
+  CylinderGeometry geometry;
+  geometry.count = read_count(file);
+  geometry.foot = read_lone_pin(file.object("foot"));
+  if (file.has("rocker") || file.has("link")) {
+    geometry.rod = FourBar{read_bar(file.object("rocker")), read_bar(file.object("link"))};
+  } else {
+    geometry.rod = read_lone_pin(file.object("rod"));
+  }
+  file.ignore("sources");
+  file.done();
+  return geometry;
+}
+
+Cylinders read_cylinders(JsonObject file, const std::array<JointLimits, 3>& limits) {
+  const auto cylinder = [&](std::size_t i) {
+    const char* key = name(all_joints[i]);
+    try {
+      return Cylinder(read_cylinder(file.object(key)), limits[i].lower, limits[i].upper);
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::bad_file) throw;
+      file.fail(key, error.what());
+    }
+  };
+  const Cylinders cylinders = {cylinder(0), cylinder(1), cylinder(2)};
+  file.done();
+  return cylinders;
+}
+
 // ---- inverse kinematics -------------------------------------------------------------------------
 
 /// Directions of two links that bridge a vector, the second turned clockwise from the first.
@@ -222,6 +281,9 @@ Machine load_machine(const std::string& path) {
     machine.links[i] = read_link(links.object(key));
   }
   machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length);
+  if (file.has("cylinders")) {
+    machine.cylinders = read_cylinders(file.object("cylinders"), machine.limits);
+  }
   for (JsonObject* object : {&joints, &links, &file}) {
     object->ignore("sources");
     object->done();

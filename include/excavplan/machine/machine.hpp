@@ -3,11 +3,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include <excavplan/machine/cylinders.hpp>
 
 /// @file
 /// The excavator in its boom plane: x forward from the swing axis, z up from the ground.
@@ -71,6 +74,7 @@ struct Machine {
   std::array<JointLimits, 3> limits;
   std::array<LinkMass, 3> links;
   Bucket bucket;
+  std::optional<Cylinders> cylinders;  ///< nothing if the file does not state them
 
   /// Boom pin to tip with all links in one line: nothing is ever further away [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }
@@ -81,7 +85,8 @@ struct Machine {
 ///
 /// @throws Error (bad_file) naming file, key, value and rule; among the rules: lengths and masses
 ///         positive, limits in order, arm limits in 0 .. pi (the elbow never turns over), profile
-///         convex, counter-clockwise, tip at (bucket_length, 0)
+///         convex, counter-clockwise, tip at (bucket_length, 0), every cylinder's length rising or
+///         falling all the way through its joint's range
 Machine load_machine(const std::string& path);
 
 /// Where the tip is and how the bucket stands.
