@@ -5,6 +5,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/planning/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/section_simulator.hpp>
 
 namespace excavplan {
 namespace {
@@ -20,17 +21,19 @@ const SoilKind& loam() {
 }
 
 /// The paper's fixed path; the argument is the cell in tenths of a millimetre.
+template <typename Simulator>
 void dig(benchmark::State& state) {
   const Terrain ground = level_planning_ground(zx120(), 1e-4 * static_cast<double>(state.range(0)));
   const auto path =
       make_dig_path_anywhere(zx120(), paper_fixed_path(), boom_plane_profile(ground.surface()));
-  const HeightMapSimulator simulator(zx120(), loam(), 40.0);
+  const Simulator simulator(zx120(), loam(), 40.0);
   for (auto _ : state) {
     benchmark::DoNotOptimize(simulator.dig(ground, std::get<DigPath>(path)));
   }
   state.SetItemsProcessed(state.iterations());
 }
-BENCHMARK(dig)->Arg(500)->Arg(250)->Unit(benchmark::kMicrosecond);
+BENCHMARK(dig<HeightMapSimulator>)->Arg(500)->Arg(250)->Unit(benchmark::kMicrosecond);
+BENCHMARK(dig<SectionSimulator>)->Arg(500)->Arg(250)->Unit(benchmark::kMicrosecond);
 
 void lay_out_dig_anywhere(benchmark::State& state) {
   for (auto _ : state) {

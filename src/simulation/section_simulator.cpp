@@ -12,10 +12,7 @@
 
 #include <excavplan/error.hpp>
 
-#include "soil_layers.hpp"
-
-// Areas are [m^2] in the boom plane and stand for a volume over the bucket's outside width. The
-// bucket digs towards the machine: "ahead" is towards smaller x.
+#include "soil_section.hpp"
 
 namespace excavplan {
 namespace {
@@ -24,7 +21,6 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double look_ahead = 0.25;  // of the lip, for level and slope of the ground [m]; ours
 
 double square(double value) { return value * value; }
 
@@ -32,20 +28,13 @@ double square(double value) { return value * value; }
 
 using Polygon = std::vector<Vector2d>;
 
-/// The half plane z <= height + slope * x.
-struct Below {
-  double height;
-  double slope;
-  double margin(const Vector2d& p) const { return height + slope * p.x() - p.y(); }
-};
-
 void clip(Polygon& polygon, const Below& side, Polygon& scratch) {
   scratch.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector2d& p = polygon[i];
     const Vector2d& q = polygon[(i + 1) % polygon.size()];
-    const double at_p = side.margin(p);
-    const double at_q = side.margin(q);
+    const double at_p = side.at(p.x()) - p.y();
+    const double at_q = side.at(q.x()) - q.y();
     if (at_p >= 0.0) scratch.push_back(p);
     if ((at_p < 0.0) != (at_q < 0.0)) scratch.push_back(p + at_p / (at_p - at_q) * (q - p));
   }
@@ -70,8 +59,8 @@ AreaCentre area_centre(const Polygon& polygon) {
   return result;
 }
 
-/// Volume over a stretch of mouth on which the soil's face stands `from` .. `to` above it, linearly,
-/// between side plates from which it may only rise at `slope`.
+/// Volume over a stretch of mouth on which the soil's face stands `from` .. `to` above it,
+/// linearly, between side plates from which it may only rise at `slope`.
 double heap_over_mouth(double length, double from, double to, double width, double slope) {
   const double full = 0.5 * width * slope;  // the slopes of both plates meet here
   const auto integral = [&](double height) {
@@ -138,255 +127,175 @@ class BucketSection {
   Polygon scratch_;
 };
 
-// ---- The ground in the boom plane ---------------------------------------------------------------
+// ---- Resistance ---------------------------------------------------------------------------------
 
-struct Column {
-  double bank_before = 0.0;   ///< mean over the width [m]
-  double loose_before = 0.0;  ///< [m]
-  double bank = 0.0;
-  double loose = 0.0;       ///< what is left of the loose soil that lay here
-  double swept_from = 0.0;  ///< the tip has passed from here ..
-  double swept_to = 0.0;    ///< .. to here [m]
-  double floor = 0.0;       ///< mean level of the bank where the tip has passed
-  double windrow = 0.0;     ///< loose, beside the bucket on both sides together [m^2]
-  double settled = 0.0;     ///< loose, come to rest here [m]
-
-  double swept() const { return swept_to - swept_from; }
-  double top_before() const { return bank_before + loose_before; }
-  double top() const { return bank + loose + settled; }
+/// The soil's force on the bucket, (x, z), and where it acts.
+struct Resistance {
+  Vector2d force = Vector2d::Zero();
+  Vector2d point = Vector2d::Zero();
+  double on_floor = 0.0;  ///< volume of payload whose weight is in the force already [m^3]
 };
 
-struct CutArea {
-  double bank = 0.0;
-  double loose = 0.0;
+struct Cutting {
+  BucketPose tip;
+  Vector2d motion = Vector2d::Zero();  ///< unit vector
+  GroundAhead ground;
+  double pile = 0.0;  ///< height of the pile at the lip [m]
 };
 
-/// Area between `top` and a line from `from` to `to` where the line lies below.
-double area_above_line(double length, double from, double to, double top) {
-  const double a = top - from;
-  const double b = top - to;
-  if (a <= 0.0 && b <= 0.0) return 0.0;
-  if (a >= 0.0 && b >= 0.0) return 0.5 * (a + b) * length;
-  return 0.5 * square(std::max(a, b)) / std::abs(a - b) * length;
-}
-
-/// Level and slope of the ground ahead of a point; slope positive uphill along the travel.
-struct GroundAhead {
-  double bank = 0.0;
-  double surface = 0.0;
-  double slope = 0.0;
-};
-
-/// Mean heights over the bucket's width, one column of cells each.
-class SoilSection {
+class SoilResistance {
  public:
-  /// @throws Error (bad_input) if a cell the bucket passes is off the map or unknown
-  SoilSection(const Terrain& terrain, double width, double x_min, double x_max)
-      : cell_(terrain.bank.cell), origin_(terrain.bank.origin.x()) {
-    const HeightMap& map = terrain.bank;
-    if (map.z.size() == 0) throw Error(ErrorKind::bad_input, "dig: the map is empty");
-    cover_rows(map, width);
-    const double reach = look_ahead + 4.0 * width;  // of what a pile can need
-    const Index needed_begin = index_of(x_min);
-    const Index needed_end = index_of(x_max) + 1;
-    if (needed_begin < 0 || needed_end > map.z.cols()) leaves_map(x_min, x_max);
-    begin_ = needed_begin;
-    while (begin_ > 0 && map.x(begin_ - 1) > x_min - reach && known(map, begin_ - 1)) --begin_;
-    for (Index col = needed_begin; col < needed_end; ++col) {
-      if (known(map, col)) continue;
-      throw Error(ErrorKind::bad_input, "dig: the path crosses unknown ground at x = " +
-                                            std::to_string(map.x(col)) + " m");
-    }
-    Index end = needed_end;
-    while (end < map.z.cols() && map.x(end) < x_max + reach && known(map, end)) ++end;
-    columns_.reserve(static_cast<std::size_t>(end - begin_));
-    for (Index col = begin_; col < end; ++col) columns_.push_back(mean_column(terrain, col));
+  SoilResistance(const Machine& machine, const SoilKind& kind, const SoilState& bank,
+                 const SoilState& loose, const CriticalWedges& wedges)
+      : bucket_(machine.bucket), kind_(kind), bank_(bank), loose_(loose), wedges_(wedges) {
+    floor_length_ = (bucket_.profile[1] - bucket_.profile[0]).norm();
   }
 
-  double cell() const { return cell_; }
-  Index begin() const { return begin_; }
-  Index first_row() const { return first_row_; }
-  const std::vector<double>& coverage() const { return coverage_; }
-  std::vector<Column>& columns() { return columns_; }
-  const std::vector<Column>& columns() const { return columns_; }
-  double left(std::size_t i) const {
-    return origin_ + cell_ * static_cast<double>(begin_ + static_cast<Index>(i));
-  }
-  double middle(std::size_t i) const { return left(i) + 0.5 * cell_; }
-  std::size_t at(double x) const {
-    const Index i = std::clamp<Index>(index_of(x) - begin_, 0,
-                                      static_cast<Index>(columns_.size()) - 1);
-    return static_cast<std::size_t>(i);
-  }
-
-  /// Takes out what lies above the line from p to q.
-  CutArea cut(Vector2d p, Vector2d q) {
-    CutArea sum;
-    if (p.x() > q.x()) std::swap(p, q);
-    if (!(q.x() > p.x())) return sum;
-    const double slope = (q.y() - p.y()) / (q.x() - p.x());
-    for (std::size_t i = at(p.x()); i <= at(q.x()); ++i) {
-      const double from = std::max(p.x(), left(i));
-      const double to = std::min(q.x(), left(i) + cell_);
-      if (!(to > from)) continue;
-      const Below line = {p.y() - slope * p.x(), slope};
-      const CutArea area = cut_column(columns_[i], from, to, line);
-      columns_[i].bank -= area.bank / cell_;
-      columns_[i].loose = std::max(0.0, columns_[i].loose - area.loose / cell_);
-      sum.bank += area.bank;
-      sum.loose += area.loose;
-    }
-    return sum;
+  /// The floor runs along itself: cone index on the lip, friction on floor and side plates.
+  Resistance driving_in(const Cutting& cut, BucketSection& section) const {
+    const double depth = cut.ground.surface - cut.tip.z;
+    Resistance result;
+    result.point = {cut.tip.x, cut.tip.z};
+    if (!(depth > 0.0)) return result;
+    const double sine = std::max(1e-3, std::sin(cut.tip.floor_angle));
+    const double floor = std::min(floor_length_, depth / sine) * bucket_.width_outside;
+    const Below ground = {depth, -std::tan(cut.ground.slope)};
+    const AreaCentre plate = section.buried(ground);
+    const double sides = friction(depth - plate.centre.y()) * plate.area;
+    const double force = cone_index(kind_, bank_, depth) * lip_area() +
+                         2.0 * friction(0.5 * depth) * floor + 4.0 * sides;
+    result.force = -force * cut.motion;
+    return result;
   }
 
-  GroundAhead ahead(double x) const {
-    const std::size_t last = at(x);
-    const std::size_t first = at(x - look_ahead + 0.5 * cell_);
-    const double n = static_cast<double>(last - first + 1);
-    double mean_bank = 0.0;
-    double mean_surface = 0.0;
-    double moment = 0.0;
-    double inertia = 0.0;
-    const double centre = 0.5 * (middle(first) + middle(last));
-    for (std::size_t i = first; i <= last; ++i) {
-      const Column& column = columns_[i];
-      const bool passed = column.swept() > cell_ - 1e-9;
-      const double bank = passed ? column.bank : column.bank_before;
-      const double loose = passed ? column.loose : column.loose_before;
-      mean_bank += bank / n;
-      mean_surface += (bank + loose) / n;
-      moment += (middle(i) - centre) * (bank + loose);
-      inertia += square(middle(i) - centre);
-    }
-    const double gradient = inertia > 0.0 ? moment / inertia : 0.0;
-    const double shift = gradient * (x - centre);
-    return {mean_bank + shift, mean_surface + shift, -std::atan(gradient)};
-  }
-
-  /// Heaps an area on the columns from `first` to `last` inclusive, under slopes that fall off to
-  /// both sides of x.
-  void settle(double x, double area, double slope, std::size_t first, std::size_t last) {
-    if (!(area > 0.0)) return;
-    const auto raised = [&](std::size_t i, double apex) {
-      return std::max(0.0, apex - slope * std::abs(middle(i) - x) - columns_[i].top());
-    };
-    const auto total = [&](double apex) {
-      double sum = 0.0;
-      for (std::size_t i = first; i <= last; ++i) sum += raised(i, apex);
-      return sum * cell_;
-    };
-    double low = columns_[std::clamp(at(x), first, last)].top() - slope * cell_;
-    double high = low + std::sqrt(area * slope) + slope * cell_;
-    while (total(high) < area) high += high - low;
-    while (high - low > 1e-6) {
-      const double middle = 0.5 * (low + high);
-      (total(middle) < area ? low : high) = middle;
-    }
-    const double exact = area / total(high);
-    // From the outside in: what a column takes does not depend on the others.
-    for (std::size_t i = first; i <= last; ++i) columns_[i].settled += exact * raised(i, high);
+  /// A wedge of soil slides up ahead of the face.
+  Resistance shearing(const Cutting& cut) const {
+    Resistance result;
+    result.point = {cut.tip.x, cut.tip.z};
+    const double alpha = cut.ground.slope;
+    const double bank_depth = (cut.ground.bank - cut.tip.z) * std::cos(alpha);
+    const double loose_above = cut.ground.surface - cut.ground.bank + cut.pile;
+    const double all_depth = bank_depth + loose_above * std::cos(alpha);
+    if (!(all_depth > 0.0)) return result;
+    const bool in_bank = bank_depth > 0.0;
+    const SoilState& soil = in_bank ? bank_ : loose_;
+    const double depth = in_bank ? bank_depth : all_depth;
+    const double climb = std::asin(std::clamp(cut.motion.y(), -1.0, 1.0));
+    const double frame = std::max(alpha, climb);
+    const double rake = std::max(cut.tip.floor_angle + frame, bucket_.edge_angle);
+    const Face face = pushed(soil, depth, rake, alpha, in_bank ? loose_above : 0.0);
+    const double fade = climb > 0.0 ? std::cos(climb) : 1.0;
+    const Vector2d along(std::cos(frame), -std::sin(frame));
+    const Vector2d normal(std::sin(frame), std::cos(frame));
+    result.force = fade * (face.along * along - face.down * normal);
+    result.force.y() -= (1.0 - fade) * sheared_off(soil, depth, face.surcharge);
+    const double descent = std::max(0.0, -cut.motion.y());
+    result.force -= lip(soil, depth, face.surcharge, descent) * cut.motion;
+    const double up_face = std::min(depth / 3.0, floor_length_ * std::sin(face.rake));
+    result.point += up_face / std::sin(face.rake) *
+                    Vector2d(std::cos(cut.tip.floor_angle), std::sin(cut.tip.floor_angle));
+    result.on_floor = fade * face.on_floor;
+    return result;
   }
 
  private:
-  Index index_of(double x) const { return static_cast<Index>(std::floor((x - origin_) / cell_)); }
+  struct Face {
+    double along = 0.0;  ///< force against the travel, along the frame [N]
+    double down = 0.0;   ///< into the ground [N]
+    double rake = 0.0;
+    double surcharge = 0.0;  ///< [Pa]
+    double on_floor = 0.0;   ///< [m^3]
+  };
 
-  [[noreturn]] static void leaves_map(double from, double to) {
-    throw Error(ErrorKind::bad_input, "dig: the path, x = " + std::to_string(from) + " .. " +
-                                          std::to_string(to) + " m, must lie on the map");
+  Face pushed(const SoilState& soil, double depth, double rake, double slope,
+              double loose_above) const {
+    const double width = bucket_.width_outside;
+    const double delta = bank_.tool_friction_angle;
+    const EarthmovingFactors n = wedges_.at(rake, slope);
+    // As the table holds them.
+    const CuttingWedge wedge = {std::clamp(rake, 10.0 * pi / 180.0, 2.0), bank_.friction_angle,
+                                delta, slope};
+    Face face;
+    face.rake = wedge.rake;
+    face.surcharge = loose_.unit_weight * mean_over(loose_above, depth, wedge, n);
+    const double t = depth;
+    const double flat = soil.unit_weight * t * t * n.gamma + soil.cohesion * t * n.c +
+                        face.surcharge * t * n.q + soil.adhesion * t * n.ca;
+    const SoilStrength strength = {soil.unit_weight, soil.cohesion, soil.adhesion};
+    const double force = flat * width + side_plane_force(wedge, n, strength, t) *
+                                            std::max(0.0, side_plane_share(wedge, n));
+    const double adhesion = soil.adhesion * t * width;
+    const double cot_rake = 1.0 / std::tan(wedge.rake);
+    face.along = force * std::sin(wedge.rake + delta) + adhesion * cot_rake;
+    face.down = force * std::cos(wedge.rake + delta) - adhesion;
+    const double on_face = 0.5 * t * std::min(t * cot_rake, floor_length_);
+    face.on_floor = std::max(0.0, on_face) * width * soil.unit_weight / loose_.unit_weight;
+    return face;
   }
 
-  void cover_rows(const HeightMap& map, double width) {
-    const double low = (-0.5 * width - map.origin.y()) / cell_;
-    const double high = (0.5 * width - map.origin.y()) / cell_;
-    first_row_ = static_cast<Index>(std::floor(low + 1e-9));
-    const auto end = static_cast<Index>(std::ceil(high - 1e-9));
-    if (first_row_ < 0 || end > map.z.rows()) {
-      throw Error(ErrorKind::bad_input, "dig: the bucket, y = " + std::to_string(-0.5 * width) +
-                                            " .. " + std::to_string(0.5 * width) +
-                                            " m, must lie on the map");
-    }
-    for (Index row = first_row_; row < end; ++row) {
-      const auto r = static_cast<double>(row);
-      coverage_.push_back(std::min(r + 1.0, high) - std::max(r, low));
-    }
+  /// Mean height of a pile over the top of the wedge.
+  double mean_over(double height, double depth, const CuttingWedge& wedge,
+                   const EarthmovingFactors& n) const {
+    const double top = depth * (1.0 / std::tan(wedge.rake) + 1.0 / std::tan(n.failure));
+    const double base = height / std::tan(kind_.angle_of_repose);
+    return base < top ? 0.5 * height * base / top : height * (1.0 - 0.5 * top / base);
   }
 
-  bool known(const HeightMap& map, Index col) const {
-    for (std::size_t r = 0; r < coverage_.size(); ++r) {
-      if (std::isnan(map.z(first_row_ + static_cast<Index>(r), col))) return false;
-    }
-    return true;
+  /// Shear on a vertical plane ahead of the lip [N].
+  double sheared_off(const SoilState& soil, double depth, double surcharge) const {
+    const double rest = 1.0 - std::sin(bank_.friction_angle);
+    const double pressure = rest * (0.5 * soil.unit_weight * depth + surcharge);
+    return (soil.cohesion + pressure * std::tan(bank_.friction_angle)) * depth *
+           bucket_.width_outside;
   }
 
-  Column mean_column(const Terrain& terrain, Index col) const {
-    Column column;
-    double weight = 0.0;
-    for (std::size_t r = 0; r < coverage_.size(); ++r) {
-      const Index row = first_row_ + static_cast<Index>(r);
-      column.bank += coverage_[r] * terrain.bank.z(row, col);
-      column.loose += coverage_[r] * terrain.loose(row, col);
-      weight += coverage_[r];
-    }
-    column.bank_before = column.bank /= weight;
-    column.loose_before = column.loose /= weight;
-    return column;
+  /// The flat front of the lip; it pushes aside soil that can yield, and drives into soil that
+  /// cannot.
+  double lip(const SoilState& soil, double depth, double surcharge, double descent) const {
+    const double phi = bank_.friction_angle;
+    const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
+    const double pressure = 0.5 * soil.unit_weight * bucket_.edge_thickness +
+                            soil.cohesion / std::tan(phi) + surcharge +
+                            soil.unit_weight * depth * active;
+    const double yielding = blunt_edge_ratio(0.5 * pi, phi, bank_.tool_friction_angle) * pressure;
+    const double held = descent > 0.0 ? cone_index(kind_, soil, depth) : 0.0;
+    return ((1.0 - descent) * yielding + descent * held) * lip_area();
   }
 
-  static CutArea cut_fresh(Column& column, double from, double to, const Below& line) {
-    const double length = to - from;
-    if (!(length > 0.0)) return {};
-    const double at_from = line.height + line.slope * from;
-    const double at_to = line.height + line.slope * to;
-    const double bank = area_above_line(length, at_from, at_to, column.bank_before);
-    const double all = area_above_line(length, at_from, at_to, column.top_before());
-    const double swept = column.swept();
-    column.floor = (column.floor * swept + column.bank_before * length - bank) / (swept + length);
-    return {bank, all - bank};
+  double lip_area() const { return bucket_.width_outside * bucket_.edge_thickness; }
+
+  /// Friction on steel under the pressure at rest at this depth [Pa].
+  double friction(double depth) const {
+    const double rest = 1.0 - std::sin(bank_.friction_angle);
+    return bank_.adhesion +
+           rest * bank_.unit_weight * std::max(0.0, depth) * std::tan(bank_.tool_friction_angle);
   }
 
-  /// What the tip has passed before is cut again only as far as the line lies below its mean floor.
-  static CutArea cut_column(Column& column, double from, double to, const Below& line) {
-    if (!(column.swept() > 0.0)) column.swept_from = column.swept_to = from;
-    const double again_from = std::clamp(column.swept_from, from, to);
-    const double again_to = std::clamp(column.swept_to, from, to);
-    CutArea sum;
-    if (again_to > again_from) {
-      const double level = line.height + line.slope * 0.5 * (again_from + again_to);
-      sum.bank = std::max(0.0, column.floor - level) * (again_to - again_from);
-      column.floor -= sum.bank / column.swept();
-    }
-    const CutArea before = cut_fresh(column, from, again_from, line);
-    column.swept_from = std::min(column.swept_from, from);
-    const CutArea after = cut_fresh(column, again_to, to, line);
-    column.swept_to = std::max(column.swept_to, to);
-    return {sum.bank + before.bank + after.bank, before.loose + after.loose};
-  }
-
-  double cell_;
-  double origin_;
-  Index begin_ = 0;
-  Index first_row_ = 0;
-  std::vector<double> coverage_;  ///< share of each row under the bucket
-  std::vector<Column> columns_;
+  const Bucket& bucket_;
+  const SoilKind& kind_;
+  const SoilState& bank_;
+  const SoilState& loose_;
+  const CriticalWedges& wedges_;
+  double floor_length_ = 0.0;
 };
 
-// ---- The pile ahead of the lip ------------------------------------------------------------------
-
-/// Share of a heap of this cross-section, piled over the width, that comes to rest beside it: the
-/// heap is a trapezoid through its mid-height at both edges, or a triangle.
-double area_beside(double area, double width, double slope) {
-  const double top = area / width;
-  if (top <= width * slope) return 0.25 * top * top / slope;
-  return slope * square(std::sqrt(area / slope) - 0.5 * width);
+/// Dry mass above a level; unknown cells weigh nothing [kg].
+double solids(const Terrain& terrain, double above, const SoilState& bank, const SoilState& loose) {
+  const auto& z = terrain.bank.z;
+  const auto known = z == z;
+  const double area = square(terrain.bank.cell);
+  return area * (bank.dry_density * known.select((z - above).max(0.0), 0.0).sum() +
+                 loose.dry_density * known.select(terrain.loose, 0.0).sum());
 }
 
 /// Soil that leans against the lip as a wedge at the angle of repose.
 struct Pile {
   double area = 0.0;
 
+  /// At the lip, where its surface falls by `fall` per metre towards the ground ahead.
   double height(double fall) const { return std::sqrt(2.0 * area * fall); }
 
-  /// Takes what lies over the next `advance` of ground above `lip`, measured from the pile's foot.
+  /// Takes what lies over the next `advance` of ground higher than `lip` above it.
   double take(double advance, double lip, double fall) {
     const double high = height(fall);
     const double from = std::max(0.0, lip);
@@ -396,26 +305,255 @@ struct Pile {
     area -= taken;
     return taken;
   }
+};
 
-  /// Sheds to both sides what stands too steep there.
-  void shed(SoilSection& section, double x, double fall, double width, double slope) {
-    const double high = height(fall);
-    const double cell = section.cell();
-    for (double u = 0.0; u * fall < high;) {
-      const std::size_t i = section.at(x - u - 1e-12);
-      const double length = std::min(x - u - section.left(i), high / fall - u);
-      if (!(length > 1e-12)) break;
-      const double thickness = high - fall * (u + 0.5 * length);
-      double& windrow = section.columns()[i].windrow;
-      const double target = area_beside(thickness * width + windrow, width, slope);
-      const double leaving = std::max(0.0, target - windrow) * length / cell;
-      windrow += leaving;
-      area = std::max(0.0, area - leaving * cell / width);
-      u += length;
-      if (i == 0) break;
-    }
+// ---- One dig ------------------------------------------------------------------------------------
+
+struct Soil {
+  const SoilKind& kind;
+  const SoilState& bank;
+  const SoilState& loose;
+  const CriticalWedges& wedges;
+  const HoldingSlopes& slopes;
+};
+
+class SectionDig {
+ public:
+  SectionDig(const Machine& machine, const Soil& soil, const Terrain& terrain, const DigPath& path,
+             const DigOptions& options)
+      : machine_(machine),
+        soil_(soil),
+        path_(path),
+        options_(options),
+        bucket_(machine.bucket),
+        resistance_(machine, soil.kind, soil.bank, soil.loose, soil.wedges),
+        section_(terrain, machine.bucket.width_outside, tip_range(path).first,
+                 tip_range(path).second),
+        swell_((1.0 + soil.loose.void_ratio) / (1.0 + soil.bank.void_ratio)),
+        repose_(std::tan(soil.kind.angle_of_repose)) {
+    result_.terrain = terrain;
   }
+
+  DigResult run() {
+    const double deepest =
+        std::min_element(path_.poses.begin(), path_.poses.end(), [](auto& a, auto& b) {
+          return a.bucket.z < b.bucket.z;
+        })->bucket.z;
+    result_.soil.solids_before = solids(result_.terrain, deepest, soil_.bank, soil_.loose);
+    std::size_t i = 1;
+    for (; i < path_.poses.size() && path_.poses[i].phase != DigPhase::lift; ++i) {
+      if (!dig_step(path_.poses[i - 1], path_.poses[i])) break;
+    }
+    if (!result_.stall) {
+      for (; i < path_.poses.size(); ++i) lift_step(path_.poses[i - 1], path_.poses[i]);
+    }
+    settle();
+    finish(deepest);
+    return std::move(result_);
+  }
+
+ private:
+  static std::pair<double, double> tip_range(const DigPath& path) {
+    if (path.poses.size() < 2) {
+      throw Error(ErrorKind::bad_input, "dig: a path has at least 2 poses, this one has " +
+                                            std::to_string(path.poses.size()));
+    }
+    double low = path.poses.front().bucket.x;
+    double high = low;
+    for (const DigPose& pose : path.poses) {
+      if (pose.phase == DigPhase::lift) break;
+      if (!std::isfinite(pose.bucket.x) || !std::isfinite(pose.bucket.z)) {
+        throw Error(ErrorKind::bad_input, "dig: every pose of the path must be finite");
+      }
+      low = std::min(low, pose.bucket.x);
+      high = std::max(high, pose.bucket.x);
+    }
+    return {low, high};
+  }
+
+  double width() const { return machine_.bucket.width_outside; }
+
+  /// How fast the pile's surface falls towards the ground ahead, per metre.
+  double fall(const GroundAhead& ground) const {
+    return std::max(0.25 * repose_, repose_ + std::tan(ground.slope));
+  }
+
+  /// False if a joint stalls.
+  bool dig_step(const DigPose& from, const DigPose& to) {
+    const JointAngles turn = to.joints - from.joints;
+    const LinkPositions at = link_positions(machine_, 0.5 * (from.joints + to.joints));
+    bucket_.turn_to(at.phi3);
+    const Vector2d p(from.bucket.x, from.bucket.z);
+    const Vector2d q(to.bucket.x, to.bucket.z);
+    const Resistance soil = resist(
+        0.5 * (p + q), q - p, 0.5 * (from.bucket.floor_angle + to.bucket.floor_angle), to.phase);
+    const JointAngles by_soil = torque_against_force(machine_, at, soil.point, soil.force);
+    const JointAngles by_payload = carry(at, std::max(0.0, contents_ - soil.on_floor));
+    const JointAngles by_links = torque_against_link_weight(machine_, at);
+    const JointAngles torque = by_soil + by_payload + by_links;
+    if (stalls(torque, to.phase)) return false;
+    for (Index j = 0; j < 3; ++j) {
+      if (!(torque(j) * turn(j) > 0.0)) continue;
+      EnergyLedger& energy = result_.energy;
+      const double work = torque(j) * turn(j);
+      energy.total += work;
+      energy.by_joint[static_cast<std::size_t>(j)] += work;
+      energy.by_phase[phase_index(to.phase)] += work;
+      energy.soil += by_soil(j) * turn(j);
+      energy.payload += by_payload(j) * turn(j);
+      energy.links += by_links(j) * turn(j);
+    }
+    travelled_ += (q - p).norm();
+    cut(p, q);
+    result_.peak_force = std::max(result_.peak_force, soil.force.norm());
+    if (options_.history) {
+      result_.history.push_back({to.phase, travelled_, soil.force, torque, contents_});
+    }
+    return true;
+  }
+
+  static std::size_t phase_index(DigPhase phase) {
+    return phase == DigPhase::scoop ? 2 : phase == DigPhase::drag ? 1 : 0;
+  }
+
+  Resistance resist(const Vector2d& tip, const Vector2d& step, double floor_angle, DigPhase phase) {
+    Cutting cutting;
+    cutting.tip = {tip.x(), tip.y(), floor_angle};
+    const double length = step.norm();
+    if (length > 0.0) cutting.motion = step / length;
+    cutting.ground = section_.ahead(tip.x());
+    cutting.pile = pile_.height(fall(cutting.ground));
+    return phase == DigPhase::drag || phase == DigPhase::scoop
+               ? resistance_.shearing(cutting)
+               : resistance_.driving_in(cutting, bucket_);
+  }
+
+  JointAngles carry(const LinkPositions& at, double volume) {
+    const Vector2d centre = at.tip + bucket_.held(0.0, soil_.slopes).centre;
+    return torque_against_force(machine_, at, centre, {0.0, -volume * soil_.loose.unit_weight});
+  }
+
+  bool stalls(const JointAngles& torque, DigPhase phase) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double asked = torque(static_cast<Index>(j));
+      if (std::abs(asked) <= machine_.limits[j].torque) continue;
+      result_.stall = Stall{phase, static_cast<Joint>(j), travelled_, asked};
+      return true;
+    }
+    return false;
+  }
+
+  void cut(const Vector2d& p, const Vector2d& q) {
+    const CutArea area = section_.cut(p, q);
+    const GroundAhead ground = section_.ahead(q.x());
+    const double falls = fall(ground);
+    const double lip = q.y() - ground.surface;
+    const double from_pile = pile_.take(p.x() - q.x(), lip, falls);
+    result_.soil.bank_cut += area.bank * width();
+    result_.soil.loose_cut += (area.loose + from_pile) * width();
+    contents_ += (area.bank * swell_ + area.loose + from_pile) * width();
+    const double support = std::max(0.0, pile_.height(falls) - lip);
+    const double holds = bucket_.held(support, soil_.slopes).area;
+    if (contents_ > holds) {
+      pile_.area += (contents_ - holds) / width();
+      contents_ = holds;
+    }
+    pile_at_ = q.x();
+    const double shed = section_.shed(pile_at_, pile_.height(falls), falls, repose_);
+    pile_.area = std::max(0.0, pile_.area - shed);
+  }
+
+  void lift_step(const DigPose& from, const DigPose& to) {
+    const LinkPositions at = link_positions(machine_, 0.5 * (from.joints + to.joints));
+    bucket_.turn_to(at.phi3);
+    const JointAngles torque = carry(at, contents_) + torque_against_link_weight(machine_, at);
+    const JointAngles turn = to.joints - from.joints;
+    for (Index j = 0; j < 3; ++j) result_.energy.lift += std::max(0.0, torque(j) * turn(j));
+    bucket_.turn_to(link_positions(machine_, to.joints).phi3);
+    const GroundAhead ground = section_.ahead(to.bucket.x);
+    const double support = ground.surface - to.bucket.z;
+    const HoldingSlopes clear = {soil_.slopes.heap, soil_.slopes.heap};
+    const double holds =
+        support > 0.0 ? bucket_.held(support, soil_.slopes).area : bucket_.held(0.0, clear).area;
+    if (contents_ <= holds) return;
+    const double lost = (contents_ - holds) / width();
+    dropped_ += lost;
+    dropped_at_ += lost * to.bucket.x;
+    contents_ = holds;
+  }
+
+  /// The pile's back, no longer held, slides into the cut; what the bucket lost lies under it.
+  void settle() {
+    const std::size_t last = section_.columns().size() - 1;
+    if (pile_.area > 0.0) {
+      const double falls = fall(section_.ahead(pile_at_));
+      const double stays = pile_.area * repose_ / (repose_ + falls);
+      const std::size_t edge = section_.column_at(pile_at_);
+      section_.settle(pile_at_ - pile_.height(falls) / (repose_ + falls), stays, repose_, 0,
+                      edge > 0 ? edge - 1 : 0);
+      section_.settle(pile_at_, pile_.area - stays, repose_, edge, last);
+    }
+    if (dropped_ > 0.0) section_.settle(dropped_at_ / dropped_, dropped_, repose_, 0, last);
+  }
+
+  void finish(double deepest) {
+    const SlopeLimits limits = {repose_, std::tan(soil_.bank.friction_angle),
+                                critical_height(soil_.bank), swell_};
+    SoilLedger& ledger = result_.soil;
+    const LooseSoil rest = write_back(section_, limits, result_.terrain);
+    ledger.spilled = rest.elsewhere;
+    ledger.fallen_back = rest.in_cut;
+    ledger.payload = result_.payload_volume = contents_;
+    ledger.fallback_fraction = ledger.bank_cut > 0.0 ? ledger.fallen_back / ledger.bank_cut : 0.0;
+    result_.payload_mass = contents_ * soil_.loose.bulk_density;
+    const double carried = options_.dump_at ? 0.0 : contents_ * soil_.loose.dry_density;
+    if (options_.dump_at) pour(result_.terrain, *options_.dump_at, contents_, repose_);
+    ledger.solids_after = solids(result_.terrain, deepest, soil_.bank, soil_.loose) + carried;
+  }
+
+  const Machine& machine_;
+  Soil soil_;
+  const DigPath& path_;
+  const DigOptions& options_;
+  BucketSection bucket_;
+  SoilResistance resistance_;
+  SoilSection section_;
+  double swell_;
+  double repose_;
+  Pile pile_;
+  double pile_at_ = 0.0;
+  double contents_ = 0.0;    ///< loose, in the bucket [m^3]
+  double dropped_ = 0.0;     ///< by the rising bucket [m^2]
+  double dropped_at_ = 0.0;  ///< sum of area times x
+  double travelled_ = 0.0;
+  DigResult result_;
 };
 
 }  // namespace
+
+double clipped_capacity(const Machine& machine, double phi3, double support,
+                        const HoldingSlopes& slopes) {
+  BucketSection section(machine.bucket);
+  section.turn_to(phi3);
+  return section.held(support, slopes).area;
+}
+
+SectionSimulator::SectionSimulator(const Machine& machine, const SoilKind& soil,
+                                   double density_percent)
+    : machine_(machine),
+      soil_(soil),
+      bank_(bank_state(soil, density_percent)),
+      loose_(loose_state(soil)),
+      wedges_(bank_.friction_angle, bank_.tool_friction_angle) {
+  const double mouth = (machine.bucket.profile.back() - machine.bucket.profile.front()).norm();
+  slopes_.heap = std::tan(soil.angle_of_repose);
+  slopes_.face = std::tan(stable_slope(bank_state(soil, 0.0), mouth, soil.angle_of_repose));
+}
+
+DigResult SectionSimulator::dig(const Terrain& terrain, const DigPath& path,
+                                const DigOptions& options) const {
+  return SectionDig(machine_, {soil_, bank_, loose_, wedges_, slopes_}, terrain, path, options)
+      .run();
+}
+
 }  // namespace excavplan

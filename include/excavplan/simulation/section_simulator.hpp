@@ -16,7 +16,7 @@ namespace excavplan {
 /// what the bucket cannot hold is one wedge at the angle of repose ahead of the lip, which sheds
 /// windrows to both sides; heaps have closed forms, nothing is relaxed. The result is written back
 /// onto the rows of the map under the bucket, windrows beside them. Assumptions and limits:
-/// docs/methods.md#section.
+/// docs/methods.md#simulation.
 class SectionSimulator : public SoilSimulator {
  public:
   /// @throws Error (bad_input) unless 0 <= density_percent <= 100
