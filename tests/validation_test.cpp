@@ -92,7 +92,7 @@ TEST_F(Validation, NoDigBeatsThePhysicalBound) {
   int digs = 0;
   for (int d = 0; d <= 100; d += 10) {
     const HeightMapSimulator simulator(machine_, loam_, d);
-    for (int i = 0; i < 120; ++i) {
+    for (int i = 0; i < 80; ++i) {
       const DigParameters parameters = random_parameters(random);
       const auto outcome = evaluate_dig(machine_, simulator, ground, parameters);
       const auto* dig = std::get_if<PlannedDig>(&outcome);
@@ -102,7 +102,7 @@ TEST_F(Validation, NoDigBeatsThePhysicalBound) {
       ++digs;
     }
   }
-  EXPECT_GT(digs, 800);
+  EXPECT_GT(digs, 400);
   EXPECT_LT(highest, 1.0);
   EXPECT_GT(highest, 0.05);  // a bound that is never approached would test nothing
 }
@@ -200,7 +200,7 @@ TEST_F(Validation, SameBytesFromEveryCompilerAndOptimisationLevel) {
   for (const double loose : result.terrain.loose.reshaped()) hash.add(loose);
   hash.add(result.payload_mass);
   hash.add(result.energy.total);
-  EXPECT_EQ(hash.value(), 0xf97813bc85760704ULL) << "0x" << std::hex << hash.value();
+  EXPECT_EQ(hash.value(), 0x93ecc6a9d989c64aULL) << "0x" << std::hex << hash.value();
 }
 
 }  // namespace

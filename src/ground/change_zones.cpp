@@ -249,8 +249,12 @@ class ChangeFinder {
       Products both = products(residual, lag, 0);
       both += products(residual, 0, lag);
       const double rho = both.count > 0.0 ? both.mean() / variance : 0.0;
-      if (both.count == 0.0 || rho < 2.0 * std::sqrt(squares / both.count)) break;
       const double ring = 6.283185307179586 * static_cast<double>(lag);
+      if (both.count == 0.0) break;
+      if (const double bound = 2.0 * std::sqrt(squares / both.count); rho < bound) {
+        found_.correlation += ring * bound;  // so much could hide there
+        break;
+      }
       found_.correlation += ring * rho;
       squares += ring * rho * rho;
     }

@@ -17,6 +17,10 @@ namespace {
 constexpr Eigen::Index fewest_known_cells = 100;
 // Ours: error of the mean height of a filled hole, in units of hole radius times rim slope. A
 // membrane over a step that crosses the hole at random is off by 0.12 of the step.
+/// A scan samples steep faces more or less densely than the ground beside them, which moves the
+/// heights of the cells they cross: 0.2 to 0.4 % of a pit with upright walls seen from above, as
+/// measured in the tests of rasterise(); ours.
+constexpr double steep_face_error = 0.004;   // of the volume
 constexpr double least_warned_share = 0.01;  // of its kind's volume: a speck at the border is none
 constexpr double fill_error = 0.2;
 constexpr double least_stable_share = 0.4;  // ours
@@ -106,7 +110,8 @@ void find_variances(const ChangedGround& ground, double cell, std::vector<ZoneSu
   const double cell_area = cell * cell;
   const double cell_variance = ground.noise_sd * ground.noise_sd;
   for (ZoneSum& zone : zones) {
-    zone.variance = cell_variance * ground.correlation * zone.area * cell_area;
+    zone.variance = cell_variance * ground.correlation * zone.area * cell_area +
+                    std::pow(steep_face_error * zone.volume, 2);
   }
   std::vector<std::vector<double>> filled_cells(
       zones.size(), std::vector<double>(ground.filled.holes.size(), 0.0));

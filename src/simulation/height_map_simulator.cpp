@@ -23,9 +23,10 @@ using Eigen::Vector2d;
 constexpr double pi = 3.14159265358979323846;
 
 // Numbers of our own choice; docs/methods.md#simulation says why.
-constexpr int sweeps_per_step = 3;       // of slumping while the bucket moves
-constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
-constexpr double spread_ahead = 0.15;    // overflow lands within this ahead of the lip [m]
+constexpr double sweeps_per_step = 10.0;  // of slumping while the bucket moves, on 5 cm cells; as
+                                          // many more as a slide takes on smaller ones
+constexpr int sweeps_at_the_end = 2000;   // until all is at rest; a dig needs some tens
+constexpr double spread_ahead = 0.15;     // overflow lands within this ahead of the lip [m]
 constexpr double steepest_face =
     80.0 * pi / 180.0;                // of soil in the bucket, however cohesive [rad]
 constexpr double slope_reach = 0.30;  // the surface's slope is taken over this ahead of the lip [m]
@@ -95,6 +96,8 @@ class Dig {
         limits_{std::tan(soil.angle_of_repose), std::tan(bank.friction_angle),
                 critical_height(bank), swell_} {
     result_.terrain = terrain;
+    sweeps_ = static_cast<int>(
+        std::ceil(sweeps_per_step * std::max(1.0, std::pow(0.05 / terrain.bank.cell, 2))));
     find_rows();
   }
 
@@ -177,8 +180,17 @@ class Dig {
       const Index ahead = column(s.to.x() - terrain_.bank.cell);
       const double support = std::max(0.0, surface_at(ahead) - s.to.y());
       overflow(s.to.x(), s.at.phi3, support, slopes_);
-      moving_ = slump(result_.terrain, moving_, loose_only(), sweeps_per_step);
+      moving_ = slump(result_.terrain, moving_, loose_only(), sweeps_, under_bucket(s.to));
     }
+  }
+
+  /// Cells that the bucket stands on behind its lip, if it is in the ground: no soil gets there.
+  CellBlock under_bucket(const Vector2d& tip) const {
+    const Index lip = column(tip.x());
+    if (!(surface_at(lip) > tip.y())) return {};
+    const auto length = static_cast<Index>(std::ceil(floor_length() / terrain_.bank.cell));
+    return {first_row_, first_row_ + cover_.size(), lip + 1,
+            std::min(lip + 1 + length, terrain_.bank.z.cols())};
   }
 
   /// While the bucket stands in the cut it holds the walls.
@@ -532,6 +544,7 @@ class Dig {
   double swell_;
   SlopeLimits limits_;
 
+  int sweeps_ = 0;  ///< of slumping per step
   Index first_row_ = 0;
   ArrayXd cover_;  ///< share of each row that the bucket covers
   DigResult result_;

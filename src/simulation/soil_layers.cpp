@@ -29,8 +29,12 @@ struct Fall {
 /// only along the grid.
 class Slump {
  public:
-  Slump(Terrain& terrain, const SlopeLimits& limits)
-      : bank_(terrain.bank.z), loose_(terrain.loose), cell_(terrain.bank.cell), limits_(limits) {}
+  Slump(Terrain& terrain, const SlopeLimits& limits, const CellBlock& wall)
+      : bank_(terrain.bank.z),
+        loose_(terrain.loose),
+        cell_(terrain.bank.cell),
+        limits_(limits),
+        wall_(wall) {}
 
   /// One pass over the block; returns the cells that moved.
   CellBlock sweep(const CellBlock& block, int order) {
@@ -50,6 +54,7 @@ class Slump {
   double height(Index row, Index col) const { return bank_(row, col) + loose_(row, col); }
 
   void relax(Index row, Index col, CellBlock& moved) {
+    if (wall_.contains(row, col)) return;
     if (loose_(row, col) > 0.0) slide_loose(row, col, moved);
     if (std::isfinite(limits_.critical_height)) fail_bank(row, col, moved);
   }
@@ -71,11 +76,11 @@ class Slump {
             down_before ? col - col_step : col + col_step, std::min(height, lower)};
   }
 
-  /// From height `top` down to a cell; 0 to cells that are unknown or off the map.
+  /// From height `top` down to a cell; 0 to cells that are unknown, walled or off the map.
   double drop(double top, Index row, Index col) const {
     if (row < 0 || col < 0 || row >= bank_.rows() || col >= bank_.cols()) return 0.0;
     const double drop = top - height(row, col);
-    return std::isnan(drop) ? 0.0 : drop;
+    return std::isnan(drop) || wall_.contains(row, col) ? 0.0 : drop;
   }
 
   /// How much has to leave a cell so that it falls no steeper than `slope`, if the share of each
@@ -128,6 +133,7 @@ class Slump {
   Eigen::ArrayXXd& loose_;
   double cell_;
   SlopeLimits limits_;
+  CellBlock wall_;
 };
 
 CellBlock widened(CellBlock block, const Terrain& terrain) {
@@ -152,8 +158,9 @@ void CellBlock::include(Index row, Index col) {
   col_end = std::max(col_end, col + 1);
 }
 
-CellBlock slump(Terrain& terrain, CellBlock block, const SlopeLimits& limits, int sweeps) {
-  Slump slide(terrain, limits);
+CellBlock slump(Terrain& terrain, CellBlock block, const SlopeLimits& limits, int sweeps,
+                const CellBlock& wall) {
+  Slump slide(terrain, limits, wall);
   for (int i = 0; i < sweeps && !block.empty(); ++i) {
     block = slide.sweep(widened(block, terrain), i % 4);
   }

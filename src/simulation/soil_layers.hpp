@@ -16,6 +16,9 @@ struct CellBlock {
   Eigen::Index col_end = 0;
 
   void include(Eigen::Index row, Eigen::Index col);
+  bool contains(Eigen::Index row, Eigen::Index col) const {
+    return row >= row_begin && row < row_end && col >= col_begin && col < col_end;
+  }
   bool empty() const { return row_begin >= row_end || col_begin >= col_end; }
 };
 
@@ -27,10 +30,12 @@ struct SlopeLimits {
   double swell = 1.0;            ///< loose volume per bank volume
 };
 
-/// Lets soil slide where it stands too steep, inside `block` and one cell around it, which grows as
-/// soil leaves it. At most `sweeps` passes; returns the block that may still move, empty once all
-/// is at rest. Solids are conserved to rounding; unknown cells are walls.
-CellBlock slump(Terrain& terrain, CellBlock block, const SlopeLimits& limits, int sweeps);
+/// Lets soil slide where it stands too steep, but neither onto nor off the cells of `wall`, inside
+/// `block` and one cell around it, which grows as soil leaves it. At most `sweeps` passes; returns
+/// the block that may still move, empty once all is at rest. Solids are conserved to rounding;
+/// unknown cells are walls.
+CellBlock slump(Terrain& terrain, CellBlock block, const SlopeLimits& limits, int sweeps,
+                const CellBlock& wall = {});
 
 /// Heaps `volume` of loose soil on the terrain as a cone of the given slope with its axis at (x,
 /// y).
