@@ -116,8 +116,5 @@ Outcome work(const Inputs& inputs) {
 
 int main(int argc, char** argv) {
   using namespace excavplan::tools;
-  Inputs inputs;
-  return run_tool(
-      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
-      [&](Console&) { return work(inputs); });
+  return tool_main(argc, argv, about, declare, work);
 }

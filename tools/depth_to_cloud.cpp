@@ -69,8 +69,5 @@ Outcome convert(const Inputs& inputs) {
 
 int main(int argc, char** argv) {
   using namespace excavplan::tools;
-  Inputs inputs;
-  return run_tool(
-      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
-      [&](Console&) { return convert(inputs); });
+  return tool_main(argc, argv, about, declare, convert);
 }

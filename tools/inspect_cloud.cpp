@@ -104,8 +104,5 @@ Outcome inspect(const Inputs& inputs) {
 
 int main(int argc, char** argv) {
   using namespace excavplan::tools;
-  Inputs inputs;
-  return run_tool(
-      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
-      [&](Console&) { return inspect(inputs); });
+  return tool_main(argc, argv, about, declare, inspect);
 }

@@ -235,8 +235,5 @@ Outcome work(const Inputs& inputs, Console& console) {
 
 int main(int argc, char** argv) {
   using namespace excavplan::tools;
-  Inputs inputs;
-  return run_tool(
-      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
-      [&](Console& console) { return work(inputs, console); });
+  return tool_main(argc, argv, about, declare, work);
 }

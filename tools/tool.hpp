@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -18,13 +19,12 @@
 #include "quantity.hpp"
 
 /// @file
-/// What all command line tools share: options, help, output, exit codes. A tool is
+/// What all command line tools share: options, help, output, exit codes. A tool is a struct of
+/// inputs with their defaults, a function that binds the options to it, one that does the work, and
 ///
 ///     int main(int argc, char** argv) {
-///       Inputs inputs;                              // variables with their defaults
-///       return run_tool(argc, argv, about,
-///                       [&](Arguments& arguments) { arguments.option("cell", inputs.cell, ...); },
-///                       [&](Console& console) { return work(inputs, console); });
+///       using namespace excavplan::tools;
+///       return tool_main(argc, argv, about, declare, work);
 ///     }
 ///
 /// Exit codes: 0 done; 1 internal; 2 usage, Error bad_input; 3 Error bad_file; 4 not trustworthy,
@@ -134,6 +134,23 @@ class Console {
 int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
              const std::function<Outcome(Console&)>& work);
+
+/// The whole main() of a tool: `declare(arguments, inputs)` binds the options to a struct of
+/// inputs, which `work(inputs)` or `work(inputs, console)` then gets.
+template <typename Inputs, typename Work>
+int tool_main(int argc, const char* const* argv, const About& about,
+              void (*declare)(Arguments&, Inputs&), const Work& work) {
+  Inputs inputs;
+  return run_tool(
+      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
+      [&](Console& console) -> Outcome {
+        if constexpr (std::is_invocable_v<Work, const Inputs&, Console&>) {
+          return work(inputs, console);
+        } else {
+          return work(inputs);
+        }
+      });
+}
 
 /// Reads the soil or machine that a name or path means. @throws Error (bad_input) or (bad_file)
 SoilKind soil_named(const std::string& name_or_path);
