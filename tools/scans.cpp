@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <excavplan/error.hpp>
 
@@ -12,8 +13,14 @@
 namespace excavplan::tools {
 namespace {
 
-Cloud read_in_site_frame(const std::string& file, const std::optional<std::string>& frame,
-                         const std::optional<Rectangle>& area) {
+/// A scan and how dense it is.
+struct Scan {
+  Cloud cloud;
+  double density = 0.0;
+};
+
+Scan read_in_site_frame(const std::string& file, const std::optional<std::string>& frame,
+                        const std::optional<Rectangle>& area) {
   Cloud cloud = read_cloud(file);
   if (frame) transform(cloud, read_frame(*frame));
   if (area) {
@@ -23,11 +30,12 @@ Cloud read_in_site_frame(const std::string& file, const std::optional<std::strin
     cloud.width = cloud.points.size();
     cloud.height = 1;
   }
-  if (summarise(cloud).finite_points < 100) {
+  const CloudSummary summary = summarise(cloud);
+  if (summary.finite_points < 100) {
     throw Error(ErrorKind::bad_file,
                 file + ": holds fewer than 100 finite points" + (area ? " inside --area" : ""));
   }
-  return cloud;
+  return {std::move(cloud), summary.density};
 }
 
 std::string text(const Rectangle& r) {
@@ -53,14 +61,13 @@ Rectangle overlap(const ScanPair& scans) {
 }  // namespace
 
 ScanPair read_scans(const std::string& before, const std::string& after, const ScanFrames& frames) {
-  return {before, after, read_in_site_frame(before, frames.before, frames.area),
-          read_in_site_frame(after, frames.after, frames.area)};
+  Scan first = read_in_site_frame(before, frames.before, frames.area);
+  Scan second = read_in_site_frame(after, frames.after, frames.area);
+  return {before, after, std::move(first.cloud), std::move(second.cloud),
+          std::min(first.density, second.density)};
 }
 
-double cell_for(const ScanPair& scans) {
-  const double density = std::min(summarise(scans.before).density, summarise(scans.after).density);
-  return std::max(0.05, std::sqrt(6.0 / density));
-}
+double cell_for(const ScanPair& scans) { return std::max(0.05, std::sqrt(6.0 / scans.density)); }
 
 SurfacePair surfaces(const ScanPair& scans, double cell) {
   RasterOptions raster;

@@ -23,6 +23,7 @@ struct ScanPair {
   std::string after_file;
   Cloud before;
   Cloud after;
+  double density = 0.0;  ///< of the sparser scan [points/m^2 of ground]
 
   std::string files() const { return before_file + ", " + after_file; }
 };
