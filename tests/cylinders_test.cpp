@@ -19,6 +19,8 @@
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/random.hpp>
 
+#include "machine_file.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -79,19 +81,7 @@ std::string complaint_of(const CylinderGeometry& geometry, double lower, double 
 std::string complaint_about(const std::function<void(json&)>& change) {
   json file = json::parse(std::ifstream(zx120_path()));
   change(file["cylinders"]);
-  const std::string path = testing::TempDir() + "cylinders" + std::to_string(::getpid()) + ".json";
-  std::ofstream(path) << file;
-  std::string complaint = "accepted";
-  try {
-    load_machine(path);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_file);
-    complaint = error.what();
-    EXPECT_EQ(complaint.rfind(path + ": ", 0), 0u) << complaint;
-    complaint.erase(0, path.size() + 2);
-  }
-  std::remove(path.c_str());
-  return complaint;
+  return test::complaint_about_file(file);
 }
 
 // ---- closed forms -------------------------------------------------------------------------------

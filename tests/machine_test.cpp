@@ -17,6 +17,8 @@
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
+#include "machine_file.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -49,19 +51,7 @@ json shipped_json() { return json::parse(std::ifstream(zx120_path())); }
 std::string complaint_about(const std::function<void(json&)>& change) {
   json file = shipped_json();
   change(file);
-  const std::string path = testing::TempDir() + "machine" + std::to_string(::getpid()) + ".json";
-  std::ofstream(path) << file;
-  std::string complaint = "accepted";
-  try {
-    load_machine(path);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_file);
-    complaint = error.what();
-    EXPECT_EQ(complaint.rfind(path + ": ", 0), 0u) << complaint;
-    complaint.erase(0, path.size() + 2);
-  }
-  std::remove(path.c_str());
-  return complaint;
+  return test::complaint_about_file(file);
 }
 
 // ---- published figures --------------------------------------------------------------------------
