@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/planning/calibration.hpp>
 #include <excavplan/random.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -319,6 +320,43 @@ TEST_F(LawFile, BrokenRulesAreNamed) {
   expect("\"name\"", "\"names\"", "name: is missing");
   expect("\"source\"", "\"x\": 1, \"source\"", "x: is not a key of this file");
   expect("excavplan-density-law", "excavplan-soil", "format: is 'excavplan-soil'");
+}
+
+// ---- true and measured factor -------------------------------------------------------------------
+
+/// A dig of a known fallback: soil in the hole is missing from both volumes.
+DensityCalibration::Sample dig_with_fallback(double density, double fallback) {
+  const double k = bulking_of_density(paper_closed_form(), density);
+  const double cut = 0.3;
+  const double in_hole = fallback * cut;
+  return {density, k, (k * cut - in_hole) / (cut - in_hole), k, fallback};
+}
+
+TEST(BulkingDifference, IsWhatFallbackHidesAtItsWorst) {
+  DensityCalibration calibration;
+  calibration.closed_form = paper_closed_form();
+  calibration.samples = {dig_with_fallback(20.0, 0.01), dig_with_fallback(80.0, 0.04),
+                         dig_with_fallback(100.0, 0.0)};
+  const auto difference = bulking_difference(calibration);
+  ASSERT_TRUE(difference.has_value());
+  EXPECT_EQ(difference->largest.density_percent, 80.0);
+  const double k = paper_k0 / (1.0 - 0.8 * paper_r);
+  const double measured = k + 0.04 / 0.96 * (k - 1.0);
+  EXPECT_NEAR(difference->largest.bulking_factor_measured, measured, 1e-12);
+  EXPECT_NEAR(difference->density_points, 100.0 / paper_r * (1.0 - paper_k0 / measured) - 80.0,
+              1e-9);
+  EXPECT_EQ(difference->unexplained, 0.0);
+
+  calibration.samples[0].bulking_factor -= 0.003;
+  EXPECT_NEAR(bulking_difference(calibration)->unexplained, 0.003, 1e-12);
+}
+
+TEST(BulkingDifference, IsUnknownWhereTheTrueFactorIs) {
+  DensityCalibration calibration;
+  calibration.closed_form = paper_closed_form();
+  EXPECT_FALSE(bulking_difference(calibration).has_value());
+  calibration.samples = {dig_with_fallback(20.0, 0.01), {40.0, 1.17, 0.0, 0.0, 0.0}};
+  EXPECT_FALSE(bulking_difference(calibration).has_value());
 }
 
 }  // namespace

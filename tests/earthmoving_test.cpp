@@ -117,5 +117,24 @@ TEST(Earthmoving, AWedgeThatCannotSlideIsAValue) {
   EXPECT_THROW(CriticalWedges(70 * degree, 10 * degree), Error);
 }
 
+// Between the tables of two friction angles, against tables made for the angle itself.
+TEST(FrictionWedges, FactorsAreThoseOfTheFrictionAskedFor) {
+  const FrictionWedges wedges(28 * degree, 38 * degree, 2.0 / 3.0);
+  for (const double friction : {28.0, 29.3, 33.0, 36.7, 38.0}) {
+    const CriticalWedges own(friction * degree, friction * degree * 2.0 / 3.0);
+    for (const double rake : {12.0, 30.0, 55.0, 80.0}) {
+      for (const double slope : {-15.0, 0.0, 20.0}) {
+        const EarthmovingFactors a = wedges.at(rake * degree, slope * degree, friction * degree);
+        const EarthmovingFactors b = own.at(rake * degree, slope * degree);
+        EXPECT_NEAR(a.gamma, b.gamma, 1e-4 * b.gamma);
+        EXPECT_NEAR(a.c, b.c, 5e-3 * b.c);
+        EXPECT_NEAR(a.ca, b.ca, 2e-2 * std::abs(b.ca));
+      }
+    }
+  }
+  EXPECT_THROW(FrictionWedges(0.6, 0.5, 0.5), Error);
+  EXPECT_THROW(FrictionWedges(0.5, 0.6, 1.5), Error);
+}
+
 }  // namespace
 }  // namespace excavplan

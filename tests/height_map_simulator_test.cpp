@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "simulation/bucket_cavity.hpp"
+#include "simulation/bucket_resistance.hpp"
 #include "soil_simulator_contract.hpp"
 
 namespace excavplan {
@@ -68,7 +70,7 @@ TEST_F(Simulator, CutsExactlyWhatTheTipSweeps) {
     }
     const DigResult result = dig_on(ground, 40.0);
     EXPECT_NEAR(result.soil.bank_cut, area * machine_.bucket.width_outside, 1e-9);
-    const Eigen::ArrayXXd fallen = ground.bank.z - result.terrain.bank.z;
+    const Eigen::ArrayXXd fallen = ground.bank.z - result.after(ground).bank.z;
     EXPECT_NEAR(fallen.sum() * ground.bank.cell * ground.bank.cell, result.soil.bank_cut, 1e-9);
   }
 }
@@ -77,7 +79,7 @@ TEST_F(Simulator, BulkingFreedOfFallbackIsThatOfTheSolids) {
   for (const double density : {0.0, 25.0, 50.0, 75.0, 100.0}) {
     const Terrain ground = level_planning_ground(machine_);
     const DigResult result = dig_on(ground, density);
-    const HeightMapVolumes v = height_map_volumes(ground, result.terrain, {99.0, 99.0});
+    const HeightMapVolumes v = height_map_volumes(ground, result.after(ground), {99.0, 99.0});
     const double measured = (v.spilled + result.payload_volume) / v.excavated;
     const double f = result.soil.fallback_fraction;
     EXPECT_NEAR(f + (1.0 - f) * measured, bulking_of_density(soil_kind("loam"), density), 2e-3);
@@ -91,7 +93,7 @@ TEST_F(Simulator, LooseSoilDoesNotSwellTwice) {
   const DigResult result = dig_on(ground, 80.0);
   EXPECT_EQ(result.soil.bank_cut, 0.0);
   EXPECT_GT(result.soil.loose_cut, 0.2);
-  const double gone = (ground.loose - result.terrain.loose).sum() * 0.05 * 0.05;
+  const double gone = (ground.loose - result.after(ground).loose).sum() * 0.05 * 0.05;
   EXPECT_NEAR(gone, result.payload_volume, 1e-9);
 }
 
@@ -157,7 +159,7 @@ TEST_F(Simulator, DumpedHeapStandsAtTheAngleOfRepose) {
   DigOptions options;
   options.dump_at = Eigen::Vector2d(5.0, 4.0);
   const DigResult result = dig_on(ground, 40.0, paper_fixed_path(), "loam", options);
-  const HeightMap heap = result.terrain.surface();
+  const HeightMap heap = result.after(ground).surface();
   const double repose = std::tan(soil_kind("loam").angle_of_repose);
   for (int i = 0; i < 36; ++i) {
     const double angle = 10.0 * degree * i;
@@ -179,19 +181,20 @@ TEST_F(Simulator, RepeatedDigsAtOneSpotConserveAndGoOn) {
     if (i > 0) {
       EXPECT_LT(result.soil.bank_cut, 0.01 * 0.326);  // what is left is what fell back
     }
-    ground = std::move(result.terrain);
+    apply(result.patch, ground);
   }
 }
 
 TEST_F(Simulator, GravelsPitCavesInAndLoamsStands) {
   const DigResult gravel = dig(50.0, paper_fixed_path(), "gravel");
   const DigResult loam = dig(50.0);
-  const auto steepest = [](const Terrain& terrain) {
-    const Eigen::ArrayXXd z = terrain.surface().z;
+  const Terrain ground = level_planning_ground(machine_);
+  const auto steepest = [&](const DigResult& result) {
+    const Eigen::ArrayXXd z = result.after(ground).surface().z;
     return (z.bottomRows(z.rows() - 1) - z.topRows(z.rows() - 1)).abs().maxCoeff() / 0.05;
   };
-  EXPECT_LT(steepest(gravel.terrain), 1.2);
-  EXPECT_GT(steepest(loam.terrain), 3.0);
+  EXPECT_LT(steepest(gravel), 1.2);
+  EXPECT_GT(steepest(loam), 3.0);
 }
 
 TEST_F(Simulator, AWeakMachineStallsAndSaysWhere) {
@@ -207,6 +210,137 @@ TEST_F(Simulator, AWeakMachineStallsAndSaysWhere) {
   EXPECT_GT(std::abs(result.stall->torque), 20e3);
   EXPECT_NEAR(result.soil.solids_after, result.soil.solids_before,
               1e-9 * result.soil.solids_before);
+}
+
+// Ground that says how dense it is digs like ground the simulator was told of.
+TEST_F(Simulator, DensityOfTheCellsCountsLikeTheSimulatorsOwn) {
+  const SoilKind loam = soil_kind("loam");
+  const Terrain plain = level_planning_ground(machine_);
+  Terrain stated = plain;
+  stated.bank_void_ratio = Eigen::ArrayXXd::Constant(plain.loose.rows(), plain.loose.cols(),
+                                                     bank_state(loam, 70.0).void_ratio);
+  const DigResult told = dig_on(plain, 70.0);
+  const DigResult found = dig_on(stated, 20.0);
+  EXPECT_NEAR(found.payload_mass, told.payload_mass, 1e-6 * told.payload_mass);
+  EXPECT_NEAR(found.energy.total, told.energy.total, 2e-3 * told.energy.total);
+  EXPECT_NEAR(found.soil.fallen_back, told.soil.fallen_back, 1e-3 * told.soil.bank_cut);
+}
+
+TEST_F(Simulator, ADenseHalfResistsMoreThanALooseOne) {
+  const SoilKind loam = soil_kind("loam");
+  Terrain ground = level_planning_ground(machine_);
+  ground.bank_void_ratio = Eigen::ArrayXXd::Constant(ground.loose.rows(), ground.loose.cols(),
+                                                     bank_state(loam, 20.0).void_ratio);
+  ground.bank_void_ratio.topRows(ground.loose.rows() / 2) = bank_state(loam, 80.0).void_ratio;
+  const double energy = dig_on(ground, 50.0).energy.soil;
+  EXPECT_GT(energy, 1.1 * dig(20.0).energy.soil);
+  EXPECT_LT(energy, 0.9 * dig(80.0).energy.soil);
+}
+
+TEST_F(Simulator, TeethAreDrivenInByTheirOwnArea) {
+  // At the end of the penetration, against the same bucket with a plain lip: cone index times what
+  // the areas differ by, tooth faces carrying friction as tan(delta) / tan(half opening) does.
+  Machine plain = machine_;
+  plain.bucket.teeth.reset();
+  const SoilState bank = bank_state(soil_kind("loam"), 40.0);
+  const Terrain ground = level_planning_ground(machine_);
+  const auto path = make_dig_path(machine_, paper_fixed_path(), 6.0, [](double) { return 0.0; });
+  DigOptions options;
+  options.history = true;
+  const auto last_force = [&](const Machine& machine) {
+    const auto result = HeightMapSimulator(machine, soil_kind("loam"), 40.0)
+                            .dig(ground, std::get<DigPath>(path), options);
+    double force = 0.0;
+    for (const ForceSample& sample : result.history) {
+      if (sample.phase == DigPhase::penetrate) force = sample.soil.norm();
+    }
+    return force;
+  };
+  const Teeth& teeth = *machine_.bucket.teeth;
+  const double friction = std::tan(bank.tool_friction_angle);
+  const double wedge =
+      (1.0 + friction / std::tan(0.5 * teeth.angle)) / (1.0 + friction / std::tan(15.0 * degree));
+  const double area = 5 * 0.06 * 0.045 * wedge - 0.016 * 0.7;
+  const double expected = cone_index(soil_kind("loam"), bank, 0.24) * area;
+  EXPECT_NEAR(last_force(machine_) - last_force(plain), expected, 0.01 * expected);
+}
+
+TEST_F(Simulator, AHeelInTheGroundPushesBack) {
+  // The same drag with the floor 6 deg below level: the heel, 0.67 m behind, is 7 cm too deep.
+  const auto level = make_dig_path(machine_, paper_fixed_path(), 6.0, [](double) { return 0.0; });
+  DigPath sunk = std::get<DigPath>(level);
+  for (DigPose& pose : sunk.poses) {
+    if (pose.phase != DigPhase::drag) continue;
+    pose.bucket.floor_angle = -6.0 * degree;
+    const auto joints = inverse_kinematics(machine_, pose.bucket);
+    ASSERT_TRUE(std::holds_alternative<JointAngles>(joints));
+    pose.joints = std::get<JointAngles>(joints);
+  }
+  const Terrain ground = level_planning_ground(machine_);
+  const HeightMapSimulator simulator(machine_, soil_kind("loam"), 40.0);
+  DigOptions options;
+  options.history = true;
+  const auto lift = [&](const DigPath& path) {
+    double highest = 0.0;
+    for (const ForceSample& sample : simulator.dig(ground, path, options).history) {
+      if (sample.phase == DigPhase::drag) highest = std::max(highest, sample.soil.y());
+    }
+    return highest;
+  };
+  EXPECT_LT(lift(std::get<DigPath>(level)), 5e3);
+  EXPECT_GT(lift(sunk), 20e3);
+  EXPECT_LT(lift(sunk), 0.67 * 0.7 * 1e6);  // bearing capacity of this soil is below 1 MPa
+}
+
+TEST_F(Simulator, PackedSoilTakesTheCornerOfFloorAndBack) {
+  const Cavity cavity(machine_.bucket);
+  const auto& profile = machine_.bucket.profile;
+  const Eigen::Vector2d floor = profile[1] - profile[0];
+  const Eigen::Vector2d mouth = profile.back() - profile[0];
+  const double opening = std::acos(floor.normalized().dot(mouth.normalized()));
+  EXPECT_EQ(cavity.packed_front(0.0), 0.0);
+  EXPECT_NEAR(cavity.packed_front(struck_capacity(machine_)), opening, 1e-9);
+  EXPECT_NEAR(cavity.packed_front(1.0), opening, 1e-9);  // more than it holds
+  // Triangle of the floor and the next side, 0.66 m wide, full to the corner after it.
+  const Eigen::Vector2d next = profile[2] - profile[0];
+  const double triangle = 0.5 * std::abs(floor.x() * next.y() - floor.y() * next.x());
+  EXPECT_NEAR(cavity.packed_front(0.66 * triangle),
+              std::acos(floor.normalized().dot(next.normalized())), 1e-9);
+}
+
+// On a floor as rough as soil and flat like a chisel a wedge of great weight would have to slide:
+// the front of the packed soil is easier, and the force falls as the bucket fills.
+TEST_F(Simulator, TheWedgeSlidesOnPackedSoilWhereThatIsEasier) {
+  Machine machine = machine_;
+  machine.bucket.edge_angle = 10.0 * degree;
+  SoilKind soil = soil_kind("loam");
+  soil.tool_friction_ratio = 1.0;
+  soil.cohesion_loosest = 0.0;
+  const HeightMapModel model(machine, soil, 40.0);
+  const Terrain ground = level_planning_ground(machine);
+  const auto path =
+      std::get<DigPath>(make_dig_path(machine, {0.35, 0.5, 0.8}, 6.0, [](double) { return 0.0; }));
+  const Swath swath(ground.bank, machine.bucket.width_outside);
+  const GroundWindow window(ground, {soil, model.bank, model.loose},
+                            {0, ground.loose.rows(), 0, ground.loose.cols()});
+  const BucketResistance resistance(model, window, swath, path);
+  Cavity cavity(machine.bucket);
+  Stretch s;
+  s.phase = DigPhase::drag;
+  while (path.poses[s.pose + 1].phase != DigPhase::drag || path.poses[s.pose].bucket.x > 4.9) {
+    ++s.pose;
+  }
+  const DigPose& a = path.poses[s.pose];
+  const DigPose& b = path.poses[s.pose + 1];
+  s.from = {a.bucket.x, a.bucket.z};
+  s.to = {b.bucket.x, b.bucket.z};
+  s.joints = 0.5 * (a.joints + b.joints);
+  s.at = link_positions(machine, s.joints);
+  s.length = (s.to - s.from).norm();
+  cavity.turn_to(s.at.phi3);
+  const auto force = [&](double fill) { return resistance.at(s, cavity, fill).face_force.x(); };
+  EXPECT_LT(force(0.1), 0.8 * force(0.0));
+  EXPECT_LE(force(0.3), force(0.0));
 }
 
 TEST_F(Simulator, HalvingTheStepChangesLittle) {

@@ -114,6 +114,19 @@ TEST(Machine, BucketHoldsWhatItsMeshHolds) {
   EXPECT_LE(area, 0.538);
 }
 
+// Five teeth: the bucket mesh of pwri-opera/zx120_ros, and, with their length, the shovel settings
+// of pwri-opera/OperaSim-AGX. Width, thickness and angle are ours.
+TEST(Machine, BucketHasTheTeethOfThePublishedModels) {
+  ASSERT_TRUE(zx120().bucket.teeth.has_value());
+  const Teeth& teeth = *zx120().bucket.teeth;
+  EXPECT_EQ(teeth.count, 5);
+  EXPECT_EQ(teeth.length, 0.15);
+  EXPECT_EQ(teeth.width, 0.06);
+  EXPECT_EQ(teeth.thickness, 0.045);
+  EXPECT_EQ(teeth.angle, 0.3);
+  EXPECT_NEAR(teeth.angle, 2 * std::atan(0.5 * teeth.thickness / teeth.length), 0.003);
+}
+
 TEST(Machine, CapacityOfASquareBoxIsItsClosedForm) {
   Machine box = zx120();
   box.bucket.profile = {{1, 0}, {1, 1}, {0, 1}, {0, 0}};
@@ -418,6 +431,42 @@ TEST(MachineFile, NamesKeyValueAndRuleOfWhatItRefuses) {
   EXPECT_EQ(set("/format", "excavplan-soil"),
             "format: is 'excavplan-soil', expected 'excavplan-machine'");
   EXPECT_EQ(complaint_about([](json& f) { f["links"].erase("boom"); }), "links.boom: is missing");
+}
+
+TEST(MachineFile, MayLeaveOutTheTeeth) {
+  json file = shipped_json();
+  file["bucket"].erase("teeth");
+  const std::string path = testing::TempDir() + "plain_lip_" + std::to_string(::getpid()) + ".json";
+  std::ofstream(path) << file;
+  EXPECT_FALSE(load_machine(path).bucket.teeth.has_value());
+  std::remove(path.c_str());
+}
+
+TEST(MachineFile, NamesKeyValueAndRuleOfTeethItRefuses) {
+  const auto set = [](const std::string& key, const json& value) {
+    return complaint_about([&](json& f) { f["bucket"]["teeth"][key] = value; });
+  };
+  for (const auto& [value, text] :
+       std::vector<std::pair<json, std::string>>{{0, "0"}, {-5, "-5"}, {2.5, "2.5"}, {51, "51"}}) {
+    EXPECT_EQ(set("count", value),
+              "bucket.teeth.count: is " + text + ", must be a whole number in 1 .. 50");
+  }
+  EXPECT_EQ(set("count", "five"), "bucket.teeth.count: is \"five\", expected a number");
+  EXPECT_EQ(set("width_m", 0), "bucket.teeth.width_m: is 0, must be above 0 and at most 100");
+  EXPECT_EQ(set("width_m", 0.14), "accepted");  // shoulder to shoulder
+  EXPECT_EQ(set("width_m", 0.15),
+            "bucket.teeth.width_m: is 0.15, 5 teeth must not exceed width_outside_m = 0.7");
+  EXPECT_EQ(set("thickness_m", -0.045),
+            "bucket.teeth.thickness_m: is -0.045, must be above 0 and at most 1");
+  EXPECT_EQ(set("length_m", 150), "bucket.teeth.length_m: is 150, must be above 0 and at most 1");
+  for (const double angle : {0.0, -0.3, pi / 2, 2.0}) {
+    EXPECT_EQ(set("angle_rad", angle).rfind("bucket.teeth.angle_rad: is ", 0), 0u) << angle;
+  }
+  EXPECT_EQ(set("angle_rad", 2),
+            "bucket.teeth.angle_rad: is 2, must be above 0 and below 1.5707963267948966");
+  EXPECT_EQ(set("color", "grey"), "bucket.teeth.color: is not a key of this file");
+  EXPECT_EQ(complaint_about([](json& f) { f["bucket"]["teeth"].erase("length_m"); }),
+            "bucket.teeth.length_m: is missing");
 }
 
 TEST(MachineFile, RefusesProfilesThatAreNoConvexPolygon) {

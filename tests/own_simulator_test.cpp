@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -33,23 +34,26 @@ class ShovelSimulator : public SoilSimulator {
                 const DigOptions& options) const override {
     check(path.poses.size() >= 2, "the path needs two poses");
     check(terrain.bank.z.size() > 0, "the map is empty");
+    check(terrain.bank_void_ratio.size() == 0 && terrain.loose_void_ratio.size() == 0,
+          "cells with void ratios of their own are more than it can handle");
     DigResult result;
-    result.terrain = terrain;
-    result.soil.solids_before = solids(terrain);
+    result.patch = uncut_patch(terrain, path, options);
+    result.soil.solids_before = solids(result.patch, terrain.bank.cell);
     for (std::size_t i = 1; i < path.poses.size(); ++i) {
-      cut_below(path.poses[i - 1].bucket, path.poses[i].bucket, result);
+      cut_below(path.poses[i - 1].bucket, path.poses[i].bucket, terrain.bank, result);
     }
     const double mass = result.soil.bank_cut * bank_.dry_density +
                         result.soil.loose_cut * loose_.dry_density;  // of solids [kg]
     result.payload_volume = result.soil.payload = mass / loose_.dry_density;
     result.payload_mass = result.payload_volume * loose_.bulk_density;
     fill_energy(result, path, options.history);
-    result.soil.solids_after = solids(result.terrain) + mass;
     if (options.dump_at) {
-      cell_at(result.terrain, *options.dump_at) +=
+      const auto [row, col] = cell_at(terrain.bank, *options.dump_at);
+      result.patch.loose(row - result.patch.row, col - result.patch.col) +=
           result.payload_volume / (terrain.bank.cell * terrain.bank.cell);
-      result.soil.solids_after = solids(result.terrain);
     }
+    result.soil.solids_after =
+        solids(result.patch, terrain.bank.cell) + (options.dump_at ? 0.0 : mass);
     return result;
   }
 
@@ -60,31 +64,57 @@ class ShovelSimulator : public SoilSimulator {
     if (!holds) throw Error(ErrorKind::bad_input, std::string("shovel: ") + rule);
   }
 
-  /// Loose thickness of the cell at a point.
-  static double& cell_at(Terrain& terrain, const Eigen::Vector2d& at) {
-    const Rectangle extent = terrain.bank.extent();
-    check(extent.contains(at.x(), at.y()), "the dump point must lie on the map");
-    const Eigen::Vector2d cells = (at - terrain.bank.origin) / terrain.bank.cell;
-    return terrain.loose(static_cast<Eigen::Index>(cells.y()),
-                         static_cast<Eigen::Index>(cells.x()));
+  /// Row and column of a point.
+  static std::pair<Eigen::Index, Eigen::Index> cell_at(const HeightMap& map,
+                                                       const Eigen::Vector2d& at) {
+    const Eigen::Vector2d cells = (at - map.origin) / map.cell;
+    check(cells.x() >= 0.0 && cells.y() >= 0.0 && cells.x() < static_cast<double>(map.z.cols()) &&
+              cells.y() < static_cast<double>(map.z.rows()),
+          "path and dump point must lie on the map");
+    return {static_cast<Eigen::Index>(cells.y()), static_cast<Eigen::Index>(cells.x())};
+  }
+
+  /// The cells between the corners of all that the dig touches, as they are: a result holds no more
+  /// of the terrain than can have changed.
+  TerrainPatch uncut_patch(const Terrain& terrain, const DigPath& path,
+                           const DigOptions& options) const {
+    std::vector<Eigen::Vector2d> touched;
+    for (const DigPose& pose : path.poses) {
+      for (const double side : {-0.5, 0.5}) touched.emplace_back(pose.bucket.x, side * width_);
+    }
+    if (options.dump_at) touched.push_back(*options.dump_at);
+    auto [first_row, first_col] = cell_at(terrain.bank, touched.front());
+    auto [last_row, last_col] = std::pair(first_row, first_col);
+    for (const Eigen::Vector2d& at : touched) {
+      const auto [row, col] = cell_at(terrain.bank, at);
+      first_row = std::min(first_row, row);
+      first_col = std::min(first_col, col);
+      last_row = std::max(last_row, row);
+      last_col = std::max(last_col, col);
+    }
+    TerrainPatch patch;
+    patch.row = first_row;
+    patch.col = first_col;
+    const Eigen::Index rows = last_row - first_row + 1;
+    const Eigen::Index cols = last_col - first_col + 1;
+    patch.bank = terrain.bank.z.block(first_row, first_col, rows, cols);
+    patch.loose = terrain.loose.block(first_row, first_col, rows, cols);
+    return patch;
   }
 
   /// Lowers every cell whose centre the bucket passes between two poses to the lower of both.
-  void cut_below(const BucketPose& from, const BucketPose& to, DigResult& result) const {
-    HeightMap& bank = result.terrain.bank;
+  void cut_below(const BucketPose& from, const BucketPose& to, const HeightMap& map,
+                 DigResult& result) const {
+    TerrainPatch& patch = result.patch;
     const Rectangle swept = {std::min(from.x, to.x), -0.5 * width_, std::max(from.x, to.x),
                              0.5 * width_};
-    const Rectangle map = bank.extent();
-    check(swept.x_min >= map.x_min && swept.x_max < map.x_max && swept.y_min >= map.y_min &&
-              swept.y_max <= map.y_max,
-          "the path must lie on the map");
     const double level = std::min(from.z, to.z);
-    const double area = bank.cell * bank.cell;
-    for (Eigen::Index col = 0; col < bank.z.cols(); ++col) {
-      for (Eigen::Index row = 0; row < bank.z.rows(); ++row) {
-        if (!swept.contains(bank.x(col), bank.y(row))) continue;
-        double& z = bank.z(row, col);
-        double& loose = result.terrain.loose(row, col);
+    const double area = map.cell * map.cell;
+    for (Eigen::Index col = 0; col < patch.bank.cols(); ++col) {
+      for (Eigen::Index row = 0; row < patch.bank.rows(); ++row) {
+        if (!swept.contains(map.x(patch.col + col), map.y(patch.row + row))) continue;
+        double& z = patch.bank(row, col);
+        double& loose = patch.loose(row, col);
         check(!std::isnan(z), "the path must lie on known ground");
         const double loose_cut = std::clamp(z + loose - level, 0.0, loose);
         const double bank_cut = std::max(0.0, z - level);
@@ -104,21 +134,21 @@ class ShovelSimulator : public SoilSimulator {
     ForceSample sample;
     sample.phase = DigPhase::drag;
     sample.travelled = travel;
+    sample.joints = 0.5 * (path.poses.front().joints + path.poses.back().joints);
     sample.soil = {energy.total / travel, 0.0};
     sample.bucket_fill = result.payload_volume;
     result.peak_force = sample.soil.norm();
     if (history) result.history.push_back(sample);
   }
 
-  /// Dry mass of the map above z = -10 m [kg].
-  double solids(const Terrain& terrain) const {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < terrain.bank.z.size(); ++i) {
-      const double z = terrain.bank.z.data()[i];
-      if (std::isnan(z)) continue;
-      sum += (z + 10.0) * bank_.dry_density + terrain.loose.data()[i] * loose_.dry_density;
-    }
-    return sum * terrain.bank.cell * terrain.bank.cell;
+  /// Dry mass of the patch above z = -10 m [kg].
+  double solids(const TerrainPatch& patch, double cell) const {
+    const auto known = patch.bank == patch.bank;  // NaN is not
+    return cell * cell *
+           known
+               .select((patch.bank + 10.0) * bank_.dry_density + patch.loose * loose_.dry_density,
+                       0.0)
+               .sum();
   }
 
   double width_;

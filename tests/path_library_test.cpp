@@ -170,7 +170,11 @@ TEST_F(LibraryBuild, TheShippedLibraryIsTrue) {
     EXPECT_NEAR(dig.energy, entry.dig.energy, 1e-6 * dig.energy) << entry.density_percent;
     EXPECT_NEAR(dig.payload_mass, entry.dig.payload_mass, 1e-6 * dig.payload_mass);
     const auto fixed = evaluate_dig(machine_, simulator, ground, paper_fixed_path());
-    EXPECT_GT(dig.efficiency(), std::get<PlannedDig>(fixed).efficiency());
+    if (const auto* possible = std::get_if<PlannedDig>(&fixed)) {
+      EXPECT_GT(dig.efficiency(), possible->efficiency());
+    } else {
+      EXPECT_EQ(entry.density_percent, 100.0);  // where the machine stalls on the fixed path
+    }
     EXPECT_LT(dig.efficiency(), last);
     last = dig.efficiency();
   }

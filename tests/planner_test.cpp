@@ -90,7 +90,7 @@ TEST_F(Planner, DigsOnASlopeAndInAPit) {
       evaluate_dig(machine_, simulator(40.0), slope, paper_fixed_path())));
 
   const auto path = make_dig_path(machine_, paper_fixed_path(), 6.0, [](double) { return 0.0; });
-  const Terrain pit = simulator(40.0).dig(level_, std::get<DigPath>(path)).terrain;
+  const Terrain pit = simulator(40.0).dig(level_, std::get<DigPath>(path)).after(level_);
   EXPECT_TRUE(std::holds_alternative<PlannedDig>(
       evaluate_dig(machine_, simulator(40.0), pit, paper_fixed_path())));
 }
@@ -125,9 +125,8 @@ TEST_F(Planner, AStallIsAReason) {
 /// A user's own simulator: lifts what the three numbers say, at a price of its own.
 class HandMade : public SoilSimulator {
  public:
-  DigResult dig(const Terrain& terrain, const DigPath& path, const DigOptions&) const override {
+  DigResult dig(const Terrain&, const DigPath& path, const DigOptions&) const override {
     DigResult result;
-    result.terrain = terrain;
     result.payload_mass = 100.0;
     result.energy.total = 1000.0 + std::pow(path.parameters.drag_length - 1.0, 2) * 1e4;
     return result;

@@ -104,7 +104,7 @@ TEST_F(Section, CutsTheAreaUnderTheTipsLine) {
     const double volume = area * machine_.bucket.width_outside;
     EXPECT_NEAR(result.soil.bank_cut, volume, 1e-9 * volume);
     const double lowered =
-        (ground.bank.z - result.terrain.bank.z).sum() * ground.bank.cell * ground.bank.cell;
+        (ground.bank.z - result.after(ground).bank.z).sum() * ground.bank.cell * ground.bank.cell;
     EXPECT_NEAR(lowered, volume, 1e-9 * volume);
   }
 }
@@ -120,7 +120,7 @@ TEST_F(Section, CapacityIsTheVolumeUnderTheSlopes) {
   // Counts small cubes instead of clipping.
   const HoldingSlopes slopes = {2.0, 0.7};
   const auto& profile = machine_.bucket.profile;
-  for (const double phi3 : {-1.7, -2.2, -2.7, -3.1}) {
+  for (const double phi3 : {-1.2, -1.7, -2.2, -2.7, -3.1}) {  // the mouth looks ahead, then up
     std::vector<Eigen::Vector2d> corners;
     for (const Eigen::Vector2d& corner : profile) {
       corners.push_back(Eigen::Rotation2Dd(phi3) * (corner - profile.front()));
@@ -139,11 +139,12 @@ TEST_F(Section, CapacityIsTheVolumeUnderTheSlopes) {
     double volume = 0.0;
     for (double x = -1.3 + 0.5 * step; x < 1.3; x += step) {
       for (double z = -1.3 + 0.5 * step; z < 1.6; z += step) {
-        if (z > slopes.face * x || z > top.y() + slopes.heap * (top.x() - x)) continue;
+        if (z > slopes.face * x) continue;
         const double mouth = top.y() / top.x() * x;
         if (inside({x, z})) {
           volume += 2.0 * half * step * step;
-        } else if (x > 0.0 && x < top.x() && z > mouth) {
+        } else if (x > 0.0 && x < top.x() && z > mouth &&
+                   z < top.y() + slopes.heap * (top.x() - x)) {
           volume += 2.0 * std::max(0.0, half - (z - mouth) / slopes.heap) * step * step;
         }
       }
@@ -154,20 +155,22 @@ TEST_F(Section, CapacityIsTheVolumeUnderTheSlopes) {
 }
 
 TEST_F(Section, WindrowsStandAtTheAngleOfRepose) {
-  // The paper's path at 100 % and twice the drag overfills the bucket.
+  // The paper's path with a longer drag overfills the bucket.
   DigParameters parameters = paper_fixed_path();
   parameters.drag_length = 2.0;
   const Terrain ground = level_planning_ground(machine_, 0.025);
   const SoilKind soil = soil_kind("loam");
   const DigResult result =
-      SectionSimulator(machine_, soil, 90.0).dig(ground, path_on(ground, parameters));
+      SectionSimulator(machine_, soil, 70.0).dig(ground, path_on(ground, parameters));
+  ASSERT_FALSE(result.stall);
   ASSERT_GT(result.soil.spilled, 0.05);
-  const HeightMap after = result.terrain.surface();
+  const Terrain dug = result.after(ground);
+  const HeightMap after = dug.surface();
   const Eigen::Index middle = after.z.rows() / 2;
   double steepest = 0.0;
   for (Eigen::Index col = 0; col < after.z.cols(); ++col) {
     for (Eigen::Index row = 1; row < middle; ++row) {
-      if (result.terrain.bank.z(row, col) < 0.0) continue;  // the wall of the cut
+      if (dug.bank.z(row, col) < 0.0) continue;  // the wall of the cut
       steepest =
           std::max(steepest, std::abs(after.z(row, col) - after.z(row - 1, col)) / after.cell);
     }
@@ -180,9 +183,10 @@ TEST_F(Section, SandWallsBreakBackAndLoamWallsStand) {
   const auto widest = [&](const std::string& soil) {
     const DigResult result = SectionSimulator(machine_, soil_kind(soil), 60.0)
                                  .dig(ground, path_on(ground, {0.86, 0.76, 1.46}));  // 0.6 m deep
+    const Terrain after = result.after(ground);
     Eigen::Index rows = 0;
     for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
-      rows = std::max(rows, (result.terrain.bank.z.col(col) < -1e-6).count());
+      rows = std::max(rows, (after.bank.z.col(col) < -1e-6).count());
     }
     return static_cast<double>(rows) * ground.bank.cell;
   };
@@ -209,42 +213,185 @@ TEST_F(Section, HardlyDependsOnCellAndStep) {
   }
 }
 
+TEST_F(Section, TeethPenetrateAsTheirConeIndexSays) {
+  // With teeth and without, driven equally deep, friction is the same: what is left is the cone
+  // index on teeth that grow over their length, or on the whole lip.
+  const SoilKind soil = soil_kind("loam");
+  const SoilState state = bank_state(soil, 20.0);
+  Machine plain = machine_;
+  plain.bucket.teeth.reset();
+  const Terrain ground = level_planning_ground(machine_);
+  const DigPath path = path_on(ground);
+  DigOptions options;
+  options.history = true;
+  const DigResult with = SectionSimulator(machine_, soil, 20.0).dig(ground, path, options);
+  const DigResult without = SectionSimulator(plain, soil, 20.0).dig(ground, path, options);
+  const Teeth& teeth = *machine_.bucket.teeth;
+  const double tan_delta = std::tan(state.tool_friction_angle);
+  const double flanks = (1.0 + tan_delta / std::tan(0.5 * teeth.angle)) /
+                        (1.0 + tan_delta / std::tan(15.0 * pi / 180.0));
+  const double lip = machine_.bucket.edge_thickness * machine_.bucket.width_outside;
+  for (std::size_t i = 0; with.history[i].phase == DigPhase::penetrate; ++i) {
+    const double z = 0.5 * (path.poses[i].bucket.z + path.poses[i + 1].bucket.z);
+    const double driven = -z / std::sin(path.parameters.penetration_angle);
+    const double area =
+        teeth.count * teeth.width * teeth.thickness * flanks * std::min(1.0, driven / teeth.length);
+    const double expected = cone_index(soil, state, -z) * (area - lip);
+    const Eigen::Vector2d more = with.history[i].soil - without.history[i].soil;
+    const double sign = more.x() > 0.0 ? 1.0 : -1.0;
+    EXPECT_NEAR(sign * more.norm(), expected, 1e-6 * std::abs(expected)) << "driven " << driven;
+  }
+}
+
+TEST_F(Section, HeelStandsOnTheGroundLikeAFooting) {
+  // The tip hovers above level ground, the heel is pressed into it: no other force is there.
+  Machine machine = machine_;
+  for (JointLimits& limits : machine.limits) limits.torque = 1e9;
+  DigPath path;
+  for (int i = 0; i < 6; ++i) {
+    DigPose pose;
+    pose.bucket = {5.5 - 0.02 * i, 0.01, -0.1};
+    pose.joints = std::get<JointAngles>(inverse_kinematics(machine_, pose.bucket));
+    path.poses.push_back(pose);
+  }
+  const SoilKind soil = soil_kind("loam");
+  const SoilState state = bank_state(soil, 40.0);
+  DigOptions options;
+  options.history = true;
+  const Terrain ground = level_planning_ground(machine_);
+  const DigResult result = SectionSimulator(machine, soil, 40.0).dig(ground, path, options);
+  ASSERT_EQ(result.history.size(), 5U);
+
+  // Summed over small pieces of floor and back.
+  const double phi = state.friction_angle;
+  const double n_q = std::exp(pi * std::tan(phi)) * std::pow(std::tan(0.25 * pi + 0.5 * phi), 2);
+  const auto& profile = machine_.bucket.profile;
+  const double width = (profile[1] - profile[0]).norm();
+  const Eigen::Rotation2Dd turn(-0.1 - pi + machine_.beta());
+  Eigen::Vector2d force = Eigen::Vector2d::Zero();
+  for (int side = 0; side < 2; ++side) {
+    const auto corner = [&](int i) -> Eigen::Vector2d {
+      return turn * (profile[static_cast<std::size_t>(i)] - profile[0]);
+    };
+    const Eigen::Vector2d along = corner(side + 1) - corner(side);
+    for (int i = 0; i < 1000; ++i) {
+      const double sunk = -(0.01 + corner(side).y() + (i + 0.5) / 1000.0 * along.y());
+      if (sunk <= 0.0) continue;
+      const double capacity =
+          state.cohesion * (n_q - 1.0) / std::tan(phi) +
+          state.unit_weight * (sunk * n_q + width * (n_q + 1.0) * std::tan(phi));
+      const double pressed = std::min(1.0, sunk / (0.1 * width)) * capacity * along.norm() /
+                             1000.0 * machine_.bucket.width_outside;
+      const Eigen::Vector2d inward = Eigen::Vector2d(-along.y(), along.x()).normalized();
+      force += pressed * (inward + Eigen::Vector2d(std::tan(state.tool_friction_angle), 0.0));
+    }
+  }
+  EXPECT_GT(force.y(), 1000.0);
+  for (const ForceSample& sample : result.history) {
+    EXPECT_NEAR((sample.soil - force).norm(), 0.0, 0.01 * force.norm());
+  }
+}
+
+TEST_F(Section, NothingPressesUnderTheHeelOfAPlannedDig) {
+  // Driving in along a line, the force is along that line, whatever the floor rests on.
+  const Terrain ground = level_planning_ground(machine_);
+  const DigPath path = path_on(ground);
+  DigOptions options;
+  options.history = true;
+  const DigResult result =
+      SectionSimulator(machine_, soil_kind("loam"), 40.0).dig(ground, path, options);
+  const double angle = path.parameters.penetration_angle;
+  for (const ForceSample& sample : result.history) {
+    if (sample.phase != DigPhase::penetrate) break;
+    const double across = sample.soil.x() * std::sin(angle) - sample.soil.y() * std::cos(angle);
+    EXPECT_NEAR(across, 0.0, 1e-6 * sample.soil.norm());
+  }
+}
+
+TEST_F(Section, PackedSoilIsAnEasierFaceThanAFlatFloor) {
+  // A level drag with the floor at 3 deg: once the heel has passed, only what has packed into the
+  // corner changes. A lip of 25 deg is steep enough to be easier than any packed soil.
+  const Terrain ground = level_planning_ground(machine_);
+  const auto last_over_first = [&](double edge_angle) {
+    Machine machine = machine_;
+    machine.bucket.edge_angle = edge_angle;
+    for (JointLimits& limits : machine.limits)
+      limits.torque = 1e9;  // the heel starts in the ground
+    DigPath path;
+    for (int i = 0; i <= 60; ++i) {
+      DigPose pose;
+      pose.phase = DigPhase::drag;
+      pose.bucket = {6.2 - 0.025 * i, -0.15, 0.05};
+      pose.joints = std::get<JointAngles>(inverse_kinematics(machine, pose.bucket));
+      path.poses.push_back(pose);
+    }
+    DigOptions options;
+    options.history = true;
+    const DigResult result =
+        SectionSimulator(machine, soil_kind("clay"), 20.0).dig(ground, path, options);
+    EXPECT_EQ(result.soil.spilled, 0.0);
+    return result.history.at(59).soil.x() / result.history.at(45).soil.x();
+  };
+  EXPECT_LT(last_over_first(0.1), 0.99);
+  EXPECT_NEAR(last_over_first(machine_.bucket.edge_angle), 1.0, 1e-9);
+}
+
+TEST_F(Section, EqualVoidRatiosAreThatDensity) {
+  const SoilKind soil = soil_kind("loam");
+  Terrain ground = level_planning_ground(machine_);
+  const DigPath path = path_on(ground);
+  const DigResult told = SectionSimulator(machine_, soil, 45.0).dig(ground, path);
+  ground.bank_void_ratio = Eigen::ArrayXXd::Constant(ground.loose.rows(), ground.loose.cols(),
+                                                     bank_state(soil, 45.0).void_ratio);
+  const DigResult held = SectionSimulator(machine_, soil, 10.0).dig(ground, path);
+  EXPECT_NEAR(held.payload_mass, told.payload_mass, 1e-9 * told.payload_mass);
+  EXPECT_NEAR(held.energy.total, told.energy.total, 1e-3 * told.energy.total);
+}
+
+TEST_F(Section, SoilSwellsFromTheCellItComesFrom) {
+  // Dense and loose rows side by side, on rough ground: nothing overflows, so the bucket holds what
+  // the cells lost, each at its own ratio.
+  const SoilKind soil = soil_kind("loam");
+  Terrain ground = rough(8);
+  ground.bank_void_ratio = ground.loose_void_ratio = ground.loose;
+  for (Eigen::Index row = 0; row < ground.loose.rows(); ++row) {
+    ground.bank_void_ratio.row(row) = row % 2 == 0 ? 0.5 : 1.2;
+    ground.loose_void_ratio.row(row) = row % 3 == 0 ? 0.6 : 1.28;
+  }
+  const DigResult result =
+      SectionSimulator(machine_, soil, 40.0).dig(ground, path_on(ground, {0.7, 0.25, 0.8}));
+  const Terrain after = result.after(ground);
+  const double loose = 1.0 + soil.void_ratio_loose;
+  const double swollen = ((ground.bank.z - after.bank.z) / (1.0 + ground.bank_void_ratio) +
+                          ground.loose / (1.0 + ground.loose_void_ratio) -
+                          after.loose / (1.0 + after.loose_void_ratio))
+                             .sum() *
+                         loose * ground.bank.cell * ground.bank.cell;
+  EXPECT_GT(result.payload_volume, 0.1);
+  EXPECT_NEAR(result.payload_volume, swollen, 1e-9 * swollen);
+}
+
 // ---- Against the built-in simulator -------------------------------------------------------------
 
 struct CrossCheck {
   std::string name;
   std::string soil;
   double gradient = 0.0;
-  double payload = 0.10;  ///< how far the two may part
-  double work = 0.15;
+  double fits = 0.015;     ///< how far the two may part, in energy and work on the soil
+  double overfull = 0.04;  ///< the same where the bucket leaves a tenth of the cut or more behind
+  bool teeth = true;
 };
 
 class SectionAgainstMap : public Section, public testing::WithParamInterface<CrossCheck> {
  protected:
-  void expect_alike(const DigResult& section, const DigResult& map) const {
-    EXPECT_NEAR(section.payload_mass, map.payload_mass, GetParam().payload * map.payload_mass);
-    EXPECT_NEAR(section.energy.total, map.energy.total, 0.15 * map.energy.total);
-  }
-
   /// Work of the tip against the soil's force [J]: unlike the ledger's share of the soil, it does
   /// not hang on which joint just lifts and which lowers.
   static double work_on_soil(const DigResult& result, const DigPath& path) {
     double work = 0.0;
-    double before = 0.0;
-    double at = 0.0;  // travel up to pose `next`
-    std::size_t next = 0;
-    Eigen::Vector2d direction = Eigen::Vector2d::Zero();
-    for (const ForceSample& sample : result.history) {
-      const double middle = 0.5 * (before + sample.travelled);
-      while (at < middle && next + 1 < path.poses.size()) {
-        const BucketPose& p = path.poses[next].bucket;
-        const BucketPose& q = path.poses[++next].bucket;
-        const Eigen::Vector2d step(q.x - p.x, q.z - p.z);
-        at += step.norm();
-        direction = step.normalized();
-      }
-      work -= sample.soil.dot(direction) * (sample.travelled - before);
-      before = sample.travelled;
+    for (std::size_t i = 0; i < result.history.size(); ++i) {
+      const BucketPose& p = path.poses[i].bucket;
+      const BucketPose& q = path.poses[i + 1].bucket;
+      work -= result.history[i].soil.dot(Eigen::Vector2d(q.x - p.x, q.z - p.z));
     }
     return work;
   }
@@ -252,17 +399,18 @@ class SectionAgainstMap : public Section, public testing::WithParamInterface<Cro
 
 TEST_P(SectionAgainstMap, AgreesOverDensitiesAndPaths) {
   // What they share is the physics of docs/methods.md; cutting, bucket, piles and forces are each
-  // written twice. They part where the bucket overflows: the section's pile is a closed form that
-  // is at rest at once, the map's has to slide aside grain by grain while it is pushed, and
-  // resists meanwhile.
+  // written twice. They part a little where the bucket overflows: the section's pile is at rest at
+  // once, the map's has to slide aside grain by grain.
   const Terrain ground = slope(GetParam().gradient);
   const SoilKind soil = soil_kind(GetParam().soil);
+  Machine machine = machine_;
+  if (!GetParam().teeth) machine.bucket.teeth.reset();
   const std::vector<DigPath> paths = ten_paths(ground);
   int parted = 0;
   int compared = 0;
   for (double density = 0.0; density <= 100.0; density += 20.0) {
-    const SectionSimulator section(machine_, soil, density);
-    const HeightMapSimulator map(machine_, soil, density);
+    const SectionSimulator section(machine, soil, density);
+    const HeightMapSimulator map(machine, soil, density);
     for (const DigPath& path : paths) {
       SCOPED_TRACE(std::to_string(density) + " %, path " +
                    std::to_string(path.parameters.penetration_angle) + ", " +
@@ -274,17 +422,15 @@ TEST_P(SectionAgainstMap, AgreesOverDensitiesAndPaths) {
       const DigResult b = map.dig(ground, path, options);
       if (a.stall.has_value() != b.stall.has_value()) ++parted;
       if (a.stall || b.stall) continue;
-      EXPECT_NEAR(a.soil.bank_cut, b.soil.bank_cut, 0.01 * b.soil.bank_cut);
+      EXPECT_NEAR(a.soil.bank_cut, b.soil.bank_cut, 1e-6 * b.soil.bank_cut);
+      EXPECT_NEAR(a.payload_mass, b.payload_mass, 0.015 * b.payload_mass);
       const double left = b.soil.spilled + b.soil.fallen_back;
-      if (left > 0.1 * b.soil.bank_cut) {
-        EXPECT_LT(a.energy.total, 1.05 * b.energy.total);
-        EXPECT_NEAR(a.payload_mass, b.payload_mass, GetParam().payload * b.payload_mass);
-        continue;
-      }
-      ++compared;
-      expect_alike(a, b);
+      const bool overfull = left > 0.1 * b.soil.bank_cut;
+      const double bound = overfull ? GetParam().overfull : GetParam().fits;
+      EXPECT_NEAR(a.energy.total, b.energy.total, bound * b.energy.total);
       const double work = work_on_soil(b, path);
-      EXPECT_NEAR(work_on_soil(a, path), work, GetParam().work * work);
+      EXPECT_NEAR(work_on_soil(a, path), work, bound * work);
+      if (!overfull) ++compared;
     }
   }
   EXPECT_GE(compared, 12);
@@ -293,9 +439,12 @@ TEST_P(SectionAgainstMap, AgreesOverDensitiesAndPaths) {
 
 INSTANTIATE_TEST_SUITE_P(Grounds, SectionAgainstMap,
                          testing::Values(CrossCheck{"loam_level", "loam"},
-                                         CrossCheck{"loam_rising", "loam", -0.1},
-                                         CrossCheck{"loam_falling", "loam", 0.1, 0.15},
-                                         CrossCheck{"sand_level", "sand", 0.0, 0.15, 0.20}),
+                                         CrossCheck{"loam_plain_lip", "loam", 0.0, 0.015, 0.04,
+                                                    false},
+                                         CrossCheck{"loam_rising", "loam", -0.1, 0.03, 0.10},
+                                         CrossCheck{"loam_falling", "loam", 0.1},
+                                         CrossCheck{"sand_level", "sand", 0.0, 0.015, 0.06},
+                                         CrossCheck{"clay_level", "clay"}),
                          [](const auto& tested) { return tested.param.name; });
 
 // ---- Hostile ------------------------------------------------------------------------------------
@@ -306,8 +455,9 @@ TEST_F(Section, SoilKeepsToKnownCellsBesideTheCut) {
   const DigPath path = path_on(ground, {0.86, 0.76, 1.46});
   ground.bank.z.row(beside).setConstant(std::nan(""));
   const DigResult result = SectionSimulator(machine_, soil_kind("sand"), 40.0).dig(ground, path);
-  EXPECT_EQ(result.terrain.bank.z.isNaN().count(), ground.bank.z.cols());
-  EXPECT_EQ(result.terrain.loose.row(beside).sum(), 0.0);
+  const Terrain after = result.after(ground);
+  EXPECT_EQ(after.bank.z.isNaN().count(), ground.bank.z.cols());
+  EXPECT_EQ(after.loose.row(beside).sum(), 0.0);
   EXPECT_NEAR(result.soil.solids_after, result.soil.solids_before,
               1e-9 * result.soil.solids_before);
 }
@@ -354,8 +504,8 @@ TEST_F(Section, RepeatedDigsAtOneSpotLoseNothing) {
     const DigResult result = simulator.dig(ground, std::get<DigPath>(path), options);
     ASSERT_NEAR(result.soil.solids_after, result.soil.solids_before,
                 1e-9 * result.soil.solids_before);
-    ASSERT_TRUE((result.terrain.loose >= 0.0).all());
-    ground = result.terrain;
+    apply(result.patch, ground);
+    ASSERT_TRUE((ground.loose >= 0.0).all());
   }
 }
 

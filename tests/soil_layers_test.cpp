@@ -3,10 +3,11 @@
 #include "simulation/soil_layers.hpp"
 
 #include <cmath>
-#include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
+#include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
 namespace excavplan {
@@ -14,13 +15,39 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-SlopeLimits loose_soil(double repose) {
-  return {std::tan(repose), std::tan(repose), std::numeric_limits<double>::infinity(), 1.0};
-}
-
 CellBlock whole(const Terrain& terrain) {
   return {0, terrain.loose.rows(), 0, terrain.loose.cols()};
 }
+
+/// Soil with one bank and one loose state; slides with the given tangents.
+struct Ground {
+  Ground() {
+    kind.specific_gravity = 2.7;
+    kind.void_ratio_max = 1.4;
+    kind.void_ratio_min = 0.4;
+    kind.void_ratio_loose = 1.4;
+    kind.friction_loosest = 35 * degree;
+    bank = bank_state(kind, 80.0);  // void ratio 0.6: swells by 1.5
+    loose = loose_state(kind);
+  }
+
+  void slump(Terrain& terrain, double repose, bool bank_stands = true) const {
+    GroundWindow window(terrain, {kind, bank, loose}, whole(terrain));
+    const SlopeLimits limits = {std::tan(repose), bank_stands};
+    EXPECT_TRUE(excavplan::slump(window, whole(terrain), limits, 100000).empty());
+    apply(window.patch(), terrain);
+  }
+
+  void pour(Terrain& terrain, const Eigen::Vector2d& at, double volume) const {
+    GroundWindow window(terrain, {kind, bank, loose}, {});
+    excavplan::pour(window, at, volume, std::tan(35 * degree));
+    apply(window.patch(), terrain);
+  }
+
+  SoilKind kind;
+  SoilState bank;
+  SoilState loose;
+};
 
 /// Half a cubic metre as a column of 20 cm radius that collapses.
 Terrain collapsed_column(double cell, double repose) {
@@ -38,7 +65,7 @@ Terrain collapsed_column(double cell, double repose) {
       }
     }
   }
-  EXPECT_TRUE(slump(terrain, whole(terrain), loose_soil(repose), 100000).empty());
+  Ground().slump(terrain, repose);
   return terrain;
 }
 
@@ -71,17 +98,19 @@ TEST(Slump, KeepsEveryGrain) {
     terrain.loose.data()[i] = random.uniform() < 0.1 ? random.uniform() : 0.0;
   }
   const double before = terrain.loose.sum();
-  slump(terrain, whole(terrain), loose_soil(35 * degree), 100000);
+  Ground().slump(terrain, 35 * degree);
   EXPECT_NEAR(terrain.loose.sum(), before, 1e-12 * before * 3600);
   EXPECT_GE(terrain.loose.minCoeff(), 0.0);
 }
 
 TEST(Slump, DryWallCavesInToItsFrictionAngleAndCohesiveWallStands) {
-  const auto wall = [](double critical_height) {
+  const auto wall = [](double height) {
+    Ground ground;
+    ground.bank.cohesion = height * ground.bank.unit_weight / 4.0 /
+                           std::tan(45 * degree + 0.5 * ground.bank.friction_angle);
     Terrain terrain = undisturbed(flat_ground({0, 0, 4, 2}, 0.05));
     terrain.bank.z.leftCols(40) += 0.5;
-    slump(terrain, whole(terrain),
-          {std::tan(35 * degree), std::tan(35 * degree), critical_height, 1.2}, 100000);
+    ground.slump(terrain, 35 * degree, false);
     return terrain;
   };
   EXPECT_EQ(wall(0.6).bank.z.maxCoeff(), 0.5);
@@ -92,19 +121,81 @@ TEST(Slump, DryWallCavesInToItsFrictionAngleAndCohesiveWallStands) {
   const double steepest = (z.leftCols(76) - z.rightCols(76)).maxCoeff() / (4 * 0.05);
   EXPECT_LT(steepest, std::tan(37 * degree));
   EXPECT_GT(steepest, std::tan(34 * degree));
-  // What broke off swelled by 1.2: solids are conserved.
+  // What broke off swelled by 1.5: solids are conserved.
   const double broken = 40 * 40 * 0.5 - caved.bank.z.sum();
   EXPECT_GT(broken, 0.0);
-  EXPECT_NEAR(caved.loose.sum(), 1.2 * broken, 1e-9);
+  EXPECT_NEAR(caved.loose.sum(), 1.5 * broken, 1e-9);
 }
 
 TEST(Slump, UnknownCellsAreWalls) {
   Terrain terrain = undisturbed(flat_ground({0, 0, 1, 1}, 0.05));
   terrain.bank.z.col(10).setConstant(std::nan(""));
   terrain.loose.col(9).setConstant(1.0);
-  slump(terrain, whole(terrain), loose_soil(30 * degree), 100000);
+  Ground().slump(terrain, 30 * degree);
   EXPECT_NEAR(terrain.loose.leftCols(10).sum(), 20.0, 1e-9);
   EXPECT_EQ(terrain.loose.rightCols(10).sum(), 0.0);
+}
+
+TEST(Slump, SoilThatMovesSwellsAndWhatStaysKeepsItsVoidRatio) {
+  Terrain terrain = undisturbed(flat_ground({0, 0, 2, 2}, 0.05));
+  terrain.loose_void_ratio = Eigen::ArrayXXd::Constant(40, 40, 0.5);
+  terrain.loose.block(15, 15, 10, 10) += 0.8;
+  terrain.loose.leftCols(2) += 0.1;  // lies still
+  const auto solids = [](const Terrain& t) { return (t.loose / (1.0 + t.loose_void_ratio)).sum(); };
+  const double before = solids(terrain);
+  Ground().slump(terrain, 35 * degree);
+  EXPECT_NEAR(solids(terrain), before, 1e-9 * before);
+  EXPECT_EQ(terrain.loose_void_ratio(20, 0), 0.5);
+  EXPECT_NEAR(terrain.loose_void_ratio(20, 12), 1.4, 1e-12);  // all that lies there has moved
+  const double core = terrain.loose_void_ratio(20, 20);
+  EXPECT_LT(core, 0.6);
+}
+
+TEST(Slump, UnevenBankFailsWhereItIsLoose) {
+  Ground ground;
+  ground.kind.cohesion_loosest = 100.0;
+  ground.kind.cohesion_growth = 5.0;  // 100 Pa .. 15 kPa
+  Terrain terrain = undisturbed(flat_ground({0, 0, 4, 2}, 0.05));
+  terrain.bank.z.leftCols(40) += 0.5;
+  terrain.bank_void_ratio = Eigen::ArrayXXd::Constant(40, 80, 1.4);
+  terrain.bank_void_ratio.topRows(20).setConstant(0.4);
+  const Terrain before = terrain;
+  ground.slump(terrain, 35 * degree, false);
+  EXPECT_TRUE((terrain.bank.z.topRows(19) == before.bank.z.topRows(19)).all());
+  EXPECT_LT(terrain.bank.z(35, 39), 0.3);
+}
+
+// Digs and heaps at the rim of a window look as in the middle of one.
+TEST(GroundWindow, GrowsWithWhatSlides) {
+  Terrain small = undisturbed(flat_ground({0, 0, 6, 6}, 0.05));
+  small.loose.block(55, 55, 10, 10) += 1.0;
+  Terrain large = small;
+  const Ground ground;
+  GroundWindow window(small, {ground.kind, ground.bank, ground.loose}, {55, 65, 55, 65});
+  EXPECT_LT(window.cells().rows(), 40);
+  slump(window, {55, 65, 55, 65}, {std::tan(35 * degree), true}, 100000);
+  apply(window.patch(), small);
+  ground.slump(large, 35 * degree);
+  EXPECT_TRUE((small.loose - large.loose).abs().maxCoeff() < 1e-3);
+  EXPECT_NEAR(small.loose.sum(), 100.0, 1e-9);
+}
+
+TEST(GroundWindow, RefusesLayersThatCannotBeWhereItLooks) {
+  Terrain terrain = undisturbed(flat_ground({0, 0, 4, 4}, 0.05));
+  terrain.loose(79, 79) = -1.0;  // far away: nobody looks
+  const Ground ground;
+  const GroundSoil soil = {ground.kind, ground.bank, ground.loose};
+  EXPECT_NO_THROW(GroundWindow(terrain, soil, {0, 10, 0, 10}));
+  try {
+    GroundWindow(terrain, soil, whole(terrain));
+    ADD_FAILURE() << "a negative layer was taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "dig: the loose layer in the cell at x = 3.975000 m, y = 3.975000 m is -1.000000, "
+              "must be in 0.000000 .. 1000000.000000");
+  }
+  terrain.bank_void_ratio = Eigen::ArrayXXd::Constant(80, 80, 0.2);
+  EXPECT_THROW(GroundWindow(terrain, soil, {0, 10, 0, 10}), Error);
 }
 
 TEST(Pour, HeapHoldsItsVolumeOnAnyGround) {
@@ -112,9 +203,9 @@ TEST(Pour, HeapHoldsItsVolumeOnAnyGround) {
   for (Eigen::Index col = 0; col < terrain.bank.z.cols(); ++col) {
     terrain.bank.z.col(col) += 0.2 * terrain.bank.x(col);
   }
-  pour(terrain, {3.0, 3.0}, 0.4, std::tan(35 * degree));
+  Ground().pour(terrain, {3.0, 3.0}, 0.4);
   EXPECT_NEAR(terrain.loose.sum() * 0.05 * 0.05, 0.4, 1e-12);
-  pour(terrain, {3.3, 3.0}, 0.4, std::tan(35 * degree));
+  Ground().pour(terrain, {3.3, 3.0}, 0.4);
   EXPECT_NEAR(terrain.loose.sum() * 0.05 * 0.05, 0.8, 1e-12);
 }
 

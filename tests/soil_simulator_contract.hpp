@@ -57,9 +57,18 @@ class SoilSimulatorContract : public testing::TestWithParam<SimulatorCase> {
   }
 
   static bool same_bytes(const DigResult& a, const DigResult& b) {
-    return (a.terrain.bank.z == b.terrain.bank.z).all() &&
-           (a.terrain.loose == b.terrain.loose).all() && a.payload_mass == b.payload_mass &&
-           a.energy.total == b.energy.total && a.peak_force == b.peak_force;
+    return a.patch.row == b.patch.row && a.patch.col == b.patch.col &&
+           (a.patch.bank == b.patch.bank).all() && (a.patch.loose == b.patch.loose).all() &&
+           a.payload_mass == b.payload_mass && a.energy.total == b.energy.total &&
+           a.peak_force == b.peak_force;
+  }
+
+  /// Volume of grains over the whole map, from the cells' own void ratios.
+  static double solids(const Terrain& terrain) {
+    return (terrain.bank.z / (1.0 + terrain.bank_void_ratio) +
+            terrain.loose / (1.0 + terrain.loose_void_ratio))
+               .sum() *
+           terrain.bank.cell * terrain.bank.cell;
   }
 
   const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
@@ -102,12 +111,82 @@ TEST_P(SoilSimulatorContract, LeavesUnknownCellsUnknownAndFarGroundAlone) {
   Terrain ground = level_planning_ground(machine_);
   const Eigen::Index corner = 0;
   ground.bank.z(corner, corner) = std::nan("");
-  const DigResult result = simulator->dig(ground, path_on(machine_, ground));
-  EXPECT_TRUE(std::isnan(result.terrain.bank.z(corner, corner)));
-  EXPECT_EQ(result.terrain.bank.z.isNaN().count(), 1);
+  const Terrain after = simulator->dig(ground, path_on(machine_, ground)).after(ground);
+  EXPECT_TRUE(std::isnan(after.bank.z(corner, corner)));
+  EXPECT_EQ(after.bank.z.isNaN().count(), 1);
   const Eigen::Index last = ground.bank.z.cols() - 1;
-  EXPECT_TRUE((result.terrain.bank.z.col(last) == ground.bank.z.col(last)).all());
-  EXPECT_EQ(result.terrain.loose.col(last).sum(), 0.0);
+  EXPECT_TRUE((after.bank.z.col(last) == ground.bank.z.col(last)).all());
+  EXPECT_EQ(after.loose.col(last).sum(), 0.0);
+}
+
+TEST_P(SoilSimulatorContract, CaresNotHowFarTheMapReaches) {
+  const auto simulator = GetParam().make(machine_, 55.0);
+  const Terrain near = level_planning_ground(machine_);
+  Rectangle extent = near.bank.extent();
+  extent.x_max += 30.0;
+  extent.y_max += 20.0;
+  Terrain far = undisturbed(flat_ground(extent, near.bank.cell));
+  far.bank.origin = near.bank.origin;
+  far.loose(far.loose.rows() - 1, far.loose.cols() - 1) = 3.0;
+  const DigPath path = path_on(machine_, near);
+  const DigResult a = simulator->dig(near, path);
+  const DigResult b = simulator->dig(far, path);
+  EXPECT_EQ(a.payload_mass, b.payload_mass);
+  EXPECT_EQ(a.energy.total, b.energy.total);
+  EXPECT_EQ(b.after(far).loose(far.loose.rows() - 1, far.loose.cols() - 1), 3.0);
+}
+
+// Cells that say how dense they are: honoured to the last grain, or refused.
+TEST_P(SoilSimulatorContract, UnevenGroundIsConservedOrRefused) {
+  const auto simulator = GetParam().make(machine_, 55.0);
+  double grains_per_mass = 0.0;  // of the payload: the same whatever the ground was like
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Terrain ground = rough_ground(machine_, seed);
+    Random random(seed, 1);
+    ground.bank_void_ratio = ground.loose_void_ratio = ground.loose;
+    for (Eigen::Index i = 0; i < ground.loose.size(); ++i) {
+      ground.bank_void_ratio.data()[i] = random.uniform(0.6, 0.75);
+      ground.loose_void_ratio.data()[i] = random.uniform(0.6, 0.75);
+    }
+    try {
+      const DigResult result = simulator->dig(ground, path_on(machine_, ground));
+      EXPECT_GT(result.payload_mass, 0.0);
+      const double gone = solids(ground) - solids(result.after(ground));
+      if (seed == 1) grains_per_mass = gone / result.payload_mass;
+      EXPECT_NEAR(gone / result.payload_mass, grains_per_mass, 1e-9 * grains_per_mass);
+      EXPECT_NEAR(result.soil.solids_after, result.soil.solids_before,
+                  1e-9 * result.soil.solids_before);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    }
+  }
+}
+
+TEST_P(SoilSimulatorContract, DigsAgainAndAgainOnAnyGround) {
+  const auto simulator = GetParam().make(machine_, 45.0);
+  for (const double gradient : {-0.15, 0.0, 0.15}) {
+    Terrain ground = rough_ground(machine_, 9);
+    for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
+      ground.bank.z.col(col) += gradient * (ground.bank.x(col) - 5.0);
+      if (ground.bank.x(col) < 4.5) ground.bank.z.col(col) -= 0.15;  // a step
+    }
+    ground.bank.z.topRows(4).setConstant(std::nan(""));  // unseen, beside the dig
+    const Eigen::Index unknown = ground.bank.z.isNaN().count();
+    int digs = 0;
+    for (int i = 0; i < 3; ++i) {
+      const auto path =
+          make_dig_path_anywhere(machine_, {0.6, 0.25, 1.0}, boom_plane_profile(ground));
+      if (!std::holds_alternative<DigPath>(path)) break;
+      const DigResult result = simulator->dig(ground, std::get<DigPath>(path));
+      EXPECT_NEAR(result.soil.solids_after, result.soil.solids_before,
+                  1e-9 * result.soil.solids_before);
+      apply(result.patch, ground);
+      EXPECT_EQ(ground.bank.z.isNaN().count(), unknown);
+      EXPECT_GE(ground.loose.minCoeff(), 0.0);
+      ++digs;
+    }
+    EXPECT_GE(digs, 2) << gradient;
+  }
 }
 
 TEST_P(SoilSimulatorContract, LedgersAddUp) {

@@ -268,5 +268,22 @@ TEST(SoilFile, MissingFileIsNamed) {
   }
 }
 
+TEST(Soil, StateOfAVoidRatioIsThatOfItsDensity) {
+  const SoilKind loam = load_soil(find_data_file("soils/loam.json"));
+  for (const double density : {0.0, 12.5, 60.0, 100.0}) {
+    const SoilState state = bank_state(loam, density);
+    const SoilState same = bank_state_of_void_ratio(loam, state.void_ratio);
+    EXPECT_NEAR(same.cohesion, state.cohesion, 1e-9 * state.cohesion);
+    EXPECT_NEAR(same.friction_angle, state.friction_angle, 1e-12);
+    EXPECT_NEAR(same.dry_density, state.dry_density, 1e-9 * state.dry_density);
+  }
+  try {
+    bank_state_of_void_ratio(loam, 1.4);
+    ADD_FAILURE() << "soil looser than loose was taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), "void ratio of loam is 1.4, must be in 0.415 .. 1.3");
+  }
+}
+
 }  // namespace
 }  // namespace excavplan

@@ -11,8 +11,12 @@
 #include <cstdlib>
 #include <functional>
 #include <iostream>
+#include <map>
 
 #include <nlohmann/json.hpp>
+
+#include <excavplan/machine/machine.hpp>
+#include <excavplan/soil/soil.hpp>
 
 #include "run_program.hpp"
 
@@ -102,6 +106,7 @@ ScanPair scan_pair(const TemporaryFolder& folder, int density, int seed) {
   return scans;
 }
 
+const Words all_joints = {"boom", "arm", "bucket"};
 const Words small_search = {"--population", "12", "--generations", "3"};
 
 // ---- A depth image ----------------------------------------------------------------------------
@@ -189,7 +194,7 @@ const std::vector<Contract>& contracts() {
        }},
       {"simulate-dig",
        {"--density", "--path", "--start", "--terrain", "--dump-at", "--cell", "--seed", "--noise",
-        "--before", "--after", "--plot", "--report", "--soil", "--machine"},
+        "--before", "--after", "--history", "--plot", "--report", "--soil", "--machine"},
        "--sede",
        "--seed",
        [](const TemporaryFolder&) {
@@ -334,6 +339,14 @@ TEST_F(Tools, SimulateDigGivesTheKeysOfTheContract) {
                "bulking_factor_true", "fallback_fraction", "solids_before_kg", "solids_after_kg",
                "final_angle_of_repose_rad", "wall_time_s"});
   expect_keys(result, "boolean", {"stalled"});
+  for (const std::string& joint : all_joints) {
+    expect_keys(
+        result, "number",
+        {"joints/" + joint + "/peak_torque_kn_m", "joints/" + joint + "/limit_kn_m",
+         "joints/" + joint + "/cylinder/peak_force_kn", "joints/" + joint + "/cylinder/shortest_m",
+         "joints/" + joint + "/cylinder/longest_m", "joints/" + joint + "/cylinder/stroke_m",
+         "joints/" + joint + "/cylinder/stroke_share"});
+  }
 }
 
 TEST_F(Tools, PlanPathGivesTheKeysOfTheContract) {
@@ -353,10 +366,35 @@ TEST_F(Tools, CalibrateDensityGivesTheKeysOfTheContract) {
   ASSERT_EQ(result.at("samples").size(), 21U);
   for (std::size_t i = 0; i < 21; ++i) {
     const json& sample = result["samples"][i];
-    expect_keys(sample, "number", {"bulking_factor"});
+    expect_keys(
+        sample, "number",
+        {"bulking_factor", "bulking_factor_measured", "bulking_factor_true", "fallback_fraction"});
     EXPECT_DOUBLE_EQ(number(sample, "/density_percent"), 5.0 * static_cast<double>(i));
   }
   EXPECT_GT(number(result, "/closed_form/r2"), number(result, "/line/r2"));
+}
+
+TEST_F(Tools, CalibrateDensitySaysHowFarTrueAndMeasuredFactorsPartAndWhy) {
+  const Words overfills = {"--path", "45deg,0.35m,2m"};
+  const json result = answer("calibrate-density", overfills);
+  const json& difference = result.at("largest_difference");
+  const double percent = number(difference, "/density_percent");
+  const double fallback = number(difference, "/fallback_fraction");
+  const double k = number(difference, "/bulking_factor_true");
+  double largest = 0.0;
+  for (const json& sample : result["samples"]) {
+    largest = std::max(largest, std::abs(number(sample, "/bulking_factor_measured") -
+                                         number(sample, "/bulking_factor_true")));
+  }
+  EXPECT_NEAR(std::abs(number(difference, "/bulking_factor_measured") - k), largest, 1e-12);
+  EXPECT_NEAR(number(difference, "/bulking_factor_measured"), (k - fallback) / (1.0 - fallback),
+              1e-6 + number(difference, "/unexplained"));
+  const std::string text = run_program("calibrate-density", overfills).out;
+  for (const std::string& part :
+       {"part most at " + std::to_string(static_cast<int>(percent)), std::string(" by dry mass, "),
+        std::string(" points of density too "), std::string(" % of the cut lay in the hole")}) {
+    EXPECT_TRUE(contains(text, part)) << part << '\n' << text;
+  }
 }
 
 TEST_F(Tools, BuildPathLibraryGivesTheKeysOfTheContract) {
@@ -415,6 +453,140 @@ TEST_F(Tools, TrajectoryIsTheTableOfTheContract) {
   }
   ASSERT_GE(phases.size(), 3U);
   EXPECT_EQ(Words(phases.begin(), phases.begin() + 3), Words({"penetrate", "drag", "scoop"}));
+}
+
+Words fields_of(const std::string& line) {
+  Words fields;
+  std::istringstream words(line);
+  for (std::string word; std::getline(words, word, ',');) fields.push_back(word);
+  return fields;
+}
+
+/// The columns of a CSV file but "phase", which holds words.
+std::map<std::string, std::vector<double>> columns_of(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  const Words names = fields_of(line);
+  std::map<std::string, std::vector<double>> columns;
+  while (std::getline(lines, line)) {
+    const Words fields = fields_of(line);
+    EXPECT_EQ(fields.size(), names.size()) << line;
+    for (std::size_t i = 0; i < std::min(names.size(), fields.size()); ++i) {
+      if (names[i] != "phase") columns[names[i]].push_back(std::stod(fields[i]));
+    }
+  }
+  return columns;
+}
+
+double farthest_from_zero(const std::vector<double>& values) {
+  double farthest = 0.0;
+  for (const double value : values) {
+    if (std::abs(value) > std::abs(farthest)) farthest = value;
+  }
+  return farthest;
+}
+
+const std::string history_header =
+    "phase,travelled_m,boom_rad,arm_rad,bucket_rad,soil_x_n,soil_z_n,boom_torque_n_m,"
+    "arm_torque_n_m,bucket_torque_n_m,bucket_fill_m3";
+
+TEST_F(Tools, ForceHistoryTellsThePeaksOfTheResult) {
+  const std::string file = folder.file("history.csv");
+  const json result = answer("simulate-dig", {"--density", "70", "--history", file});
+  const std::string csv = content_of(file);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            history_header +
+                ",boom_cylinder_m,arm_cylinder_m,bucket_cylinder_m,boom_cylinder_n,"
+                "arm_cylinder_n,bucket_cylinder_n");
+  auto columns = columns_of(csv);
+  double peak = 0.0;
+  for (std::size_t i = 0; i < columns["soil_x_n"].size(); ++i) {
+    peak = std::max(peak, std::hypot(columns["soil_x_n"][i], columns["soil_z_n"][i]));
+  }
+  EXPECT_NEAR(number(result, "/peak_force_kn"), peak / 1000.0, 1e-9);
+  for (const std::string& joint : all_joints) {
+    const json& load = result.at("joints").at(joint);
+    const json& cylinder = load.at("cylinder");
+    const auto& lengths = columns[joint + "_cylinder_m"];
+    const auto [shortest, longest] = std::minmax_element(lengths.begin(), lengths.end());
+    EXPECT_NEAR(number(load, "/peak_torque_kn_m"),
+                farthest_from_zero(columns[joint + "_torque_n_m"]) / 1000.0, 1e-9);
+    EXPECT_NEAR(number(cylinder, "/peak_force_kn"),
+                farthest_from_zero(columns[joint + "_cylinder_n"]) / 1000.0, 1e-9);
+    EXPECT_EQ(number(cylinder, "/shortest_m"), *shortest);
+    EXPECT_EQ(number(cylinder, "/longest_m"), *longest);
+    EXPECT_NEAR(number(cylinder, "/stroke_share"),
+                (*longest - *shortest) / number(cylinder, "/stroke_m"), 1e-12);
+    EXPECT_GT(number(cylinder, "/stroke_share"), 0.0);
+    EXPECT_LT(number(cylinder, "/stroke_share"), 1.0);
+  }
+}
+
+// Virtual work: what the cylinders push over a step is what the joint turns.
+TEST_F(Tools, CylindersOfTheHistoryDoTheWorkOfTheirJoints) {
+  const std::string file = folder.file("history.csv");
+  const json result = answer("simulate-dig", {"--density", "40", "--history", file});
+  auto columns = columns_of(content_of(file));
+  for (const std::string& joint : all_joints) {
+    const auto& angle = columns[joint + "_rad"];
+    const auto& length = columns[joint + "_cylinder_m"];
+    const double count = number(result, "/joints/" + joint + "/cylinder/count");
+    int steps = 0;
+    for (std::size_t i = 1; i + 1 < angle.size(); ++i) {
+      const double turn = angle[i + 1] - angle[i - 1];
+      if (std::abs(turn) < 1e-3) continue;
+      const double force = columns[joint + "_cylinder_n"][i];
+      const double torque = columns[joint + "_torque_n_m"][i];
+      EXPECT_NEAR(count * force * (length[i + 1] - length[i - 1]), torque * turn,
+                  0.02 * std::abs(torque * turn))
+          << joint << ' ' << i;
+      ++steps;
+    }
+    EXPECT_GT(steps, 10) << joint;
+  }
+}
+
+TEST_F(Tools, MachineWithoutCylindersHasJointLoadsOnly) {
+  json machine = json::parse(content_of(shipped("machines/zx120.json")));
+  machine.erase("cylinders");
+  const std::string file = folder.file("history.csv");
+  const Words words = {"--density", "40", "--machine", folder.write("machine.json", machine.dump()),
+                       "--history", file};
+  const json result = answer("simulate-dig", words);
+  const std::string csv = content_of(file);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), history_header);
+  EXPECT_GT(number(result, "/joints/arm/peak_torque_kn_m"), 0.0);
+  EXPECT_TRUE(result["joints"]["arm"]["cylinder"].is_null());
+  const ProgramResult text = run_program("simulate-dig", words);
+  EXPECT_TRUE(contains(text.out, "peak torque")) << text.out;
+  EXPECT_FALSE(contains(text.out, "cylinder")) << text.out;
+}
+
+TEST_F(Tools, JointThatStallsIsSeenAboveItsLimit) {
+  json machine = json::parse(content_of(shipped("machines/zx120.json")));
+  machine["joints"]["arm"]["torque_n_m"] = 20000;
+  const json result = answer("simulate-dig", {"--density", "80", "--machine",
+                                              folder.write("machine.json", machine.dump())});
+  ASSERT_TRUE(result.at("stalled").get<bool>());
+  EXPECT_EQ(result.at("stall").at("joint"), "arm");
+  EXPECT_EQ(number(result, "/joints/arm/limit_kn_m"), 20.0);
+  EXPECT_GT(number(result, "/joints/arm/peak_torque_kn_m"), 20.0);
+}
+
+TEST_F(Tools, DumpPointsOutOfReachAreWarnedOf) {
+  for (const auto& [place, distance] : std::vector<std::pair<std::string, std::string>>{
+           {"9,0", "9.00"}, {"0,-8.6", "8.60"}, {"0,1.5", "1.50"}}) {
+    const json result = answer("simulate-dig", {"--density", "40", "--dump-at", place});
+    ASSERT_EQ(warning_codes(result), Words{"dump_out_of_reach"}) << place;
+    const std::string message = result["warnings"][0]["message"];
+    EXPECT_TRUE(contains(message, place + " is " + distance + " m from the swing axis")) << message;
+    EXPECT_TRUE(contains(message, "1.80 m (its tracks) to 8.49 m")) << message;
+  }
+  EXPECT_EQ(warning_codes(answer("simulate-dig", {"--density", "40", "--dump-at", "-6.1,6.1"})),
+            Words{"dump_out_of_reach"});
+  EXPECT_EQ(warning_codes(answer("simulate-dig", {"--density", "40", "--dump-at", "-5,5"})),
+            Words{});
 }
 
 // ---- From scans to density --------------------------------------------------------------------
@@ -833,6 +1005,8 @@ TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
           {"--density", "40", "--before", folder.file("b.pcd"), "--after", png});
   refused(3, "cannot be written", "plan-path",
           {"--density", "40", "--trajectory", folder.file("none/dig.csv")});
+  refused(3, "cannot be written", "simulate-dig",
+          {"--density", "40", "--history", folder.file("none/dig.csv")});
 }
 
 TEST_F(BadInput, PathsThatCannotBeDrivenAreRefusedWithTheReason) {
@@ -842,6 +1016,31 @@ TEST_F(BadInput, PathsThatCannotBeDrivenAreRefusedWithTheReason) {
           "simulate-dig", {"--density", "40", "--start", "30", "--plot", plot});
   refused(2, "is not a path ANGLE,LENGTH,LENGTH", "simulate-dig",
           {"--density", "40", "--path", "45deg,0.35m"});
+}
+
+// The heap, a cone at the soil's angle of repose, may touch the strip of the dig but not cover it.
+TEST_F(BadInput, DumpPointsOnOrTooNearTheDigAreRefused) {
+  const auto dig = [](const std::string& place) {
+    return Words{"--density", "40", "--dump-at", place};
+  };
+  refused(2, "--dump-at: 5,0 is 0.00 m from the strip of this dig (x = 3.43 .. 6.05 m, y = -0.350",
+          "simulate-dig", dig("5,0") + Words{"--plot", plot});
+  const Machine machine = load_machine(shipped("machines/zx120.json"));
+  const SoilKind loam = load_soil(shipped("soils/loam.json"));
+  const double radius = std::cbrt(3.0 * heaped_capacity(machine) /
+                                  (3.14159265358979 * std::tan(loam.angle_of_repose)));
+  const double edge = 0.5 * machine.bucket.width_outside;
+  const std::string reason = "m3 needs at least 0.83";
+  for (const double side : {-1.0, 1.0}) {
+    const auto beside = [&](double gap) {
+      return "5," + std::to_string(side * (edge + radius + gap));
+    };
+    refused(2, reason, "simulate-dig", dig(beside(-0.01)));
+    EXPECT_EQ(warning_codes(answer("simulate-dig", dig(beside(0.01)))), Words{});
+  }
+  refused(2, reason, "simulate-dig", dig("6.8,0"));
+  EXPECT_EQ(warning_codes(answer("simulate-dig", dig("6.9,0"))), Words{});
+  refused(2, "--dump-at: '5' is not a point X,Y", "simulate-dig", dig("5"));
 }
 
 TEST_F(BadInput, ResultsWithoutADensityAreRefused) {

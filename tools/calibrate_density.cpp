@@ -89,6 +89,34 @@ std::string text(const DensityClosedForm& form) {
          (form.residual_sd < 0.01 ? "below 0.01" : readable(form.residual_sd, 2)) + " points";
 }
 
+nlohmann::ordered_json difference_json(const BulkingDifference& difference) {
+  return {{"density_percent", difference.largest.density_percent},
+          {"bulking_factor_true", difference.largest.bulking_factor_true},
+          {"bulking_factor_measured", difference.largest.bulking_factor_measured},
+          {"fallback_fraction", difference.largest.fallback_fraction},
+          {"density_points_percent", difference.density_points},
+          {"unexplained", difference.unexplained}};
+}
+
+std::vector<std::string> difference_lines(const BulkingDifference& difference) {
+  const DensityCalibration::Sample& at = difference.largest;
+  if (std::abs(difference.density_points) < 0.05) {
+    return {"true and measured k      agree at every density, within 0.05 points of it"};
+  }
+  return {
+      "true and measured k      part most at " + readable(at.density_percent) +
+          " %: " + readable(at.bulking_factor_true, 4) + " by dry mass, " +
+          readable(at.bulking_factor_measured, 4) + " from the height maps; taken for true, " +
+          readable(std::abs(difference.density_points), 2) + " points of density too " +
+          (difference.density_points > 0.0 ? "many" : "few"),
+      "why                      " + readable(100.0 * at.fallback_fraction) +
+          " % of the cut lay in the hole as loose soil: height maps see neither it nor the hole "
+          "under it",
+      "                         freed of it, k is within " +
+          (difference.unexplained < 1e-5 ? "0.00001" : readable(difference.unexplained, 2)) +
+          " of the true one at every density"};
+}
+
 Outcome work(const Inputs& inputs) {
   const DensityCalibration calibration =
       inputs.samples ? from_samples(*inputs.samples) : from_simulator(inputs);
@@ -104,9 +132,14 @@ Outcome work(const Inputs& inputs) {
     outcome.lines.push_back("line, as measured        " + text(*calibration.line_as_measured));
     outcome.lines.push_back("closed form, as measured " +
                             text(*calibration.closed_form_as_measured));
-    outcome.lines.emplace_back(
-        "As measured: k from height maps, where soil that fell back into the pit hides part of "
-        "it.");
+  }
+  if (const auto difference = bulking_difference(calibration)) {
+    outcome.json["largest_difference"] = difference_json(*difference);
+    for (std::string& line : difference_lines(*difference)) {
+      outcome.lines.push_back(std::move(line));
+    }
+    outcome.lines.push_back("Scans see no more than height maps do: the law for them is " +
+                            calibration.use + ".");
   }
   return outcome;
 }

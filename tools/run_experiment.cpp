@@ -111,7 +111,7 @@ Row run(const Inputs& inputs, const Setting& setting, const Condition& condition
   DigOptions dump;
   dump.dump_at = default_dump_point();
   const DigResult result = simulator.dig(scene, std::get<DigPath>(path), dump);
-  const HeightMapVolumes volumes = height_map_volumes(scene, result.terrain, *dump.dump_at);
+  const HeightMapVolumes volumes = height_map_volumes(scene, result.after(scene), *dump.dump_at);
   // 3: choose the path for the density estimated from it.
   const DensityEstimate estimate = estimate_density(setting.law, {volumes.bulking_factor, 0.0});
   const PlannedDig chosen = planned_dig(inputs, setting, estimate.percent);

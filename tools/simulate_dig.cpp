@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include <excavplan/planning/calibration.hpp>
@@ -9,6 +10,7 @@
 #include <excavplan/survey/cloud.hpp>
 
 #include "figures.hpp"
+#include "joint_loads.hpp"
 #include "json_file.hpp"
 #include "results.hpp"
 #include "site.hpp"
@@ -16,6 +18,8 @@
 
 namespace excavplan::tools {
 namespace {
+
+constexpr double pi = 3.141592653589793;
 
 const About about = {
     "simulate-dig",
@@ -38,6 +42,7 @@ struct Inputs {
   double noise = DepthCamera{}.noise;
   std::optional<std::string> before;
   std::optional<std::string> after;
+  std::optional<std::string> history;
   std::optional<std::string> plot;
   std::optional<std::string> report;
 };
@@ -63,6 +68,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("seed", inputs.seed, "seed of the scans' noise");
   arguments.option("noise", inputs.noise, Quantity::length,
                    "depth noise of the scans at 1 m, growing with range squared");
+  arguments.file("history", inputs.history,
+                 "write forces, torques and cylinders of every step, CSV");
   arguments.plot(inputs.plot, "the section of the dig");
   arguments.file("report", inputs.report, "write an HTML report");
 }
@@ -93,6 +100,51 @@ DigPath lay_out(const Inputs& inputs, const Machine& machine, const Terrain& gro
     throw Error(ErrorKind::bad_input, "this dig cannot be driven: " + infeasible->message);
   }
   return std::get<DigPath>(std::move(path));
+}
+
+/// The ground that the tip passes over, as wide as the bucket.
+Rectangle strip_of(const Machine& machine, const DigPath& path) {
+  const double half_width = 0.5 * machine.bucket.width_outside;
+  Rectangle strip{path.start_x, -half_width, path.start_x, half_width};
+  for (const DigPose& pose : path.poses) {
+    if (pose.phase == DigPhase::lift) continue;
+    strip.x_min = std::min(strip.x_min, pose.bucket.x);
+    strip.x_max = std::max(strip.x_max, pose.bucket.x);
+  }
+  return strip;
+}
+
+/// Foot of the cone in which a heaped bucket comes to rest [m].
+double heap_radius(const Machine& machine, const SoilKind& soil) {
+  return std::cbrt(3.0 * heaped_capacity(machine) / (pi * std::tan(soil.angle_of_repose)));
+}
+
+/// The heap must not lie on the hole: the volumes of both would hide each other.
+void require_clear_of_dig(const Eigen::Vector2d& dump_at, const Machine& machine,
+                          const SoilKind& soil, const DigPath& path) {
+  const Rectangle strip = strip_of(machine, path);
+  const double beside_x = std::max({strip.x_min - dump_at.x(), dump_at.x() - strip.x_max, 0.0});
+  const double beside_y = std::max({strip.y_min - dump_at.y(), dump_at.y() - strip.y_max, 0.0});
+  const double away = std::hypot(beside_x, beside_y);
+  const double radius = heap_radius(machine, soil);
+  if (away >= radius) return;
+  throw Error(ErrorKind::bad_input,
+              "--dump-at: " + number_text(dump_at.x()) + "," + number_text(dump_at.y()) + " is " +
+                  readable(away) + " m from the strip of this dig (x = " + readable(strip.x_min) +
+                  " .. " + readable(strip.x_max) + " m, y = " + readable(strip.y_min) + " .. " +
+                  readable(strip.y_max) + " m); a heap of " + readable(heaped_capacity(machine)) +
+                  " m3 needs at least " + readable(radius) + " m");
+}
+
+std::optional<Warning> reach_warning(const Eigen::Vector2d& dump_at, const Machine& machine) {
+  const double from_axis = dump_at.norm();
+  const double reach = machine.boom_pin.x() + machine.full_length();
+  if (from_axis >= machine.track_front && from_axis <= reach) return std::nullopt;
+  return Warning{"dump_out_of_reach",
+                 "the dump point " + number_text(dump_at.x()) + "," + number_text(dump_at.y()) +
+                     " is " + readable(from_axis) + " m from the swing axis; " + machine.name +
+                     " dumps from " + readable(machine.track_front) + " m (its tracks) to " +
+                     readable(reach) + " m (all links in one line)"};
 }
 
 nlohmann::ordered_json energy_json(const EnergyLedger& energy) {
@@ -129,31 +181,38 @@ nlohmann::ordered_json stall_json(const Stall& stall) {
 /// What was done and what came of it.
 struct Dug {
   DigPath path;
-  Terrain before;
-  DigResult result;
   Eigen::Vector2d dump_at;
+  Terrain before;
+  Terrain after;
+  DigResult result;
+  JointLoads loads;
   HeightMapVolumes volumes;
   double duration = 0.0;
   double wall_time = 0.0;
 };
 
-Dug dig(const Inputs& inputs, const Machine& machine, const SoilSimulator& simulator,
-        const Site& site) {
+Dug dig(const Inputs& inputs, const Machine& machine, const SoilKind& soil, const Site& site) {
   Dug dug;
   dug.dump_at = inputs.dump_at.value_or(default_dump_point());
   dug.before = site.ground;
   dug.path = lay_out(inputs, machine, site.ground);
+  require_clear_of_dig(dug.dump_at, machine, soil, dug.path);
+  const HeightMapSimulator simulator(machine, soil, inputs.density);
   DigOptions options;
+  options.history = true;
   options.dump_at = dug.dump_at;
   const Stopwatch watch;
-  dug.result = simulator.dig(site.ground, dug.path, options);
+  dug.result = simulator.dig(dug.before, dug.path, options);
   dug.wall_time = watch.seconds();
-  dug.volumes = height_map_volumes(dug.before, dug.result.terrain, dug.dump_at);
+  dug.after = dug.result.after(dug.before);
+  dug.loads = joint_loads(machine, dug.result.history);
+  dug.volumes = height_map_volumes(dug.before, dug.after, dug.dump_at);
   dug.duration = time_dig_path(machine, dug.path).dig_duration();
   return dug;
 }
 
-nlohmann::ordered_json dug_json(const Inputs& inputs, const SoilKind& soil, const Dug& dug) {
+nlohmann::ordered_json dug_json(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
+                                const Dug& dug) {
   const DigResult& result = dug.result;
   VolumeChange exact;
   exact.excavated.value = dug.volumes.excavated;
@@ -180,14 +239,16 @@ nlohmann::ordered_json dug_json(const Inputs& inputs, const SoilKind& soil, cons
           {"fallback_fraction", result.soil.fallback_fraction},
           {"solids_before_kg", result.soil.solids_before},
           {"solids_after_kg", result.soil.solids_after},
-          {"final_angle_of_repose_rad", heap_slope(dug.before, result.terrain, dug.dump_at)},
+          {"final_angle_of_repose_rad", heap_slope(dug.before, dug.after, dug.dump_at)},
           {"energy", energy_json(result.energy)},
+          {"joints", to_json(machine, dug.loads)},
           {"soil_ledger", ledger_json(result.soil)},
           {"dump_at_m", {dug.dump_at.x(), dug.dump_at.y()}},
           {"wall_time_s", dug.wall_time}};
 }
 
-std::vector<std::string> dug_lines(const SoilKind& soil, double density, const Dug& dug) {
+std::vector<std::string> dug_lines(const Machine& machine, const SoilKind& soil, double density,
+                                   const Dug& dug) {
   const DigResult& result = dug.result;
   std::vector<std::string> lines =
       dig_lines({dug.path.parameters, dug.path.start_x, result.payload_mass, result.payload_volume,
@@ -197,6 +258,7 @@ std::vector<std::string> dug_lines(const SoilKind& soil, double density, const D
                              readable(result.energy.links / 1000.0) + " kJ";
   lines.insert(lines.begin() + 3, shares);  // below the energy
   lines.push_back("peak force   " + readable(result.peak_force / 1000.0) + " kN");
+  for (std::string& line : load_lines(machine, dug.loads)) lines.push_back(std::move(line));
   lines.push_back("volumes      hole " + readable(dug.volumes.excavated) + ", spill " +
                   readable(dug.volumes.spilled) + ", heap " + readable(dug.volumes.dumped) + " m3");
   lines.push_back("bulking      " + readable(dug.volumes.bulking_factor, 4) +
@@ -214,7 +276,7 @@ void write_scans(const Inputs& inputs, const Dug& dug) {
                 cloud_format_of_name(*inputs.before));
   }
   if (inputs.after) {
-    write_cloud(*inputs.after, scan(dug.result.terrain, inputs, dig_centre, dug.dump_at, 1),
+    write_cloud(*inputs.after, scan(dug.after, inputs, dig_centre, dug.dump_at, 1),
                 cloud_format_of_name(*inputs.after));
   }
 }
@@ -227,24 +289,27 @@ Outcome work(const Inputs& inputs) {
   const SoilKind soil = soil_named(inputs.soil);
   const Rectangle extent = scene_extent(machine, inputs.dump_at.value_or(default_dump_point()));
   Site site = make_site(inputs.terrain, extent, inputs.cell);
-  const HeightMapSimulator simulator(machine, soil, inputs.density);
-  const Dug dug = dig(inputs, machine, simulator, site);
+  const Dug dug = dig(inputs, machine, soil, site);
 
   Outcome outcome;
-  outcome.json = dug_json(inputs, soil, dug);
-  outcome.lines = dug_lines(soil, inputs.density, dug);
+  outcome.json = dug_json(inputs, machine, soil, dug);
+  outcome.lines = dug_lines(machine, soil, inputs.density, dug);
   outcome.warnings = std::move(site.warnings);
+  if (auto warning = reach_warning(dug.dump_at, machine)) {
+    outcome.warnings.push_back(std::move(*warning));
+  }
   if (dug.result.stall) {
     outcome.warnings.push_back({"stalled", describe(*dug.result.stall)});
   }
   write_scans(inputs, dug);
   const std::string title = soil.name + " at " + readable(inputs.density) + " % relative density";
   const auto figure = [&] {
-    return dig_figure(machine, dug.path,
-                      {boom_plane_profile(dug.before.surface()),
-                       boom_plane_profile(dug.result.terrain.surface())},
-                      "Dig in " + title, outcome.lines);
+    return dig_figure(
+        machine, dug.path,
+        {boom_plane_profile(dug.before.surface()), boom_plane_profile(dug.after.surface())},
+        "Dig in " + title, outcome.lines);
   };
+  if (inputs.history) write_file(*inputs.history, to_csv(machine, dug.result.history));
   if (inputs.plot) write_file(*inputs.plot, figure());
   if (inputs.report) {
     write_file(*inputs.report,

@@ -123,6 +123,31 @@ std::vector<Vector2d> read_profile(JsonObject& file, double bucket_length) {
   return profile;
 }
 
+Teeth read_teeth(JsonObject file, double width_outside) {
+  Teeth teeth;
+  const double count = file.number("count");
+  if (!(count >= 1.0 && count <= 50.0 && count == std::floor(count))) {
+    file.fail("count", "is " + number_text(count) + ", must be a whole number in 1 .. 50");
+  }
+  teeth.count = static_cast<int>(count);
+  teeth.width = positive(file, "width_m", longest);
+  if (count * teeth.width > width_outside + rounding) {
+    file.fail("width_m",
+              "is " + number_text(teeth.width) + ", " + number_text(count) +
+                  " teeth must not exceed width_outside_m = " + number_text(width_outside));
+  }
+  teeth.thickness = positive(file, "thickness_m", 1.0);
+  teeth.length = positive(file, "length_m", 1.0);
+  teeth.angle = file.number("angle_rad");
+  if (!(teeth.angle > 0.0 && teeth.angle < pi / 2.0)) {
+    file.fail("angle_rad", "is " + number_text(teeth.angle) + ", must be above 0 and below " +
+                               number_text(pi / 2.0));
+  }
+  file.ignore("sources");
+  file.done();
+  return teeth;
+}
+
 Bucket read_bucket(JsonObject file, double bucket_length) {
   Bucket bucket;
   bucket.profile = read_profile(file, bucket_length);
@@ -135,6 +160,7 @@ Bucket read_bucket(JsonObject file, double bucket_length) {
   }
   bucket.edge_thickness = positive(file, "edge_thickness_m", 1.0);
   bucket.edge_angle = positive(file, "edge_angle_rad", pi / 2.0);
+  if (file.has("teeth")) bucket.teeth = read_teeth(file.object("teeth"), bucket.width_outside);
   file.ignore("sources");
   file.done();
   return bucket;

@@ -3,6 +3,8 @@
 #include <excavplan/planning/calibration.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <variant>
 
@@ -15,6 +17,14 @@ namespace {
 
 constexpr double heap_room = 2.0;  // around a dump point [m]; ours: a bucketful spreads about 1 m
 
+/// Volumes do not depend on who pulls: no soil is too hard to calibrate for.
+Machine tireless(Machine machine) {
+  for (JointLimits& limits : machine.limits) {
+    limits.torque = std::numeric_limits<double>::infinity();
+  }
+  return machine;
+}
+
 DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
                                    const CalibrationOptions& options) {
   const Eigen::Vector2d dump_at = default_dump_point();
@@ -26,14 +36,13 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
   }
   DigOptions dig;
   dig.dump_at = dump_at;
-  const HeightMapSimulator simulator(machine, soil, density);
+  const HeightMapSimulator simulator(tireless(machine), soil, density);
   const DigResult result = simulator.dig(ground, std::get<DigPath>(laid_out), dig);
-  if (result.stall) throw Error(ErrorKind::bad_input, "calibration: " + describe(*result.stall));
 
   DensityCalibration::Sample sample;
   sample.density_percent = density;
   sample.bulking_factor_measured =
-      height_map_volumes(ground, result.terrain, dump_at).bulking_factor;
+      height_map_volumes(ground, result.after(ground), dump_at).bulking_factor;
   sample.fallback_fraction = result.soil.fallback_fraction;
   sample.bulking_factor =
       free_of_fallback(sample.bulking_factor_measured, sample.fallback_fraction);
@@ -82,6 +91,30 @@ DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soi
   calibration.line_as_measured = fit_line(measured);
   calibration.closed_form_as_measured = fit_closed_form(measured);
   return calibration;
+}
+
+std::optional<BulkingDifference> bulking_difference(const DensityCalibration& calibration) {
+  using Sample = DensityCalibration::Sample;
+  const auto& samples = calibration.samples;
+  const auto known = [](const Sample& s) {
+    return s.bulking_factor_true > 0.0 && s.bulking_factor_measured > 0.0;
+  };
+  if (samples.empty() || !std::all_of(samples.begin(), samples.end(), known)) return std::nullopt;
+  const auto apart = [](const Sample& s) {
+    return std::abs(s.bulking_factor_measured - s.bulking_factor_true);
+  };
+  BulkingDifference difference;
+  difference.largest =
+      *std::max_element(samples.begin(), samples.end(),
+                        [&](const Sample& a, const Sample& b) { return apart(a) < apart(b); });
+  const auto density = [&](double k) { return density_of_bulking(calibration.closed_form, k); };
+  difference.density_points = density(difference.largest.bulking_factor_measured) -
+                              density(difference.largest.bulking_factor_true);
+  for (const Sample& s : samples) {
+    difference.unexplained =
+        std::max(difference.unexplained, std::abs(s.bulking_factor - s.bulking_factor_true));
+  }
+  return difference;
 }
 
 }  // namespace excavplan

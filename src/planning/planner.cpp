@@ -58,6 +58,52 @@ Eigen::VectorXd genes_of(const DigParameters& parameters) {
   return genes;
 }
 
+/// The two rows of cells on either side of the boom plane.
+struct BoomPlaneRows {
+  Index first;
+  Index count;
+};
+
+BoomPlaneRows rows_at_boom_plane(const HeightMap& map) {
+  const auto row = static_cast<Index>(std::floor(-map.origin.y() / map.cell - 0.5));
+  const Index first = std::clamp<Index>(row, 0, std::max<Index>(0, map.z.rows() - 2));
+  return {first, std::min<Index>(2, map.z.rows() - first)};
+}
+
+GroundProfile profile_of(const HeightMap& map, const Eigen::ArrayXXd& rows, Index first_row) {
+  HeightMap strip{map.origin, map.cell, rows};
+  strip.origin.y() += map.cell * static_cast<double>(first_row);
+  return [strip](double x) { return height_at(strip, x, 0.0); };
+}
+
+struct DigChoice {
+  DigParameters parameters;
+  std::optional<double> start_x;
+};
+
+std::variant<PlannedDig, DigFailure> evaluate_on(const GroundProfile& ground,
+                                                 const Machine& machine,
+                                                 const SoilSimulator& simulator,
+                                                 const Terrain& terrain, const DigChoice& choice) {
+  const DigParameters& parameters = choice.parameters;
+  const auto laid_out = choice.start_x ? make_dig_path(machine, parameters, *choice.start_x, ground)
+                                       : make_dig_path_anywhere(machine, parameters, ground);
+  if (const auto* infeasible = std::get_if<Infeasible>(&laid_out)) return DigFailure(*infeasible);
+  const DigPath& path = std::get<DigPath>(laid_out);
+  if (!known_under(terrain, machine, path)) {
+    Infeasible unknown;
+    unknown.reason = Infeasible::Reason::unknown_ground;
+    unknown.value = path.start_x;
+    unknown.message = "the path runs over ground that is unknown or off the map";
+    return DigFailure(unknown);
+  }
+  const DigResult result = simulator.dig(terrain, path);
+  if (result.stall) return DigFailure(*result.stall);
+  return PlannedDig{parameters,          path.start_x,
+                    result.payload_mass, result.payload_volume,
+                    result.energy.total, time_dig_path(machine, path).dig_duration()};
+}
+
 }  // namespace
 
 std::string describe(const DigFailure& failure) {
@@ -78,12 +124,16 @@ Terrain level_planning_ground(const Machine& machine, double cell) {
 }
 
 GroundProfile boom_plane_profile(const HeightMap& surface) {
-  const auto row = static_cast<Index>(std::floor(-surface.origin.y() / surface.cell - 0.5));
-  const Index first = std::clamp<Index>(row, 0, std::max<Index>(0, surface.z.rows() - 2));
-  HeightMap strip = surface;
-  strip.origin.y() += surface.cell * static_cast<double>(first);
-  strip.z = surface.z.middleRows(first, std::min<Index>(2, surface.z.rows() - first)).eval();
-  return [strip](double x) { return height_at(strip, x, 0.0); };
+  const BoomPlaneRows rows = rows_at_boom_plane(surface);
+  return profile_of(surface, surface.z.middleRows(rows.first, rows.count), rows.first);
+}
+
+GroundProfile boom_plane_profile(const Terrain& terrain) {
+  const BoomPlaneRows rows = rows_at_boom_plane(terrain.bank);
+  return profile_of(terrain.bank,
+                    terrain.bank.z.middleRows(rows.first, rows.count) +
+                        terrain.loose.middleRows(rows.first, rows.count),
+                    rows.first);
 }
 
 std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
@@ -91,30 +141,19 @@ std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
                                                   const Terrain& terrain,
                                                   const DigParameters& parameters,
                                                   std::optional<double> start_x) {
-  const GroundProfile ground = boom_plane_profile(terrain.surface());
-  const auto laid_out = start_x ? make_dig_path(machine, parameters, *start_x, ground)
-                                : make_dig_path_anywhere(machine, parameters, ground);
-  if (const auto* infeasible = std::get_if<Infeasible>(&laid_out)) return DigFailure(*infeasible);
-  const DigPath& path = std::get<DigPath>(laid_out);
-  if (!known_under(terrain, machine, path)) {
-    Infeasible unknown;
-    unknown.reason = Infeasible::Reason::unknown_ground;
-    unknown.value = path.start_x;
-    unknown.message = "the path runs over ground that is unknown or off the map";
-    return DigFailure(unknown);
-  }
-  const DigResult result = simulator.dig(terrain, path);
-  if (result.stall) return DigFailure(*result.stall);
-  return PlannedDig{parameters,          path.start_x,
-                    result.payload_mass, result.payload_volume,
-                    result.energy.total, time_dig_path(machine, path).dig_duration()};
+  return evaluate_on(boom_plane_profile(terrain), machine, simulator, terrain,
+                     {parameters, start_x});
 }
 
 std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
                                           const Terrain& terrain, const DigSearchOptions& options) {
   const SearchBox box = search_box();
+  const GroundProfile ground = boom_plane_profile(terrain);
+  const auto evaluate = [&](const Eigen::VectorXd& genes) {
+    return evaluate_on(ground, machine, simulator, terrain, {parameters_of(genes), {}});
+  };
   const Objective efficiency = [&](const Eigen::VectorXd& genes) -> std::optional<double> {
-    const auto outcome = evaluate_dig(machine, simulator, terrain, parameters_of(genes));
+    const auto outcome = evaluate(genes);
     const auto* dig = std::get_if<PlannedDig>(&outcome);
     return dig ? std::optional(dig->efficiency()) : std::nullopt;
   };
@@ -135,7 +174,7 @@ std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimu
     result.evaluations += polished.evaluations;
     result.infeasible += polished.infeasible;
   }
-  result.dig = std::get<PlannedDig>(evaluate_dig(machine, simulator, terrain, parameters_of(best)));
+  result.dig = std::get<PlannedDig>(evaluate(best));
   return result;
 }
 

@@ -17,28 +17,49 @@ constexpr double degree = pi / 180.0;
 
 double cot(double angle) { return 1.0 / std::tan(angle); }
 
+constexpr double lowest_failure = 2.0 * degree;
+
+/// Golden section between two angles, to `tolerance`.
+template <typename Function>
+double least_between(double low, double high, double tolerance, const Function& function) {
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  double a = high - golden * (high - low);
+  double b = low + golden * (high - low);
+  double at_a = function(a);
+  double at_b = function(b);
+  while (high - low > tolerance) {
+    if (at_a < at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - golden * (high - low);
+      at_a = function(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + golden * (high - low);
+      at_b = function(b);
+    }
+  }
+  return 0.5 * (low + high);
+}
+
 /// Minimum of a function of the failure angle: the best of a 1 deg scan, then golden section.
 template <typename Function>
-std::optional<double> least_failure_angle(double highest, const Function& function) {
-  const double lowest = 2.0 * degree;
+std::optional<double> least_failure_angle(double highest, double tolerance,
+                                          const Function& function) {
   double best = 0.0;
   double least = std::numeric_limits<double>::infinity();
-  for (double angle = lowest; angle < highest; angle += degree) {
+  for (double angle = lowest_failure; angle < highest; angle += degree) {
     if (const double value = function(angle); value < least) {
       least = value;
       best = angle;
     }
   }
   if (std::isinf(least)) return std::nullopt;
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  double low = std::max(lowest, best - degree);
-  double high = std::min(highest, best + degree);
-  while (high - low > 1e-8) {
-    const double a = high - golden * (high - low);
-    const double b = low + golden * (high - low);
-    (function(a) < function(b) ? high : low) = function(a) < function(b) ? b : a;
-  }
-  return 0.5 * (low + high);
+  return least_between(std::max(lowest_failure, best - degree), std::min(highest, best + degree),
+                       tolerance, function);
 }
 
 double highest_failure_angle(const CuttingWedge& wedge) {
@@ -52,6 +73,7 @@ std::optional<EarthmovingFactors> earthmoving_factors(const CuttingWedge& wedge,
   const double cot_rake = cot(wedge.rake);
   const double face = wedge.rake + wedge.tool_friction;
   EarthmovingFactors n;
+  n.rake = wedge.rake;
   n.failure = failure;
   n.D = std::cos(face) + std::sin(face) * cot_plane;
   if (!(n.D > 0.0)) return std::nullopt;
@@ -64,11 +86,32 @@ std::optional<EarthmovingFactors> earthmoving_factors(const CuttingWedge& wedge,
   return n;
 }
 
+namespace {
+
+double gravity_factor(const CuttingWedge& wedge, double failure) {
+  const auto n = earthmoving_factors(wedge, failure);
+  return n && n->gamma > 0.0 ? n->gamma : std::numeric_limits<double>::infinity();
+}
+
+/// The critical angle of a wedge little different from one whose angle is known, to 1e-6 rad: the
+/// factors, which have their minimum there, are then exact to rounding.
+double critical_failure_near(const CuttingWedge& wedge, double guess) {
+  const auto factor = [&](double failure) { return gravity_factor(wedge, failure); };
+  const double highest = highest_failure_angle(wedge);
+  const double low = std::max(lowest_failure, guess - 4.0 * degree);
+  const double high = std::min(highest, guess + 4.0 * degree);
+  if (high > low) {
+    const double found = least_between(low, high, 1e-6, factor);
+    if (found > low + 1e-5 && found < high - 1e-5) return found;
+  }
+  return least_failure_angle(highest, 1e-6, factor).value_or(highest);
+}
+
+}  // namespace
+
 std::optional<double> critical_failure_angle(const CuttingWedge& wedge) {
-  return least_failure_angle(highest_failure_angle(wedge), [&](double failure) {
-    const auto n = earthmoving_factors(wedge, failure);
-    return n && n->gamma > 0.0 ? n->gamma : std::numeric_limits<double>::infinity();
-  });
+  return least_failure_angle(highest_failure_angle(wedge), 1e-8,
+                             [&](double failure) { return gravity_factor(wedge, failure); });
 }
 
 EarthmovingFactors crescent_factors(const CuttingWedge& wedge, double failure, double width_ratio) {
@@ -76,6 +119,7 @@ EarthmovingFactors crescent_factors(const CuttingWedge& wedge, double failure, d
   const double side =
       std::sqrt(cot(failure) * cot(failure) + 2.0 * cot(wedge.rake) * cot(failure)) / width_ratio;
   EarthmovingFactors n;
+  n.rake = wedge.rake;
   n.failure = failure;
   n.D = cot(wedge.rake + wedge.tool_friction) + cot(failure + wedge.friction);
   n.gamma = 0.5 * reach * (1.0 + 2.0 / 3.0 * side) / n.D;
@@ -123,25 +167,65 @@ CriticalWedges::CriticalWedges(double friction, double tool_friction)
     for (int j = 0; j < slopes; ++j) {
       const CuttingWedge wedge{std::min(lowest_rake + i * rake_step, highest_rake_), friction,
                                tool_friction, lowest_slope_ + j * slope_step_};
-      failure_.push_back(critical_failure_angle(wedge).value_or(highest_failure_angle(wedge)));
+      failure_.push_back(critical_failure_near(wedge, failure_.empty() ? 0.0 : failure_.back()));
     }
   }
 }
 
-EarthmovingFactors CriticalWedges::at(double rake, double slope) const {
-  const double held_rake = std::clamp(rake, lowest_rake, highest_rake_);
-  const double held_slope = std::clamp(slope, lowest_slope_, highest_slope);
-  const double u = (held_rake - lowest_rake) / rake_step;
-  const double v = (held_slope - lowest_slope_) / slope_step_;
+CriticalWedges::Held CriticalWedges::held(double rake, double slope) const {
+  return {std::clamp(rake, lowest_rake, highest_rake_),
+          std::clamp(slope, lowest_slope_, highest_slope)};
+}
+
+double CriticalWedges::failure_at(const Held& wedge) const {
+  const double u = (wedge.rake - lowest_rake) / rake_step;
+  const double v = (wedge.slope - lowest_slope_) / slope_step_;
   const auto i = static_cast<std::size_t>(std::min(u, rakes - 2.0));
   const auto j = static_cast<std::size_t>(std::min(v, slopes - 2.0));
   const double s = u - static_cast<double>(i);
   const double t = v - static_cast<double>(j);
   const double* cell = &failure_[i * slopes + j];
-  const double failure = (1.0 - s) * ((1.0 - t) * cell[0] + t * cell[1]) +
-                         s * ((1.0 - t) * cell[slopes] + t * cell[slopes + 1]);
-  const CuttingWedge wedge{held_rake, friction_, tool_friction_, held_slope};
-  return earthmoving_factors(wedge, failure).value();
+  return (1.0 - s) * ((1.0 - t) * cell[0] + t * cell[1]) +
+         s * ((1.0 - t) * cell[slopes] + t * cell[slopes + 1]);
+}
+
+EarthmovingFactors CriticalWedges::at(double rake, double slope) const {
+  const Held wedge = held(rake, slope);
+  return earthmoving_factors({wedge.rake, friction_, tool_friction_, wedge.slope},
+                             failure_at(wedge))
+      .value();
+}
+
+FrictionWedges::FrictionWedges(double lowest, double highest, double tool_ratio) : lowest_(lowest) {
+  const double widest = 2.5 * degree;
+  const auto steps = std::max(1, static_cast<int>(std::ceil((highest - lowest) / widest)));
+  step_ = (highest - lowest) / steps;
+  if (!(lowest <= highest && tool_ratio >= 0.0 && tool_ratio <= 1.0)) {
+    throw Error(ErrorKind::bad_input, "earthmoving: friction " + std::to_string(lowest / degree) +
+                                          " .. " + std::to_string(highest / degree) +
+                                          " deg must be in order, the tool's share " +
+                                          std::to_string(tool_ratio) + " in 0 .. 1");
+  }
+  for (int i = 0; i <= (step_ > 0.0 ? steps : 0); ++i) {
+    tables_.emplace_back(lowest + i * step_, tool_ratio * (lowest + i * step_));
+  }
+}
+
+EarthmovingFactors FrictionWedges::at(double rake, double slope, double friction) const {
+  if (tables_.size() == 1) return tables_.front().at(rake, slope);
+  const double last = static_cast<double>(tables_.size() - 1);
+  const double u = std::clamp((friction - lowest_) / step_, 0.0, last);
+  const auto i = static_cast<std::size_t>(std::min(u, last - 1.0));
+  const double t = u - static_cast<double>(i);
+  const CriticalWedges& a = tables_[i];
+  const CriticalWedges& b = tables_[i + 1];
+  // What both tables hold: a wedge of the higher friction locks at a lower rake.
+  const CriticalWedges::Held of_b = b.held(rake, slope);
+  const CriticalWedges::Held wedge = a.held(of_b.rake, of_b.slope);
+  const double failure = (1.0 - t) * a.failure_at(wedge) + t * b.failure_at(wedge);
+  const double phi = (1.0 - t) * a.friction_ + t * b.friction_;
+  const double delta = (1.0 - t) * a.tool_friction_ + t * b.tool_friction_;
+  return earthmoving_factors({wedge.rake, phi, delta, wedge.slope}, failure).value();
 }
 
 double blunt_edge_ratio(double edge_angle, double friction, double tool_friction) {

@@ -13,9 +13,11 @@ namespace {
 
 using Eigen::Index;
 
-/// Slopes whose fall over a cell is too high by less than this are at rest [m]; ours: well under
-/// any scan's resolution.
-constexpr double at_rest = 1e-4;
+constexpr Index spare = 8;  // cells by which a window grows beyond what is asked; ours
+
+double dry_density(const SoilKind& kind, double void_ratio) {
+  return kind.specific_gravity * water_density / (1.0 + void_ratio);
+}
 
 /// The lower neighbour of a cell along one axis and how far it lies below, 0 if none does.
 struct Fall {
@@ -29,34 +31,35 @@ struct Fall {
 /// only along the grid.
 class Slump {
  public:
-  Slump(Terrain& terrain, const SlopeLimits& limits, const CellBlock& wall)
-      : bank_(terrain.bank.z),
-        loose_(terrain.loose),
-        cell_(terrain.bank.cell),
+  Slump(GroundWindow& ground, const SlopeLimits& limits)
+      : ground_(ground),
         limits_(limits),
-        wall_(wall) {}
+        bank_{std::tan(ground.soil().bank.friction_angle), critical_height(ground.soil().bank)} {}
 
-  /// One pass over the block; returns the cells that moved.
+  /// One pass over the cells of the block that are awake; returns the cells that moved.
   CellBlock sweep(const CellBlock& block, int order) {
     CellBlock moved;
-    const Index rows = block.row_end - block.row_begin;
-    const Index cols = block.col_end - block.col_begin;
-    for (Index i = 0; i < cols; ++i) {
-      const Index col = block.col_begin + ((order & 1) != 0 ? cols - 1 - i : i);
-      for (Index j = 0; j < rows; ++j) {
-        relax(block.row_begin + ((order & 2) != 0 ? rows - 1 - j : j), col, moved);
+    for (Index i = 0; i < block.cols(); ++i) {
+      const Index col = block.col_begin + ((order & 1) != 0 ? block.cols() - 1 - i : i);
+      for (Index j = 0; j < block.rows(); ++j) {
+        const Index row = block.row_begin + ((order & 2) != 0 ? block.rows() - 1 - j : j);
+        if (ground_.awake(row, col)) relax(row, col, moved);
       }
     }
     return moved;
   }
 
  private:
-  double height(Index row, Index col) const { return bank_(row, col) + loose_(row, col); }
+  struct BankLimits {
+    double slope = 0.0;            ///< tangent of the friction angle
+    double critical_height = 0.0;  ///< of a vertical wall [m]
+  };
 
   void relax(Index row, Index col, CellBlock& moved) {
-    if (wall_.contains(row, col)) return;
-    if (loose_(row, col) > 0.0) slide_loose(row, col, moved);
-    if (std::isfinite(limits_.critical_height)) fail_bank(row, col, moved);
+    ground_.let_sleep(row, col);
+    if (std::isnan(ground_.height(row, col))) return;
+    if (ground_.loose(row, col) > 0.0) slide_loose(row, col, moved);
+    if (!limits_.bank_stands) fail_bank(row, col, moved);
   }
 
   /// From height `top` in a cell to the lower neighbour on an axis. On a flank, where the other
@@ -78,17 +81,18 @@ class Slump {
 
   /// From height `top` down to a cell; 0 to cells that are unknown, walled or off the map.
   double drop(double top, Index row, Index col) const {
-    if (row < 0 || col < 0 || row >= bank_.rows() || col >= bank_.cols()) return 0.0;
-    const double drop = top - height(row, col);
-    return std::isnan(drop) || wall_.contains(row, col) ? 0.0 : drop;
+    const double drop = top - ground_.height(row, col);
+    return std::isnan(drop) ? 0.0 : drop;
   }
 
   /// How much has to leave a cell so that it falls no steeper than `slope`, if the share of each
   /// axis arrives swollen by `swell` below; 0 if it does not.
   double excess(const Fall& x, const Fall& y, double slope, double swell) const {
-    const double steepness = std::hypot(x.height, y.height);
-    const double too_steep = steepness - slope * cell_;
-    if (!(too_steep > at_rest)) return 0.0;
+    const double stable = slope * ground_.cell();
+    const double squared = x.height * x.height + y.height * y.height;
+    if (!(squared > (stable + limits_.at_rest) * (stable + limits_.at_rest))) return 0.0;
+    const double steepness = std::sqrt(squared);
+    const double too_steep = steepness - stable;
     const double sum = x.height + y.height;
     const double closing =
         x.height * (1.0 + swell * x.height / sum) + y.height * (1.0 + swell * y.height / sum);
@@ -96,83 +100,262 @@ class Slump {
   }
 
   void slide_loose(Index row, Index col, CellBlock& moved) {
-    const double top = height(row, col);
+    const double top = ground_.height(row, col);
     const Fall x = fall(top, row, col, 0, 1);
     const Fall y = fall(top, row, col, 1, 0);
-    const double leaving = std::min(loose_(row, col), excess(x, y, limits_.loose_slope, 1.0));
+    const double swell = ground_.swollen_loose(row, col, 1.0);
+    const double leaving =
+        std::min(ground_.loose(row, col), excess(x, y, limits_.loose_slope, swell));
     if (!(leaving > 0.0)) return;
-    for (const Fall& to : {x, y}) {
-      if (to.height == 0.0) continue;
-      const double share = leaving * to.height / (x.height + y.height);
-      loose_(to.row, to.col) += share;
-      loose_(row, col) -= share;
-      moved.include(to.row, to.col);
-    }
-    loose_(row, col) = std::max(0.0, loose_(row, col));
+    ground_.lower_loose(row, col, leaving);
+    arrive(leaving * swell, x, y, moved);
     moved.include(row, col);
   }
 
   /// Breaks undisturbed soil off a wall that is too high; it falls to the foot as loose soil.
   void fail_bank(Index row, Index col, CellBlock& moved) {
-    const double top = bank_(row, col) - limits_.critical_height;
+    const BankLimits bank = bank_limits(row, col);
+    const double top = ground_.bank(row, col) - bank.critical_height;
     const Fall x = fall(top, row, col, 0, 1);
     const Fall y = fall(top, row, col, 1, 0);
     if (x.height + y.height == 0.0) return;
-    const double broken = excess(x, y, limits_.bank_slope, limits_.swell);
+    const double swell = ground_.swollen_bank(row, col, 1.0);
+    const double broken = excess(x, y, bank.slope, swell);
     if (!(broken > 0.0)) return;
-    bank_(row, col) -= broken;
-    for (const Fall& to : {x, y}) {
-      if (to.height == 0.0) continue;
-      loose_(to.row, to.col) += limits_.swell * broken * to.height / (x.height + y.height);
-      moved.include(to.row, to.col);
-    }
+    ground_.lower_bank(row, col, broken);
+    arrive(broken * swell, x, y, moved);
     moved.include(row, col);
   }
 
-  Eigen::ArrayXXd& bank_;
-  Eigen::ArrayXXd& loose_;
-  double cell_;
-  SlopeLimits limits_;
-  CellBlock wall_;
-};
+  void arrive(double thickness, const Fall& x, const Fall& y, CellBlock& moved) {
+    for (const Fall& to : {x, y}) {
+      if (to.height == 0.0) continue;
+      ground_.raise_loose(to.row, to.col, thickness * to.height / (x.height + y.height));
+      moved.include(to.row, to.col);
+    }
+  }
 
-CellBlock widened(CellBlock block, const Terrain& terrain) {
-  if (block.empty()) return block;
-  block.row_begin = std::max<Index>(0, block.row_begin - 1);
-  block.col_begin = std::max<Index>(0, block.col_begin - 1);
-  block.row_end = std::min(terrain.loose.rows(), block.row_end + 1);
-  block.col_end = std::min(terrain.loose.cols(), block.col_end + 1);
-  return block;
-}
+  BankLimits bank_limits(Index row, Index col) const {
+    if (ground_.bank_is_even()) return bank_;
+    const SoilState state = ground_.bank_state(row, col);
+    return {std::tan(state.friction_angle), critical_height(state)};
+  }
+
+  GroundWindow& ground_;
+  SlopeLimits limits_;
+  BankLimits bank_;
+};
 
 }  // namespace
 
-void CellBlock::include(Index row, Index col) {
+void CellBlock::include(Index row, Index col) { include({row, row + 1, col, col + 1}); }
+
+void CellBlock::include(const CellBlock& other) {
+  if (other.empty()) return;
   if (empty()) {
-    *this = {row, row + 1, col, col + 1};
+    *this = other;
     return;
   }
-  row_begin = std::min(row_begin, row);
-  row_end = std::max(row_end, row + 1);
-  col_begin = std::min(col_begin, col);
-  col_end = std::max(col_end, col + 1);
+  row_begin = std::min(row_begin, other.row_begin);
+  row_end = std::max(row_end, other.row_end);
+  col_begin = std::min(col_begin, other.col_begin);
+  col_end = std::max(col_end, other.col_end);
 }
 
-CellBlock slump(Terrain& terrain, CellBlock block, const SlopeLimits& limits, int sweeps,
-                const CellBlock& wall) {
-  Slump slide(terrain, limits, wall);
+CellBlock CellBlock::widened(Index margin, Index map_rows, Index map_cols) const {
+  if (empty()) return *this;
+  return {std::max<Index>(0, row_begin - margin), std::min(map_rows, row_end + margin),
+          std::max<Index>(0, col_begin - margin), std::min(map_cols, col_end + margin)};
+}
+
+// ---- GroundWindow -------------------------------------------------------------------------------
+
+GroundWindow::GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells)
+    : whole_(whole), soil_(soil) {
+  cover(cells);
+}
+
+void GroundWindow::cover(const CellBlock& cells) {
+  if (cells_.contains(cells)) return;
+  CellBlock wanted = cells_;
+  wanted.include(widened(cells, spare));
+  check(wanted);
+  const GroundWindow old = *this;
+  cells_ = wanted;
+  stride_ = wanted.rows() + 2;
+  const auto size = static_cast<std::size_t>(stride_ * (wanted.cols() + 2));
+  const bool has_void_ratio = whole_.loose_void_ratio.size() > 0;
+  bank_.assign(size, walled_height);
+  loose_.assign(size, 0.0);
+  height_.assign(size, walled_height);
+  awake_.assign(size, 1);
+  walled_.assign(size, 0);
+  void_ratio_.assign(has_void_ratio ? size : 0, soil_.loose.void_ratio);
+  for (Index col = wanted.col_begin; col < wanted.col_end; ++col) {
+    for (Index row = wanted.row_begin; row < wanted.row_end; ++row) {
+      const bool held = old.cells_.contains(row, col);
+      const std::size_t i = at(row, col);
+      bank_[i] = held ? old.bank(row, col) : whole_.bank.z(row, col);
+      loose_[i] = held ? old.loose(row, col) : whole_.loose(row, col);
+      height_[i] = bank_[i] + loose_[i];
+      if (held) awake_[i] = old.awake(row, col) ? 1 : 0;
+      if (has_void_ratio) {
+        void_ratio_[i] =
+            held ? old.void_ratio_[old.at(row, col)] : whole_.loose_void_ratio(row, col);
+      }
+    }
+  }
+  build_wall(wall_, 1);
+}
+
+void GroundWindow::check(const CellBlock& cells) const {
+  const auto within = [&](const Eigen::ArrayXXd& layer, double low, double high, const char* what) {
+    for (Index col = cells.col_begin; col < cells.col_end; ++col) {
+      for (Index row = cells.row_begin; row < cells.row_end; ++row) {
+        const double value = layer(row, col);
+        if (std::isnan(whole_.bank.z(row, col)) || (value >= low && value <= high)) continue;
+        throw Error(ErrorKind::bad_input, std::string("dig: ") + what + " in the cell at x = " +
+                                              std::to_string(whole_.bank.x(col)) +
+                                              " m, y = " + std::to_string(whole_.bank.y(row)) +
+                                              " m is " + std::to_string(value) + ", must be in " +
+                                              std::to_string(low) + " .. " + std::to_string(high));
+      }
+    }
+  };
+  const SoilKind& kind = soil_.kind;
+  constexpr double deepest_layer = 1e6;  // any finite thickness
+  within(whole_.loose, 0.0, deepest_layer, "the loose layer");
+  if (whole_.bank_void_ratio.size() > 0) {
+    within(whole_.bank_void_ratio, kind.void_ratio_min, kind.void_ratio_max,
+           "the void ratio of the bank");
+  }
+  if (whole_.loose_void_ratio.size() > 0) {
+    within(whole_.loose_void_ratio, kind.void_ratio_min, kind.void_ratio_loose,
+           "the void ratio of the loose layer");
+  }
+}
+
+SoilState GroundWindow::bank_state(Index row, Index col) const {
+  return bank_is_even() ? soil_.bank
+                        : bank_state_of_void_ratio(soil_.kind, bank_void_ratio(row, col));
+}
+
+void GroundWindow::mix(std::size_t cell, double thickness) {
+  const double solids =
+      loose_[cell] / (1.0 + void_ratio_[cell]) + thickness / (1.0 + soil_.loose.void_ratio);
+  if (solids > 0.0) {
+    void_ratio_[cell] = std::min((loose_[cell] + thickness) / solids - 1.0, soil_.loose.void_ratio);
+  }
+}
+
+void GroundWindow::wake(const CellBlock& block) {
+  for (Index col = block.col_begin; col < block.col_end; ++col) {
+    for (Index row = block.row_begin; row < block.row_end; ++row) awake_[at(row, col)] = 1;
+  }
+}
+
+void GroundWindow::set_wall(const CellBlock& wall) {
+  cover(wall);
+  const CellBlock old = wall_;
+  wall_ = wall;
+  build_wall(old, 0);
+  build_wall(wall, 1);
+}
+
+void GroundWindow::build_wall(const CellBlock& block, std::uint8_t built) {
+  for (Index col = block.col_begin; col < block.col_end; ++col) {
+    for (Index row = block.row_begin; row < block.row_end; ++row) {
+      const std::size_t i = at(row, col);
+      if (walled_[i] == built || wall_.contains(row, col) != (built != 0)) continue;
+      walled_[i] = built;
+      changed(i);
+    }
+  }
+}
+
+template <typename Cell>
+double GroundWindow::mass(Cell&& cell_mass) const {
+  double mass = 0.0;
+  for (Index col = cells_.col_begin; col < cells_.col_end; ++col) {
+    double sum = 0.0;
+    for (Index row = cells_.row_begin; row < cells_.row_end; ++row) {
+      const double here = cell_mass(row, col);
+      if (!std::isnan(here)) sum += here;
+    }
+    mass += sum;
+  }
+  return mass * cell() * cell();
+}
+
+double GroundWindow::bank_density(Index row, Index col) const {
+  return bank_is_even() ? soil_.bank.dry_density
+                        : dry_density(soil_.kind, whole_.bank_void_ratio(row, col));
+}
+
+double GroundWindow::solids(double above) const {
+  return mass([&](Index row, Index col) {
+    const double loose_density = void_ratio_.empty()
+                                     ? soil_.loose.dry_density
+                                     : dry_density(soil_.kind, void_ratio_[at(row, col)]);
+    return (bank(row, col) - above) * bank_density(row, col) + loose(row, col) * loose_density;
+  });
+}
+
+double GroundWindow::solids_before(double above) const {
+  const bool even = whole_.loose_void_ratio.size() == 0;
+  return mass([&](Index row, Index col) {
+    const double loose_density =
+        even ? soil_.loose.dry_density : dry_density(soil_.kind, whole_.loose_void_ratio(row, col));
+    return (whole_.bank.z(row, col) - above) * bank_density(row, col) +
+           whole_.loose(row, col) * loose_density;
+  });
+}
+
+double GroundWindow::lowest() const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const double bank : bank_) {
+    if (bank < lowest) lowest = bank;
+  }
+  return lowest;
+}
+
+TerrainPatch GroundWindow::patch() const {
+  const auto array = [&](const std::vector<double>& layer) {
+    using Framed = Eigen::Map<const Eigen::ArrayXXd>;
+    return Eigen::ArrayXXd(
+        Framed(layer.data(), stride_, cells_.cols() + 2).block(1, 1, cells_.rows(), cells_.cols()));
+  };
+  TerrainPatch patch;
+  patch.row = cells_.row_begin;
+  patch.col = cells_.col_begin;
+  patch.bank = array(bank_);
+  patch.loose = array(loose_);
+  if (!void_ratio_.empty()) patch.loose_void_ratio = array(void_ratio_);
+  return patch;
+}
+
+// ---- Sliding and pouring ------------------------------------------------------------------------
+
+CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits, int sweeps) {
+  Slump slide(ground, limits);
   for (int i = 0; i < sweeps && !block.empty(); ++i) {
-    block = slide.sweep(widened(block, terrain), i % 4);
+    block = ground.widened(block, 1);
+    ground.cover(ground.widened(block, 1));
+    block = slide.sweep(block, i % 4);
   }
   return block;
 }
 
-void pour(Terrain& terrain, const Eigen::Vector2d& at, double volume, double slope) {
-  const HeightMap& bank = terrain.bank;
-  const auto row = static_cast<Index>(std::floor((at.y() - bank.origin.y()) / bank.cell));
-  const auto col = static_cast<Index>(std::floor((at.x() - bank.origin.x()) / bank.cell));
-  if (row < 0 || col < 0 || row >= bank.z.rows() || col >= bank.z.cols() ||
-      std::isnan(bank.z(row, col))) {
+void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double slope) {
+  const HeightMap& map = ground.before().bank;
+  const double row_at = std::floor((at.y() - map.origin.y()) / map.cell);
+  const double col_at = std::floor((at.x() - map.origin.x()) / map.cell);
+  const bool on_map = row_at >= 0.0 && col_at >= 0.0 &&
+                      row_at < static_cast<double>(map.z.rows()) &&
+                      col_at < static_cast<double>(map.z.cols());
+  const auto row = static_cast<Index>(on_map ? row_at : 0.0);
+  const auto col = static_cast<Index>(on_map ? col_at : 0.0);
+  if (!on_map || std::isnan(map.z(row, col))) {
     throw Error(ErrorKind::bad_input, "dump point (" + std::to_string(at.x()) + ", " +
                                           std::to_string(at.y()) +
                                           ") m must lie on known ground of the map");
@@ -180,13 +363,12 @@ void pour(Terrain& terrain, const Eigen::Vector2d& at, double volume, double slo
   // On ground up to nearly as steep as the cone, the heap stays within a few radii of level
   // ground's.
   const double radius = std::cbrt(3.0 * volume / (3.14159265358979323846 * slope));
-  const auto reach = static_cast<Index>(3.0 * radius / bank.cell) + 2;
-  const CellBlock block = {
-      std::max<Index>(0, row - reach), std::min(bank.z.rows(), row + reach + 1),
-      std::max<Index>(0, col - reach), std::min(bank.z.cols(), col + reach + 1)};
+  const CellBlock axis = {row, row + 1, col, col + 1};
+  const CellBlock block = ground.widened(axis, static_cast<Index>(3.0 * radius / map.cell) + 2);
+  ground.cover(block);
   const auto raised = [&](Index r, Index c, double apex) {
-    const double distance = std::hypot(bank.x(c) - at.x(), bank.y(r) - at.y());
-    const double rise = apex - slope * distance - bank.z(r, c) - terrain.loose(r, c);
+    const double distance = std::hypot(map.x(c) - at.x(), map.y(r) - at.y());
+    const double rise = apex - slope * distance - ground.height(r, c);
     return rise > 0.0 ? rise : 0.0;  // 0 also on unknown cells
   };
   const auto poured = [&](double apex) {
@@ -194,9 +376,9 @@ void pour(Terrain& terrain, const Eigen::Vector2d& at, double volume, double slo
     for (Index c = block.col_begin; c < block.col_end; ++c) {
       for (Index r = block.row_begin; r < block.row_end; ++r) sum += raised(r, c, apex);
     }
-    return sum * bank.cell * bank.cell;
+    return sum * map.cell * map.cell;
   };
-  double low = bank.z(row, col) + terrain.loose(row, col);
+  double low = ground.height(row, col);
   double high = low + 1.0;
   while (poured(high) < volume) high += high - low;
   for (int i = 0; i < 60; ++i) {
@@ -206,7 +388,9 @@ void pour(Terrain& terrain, const Eigen::Vector2d& at, double volume, double slo
   const double exact = volume > 0.0 ? volume / poured(high) : 0.0;  // takes up the last rounding
   for (Index c = block.col_begin; c < block.col_end; ++c) {
     for (Index r = block.row_begin; r < block.row_end; ++r) {
-      if (const double rise = raised(r, c, high); rise > 0.0) terrain.loose(r, c) += exact * rise;
+      if (const double rise = raised(r, c, high); rise > 0.0) {
+        ground.raise_loose(r, c, exact * rise);
+      }
     }
   }
 }

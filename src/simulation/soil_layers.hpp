@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <limits>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/soil/soil.hpp>
 
 namespace excavplan {
 
@@ -16,30 +21,166 @@ struct CellBlock {
   Eigen::Index col_end = 0;
 
   void include(Eigen::Index row, Eigen::Index col);
+  void include(const CellBlock& other);
   bool contains(Eigen::Index row, Eigen::Index col) const {
     return row >= row_begin && row < row_end && col >= col_begin && col < col_end;
   }
+  bool contains(const CellBlock& other) const {
+    return other.empty() || (other.row_begin >= row_begin && other.row_end <= row_end &&
+                             other.col_begin >= col_begin && other.col_end <= col_end);
+  }
   bool empty() const { return row_begin >= row_end || col_begin >= col_end; }
+  Eigen::Index rows() const { return row_end - row_begin; }
+  Eigen::Index cols() const { return col_end - col_begin; }
+  /// This block and `margin` cells around it, as far as a map of this size has them.
+  CellBlock widened(Eigen::Index margin, Eigen::Index map_rows, Eigen::Index map_cols) const;
+};
+
+/// What a terrain's soil is where the terrain does not say.
+struct GroundSoil {
+  const SoilKind& kind;
+  const SoilState& bank;
+  const SoilState& loose;
+};
+
+/// The part of a terrain on which a dig works: a copy of the cells near it that grows on demand, so
+/// that the size of the terrain costs nothing. Rows and columns are those of the whole terrain.
+///
+/// Soil that is dug or slides swells to the loose state; only loose soil that never moved is
+/// denser.
+class GroundWindow {
+ public:
+  /// @throws Error (bad_input) as cover()
+  GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells);
+
+  /// Makes the window hold at least these cells of the map.
+  /// @throws Error (bad_input) if a loose layer is not >= 0 or a void ratio out of range there
+  void cover(const CellBlock& cells);
+
+  const Terrain& before() const { return whole_; }
+  const GroundSoil& soil() const { return soil_; }
+  const CellBlock& cells() const { return cells_; }
+  double cell() const { return whole_.bank.cell; }
+  CellBlock widened(const CellBlock& block, Eigen::Index margin) const {
+    return block.widened(margin, whole_.loose.rows(), whole_.loose.cols());
+  }
+
+  double bank(Eigen::Index row, Eigen::Index col) const { return bank_[at(row, col)]; }
+  double loose(Eigen::Index row, Eigen::Index col) const { return loose_[at(row, col)]; }
+  /// Of the surface; NaN where nothing moves on or off: unknown, walled, off the map.
+  double height(Eigen::Index row, Eigen::Index col) const { return height_[at(row, col)]; }
+
+  /// Void ratios of a cell [-].
+  double bank_void_ratio(Eigen::Index row, Eigen::Index col) const {
+    return whole_.bank_void_ratio.size() == 0 ? soil_.bank.void_ratio
+                                              : whole_.bank_void_ratio(row, col);
+  }
+  double loose_void_ratio(Eigen::Index row, Eigen::Index col) const {
+    return void_ratio_.empty() ? soil_.loose.void_ratio : void_ratio_[at(row, col)];
+  }
+  bool bank_is_even() const { return whole_.bank_void_ratio.size() == 0; }
+  /// State of a cell's bank.
+  SoilState bank_state(Eigen::Index row, Eigen::Index col) const;
+
+  /// Loose thickness [m] that a thickness of the cell's bank, or of its loose layer, gives once it
+  /// has moved.
+  double swollen_bank(Eigen::Index row, Eigen::Index col, double thickness) const {
+    return thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + bank_void_ratio(row, col));
+  }
+  double swollen_loose(Eigen::Index row, Eigen::Index col, double thickness) const {
+    return void_ratio_.empty()
+               ? thickness
+               : thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + void_ratio_[at(row, col)]);
+  }
+
+  void lower_bank(Eigen::Index row, Eigen::Index col, double thickness) {
+    const std::size_t i = at(row, col);
+    bank_[i] -= thickness;
+    changed(i);
+  }
+  /// Never below 0.
+  void lower_loose(Eigen::Index row, Eigen::Index col, double thickness) {
+    const std::size_t i = at(row, col);
+    loose_[i] = loose_[i] > thickness ? loose_[i] - thickness : 0.0;
+    changed(i);
+  }
+  /// Adds soil that has moved.
+  void raise_loose(Eigen::Index row, Eigen::Index col, double thickness) {
+    const std::size_t i = at(row, col);
+    if (!void_ratio_.empty()) mix(i, thickness);
+    loose_[i] += thickness;
+    changed(i);
+  }
+
+  /// Cells that let nothing on or off, until the next call.
+  void set_wall(const CellBlock& wall);
+
+  /// Whether a cell or one of its four neighbours has changed since let_sleep(): a cell that is
+  /// asleep is at rest.
+  bool awake(Eigen::Index row, Eigen::Index col) const { return awake_[at(row, col)] != 0; }
+  void let_sleep(Eigen::Index row, Eigen::Index col) { awake_[at(row, col)] = 0; }
+  void wake(const CellBlock& block);
+
+  /// Dry mass of the window above a level, now and before; unknown cells weigh nothing [kg].
+  double solids(double above) const;
+  double solids_before(double above) const;
+
+  double lowest() const;  ///< of the known bank [m]
+
+  TerrainPatch patch() const;
+
+ private:
+  /// The layers are stored with a frame of one cell around them, which is unknown ground.
+  std::size_t at(Eigen::Index row, Eigen::Index col) const {
+    return static_cast<std::size_t>((col - cells_.col_begin + 1) * stride_ + row -
+                                    cells_.row_begin + 1);
+  }
+  void changed(std::size_t i) {
+    height_[i] = walled_[i] != 0 ? walled_height : bank_[i] + loose_[i];
+    const auto column = static_cast<std::size_t>(stride_);
+    awake_[i] = awake_[i - 1] = awake_[i + 1] = 1;
+    awake_[i - column] = awake_[i + column] = 1;
+  }
+  void build_wall(const CellBlock& block, std::uint8_t built);
+  void mix(std::size_t cell, double thickness);
+  void check(const CellBlock& cells) const;
+  double bank_density(Eigen::Index row, Eigen::Index col) const;
+  template <typename Cell>
+  double mass(Cell&& cell_mass) const;
+
+  static constexpr double walled_height = std::numeric_limits<double>::quiet_NaN();
+
+  const Terrain& whole_;
+  GroundSoil soil_;
+  CellBlock cells_;
+  CellBlock wall_;
+  Eigen::Index stride_ = 0;
+  std::vector<double> bank_;
+  std::vector<double> loose_;
+  std::vector<double> height_;
+  std::vector<double> void_ratio_;  ///< of the loose layer; empty if all of it is as dug soil is
+  std::vector<std::uint8_t> awake_;
+  std::vector<std::uint8_t> walled_;
 };
 
 /// How steep the two layers may stand.
 struct SlopeLimits {
-  double loose_slope = 0.0;      ///< tangent of the angle of repose
-  double bank_slope = 0.0;       ///< tangent of the friction angle of the undisturbed soil
-  double critical_height = 0.0;  ///< of a vertical wall in the undisturbed soil [m]
-  double swell = 1.0;            ///< loose volume per bank volume
+  double loose_slope = 0.0;  ///< tangent of the angle of repose
+  bool bank_stands = false;  ///< walls of undisturbed soil are held, however high
+  /// Slopes whose fall over a cell is too high by less than this are at rest [m]; ours: well under
+  /// any scan's resolution.
+  double at_rest = 1e-4;
 };
 
-/// Lets soil slide where it stands too steep, but neither onto nor off the cells of `wall`, inside
-/// `block` and one cell around it, which grows as soil leaves it. At most `sweeps` passes; returns
-/// the block that may still move, empty once all is at rest. Solids are conserved to rounding;
-/// unknown cells are walls.
-CellBlock slump(Terrain& terrain, CellBlock block, const SlopeLimits& limits, int sweeps,
-                const CellBlock& wall = {});
+/// Lets soil slide where it stands too steep, inside `block` and one cell around it, which grows as
+/// soil leaves it. Undisturbed soil breaks off walls above its critical height down to its friction
+/// angle. At most `sweeps` passes; returns the block that may still move, empty once all is at
+/// rest. Solids are conserved to rounding; unknown and walled cells are walls.
+CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits, int sweeps);
 
 /// Heaps `volume` of loose soil on the terrain as a cone of the given slope with its axis at (x,
 /// y).
 /// @throws Error (bad_input) if the axis is off the map or on unknown ground
-void pour(Terrain& terrain, const Eigen::Vector2d& at, double volume, double slope);
+void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double slope);
 
 }  // namespace excavplan

@@ -3,6 +3,7 @@
 #include "soil_section.hpp"
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -14,7 +15,9 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double look_ahead = 0.25;  // for level and slope of the ground [m]; ours
+// Numbers of our own choice.
+constexpr double look_ahead = 0.25;  // for level and slope of the ground [m]
+constexpr double growth = 0.5;       // by which a section grows, and its room ahead at first [m]
 
 double square(double value) { return value * value; }
 
@@ -36,7 +39,7 @@ CutArea cut_fresh(Column& column, double from, double to, const Below& line) {
   const double all = area_above_line(length, at_from, at_to, column.top_before());
   const double swept = column.swept();
   column.floor = (column.floor * swept + column.bank_before * length - bank) / (swept + length);
-  return {bank, all - bank};
+  return {bank, all - bank, 0.0};
 }
 
 /// What the tip has passed before is cut again only as far as the line lies below its mean floor.
@@ -54,7 +57,7 @@ CutArea cut_column(Column& column, double from, double to, const Below& line) {
   column.swept_from = std::min(column.swept_from, from);
   const CutArea after = cut_fresh(column, again_to, to, line);
   column.swept_to = std::max(column.swept_to, to);
-  return {sum.bank + before.bank + after.bank, before.loose + after.loose};
+  return {sum.bank + before.bank + after.bank, before.loose + after.loose, 0.0};
 }
 
 /// Share of a heap of this cross-section, piled over the width, that comes to rest beside it: the
@@ -89,113 +92,117 @@ std::string span(double from, double to) {
   return std::to_string(from) + " .. " + std::to_string(to) + " m";
 }
 
-/// Writes a section back: what was cut comes off the rows under the bucket, what came to rest lies
-/// on them and slopes off beside them.
+/// Edges of the bucket in rows of the map.
+std::pair<double, double> edges(const HeightMap& map, double width) {
+  return {(-0.5 * width - map.origin.y()) / map.cell, (0.5 * width - map.origin.y()) / map.cell};
+}
+
+/// The cells that the bucket passes.
+CellBlock cells_under(const HeightMap& map, double width, const Reach& reach) {
+  const auto [low, high] = edges(map, width);
+  if (!(low >= -1e-9 && high <= static_cast<double>(map.z.rows()) + 1e-9)) {
+    refuse("the bucket, y = " + span(-0.5 * width, 0.5 * width) + ", must lie on the map");
+  }
+  const Rectangle extent = map.extent();
+  if (!(reach.x_min >= extent.x_min && reach.x_max < extent.x_max)) {
+    refuse("the path, x = " + span(reach.x_min, reach.x_max) + ", must lie on the map");
+  }
+  const auto col_of = [&](double x) { return static_cast<Index>((x - map.origin.x()) / map.cell); };
+  const CellBlock cells = {static_cast<Index>(std::floor(low + 1e-9)),
+                           static_cast<Index>(std::ceil(high - 1e-9)), col_of(reach.x_min),
+                           std::min(map.z.cols(), col_of(reach.x_max) + 1)};
+  for (Index col = cells.col_begin; col < cells.col_end; ++col) {
+    for (Index row = cells.row_begin; row < cells.row_end; ++row) {
+      if (!std::isnan(map.z(row, col))) continue;
+      refuse("the path crosses unknown ground at x = " + std::to_string(map.x(col)) + " m");
+    }
+  }
+  return cells;
+}
+
+/// These cells and the room around them that a dig looks at first.
+CellBlock with_room(const CellBlock& cells, const HeightMap& map, const Reach& reach) {
+  const auto cells_in = [&](double length) {
+    return static_cast<Index>(std::ceil(length / map.cell));
+  };
+  CellBlock room = cells;
+  room.col_begin = std::max<Index>(0, cells.col_begin - cells_in(growth));
+  room.col_end = std::min(map.z.cols(), cells.col_end + cells_in(reach.behind + growth));
+  return room;
+}
+
+/// Writes back what came to rest on a section, and breaks its walls.
 class MapWriter {
  public:
-  MapWriter(Terrain& terrain, const SoilSection& section, const SlopeLimits& limits)
-      : terrain_(terrain), section_(section), width_(section.width()), limits_(limits) {
-    for (const double share : section.coverage()) rows_ += share;
-    raised_.resize(static_cast<std::size_t>(terrain.loose.rows()));
-  }
+  MapWriter(SoilSection& section, double slope)
+      : section_(section),
+        ground_(section.ground()),
+        map_(ground_.before().bank),
+        width_(section.width()),
+        slope_(slope) {}
 
   /// Returns the loose volume that lies where the ground was cut, and the rest.
   LooseSoil write() {
     LooseSoil rest;
-    for (std::size_t i = 0; i < section_.columns().size(); ++i) {
-      const Column& column = section_.columns()[i];
-      const Index col = section_.first_col() + static_cast<Index>(i);
-      const double cut = column.bank_before - column.bank;
-      if (cut > 0.0) lower_bank(col, cut);
-      if (column.loose < column.loose_before) thin_loose(col, column.loose / column.loose_before);
-      deposit(col, column, cut > 0.0, rest);
-      if (cut > 0.0) break_walls(col, column, rest);
+    for (Index col = section_.first_col(); col < section_.end_col(); ++col) {
+      const Column& column = section_.column(col);
+      const bool cut = column.bank < column.bank_before;
+      deposit(col, column, cut, rest);
+      if (cut) break_walls(col, column, rest);
     }
     return rest;
   }
 
  private:
-  Index row_of(std::size_t r) const { return section_.first_row() + static_cast<Index>(r); }
-
-  /// Cuts all rows down to the one level that takes out the mean thickness `cut`.
-  void lower_bank(Index col, double cut) {
-    const std::vector<double>& share = section_.coverage();
-    auto bank = terrain_.bank.z.col(col);
-    double level = section_.columns()[static_cast<std::size_t>(col - section_.first_col())].bank;
-    double above = 0.0;
-    for (std::size_t n = 0; n <= share.size(); ++n) {  // Newton's method, from below: ends exactly
-      double sum = 0.0;
-      double weight = 0.0;
-      for (std::size_t r = 0; r < share.size(); ++r) {
-        if (!(bank(row_of(r)) > level)) continue;
-        sum += share[r] * (bank(row_of(r)) - level);
-        weight += share[r];
-      }
-      above = sum;
-      const double rise = weight > 0.0 ? (sum - cut * rows_) / weight : 0.0;
-      if (!(rise > 1e-15)) break;
-      level += rise;
-    }
-    if (!(above > 0.0)) return;
-    const double exact = cut * rows_ / above;
-    for (std::size_t r = 0; r < share.size(); ++r) {
-      double& z = bank(row_of(r));
-      if (z > level) z -= exact * share[r] * (z - level);
-    }
-  }
-
-  void thin_loose(Index col, double left) {
-    const std::vector<double>& share = section_.coverage();
-    for (std::size_t r = 0; r < share.size(); ++r) {
-      terrain_.loose(row_of(r), col) *= 1.0 - share[r] * (1.0 - left);
-    }
-  }
-
   void deposit(Index col, const Column& column, bool cut, LooseSoil& rest) {
-    const double cell = terrain_.bank.cell;
-    const double slope = limits_.loose_slope;
+    if (!(column.settled > 0.0 || column.windrow > 0.0)) return;
     const double heap = std::clamp(column.top() - column.top_before(), 0.0, column.settled);
     const double within = column.settled - heap;
     const double fallen = cut ? 0.5 * column.windrow : 0.0;  // the inner half slides into the cut
     fill(col, within + fallen / width_);
     if (cut && column.windrow > 0.0) {
-      const double edge = std::sqrt(column.windrow * slope);  // height while the pile held it
+      const double edge = std::sqrt(column.windrow * slope_);  // height while the pile held it
       spread(col, 0.5 * column.windrow,
-             [&](double u) { return u > 0.0 ? std::min(slope * u, edge - slope * u) : 0.0; });
+             [&](double u) { return u > 0.0 ? std::min(slope_ * u, edge - slope_ * u) : 0.0; });
     }
     const double area = heap * width_ + (cut ? 0.0 : column.windrow);
-    if (area > 0.0) spread(col, area, HeapShape(area, width_, slope));
-    (cut ? rest.in_cut : rest.elsewhere) += (column.settled * width_ + fallen) * cell;
-    rest.elsewhere += (column.windrow - fallen) * cell;
+    if (area > 0.0) spread(col, area, HeapShape(area, width_, slope_));
+    (cut ? rest.in_cut : rest.elsewhere) += (column.settled * width_ + fallen) * map_.cell;
+    rest.elsewhere += (column.windrow - fallen) * map_.cell;
   }
 
   /// Walls beside the cut that are higher than they can stand break back at the friction angle;
   /// what falls lies against their foot at the angle of repose.
   void break_walls(Index col, const Column& column, LooseSoil& rest) {
-    const double wall = column.bank_before - column.bank - column.settled - limits_.critical_height;
+    const GroundSoil& soil = ground_.soil();
+    const SoilState bank =
+        ground_.bank_is_even() ? soil.bank : bank_state_of_void_ratio(soil.kind, column.void_ratio);
+    const double wall = column.bank_before - column.bank - column.settled - critical_height(bank);
     if (!(wall > 0.0)) return;
-    const double ratio = std::sqrt(limits_.swell * limits_.loose_slope / limits_.bank_slope);
+    const double broken_slope = std::tan(bank.friction_angle);
+    const double swell = (1.0 + ground_.soil().loose.void_ratio) / (1.0 + bank.void_ratio);
+    const double ratio = std::sqrt(swell * slope_ / broken_slope);
     const double foot = wall * ratio / (1.0 + ratio);
-    const HeightMap& map = terrain_.bank;
-    double broken = 0.0;
-    for (Index row = 0; row < map.z.rows(); ++row) {
-      const double outwards = std::abs(map.y(row)) - 0.5 * width_;
-      const double fall = wall - foot - limits_.bank_slope * outwards;
-      if (outwards < 0.0 || !(fall > 0.0) || std::isnan(map.z(row, col))) continue;
-      terrain_.bank.z(row, col) -= fall;
-      broken += fall * map.cell;
+    const CellBlock rows = rows_within((wall - foot) / broken_slope);
+    double fallen = 0.0;
+    for (Index row = rows.row_begin; row < rows.row_end; ++row) {
+      const double outwards = std::abs(map_.y(row)) - 0.5 * width_;
+      const double fall = wall - foot - broken_slope * outwards;
+      if (outwards < 0.0 || !(fall > 0.0) || std::isnan(map_.z(row, col))) continue;
+      fallen += ground_.swollen_bank(row, col, fall) * map_.cell;
+      ground_.lower_bank(row, col, fall);
     }
-    if (!(broken > 0.0)) return;
-    spread(col, broken * limits_.swell, [&](double outwards) {
-      return outwards < 0.0 ? foot + limits_.loose_slope * outwards : 0.0;
-    });
-    rest.in_cut += broken * limits_.swell * map.cell;
+    if (!(fallen > 0.0)) return;
+    spread(col, fallen,
+           [&](double outwards) { return outwards < 0.0 ? foot + slope_ * outwards : 0.0; });
+    rest.in_cut += fallen * map_.cell;
   }
 
   void fill(Index col, double thickness) {
+    if (!(thickness > 0.0)) return;
     const std::vector<double>& share = section_.coverage();
     for (std::size_t r = 0; r < share.size(); ++r) {
-      terrain_.loose(row_of(r), col) += share[r] * thickness;
+      ground_.raise_loose(section_.first_row() + static_cast<Index>(r), col, share[r] * thickness);
     }
   }
 
@@ -203,197 +210,312 @@ class MapWriter {
   /// under the bucket.
   template <typename Shape>
   void spread(Index col, double area, const Shape& shape) {
-    const HeightMap& map = terrain_.bank;
+    const CellBlock rows = rows_within(2.0 * std::sqrt(area / slope_));
+    raised_.clear();
     double sum = 0.0;
-    const Index rows = terrain_.loose.rows();
-    const double reach = 0.5 * width_ + std::sqrt(area / limits_.loose_slope) * 2.0 + map.cell;
-    const auto index = [&](double y) {
-      return std::clamp<Index>(static_cast<Index>((y - map.origin.y()) / map.cell), 0, rows);
-    };
-    const Index begin = index(-reach);
-    const Index end = index(reach + map.cell);
-    for (Index row = begin; row < end; ++row) {
-      const double rise = std::max(0.0, shape(std::abs(map.y(row)) - 0.5 * width_));
-      raised_[static_cast<std::size_t>(row)] = std::isnan(map.z(row, col)) ? 0.0 : rise;
-      sum += raised_[static_cast<std::size_t>(row)];
+    for (Index row = rows.row_begin; row < rows.row_end; ++row) {
+      const double rise = std::max(0.0, shape(std::abs(map_.y(row)) - 0.5 * width_));
+      raised_.push_back(std::isnan(map_.z(row, col)) ? 0.0 : rise);
+      sum += raised_.back();
     }
-    if (!(sum > 0.0)) return fill(col, area / (rows_ * map.cell));
-    const double exact = area / (sum * map.cell);
-    for (Index row = begin; row < end; ++row) {
-      terrain_.loose(row, col) += exact * raised_[static_cast<std::size_t>(row)];
+    if (!(sum > 0.0)) return fill(col, area / (section_.rows() * map_.cell));
+    const double exact = area / (sum * map_.cell);
+    for (Index row = rows.row_begin; row < rows.row_end; ++row) {
+      const double rise = exact * raised_[static_cast<std::size_t>(row - rows.row_begin)];
+      if (rise > 0.0) ground_.raise_loose(row, col, rise);
     }
   }
 
-  Terrain& terrain_;
-  const SoilSection& section_;
+  /// The rows under the bucket and so far beside it; the window is made to hold them.
+  CellBlock rows_within(double outwards) {
+    const double reach = 0.5 * width_ + outwards + map_.cell;
+    const auto row_at = [&](double y) {
+      const double row = (y - map_.origin.y()) / map_.cell;
+      return static_cast<Index>(std::clamp(row, 0.0, static_cast<double>(map_.z.rows())));
+    };
+    const CellBlock rows = {row_at(-reach), row_at(reach + map_.cell), section_.first_col(),
+                            section_.end_col()};
+    ground_.cover(rows);
+    return rows;
+  }
+
+  SoilSection& section_;
+  GroundWindow& ground_;
+  const HeightMap& map_;
   double width_;
-  SlopeLimits limits_;
-  double rows_ = 0.0;
+  double slope_;
   std::vector<double> raised_;
 };
 
 }  // namespace
 
-SoilSection::SoilSection(const Terrain& terrain, double width, double x_min, double x_max)
-    : width_(width), cell_(terrain.bank.cell), origin_(terrain.bank.origin.x()) {
-  if (terrain.bank.z.size() == 0) refuse("the map is empty");
-  cover_rows(terrain.bank);
-  cover_columns(terrain, x_min, x_max);
+// ---- The ground under the bucket ----------------------------------------------------------------
+
+SoilSection::SoilSection(const Terrain& terrain, const GroundSoil& soil, double width,
+                         const Reach& reach)
+    : ground_(terrain, soil,
+              with_room(cells_under(terrain.bank, width, reach), terrain.bank, reach)),
+      width_(width),
+      cell_(terrain.bank.cell),
+      origin_(terrain.bank.origin.x()) {
+  cover_rows();
+  cover_columns(reach);
 }
 
-void SoilSection::cover_rows(const HeightMap& map) {
-  const double low = (-0.5 * width_ - map.origin.y()) / cell_;
-  const double high = (0.5 * width_ - map.origin.y()) / cell_;
-  if (!(low >= -1e-9 && high <= static_cast<double>(map.z.rows()) + 1e-9)) {
-    refuse("the bucket, y = " + span(-0.5 * width_, 0.5 * width_) + ", must lie on the map");
-  }
+void SoilSection::cover_rows() {
+  const auto [low, high] = edges(ground_.before().bank, width_);
   first_row_ = static_cast<Index>(std::floor(low + 1e-9));
   const auto end = static_cast<Index>(std::ceil(high - 1e-9));
   for (Index row = first_row_; row < end; ++row) {
     const auto r = static_cast<double>(row);
     coverage_.push_back(std::min(r + 1.0, high) - std::max(r, low));
+    rows_ += coverage_.back();
   }
 }
 
-void SoilSection::cover_columns(const Terrain& terrain, double x_min, double x_max) {
-  const HeightMap& map = terrain.bank;
-  const Rectangle extent = map.extent();
-  if (!(x_min >= extent.x_min && x_max < extent.x_max)) {
-    refuse("the path, x = " + span(x_min, x_max) + ", must lie on the map");
+void SoilSection::cover_columns(const Reach& reach) {
+  const CellBlock path = cells_under(ground_.before().bank, width_, reach);
+  first_col_ = path.col_begin;
+  for (Index col = path.col_begin; col < path.col_end; ++col) columns_.push_back(mean_column(col));
+  while (left(end_col()) < reach.x_max + reach.behind && grow_behind()) continue;
+  while (left(first_col_) > reach.x_min - growth && grow_ahead()) continue;
+  for (Index col = end_col() - 1; col >= first_col_ && middle(col) > reach.x_max; --col) {
+    left_behind_.emplace_back(middle(col), column(col).bank_before);
   }
-  const auto col_of = [&](double x) { return static_cast<Index>((x - origin_) / cell_); };
-  const Index needed_end = std::min(map.z.cols(), col_of(x_max) + 1);
-  first_col_ = col_of(x_min);
-  for (Index col = first_col_; col < needed_end; ++col) {
-    if (!known(map, col)) {
-      refuse("the path crosses unknown ground at x = " + std::to_string(map.x(col)) + " m");
-    }
-  }
-  const double reach = look_ahead + 4.0 * width_;  // of a pile; ours
-  Index end = needed_end;
-  while (end < map.z.cols() && map.x(end) < x_max + reach && known(map, end)) ++end;
-  while (first_col_ > 0 && map.x(first_col_ - 1) > x_min - reach && known(map, first_col_ - 1)) {
-    --first_col_;
-  }
-  columns_.reserve(static_cast<std::size_t>(end - first_col_));
-  for (Index col = first_col_; col < end; ++col) columns_.push_back(mean_column(terrain, col));
 }
 
-bool SoilSection::known(const HeightMap& map, Index col) const {
+bool SoilSection::grow_ahead() {
+  const auto cells = static_cast<Index>(std::ceil(growth / cell_));
+  const Index end = first_col_;
+  while (end - first_col_ < cells && first_col_ > 0 && known(first_col_ - 1)) --first_col_;
+  if (first_col_ == end) return false;
+  ground_.cover({first_row_, first_row_ + 1, first_col_, end});
+  columns_.insert(columns_.begin(), static_cast<std::size_t>(end - first_col_), Column{});
+  for (Index col = first_col_; col < end; ++col) at(col) = mean_column(col);
+  return true;
+}
+
+bool SoilSection::grow_behind() {
+  const Index begin = end_col();
+  const Index wanted = begin + static_cast<Index>(std::ceil(growth / cell_));
+  Index end = begin;
+  while (end < std::min(wanted, ground_.before().loose.cols()) && known(end)) ++end;
+  if (end == begin) return false;
+  ground_.cover({first_row_, first_row_ + 1, begin, end});
+  for (Index col = begin; col < end; ++col) columns_.push_back(mean_column(col));
+  return true;
+}
+
+bool SoilSection::known(Index col) const {
   for (std::size_t r = 0; r < coverage_.size(); ++r) {
-    if (std::isnan(map.z(first_row_ + static_cast<Index>(r), col))) return false;
+    if (std::isnan(ground_.before().bank.z(first_row_ + static_cast<Index>(r), col))) return false;
   }
   return true;
 }
 
-Column SoilSection::mean_column(const Terrain& terrain, Index col) const {
-  Column column;
-  double weight = 0.0;
+Column SoilSection::mean_column(Index col) {
+  Column mean;
   for (std::size_t r = 0; r < coverage_.size(); ++r) {
     const Index row = first_row_ + static_cast<Index>(r);
-    column.bank += coverage_[r] * terrain.bank.z(row, col);
-    column.loose += coverage_[r] * terrain.loose(row, col);
-    weight += coverage_[r];
+    mean.bank += coverage_[r] * ground_.bank(row, col);
+    mean.loose += coverage_[r] * ground_.loose(row, col);
+    mean.void_ratio += coverage_[r] * ground_.bank_void_ratio(row, col);
   }
-  column.bank_before = column.bank /= weight;
-  column.loose_before = column.loose /= weight;
-  return column;
+  mean.bank_before = mean.bank /= rows_;
+  mean.loose_before = mean.loose /= rows_;
+  const SoilKind& kind = ground_.soil().kind;
+  mean.void_ratio = std::clamp(mean.void_ratio / rows_, kind.void_ratio_min, kind.void_ratio_max);
+  return mean;
 }
 
-std::size_t SoilSection::column_at(double x) const {
-  const double last = static_cast<double>(columns_.size() - 1);
-  return static_cast<std::size_t>(std::clamp((x - left(0)) / cell_, 0.0, last));
+Index SoilSection::column_at(double x) const {
+  const auto col = std::floor((x - origin_) / cell_);
+  return static_cast<Index>(
+      std::clamp(col, static_cast<double>(first_col_), static_cast<double>(end_col() - 1)));
 }
+
+// ---- Cutting ------------------------------------------------------------------------------------
 
 CutArea SoilSection::cut(Vector2d p, Vector2d q) {
+  pass(q);
   CutArea sum;
   if (p.x() > q.x()) std::swap(p, q);
   if (!(q.x() > p.x())) return sum;
   const double slope = (q.y() - p.y()) / (q.x() - p.x());
-  for (std::size_t i = column_at(p.x()); i <= column_at(q.x()); ++i) {
-    const double from = std::max(p.x(), left(i));
-    const double to = std::min(q.x(), left(i) + cell_);
+  const Below line = {p.y() - slope * p.x(), slope};
+  const Index last = column_at(q.x());
+  for (Index col = column_at(p.x()); col <= last; ++col) {
+    const double from = std::max(p.x(), left(col));
+    const double to = std::min(q.x(), left(col) + cell_);
     if (!(to > from)) continue;
-    const Below line = {p.y() - slope * p.x(), slope};
-    const CutArea area = cut_column(columns_[i], from, to, line);
-    columns_[i].bank -= area.bank / cell_;
-    columns_[i].loose = std::max(0.0, columns_[i].loose - area.loose / cell_);
+    const CutArea area = cut_column(at(col), from, to, line);
     sum.bank += area.bank;
     sum.loose += area.loose;
+    sum.swollen += take_bank(col, area.bank / cell_) * cell_;
+    sum.swollen += take_loose(col, area.loose / cell_) * cell_;
   }
   return sum;
 }
 
+/// Cuts all rows down to the one level that takes out this mean thickness; what it swells to.
+double SoilSection::take_bank(Index col, double thickness) {
+  if (!(thickness > 0.0)) return 0.0;
+  double level = at(col).bank -= thickness;
+  const auto top = [&](std::size_t r) {  // where the bucket covers the row
+    const Index row = first_row_ + static_cast<Index>(r);
+    const double before = ground_.before().bank.z(row, col);
+    return before - (before - ground_.bank(row, col)) / coverage_[r];
+  };
+  double above = 0.0;
+  for (std::size_t n = 0; n <= coverage_.size();
+       ++n) {  // Newton's method, from below: ends exactly
+    above = 0.0;
+    double weight = 0.0;
+    for (std::size_t r = 0; r < coverage_.size(); ++r) {
+      const double height = top(r) - level;
+      if (!(height > 0.0)) continue;
+      above += coverage_[r] * height;
+      weight += coverage_[r];
+    }
+    const double rise = weight > 0.0 ? (above - thickness * rows_) / weight : 0.0;
+    if (!(rise > 1e-15)) break;
+    level += rise;
+  }
+  if (!(above > 0.0)) return 0.0;
+  const double exact = thickness * rows_ / above;
+  double swollen = 0.0;
+  for (std::size_t r = 0; r < coverage_.size(); ++r) {
+    const double height = top(r) - level;
+    if (!(height > 0.0)) continue;
+    const Index row = first_row_ + static_cast<Index>(r);
+    const double taken = exact * coverage_[r] * height;
+    swollen += ground_.swollen_bank(row, col, taken);
+    ground_.lower_bank(row, col, taken);
+  }
+  return swollen / rows_;
+}
+
+/// Thins the loose soil of all rows by the same share; what it swells to.
+double SoilSection::take_loose(Index col, double thickness) {
+  Column& mean = at(col);
+  const double taken = std::min(thickness, mean.loose);
+  if (!(taken > 0.0)) return 0.0;
+  mean.loose -= taken;
+  double swollen = 0.0;
+  for (std::size_t r = 0; r < coverage_.size(); ++r) {
+    const Index row = first_row_ + static_cast<Index>(r);
+    const double share = coverage_[r] * ground_.before().loose(row, col) / mean.loose_before;
+    swollen += ground_.swollen_loose(row, col, share * taken);
+    ground_.lower_loose(row, col, share * taken);
+  }
+  return swollen / rows_;
+}
+
+void SoilSection::pass(const Vector2d& tip) {
+  const double level = std::min(tip.y(), uncut(tip.x()));
+  if (left_behind_.empty() || tip.x() < left_behind_.back().x()) {
+    left_behind_.emplace_back(tip.x(), level);
+  } else if (tip.x() == left_behind_.back().x()) {
+    left_behind_.back().y() = std::min(left_behind_.back().y(), level);
+  }
+}
+
+// ---- The ground ahead and behind ----------------------------------------------------------------
+
+double SoilSection::uncut(double x) const {
+  const double first = middle(first_col_);
+  const double along =
+      std::clamp((x - first) / cell_, 0.0, static_cast<double>(columns_.size() - 1));
+  const auto i = static_cast<std::size_t>(along);
+  const double bank = columns_[i].bank_before;
+  if (i + 1 == columns_.size()) return bank;
+  return bank + (along - static_cast<double>(i)) * (columns_[i + 1].bank_before - bank);
+}
+
 GroundAhead SoilSection::ahead(double x) const {
-  const std::size_t last = column_at(x);
-  const std::size_t first = column_at(x - look_ahead + 0.5 * cell_);
+  const Index last = column_at(x);
+  const Index first = column_at(x - look_ahead + 0.5 * cell_);
   const double n = static_cast<double>(last - first + 1);
-  double mean_bank = 0.0;
-  double mean_surface = 0.0;
+  GroundAhead mean;
   double moment = 0.0;
   double inertia = 0.0;
   const double centre = 0.5 * (middle(first) + middle(last));
-  for (std::size_t i = first; i <= last; ++i) {
-    const Column& column = columns_[i];
-    const bool passed = column.swept() > cell_ - 1e-9;
-    const double bank = passed ? column.bank : column.bank_before;
-    const double loose = passed ? column.loose : column.loose_before;
-    mean_bank += bank / n;
-    mean_surface += (bank + loose) / n;
-    moment += (middle(i) - centre) * (bank + loose);
-    inertia += square(middle(i) - centre);
+  for (Index col = first; col <= last; ++col) {
+    const Column& here = column(col);
+    const bool passed = here.swept() > cell_ - 1e-9;
+    const double bank = passed ? here.bank : here.bank_before;
+    const double loose = passed ? here.loose : here.loose_before;
+    mean.bank += bank / n;
+    mean.surface += (bank + loose) / n;
+    mean.void_ratio += here.void_ratio / n;
+    moment += (middle(col) - centre) * (bank + loose);
+    inertia += square(middle(col) - centre);
   }
-  const double gradient = inertia > 0.0 ? moment / inertia : 0.0;
-  const double shift = gradient * (x - centre);
-  return {mean_bank + shift, mean_surface + shift, -std::atan(gradient)};
+  mean.gradient = inertia > 0.0 ? moment / inertia : 0.0;
+  const double shift = mean.gradient * (x - centre);
+  mean.bank += shift;
+  mean.surface += shift;
+  return mean;
 }
+
+// ---- What comes to rest -------------------------------------------------------------------------
 
 double SoilSection::shed(double x, double high, double fall, double slope) {
   double shed = 0.0;
   const double end = high / fall;
   double u = 0.0;
   while (u < end) {
-    const std::size_t i = column_at(x - u - 1e-12);
-    const double length = std::min(x - u - left(i), end - u);
+    const double foot = x - u - 1e-12;
+    if (foot < left(first_col_) && !grow_ahead()) break;
+    const Index col = column_at(foot);
+    const double length = std::min(x - u - left(col), end - u);
     if (!(length > 1e-12)) break;
     const double thickness = high - fall * (u + 0.5 * length);
-    double& windrow = columns_[i].windrow;
+    double& windrow = at(col).windrow;
     const double target = area_beside(thickness * width_ + windrow, width_, slope);
     const double leaving = std::max(0.0, target - windrow) * length;
     windrow += leaving / cell_;
     shed += leaving / width_;
     u += length;
-    if (i == 0) break;
   }
   return shed;
 }
 
-void SoilSection::settle(double x, double area, double slope, std::size_t first, std::size_t last) {
+void SoilSection::settle(double place, const Heap& heap, double area) {
   if (!(area > 0.0)) return;
-  const auto raised = [&](std::size_t i, double apex) {
-    return std::max(0.0, apex - slope * std::abs(middle(i) - x) - columns_[i].top());
+  const double reach = 2.0 * std::sqrt(area / heap.slope);  // twice that on level ground
+  while (heap.side != Side::behind && left(first_col_) > heap.x - reach && grow_ahead()) continue;
+  while (heap.side != Side::ahead && left(end_col()) < heap.x + reach && grow_behind()) continue;
+  const Index edge = column_at(place);
+  const Index begin = heap.side == Side::behind ? edge : first_col_;
+  raise(heap, area, begin, heap.side == Side::ahead ? std::max(edge, begin + 1) : end_col());
+}
+
+void SoilSection::raise(const Heap& heap, double area, Index begin, Index end) {
+  const auto above = [&](Index col, double apex) {
+    return apex - heap.slope * std::abs(middle(col) - heap.x) - column(col).top();
   };
   const auto total = [&](double apex) {
     double sum = 0.0;
-    for (std::size_t i = first; i <= last; ++i) sum += raised(i, apex);
+    for (Index col = begin; col < end; ++col) sum += std::max(0.0, above(col, apex));
     return sum * cell_;
   };
-  double low = columns_[first].top() + slope * std::abs(middle(first) - x);
-  for (std::size_t i = first + 1; i <= last; ++i) {
-    low = std::min(low, columns_[i].top() + slope * std::abs(middle(i) - x));
-  }
-  double high = low + std::sqrt(area * slope) + slope * cell_;
+  double low = std::numeric_limits<double>::infinity();
+  for (Index col = begin; col < end; ++col) low = std::min(low, -above(col, 0.0));
+  double high = low + std::sqrt(area * heap.slope) + heap.slope * cell_;
   while (total(high) < area) high += high - low;
   while (high - low > 1e-6) {
     const double half = 0.5 * (low + high);
     (total(half) < area ? low : high) = half;
   }
   const double exact = area / total(high);
-  for (std::size_t i = first; i <= last; ++i) columns_[i].settled += exact * raised(i, high);
+  for (Index col = begin; col < end; ++col) {
+    at(col).settled += exact * std::max(0.0, above(col, high));
+  }
 }
 
-LooseSoil write_back(const SoilSection& section, const SlopeLimits& limits, Terrain& terrain) {
-  return MapWriter(terrain, section, limits).write();
+LooseSoil write_back(SoilSection& section, double slope) {
+  return MapWriter(section, slope).write();
 }
 
 }  // namespace excavplan

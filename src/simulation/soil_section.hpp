@@ -30,6 +30,7 @@ struct Below {
 struct Column {
   double bank_before = 0.0;   ///< mean over the width [m]
   double loose_before = 0.0;  ///< [m]
+  double void_ratio = 0.0;    ///< of the bank, mean over the width [-]
   double bank = 0.0;
   double loose = 0.0;       ///< what is left of the loose soil that lay here
   double swept_from = 0.0;  ///< the tip has passed from here ..
@@ -43,63 +44,107 @@ struct Column {
   double top() const { return bank + loose + settled; }
 };
 
+/// As they lay, and both together as they swell once they move.
 struct CutArea {
   double bank = 0.0;
   double loose = 0.0;
+  double swollen = 0.0;
 };
 
-/// Level and slope of the ground ahead of a point; slope positive uphill along the travel.
+/// A straight line through the ground ahead of a point.
 struct GroundAhead {
-  double bank = 0.0;
+  double bank = 0.0;  ///< at the point [m]
   double surface = 0.0;
-  double slope = 0.0;
+  double gradient = 0.0;    ///< dz / dx: positive downhill along the travel
+  double void_ratio = 0.0;  ///< of the bank
 };
 
+/// Where a tip works.
+struct Reach {
+  double x_min = 0.0;
+  double x_max = 0.0;
+  double behind = 0.0;  ///< how far the bucket extends behind its tip
+};
+
+/// Columns are counted as the map counts them. Cut soil comes off the map's cells at once; what
+/// comes to rest lies on the section until write_back().
 class SoilSection {
  public:
-  /// Covers at least x_min .. x_max and as much known ground around it as a pile can need.
+  /// Covers known ground around the reach, and grows with what comes to rest.
   /// @throws Error (bad_input) if a cell the bucket passes is off the map or unknown
-  SoilSection(const Terrain& terrain, double width, double x_min, double x_max);
+  SoilSection(const Terrain& terrain, const GroundSoil& soil, double width, const Reach& reach);
 
+  GroundWindow& ground() { return ground_; }
   double width() const { return width_; }
   double cell() const { return cell_; }
-  Eigen::Index first_col() const { return first_col_; }
   Eigen::Index first_row() const { return first_row_; }
   const std::vector<double>& coverage() const { return coverage_; }  ///< of the rows
-  const std::vector<Column>& columns() const { return columns_; }
-  double left(std::size_t i) const {
-    return origin_ + cell_ * static_cast<double>(first_col_ + static_cast<Eigen::Index>(i));
-  }
-  double middle(std::size_t i) const { return left(i) + 0.5 * cell_; }
-  std::size_t column_at(double x) const;  ///< the nearest column outside the section
+  double rows() const { return rows_; }                              ///< sum of the coverage
+  Eigen::Index first_col() const { return first_col_; }
+  Eigen::Index end_col() const { return first_col_ + static_cast<Eigen::Index>(columns_.size()); }
+  const Column& column(Eigen::Index col) const { return columns_[index(col)]; }
+  double left(Eigen::Index col) const { return origin_ + cell_ * static_cast<double>(col); }
+  double middle(Eigen::Index col) const { return left(col) + 0.5 * cell_; }
+  Eigen::Index column_at(double x) const;  ///< the nearest column outside the section
 
-  /// Takes out what lies above the line from p to q, exactly.
+  /// State of the bank where its void ratio is this.
+  SoilState bank_of(double void_ratio) const {
+    const GroundSoil& soil = ground_.soil();
+    return ground_.bank_is_even() ? soil.bank : bank_state_of_void_ratio(soil.kind, void_ratio);
+  }
+
+  /// The tip has come here.
+  void pass(const Eigen::Vector2d& tip);
+
+  /// Takes out what lies above the line from p to q, exactly; the tip has come to q.
   CutArea cut(Eigen::Vector2d p, Eigen::Vector2d q);
 
-  /// A straight line through the ground up to 0.25 m ahead.
+  /// Through the ground up to 0.25 m ahead.
   GroundAhead ahead(double x) const;
+
+  /// Level of the undisturbed ground, between the middles of columns.
+  double uncut(double x) const;
+
+  /// The top of the bank from the tip backwards, last point first: the line the tip has left, and
+  /// beyond its start the ground.
+  const std::vector<Eigen::Vector2d>& left_behind() const { return left_behind_; }
 
   /// Sheds what stands too steep at the sides of a pile that leans against x, `high` there and
   /// falling by `fall` per metre, into windrows; the area that the pile loses.
   double shed(double x, double high, double fall, double slope);
 
-  /// Heaps an area on the columns from `first` to `last` inclusive, under slopes that fall off to
-  /// both sides of x.
-  void settle(double x, double area, double slope, std::size_t first, std::size_t last);
+  enum class Side { ahead, behind, both };
+  struct Heap {
+    Side side = Side::both;  ///< the only one on which it lies
+    double x = 0.0;          ///< of its top
+    double slope = 0.0;      ///< to both sides of that
+  };
+  /// Lets an area come to rest as a heap on one side of a place.
+  void settle(double place, const Heap& heap, double area);
 
  private:
-  void cover_rows(const HeightMap& map);
-  void cover_columns(const Terrain& terrain, double x_min, double x_max);
-  bool known(const HeightMap& map, Eigen::Index col) const;
-  Column mean_column(const Terrain& terrain, Eigen::Index col) const;
+  std::size_t index(Eigen::Index col) const { return static_cast<std::size_t>(col - first_col_); }
+  Column& at(Eigen::Index col) { return columns_[index(col)]; }
+  void cover_rows();
+  void cover_columns(const Reach& reach);
+  bool grow_ahead();
+  bool grow_behind();
+  bool known(Eigen::Index col) const;
+  Column mean_column(Eigen::Index col);
+  double take_bank(Eigen::Index col, double thickness);
+  double take_loose(Eigen::Index col, double thickness);
+  void raise(const Heap& heap, double area, Eigen::Index begin, Eigen::Index end);
 
+  GroundWindow ground_;
   double width_;
   double cell_;
   double origin_;
-  Eigen::Index first_col_ = 0;
   Eigen::Index first_row_ = 0;
   std::vector<double> coverage_;
+  double rows_ = 0.0;
+  Eigen::Index first_col_ = 0;
   std::vector<Column> columns_;
+  std::vector<Eigen::Vector2d> left_behind_;
 };
 
 /// Loose soil that lies on the map after a dig [m^3].
@@ -108,8 +153,8 @@ struct LooseSoil {
   double elsewhere = 0.0;
 };
 
-/// Writes a section back: what was cut comes off the rows under the bucket, what came to rest lies
-/// on them and slopes off beside them, windrows lie beside, walls that are too high break.
-LooseSoil write_back(const SoilSection& section, const SlopeLimits& limits, Terrain& terrain);
+/// Writes back what came to rest: it lies on the rows under the bucket and slopes off beside them,
+/// windrows lie beside, walls that are too high break. `slope` is the tangent of loose soil's.
+LooseSoil write_back(SoilSection& section, double slope);
 
 }  // namespace excavplan

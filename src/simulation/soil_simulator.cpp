@@ -19,6 +19,22 @@ Terrain undisturbed(const HeightMap& surface) {
   return {surface, Eigen::ArrayXXd::Zero(surface.z.rows(), surface.z.cols())};
 }
 
+void apply(const TerrainPatch& patch, Terrain& terrain) {
+  const Eigen::Index rows = patch.bank.rows();
+  const Eigen::Index cols = patch.bank.cols();
+  terrain.bank.z.block(patch.row, patch.col, rows, cols) = patch.bank;
+  terrain.loose.block(patch.row, patch.col, rows, cols) = patch.loose;
+  if (patch.loose_void_ratio.size() > 0) {
+    terrain.loose_void_ratio.block(patch.row, patch.col, rows, cols) = patch.loose_void_ratio;
+  }
+}
+
+Terrain DigResult::after(const Terrain& before) const {
+  Terrain terrain = before;
+  apply(patch, terrain);
+  return terrain;
+}
+
 HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,
                                     const Eigen::Vector2d& dump_at, double dump_radius) {
   const HeightMap from = before.surface();

@@ -51,6 +51,15 @@ struct JointLimits {
   double torque = 0.0;        ///< [N m], > 0
 };
 
+/// Teeth in front of the lip, all alike, shaped like wedges.
+struct Teeth {
+  int count = 0;
+  double width = 0.0;      ///< of one [m]
+  double thickness = 0.0;  ///< at the root [m]
+  double length = 0.0;     ///< from root to point [m]
+  double angle = 0.0;      ///< of the wedge, its whole opening [rad]
+};
+
 /// The bucket as its side profile swept over its width.
 struct Bucket {
   /// Corners of the cavity, (along, across) of the line from bucket pin to tip, counter-clockwise
@@ -61,6 +70,7 @@ struct Bucket {
   double width_inside = 0.0;    ///< holds this wide [m]
   double edge_thickness = 0.0;  ///< of the lip [m]
   double edge_angle = 0.0;      ///< wedge angle of the lip: the smallest rake it can have [rad]
+  std::optional<Teeth> teeth;   ///< nothing: a plain lip
 };
 
 /// A machine read from a file; immutable after that.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -35,5 +36,18 @@ struct CalibrationOptions {
 /// densities are given
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
                                      const CalibrationOptions& options = {});
+
+/// How far the bulking factor of the height maps and the true one part, and why.
+///
+/// Soil that fell back lies in the hole: it is missing from both volumes, and k_measured =
+/// (k - f) / (1 - f) with f the fallback fraction (docs/methods.md#density-law).
+struct BulkingDifference {
+  DensityCalibration::Sample largest;  ///< where they part most
+  double density_points = 0.0;  ///< error of its density if k were taken for the true one [%]
+  double unexplained = 0.0;     ///< largest |k - k_true| once freed of fallback, any sample
+};
+
+/// Nothing if the true factor of some sample is not known, as in measured samples.
+std::optional<BulkingDifference> bulking_difference(const DensityCalibration& calibration);
 
 }  // namespace excavplan

@@ -42,6 +42,7 @@ Terrain level_planning_ground(const Machine& machine, double cell = 0.05);
 /// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the row
 /// of cells it needs.
 GroundProfile boom_plane_profile(const HeightMap& surface);
+GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
 
 /// Lays out a dig, simulates it, times it.
 ///

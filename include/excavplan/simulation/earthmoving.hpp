@@ -31,6 +31,7 @@ struct EarthmovingFactors {
   double q = 0.0;  ///< of a surcharge pressure
   double Q = 0.0;  ///< of a surcharge weight per width; use q or Q
   double ca = 0.0;
+  double rake = 0.0;     ///< rho that they are for
   double failure = 0.0;  ///< beta, of the failure plane from the surface
   double D = 0.0;        ///< common denominator
 };
@@ -70,12 +71,37 @@ class CriticalWedges {
   EarthmovingFactors at(double rake, double slope) const;
 
  private:
+  friend class FrictionWedges;
+  struct Held {
+    double rake;
+    double slope;
+  };
+  Held held(double rake, double slope) const;
+  double failure_at(const Held& wedge) const;
+
   double friction_;
   double tool_friction_;
   double highest_rake_;
   double lowest_slope_;
   double slope_step_;
   std::vector<double> failure_;  ///< [rake index * slopes + slope index]
+};
+
+/// The same over a range of friction angles, tool friction being a fixed share of each: for ground
+/// that is not equally dense everywhere. The failure angle is interpolated between tables at most
+/// 2.5 deg of friction apart.
+class FrictionWedges {
+ public:
+  /// @throws Error (bad_input) unless 0 <= lowest <= highest < 60 deg and tool_ratio is in 0 .. 1
+  FrictionWedges(double lowest, double highest, double tool_ratio);
+
+  /// `friction` is held inside the range, rake and slope as by CriticalWedges.
+  EarthmovingFactors at(double rake, double slope, double friction) const;
+
+ private:
+  double lowest_;
+  double step_;
+  std::vector<CriticalWedges> tables_;
 };
 
 /// Passive pressure on a blunt edge over the pressure of the soil against it, A(x) of

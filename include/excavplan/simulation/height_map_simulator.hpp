@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/simulation/earthmoving.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -25,14 +26,17 @@ double bucket_capacity(const Machine& machine, double phi3, double support,
 /// (Culmann 1875: height = 4 c / gamma * sin(angle) cos(phi) / (1 - cos(angle - phi))).
 double stable_slope(const SoilState& soil, double height, double least);
 
+struct HeightMapModel;
+
 /// The built-in soil simulation: a bank and a loose layer per cell of a height map, quasi-static.
 ///
 /// The tip sweeps an exact volume out of every cell it passes; what it cuts swells to the loose
 /// state of the soil and fills the bucket up to what the bucket can hold in its attitude; the rest
 /// heaps up ahead of the lip, is cut again, and slides aside and back into the pit at its angle of
-/// repose. The soil resists by the fundamental earthmoving equation per strip of the edge, with
-/// side planes, the lip's penetration and the friction on floor and side plates. Joint torques
-/// follow from soil, payload and link weights. Assumptions and limits: docs/methods.md#simulation.
+/// repose. The soil resists by the fundamental earthmoving equation per strip of the edge, on the
+/// floor or on the soil packed on it, with side planes, the penetration of lip and teeth, the
+/// friction on floor and side plates, and the ground under the heel. Joint torques follow from
+/// soil, payload and link weights. Assumptions and limits: docs/methods.md#simulation.
 class HeightMapSimulator : public SoilSimulator {
  public:
   /// @throws Error (bad_input) unless 0 <= density_percent <= 100
@@ -41,16 +45,11 @@ class HeightMapSimulator : public SoilSimulator {
   DigResult dig(const Terrain& terrain, const DigPath& path,
                 const DigOptions& options = {}) const override;
 
-  const SoilState& bank() const { return bank_; }
-  const SoilState& loose() const { return loose_; }
+  const SoilState& bank() const;
+  const SoilState& loose() const;
 
  private:
-  Machine machine_;
-  SoilKind soil_;
-  SoilState bank_;
-  SoilState loose_;
-  CriticalWedges wedges_;
-  HoldingSlopes slopes_;
+  std::shared_ptr<const HeightMapModel> model_;
 };
 
 }  // namespace excavplan

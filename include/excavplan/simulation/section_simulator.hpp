@@ -2,20 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/simulation/earthmoving.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
 namespace excavplan {
 
+struct SectionModel;
+
 /// The same physics in the boom plane alone: an independent second engine, several times faster.
 ///
 /// Digs the mean profile of the ground over the bucket's width. The tip cuts exact areas out of it;
 /// what the bucket cannot hold is one wedge at the angle of repose ahead of the lip, which sheds
-/// windrows to both sides; heaps have closed forms, nothing is relaxed. The result is written back
-/// onto the rows of the map under the bucket, windrows beside them. Assumptions and limits:
+/// windrows to both sides; heaps have closed forms, nothing is relaxed. Soil comes off the rows of
+/// the map under the bucket, each with its own void ratio; forces take the mean over them. What is
+/// left lies on these rows, windrows beside them. Assumptions and limits:
 /// docs/methods.md#simulation.
 class SectionSimulator : public SoilSimulator {
  public:
@@ -26,12 +30,7 @@ class SectionSimulator : public SoilSimulator {
                 const DigOptions& options = {}) const override;
 
  private:
-  Machine machine_;
-  SoilKind soil_;
-  SoilState bank_;
-  SoilState loose_;
-  CriticalWedges wedges_;
-  HoldingSlopes slopes_;
+  std::shared_ptr<const SectionModel> model_;
 };
 
 /// What the bucket can hold, by clipping its side profile with the slopes of the soil: same

@@ -18,11 +18,30 @@ struct Terrain {
   HeightMap bank;         ///< top of the undisturbed soil [m]
   Eigen::ArrayXXd loose;  ///< thickness of the loose soil on it [m], >= 0, same size
 
+  /// Void ratio of the undisturbed soil, the same down a whole cell, in the soil's
+  /// void_ratio_min .. void_ratio_max [-]. Empty: all of it as dense as the simulator was told.
+  Eigen::ArrayXXd bank_void_ratio{};
+  /// Void ratio of the loose layer, in the soil's void_ratio_min .. void_ratio_loose [-]. Empty:
+  /// all of it is void_ratio_loose, to which all soil swells that is dug or slides.
+  Eigen::ArrayXXd loose_void_ratio{};
+
   HeightMap surface() const;  ///< bank + loose
 };
 
 /// Undisturbed ground of this surface, with no loose soil.
 Terrain undisturbed(const HeightMap& surface);
+
+/// A block of a terrain's cells in a new state.
+struct TerrainPatch {
+  Eigen::Index row = 0;  ///< of the block's first cell on the whole terrain
+  Eigen::Index col = 0;
+  Eigen::ArrayXXd bank;              ///< top of the undisturbed soil [m]
+  Eigen::ArrayXXd loose;             ///< [m]
+  Eigen::ArrayXXd loose_void_ratio;  ///< empty if the terrain's is
+};
+
+/// Puts a patch onto the terrain it was made for.
+void apply(const TerrainPatch& patch, Terrain& terrain);
 
 /// Energy of one dig [J]: design section 5. Every total is the sum over boom, arm and bucket of the
 /// integral of max(0, torque * rate) over penetrate, drag and scoop; no energy comes back.
@@ -44,8 +63,8 @@ struct SoilLedger {
   double spilled = 0.0;            ///< loose, left on ground that was not cut
   double fallen_back = 0.0;        ///< loose, lying in the pit at the end
   double fallback_fraction = 0.0;  ///< fallen_back / bank_cut [-]
-  double solids_before = 0.0;      ///< dry mass of the map above the deepest point of the path [kg]
-  double solids_after = 0.0;       ///< the same plus what is in the bucket [kg]
+  double solids_before = 0.0;  ///< dry mass of the patch above its and the path's lowest point [kg]
+  double solids_after = 0.0;   ///< the same plus what is in the bucket [kg]
 };
 
 /// The machine could not go on. A result, not an error.
@@ -56,17 +75,18 @@ struct Stall {
   double torque = 0.0;     ///< that was asked of the joint [N m]
 };
 
-/// Forces at one pose.
+/// Forces half-way of one step.
 struct ForceSample {
   DigPhase phase = DigPhase::penetrate;
   double travelled = 0.0;                          ///< tip travel [m]
+  JointAngles joints = JointAngles::Zero();        ///< [rad]
   Eigen::Vector2d soil = Eigen::Vector2d::Zero();  ///< of the soil on the bucket (x, z) [N]
   JointAngles torque = JointAngles::Zero();        ///< of the joints [N m]
   double bucket_fill = 0.0;                        ///< loose [m^3]
 };
 
 struct DigResult {
-  Terrain terrain;              ///< afterwards, on the grid it had before
+  TerrainPatch patch;           ///< every cell that changed, as it is afterwards
   double payload_mass = 0.0;    ///< moist [kg]
   double payload_volume = 0.0;  ///< loose [m^3]
   EnergyLedger energy;
@@ -74,6 +94,9 @@ struct DigResult {
   double peak_force = 0.0;  ///< largest force of the soil on the bucket [N]
   std::optional<Stall> stall;
   std::vector<ForceSample> history;  ///< empty unless asked for
+
+  /// The whole terrain afterwards.
+  Terrain after(const Terrain& before) const;
 
   /// The paper's eq. 7, f = payload mass / energy [kg/J]; 0 without energy.
   double efficiency() const { return energy.total > 0.0 ? payload_mass / energy.total : 0.0; }
@@ -87,14 +110,16 @@ struct DigOptions {
 /// A simulation of one dig on one terrain, ours or yours.
 ///
 /// An implementation returns the same bytes for the same arguments, may be called from several
-/// threads at once, conserves solids to 1e-9, and leaves unknown cells unknown.
+/// threads at once, conserves solids to 1e-9, leaves unknown cells unknown, and looks at no more of
+/// the terrain than it digs: the size of the map costs nothing.
 /// tests/soil_simulator_contract.hpp checks this for any implementation.
 class SoilSimulator {
  public:
   virtual ~SoilSimulator() = default;
 
-  /// @throws Error (bad_input) if the path leaves the map or its known cells, the map is empty, or
-  ///         the dump point lies off the map
+  /// @throws Error (bad_input) if the path leaves the map or its known cells, the map is empty, a
+  ///         layer is negative or a void ratio out of range where the dig works, or the dump point
+  ///         lies off the map
   virtual DigResult dig(const Terrain& terrain, const DigPath& path,
                         const DigOptions& options = {}) const = 0;
 };

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Digs at random and says how near any of them came to the physical bound of the efficiency,
+/// f <= 1 / (g dz): the payload has to rise at least from the middle of the cut to the ground.
+///
+///     random_digs [number] [seed]
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/planning/planner.hpp>
+#include <excavplan/random.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/section_simulator.hpp>
+
+namespace excavplan {
+namespace {
+
+struct Tally {
+  long digs = 0;
+  long stalls = 0;
+  long infeasible = 0;
+  double nearest = 0.0;       ///< largest f g dz; above 1 energy would come from nowhere
+  double worst_solids = 0.0;  ///< largest relative error of the dry mass
+};
+
+class RandomDigs {
+ public:
+  explicit RandomDigs(std::uint64_t seed) : seed_(seed) {}
+
+  template <typename Simulator>
+  Tally run(long number) {
+    std::vector<Simulator> simulators;
+    for (int d = 0; d <= 100; d += 5) simulators.emplace_back(machine_, loam_, d);
+    Tally tally;
+    std::atomic<long> next{0};
+    std::mutex mutex;
+    const auto work = [&] {
+      Tally mine;
+      for (long i = next++; i < number; i = next++) {
+        dig(simulators, static_cast<std::uint64_t>(i), mine);
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      tally.digs += mine.digs;
+      tally.stalls += mine.stalls;
+      tally.infeasible += mine.infeasible;
+      tally.nearest = std::max(tally.nearest, mine.nearest);
+      tally.worst_solids = std::max(tally.worst_solids, mine.worst_solids);
+    };
+    std::vector<std::thread> threads;
+    for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) {
+      threads.emplace_back(work);
+    }
+    for (std::thread& thread : threads) thread.join();
+    return tally;
+  }
+
+ private:
+  /// Draws until the machine can drive the path, then digs it.
+  template <typename Simulator>
+  void dig(const std::vector<Simulator>& simulators, std::uint64_t index, Tally& tally) const {
+    Random random(seed_, index);
+    while (true) {
+      const auto which = static_cast<std::size_t>(random.uniform() * 21.0);
+      DigParameters parameters;
+      for (const DigParameterInfo& info : dig_parameter_table()) {
+        parameters.*info.field = random.uniform(info.lower, info.upper);
+      }
+      const auto path =
+          make_dig_path(machine_, parameters, random.uniform(3.5, 7.5), [](double) { return 0.0; });
+      if (!std::holds_alternative<DigPath>(path)) {
+        ++tally.infeasible;
+        continue;
+      }
+      const DigResult result = simulators[which].dig(ground_, std::get<DigPath>(path));
+      const SoilLedger& soil = result.soil;
+      tally.worst_solids =
+          std::max(tally.worst_solids, std::abs(soil.solids_after / soil.solids_before - 1.0));
+      if (result.stall) {
+        ++tally.stalls;
+        continue;
+      }
+      const double depth = parameters.penetration_length * std::sin(parameters.penetration_angle);
+      tally.nearest = std::max(tally.nearest, result.efficiency() * 9.80665 * 0.5 * depth);
+      ++tally.digs;
+      return;
+    }
+  }
+
+  std::uint64_t seed_;
+  Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  SoilKind loam_ = load_soil(find_data_file("soils/loam.json"));
+  Terrain ground_ = level_planning_ground(machine_);
+};
+
+void print(const char* name, const Tally& tally) {
+  std::printf(
+      "%-20s %ld digs (%ld paths not drivable, %ld stalled): largest f g dz %.4f, "
+      "dry mass within %.1e\n",
+      name, tally.digs, tally.infeasible, tally.stalls, tally.nearest, tally.worst_solids);
+}
+
+}  // namespace
+}  // namespace excavplan
+
+int main(int argc, char** argv) {
+  using namespace excavplan;
+  const long number = argc > 1 ? std::atol(argv[1]) : 100000;
+  RandomDigs digs(argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+  print("SectionSimulator", digs.run<SectionSimulator>(number));
+  print("HeightMapSimulator", digs.run<HeightMapSimulator>(number));
+}

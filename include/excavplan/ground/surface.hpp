@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include <excavplan/ground/height_map.hpp>
+
+namespace excavplan {
+
+/// A surveyed surface: heights of the ground and what the points say about their error.
+struct Surface {
+  HeightMap height;          ///< NaN where no point was accepted
+  Eigen::ArrayXXd variance;  ///< of each cell's height, from the scatter of its own points and
+                             ///< independent from cell to cell [m^2]; NaN where they do not tell it
+  Eigen::ArrayXXi points;    ///< accepted in each cell
+};
+
+}  // namespace excavplan

@@ -1,0 +1,406 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "bucket_resistance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <excavplan/error.hpp>
+
+namespace excavplan {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector2d;
+
+constexpr double pi = 3.14159265358979323846;
+
+// Numbers of our own choice; docs/methods.md#simulation says why.
+constexpr double slope_reach = 0.30;  // the surface's slope is taken over this ahead of the lip [m]
+constexpr int heel_samples = 12;      // of the outline behind the lip
+constexpr double bearing_settlement = 0.1;  // of its width, at which a footing bears all it can
+
+constexpr double cone_half_angle = 15.0 * pi / 180.0;  // of the standard cone (ASAE S313)
+
+/// Mean pressure at rest on a vertical face down to this depth (Jaky 1944: K_0 = 1 - sin phi).
+double at_rest_pressure(const SoilState& soil, double depth) {
+  return 0.5 * (1.0 - std::sin(soil.friction_angle)) * soil.unit_weight * depth;
+}
+
+/// Friction and adhesion on steel under that pressure.
+double plate_friction(const SoilState& soil, double depth) {
+  return soil.adhesion + at_rest_pressure(soil, depth) * std::tan(soil.tool_friction_angle);
+}
+
+/// Bearing capacity of a strip footing (Prandtl, Reissner; N_gamma of Vesic 1973) [Pa].
+double bearing_capacity(const SoilState& soil, double depth, double width) {
+  const double tangent = std::tan(soil.friction_angle);
+  const double root = std::tan(0.25 * pi + 0.5 * soil.friction_angle);
+  const double n_q = std::exp(pi * tangent) * root * root;
+  return soil.cohesion * (n_q - 1.0) / tangent + soil.unit_weight * depth * n_q +
+         soil.unit_weight * width * (n_q + 1.0) * tangent;
+}
+
+/// Soil in the bucket is as loose as it gets, but moist soil keeps the cohesion of that state.
+SoilState dug_state(const SoilKind& soil) {
+  const double density =
+      (soil.void_ratio_max - soil.void_ratio_loose) / (soil.void_ratio_max - soil.void_ratio_min);
+  return bank_state(soil, 100.0 * std::clamp(density, 0.0, 1.0));
+}
+
+}  // namespace
+
+// ---- Model and swath ----------------------------------------------------------------------------
+
+HeightMapModel::HeightMapModel(const Machine& machine_, const SoilKind& soil_,
+                               double density_percent)
+    : machine(machine_),
+      soil(soil_),
+      bank(bank_state(soil, density_percent)),
+      loose(loose_state(soil)),
+      on_steel(bank.friction_angle, bank.tool_friction_angle),
+      on_packed(bank.friction_angle, bank.friction_angle) {
+  const double mouth = (machine.bucket.profile.back() - machine.bucket.profile.front()).norm();
+  slopes.heap = std::tan(soil.angle_of_repose);
+  slopes.face = std::tan(stable_slope(dug_state(soil), mouth, soil.angle_of_repose));
+}
+
+EarthmovingFactors HeightMapModel::factors(double rake, double slope, const SoilState& state,
+                                           bool packed) const {
+  if (state.friction_angle == bank.friction_angle) {
+    return (packed ? on_packed : on_steel).at(rake, slope);
+  }
+  std::call_once(uneven_made_, [&] {
+    const double end = soil.friction_loosest + soil.friction_gain;
+    const double low = std::min(soil.friction_loosest, end);
+    const double high = std::max(soil.friction_loosest, end);
+    uneven_on_steel_.emplace(low, high, soil.tool_friction_ratio);
+    uneven_on_packed_.emplace(low, high, 1.0);
+  });
+  return (packed ? *uneven_on_packed_ : *uneven_on_steel_).at(rake, slope, state.friction_angle);
+}
+
+Swath::Swath(const HeightMap& map, double width) : map_(map) {
+  const double half = 0.5 * width;
+  const double first = (-half - map.origin.y()) / map.cell;
+  const double last = (half - map.origin.y()) / map.cell;
+  if (!(first >= 0.0 && last <= static_cast<double>(map.z.rows()))) {
+    throw Error(ErrorKind::bad_input,
+                "dig: the map must hold the bucket's width, y = " + std::to_string(-half) + " .. " +
+                    std::to_string(half) + " m");
+  }
+  first_row_ = static_cast<Index>(std::floor(first));
+  const auto end = std::min(map.z.rows(), static_cast<Index>(std::ceil(last)));
+  cover_.resize(end - first_row_);
+  for (Index i = 0; i < cover_.size(); ++i) {
+    const auto row = static_cast<double>(first_row_ + i);
+    cover_(i) = std::min(last, row + 1.0) - std::max(first, row);
+  }
+}
+
+Index Swath::column(double x) const {
+  const double col = std::floor((x - map_.origin.x()) / map_.cell);
+  if (!(col >= 0.0 && col < static_cast<double>(map_.z.cols()))) {
+    const Rectangle extent = map_.extent();
+    throw Error(ErrorKind::bad_input, "dig: the path leaves the map at x = " + std::to_string(x) +
+                                          " m; the map reaches from " +
+                                          std::to_string(extent.x_min) + " to " +
+                                          std::to_string(extent.x_max) + " m");
+  }
+  return static_cast<Index>(col);
+}
+
+// ---- Forces -------------------------------------------------------------------------------------
+
+struct BucketResistance::Attitude {
+  double floor;         ///< angle of the floor [rad]
+  double climb;         ///< angle of the motion above the horizontal [rad]
+  double packed_front;  ///< angle from the floor to the front of the soil in the bucket [rad]
+};
+
+/// The plane on which the wedge ahead slides up: the bucket's floor, or the front of the soil that
+/// is packed on it (secondary separation plate; Blouin, Hemami and Lipsett 2001).
+struct BucketResistance::SlidingFace {
+  double angle = 0.0;  ///< in the boom plane [rad]
+  double rake = 0.0;   ///< against the motion [rad]
+  bool packed = false;
+};
+
+/// In the frame of the motion [N].
+struct BucketResistance::FaceForce {
+  double along = 0.0;   ///< against the motion
+  double across = 0.0;  ///< away from the surface
+  double borne_weight = 0.0;
+  double depth = 0.0;  ///< mean over the width [m]
+};
+
+/// Soil above the tip in one row: depth of the uncut bank, thickness of the loose soil on it.
+struct BucketResistance::Strip {
+  double bank = 0.0;
+  double loose = 0.0;
+};
+
+double BucketResistance::floor_length() const {
+  const std::vector<Vector2d>& profile = model_.machine.bucket.profile;
+  return (profile[1] - profile[0]).norm();
+}
+
+double BucketResistance::uncut_at(Index col) const {
+  return swath_.mean([&](Index row) { return ground_.before().bank.z(row, col); });
+}
+
+double BucketResistance::surface_at(Index col) const {
+  return uncut_at(col) + swath_.mean([&](Index row) { return ground_.loose(row, col); });
+}
+
+Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double fill) const {
+  const Vector2d motion = s.direction();
+  const double floor = s.at.phi3 + pi - model_.machine.beta();
+  const Vector2d tip = 0.5 * (s.from + s.to);
+  const Index col = swath_.column(tip.x());
+  // The penetration moves along the floor by definition: no wedge is pushed, the lip is driven in.
+  Resistance r;
+  if (s.phase == DigPhase::penetrate) {
+    r = drive_in(tip, col, floor, motion);
+  } else {
+    const double climb = std::atan2(motion.y(), -motion.x());
+    r = push_wedge(tip, col, {floor, climb, cavity.packed_front(fill)}, motion);
+  }
+  press_heel(s, cavity, r);
+  return r;
+}
+
+/// Lip and teeth against the cone index, friction on both sides of the floor and of the side
+/// plates.
+Resistance BucketResistance::drive_in(const Vector2d& tip, Index col, double floor,
+                                      const Vector2d& motion) const {
+  const double depth = surface_at(col) - tip.y();
+  Resistance r;
+  if (!(depth > 0.0)) return r;
+  const SoilState soil = mean_soil_at(col);
+  const double along = std::sin(floor) + std::tan(surface_slope(col)) * std::cos(floor);
+  const double driven = depth / std::max(1e-3, along);
+  const double buried = std::min(driven, floor_length());
+  const double plates =
+      2.0 * buried * model_.machine.bucket.width_outside + 4.0 * side_plate_area(depth, floor);
+  const double front = cone_index(model_.soil, soil, depth) * penetrating_area(driven, soil);
+  r.lip_force = -motion * (front + plate_friction(soil, depth) * plates);
+  r.face_point = tip;
+  return r;
+}
+
+/// Earthmoving equation per strip of the edge: the wedge slides up the floor, or up the soil packed
+/// on it if that is easier.
+Resistance BucketResistance::push_wedge(const Vector2d& tip, Index col, const Attitude& attitude,
+                                        const Vector2d& motion) const {
+  const double edge = model_.machine.bucket.edge_angle;
+  const double turn = std::clamp(attitude.climb, 0.0, 0.5 * pi);
+  const auto face_at = [&](double angle, bool packed) {
+    return SlidingFace{angle, std::max({angle, angle + attitude.climb, edge}), packed};
+  };
+  SlidingFace face = face_at(attitude.floor, false);
+  FaceForce force = slide(face, tip, col, turn);
+  if (attitude.packed_front > 0.0) {
+    const SlidingFace packed = face_at(attitude.floor + attitude.packed_front, true);
+    if (const FaceForce other = slide(packed, tip, col, turn); other.along < force.along) {
+      face = packed;
+      force = other;
+    }
+  }
+  const SoilState soil = mean_soil_at(col);
+  const double depth = force.depth;
+  const double along =
+      force.along + edge_force(depth, attitude.climb, soil) +
+      2.0 * side_plate_area(depth, std::max(attitude.floor, edge)) * plate_friction(soil, depth);
+  const Vector2d up(-motion.y(), motion.x());  // left of the motion, which is towards -x: down
+  Resistance r;
+  r.face_force = -motion * along + up * force.across;
+  const double lever = std::min(depth / (3.0 * std::sin(face.rake)), floor_length());
+  r.face_point = tip + lever * Vector2d(std::cos(face.angle), std::sin(face.angle));
+  r.borne_weight = force.borne_weight;
+  return r;
+}
+
+BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Vector2d& tip,
+                                                    Index col, double turn) const {
+  const double slope = surface_slope(col);
+  // Where the bucket rises it pushes no wedge ahead: that passive force fades with the cosine of
+  // the climb; it shears the soil above it off instead.
+  const double fade = std::cos(turn);
+  FaceForce force;
+  const auto push = [&](double passive, double adhesion, const EarthmovingFactors& n,
+                        double friction) {
+    force.along += fade * (passive * std::sin(n.rake + friction) + adhesion / std::tan(n.rake));
+    force.across += fade * (passive * std::cos(n.rake + friction) - adhesion);
+  };
+  const bool even = ground_.bank_is_even();
+  const EarthmovingFactors mean = model_.factors(face.rake, slope, mean_soil_at(col), face.packed);
+  for (Index i = 0; i < swath_.rows(); ++i) {
+    const Index row = swath_.first_row() + i;
+    const double width = swath_.cover(i) * ground_.cell();
+    const Strip strip = strip_at(row, col, tip.y());
+    if (strip.bank + strip.loose <= 0.0) continue;
+    const SoilState soil = soil_at(row, col);
+    const EarthmovingFactors n = even ? mean : model_.factors(face.rake, slope, soil, face.packed);
+    const double on_face = face.packed ? soil.cohesion : soil.adhesion;
+    const double friction = face.packed ? soil.friction_angle : soil.tool_friction_angle;
+    const double loose = loose_on_wedge(row, col, strip, n);
+    const double surcharge = model_.loose.unit_weight * loose;
+    const double passive = strip.bank * (soil.unit_weight * strip.bank * n.gamma +
+                                         soil.cohesion * n.c + surcharge * n.q + on_face * n.ca) +
+                           surcharge * loose * n.gamma;
+    push(width * passive, width * on_face * strip.bank, n, friction);
+    const double shear = strip.bank * (soil.cohesion + at_rest_pressure(soil, strip.bank) *
+                                                           std::tan(soil.friction_angle));
+    force.along += width * (1.0 - fade) * shear;
+    force.borne_weight +=
+        width * 0.5 * soil.unit_weight * strip.bank * strip.bank / std::tan(n.rake);
+    force.depth += width * strip.bank;
+  }
+  force.depth /= model_.machine.bucket.width_outside;
+  if (force.depth > 0.0) {
+    const SoilState soil = mean_soil_at(col);
+    const double friction = face.packed ? soil.friction_angle : soil.tool_friction_angle;
+    const CuttingWedge wedge{mean.rake, soil.friction_angle, friction, 0.0};
+    const SoilStrength strength = {soil.unit_weight, soil.cohesion, soil.adhesion};
+    const double sides = side_plane_force(wedge, mean, strength, force.depth);
+    push(sides * side_plane_share(wedge, mean), 0.0, mean, friction);
+  }
+  return force;
+}
+
+/// Loose soil over the top of the wedge, as an even layer on all of it; what lies over the face is
+/// in the bucket, and payload. Where the tip runs in loose soil alone, that [m].
+double BucketResistance::loose_on_wedge(Index row, Index col, const Strip& strip,
+                                        const EarthmovingFactors& n) const {
+  if (!(strip.bank > 0.0)) return strip.loose;
+  const double ahead = strip.bank / std::tan(n.failure);
+  const double cells = ahead / ground_.cell();
+  double sum = 0.0;
+  for (Index i = 0; static_cast<double>(i) < cells && col - i >= ground_.cells().col_begin; ++i) {
+    sum += std::min(1.0, cells - static_cast<double>(i)) * ground_.loose(row, col - i);
+  }
+  return sum * ground_.cell() / (ahead + strip.bank / std::tan(n.rake));
+}
+
+/// Where the outline behind the lip reaches below what the tip has cut, the ground bears it like a
+/// footing: pressure across the outline, friction against the motion.
+void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resistance& r) const {
+  const double footing = bearing_settlement * floor_length();
+  const double segments = std::min<double>(2.0, static_cast<double>(cavity.corners() - 1));
+  double pressed = 0.0;
+  std::size_t behind = s.pose;
+  const Vector2d motion = s.direction();
+  for (int i = 0; i < heel_samples; ++i) {
+    const double along = segments * (i + 0.5) / heel_samples;
+    const auto k = static_cast<std::size_t>(along);
+    const Vector2d side = cavity.corner(k + 1) - cavity.corner(k);
+    const Vector2d point = s.at.tip + cavity.corner(k) + (along - std::floor(along)) * side;
+    if (!(point.x() > s.to.x())) continue;
+    const double sunk = level_behind(point.x(), behind) - point.y();
+    if (!(sunk > 1e-6)) continue;
+    const Index col = swath_.column(point.x());
+    const SoilState soil = mean_soil_at(col);
+    const double depth = std::max(0.0, uncut_at(col) - point.y());
+    const double pressure =
+        std::min(1.0, sunk / footing) * bearing_capacity(soil, depth, floor_length());
+    const double area = side.norm() * segments / heel_samples * model_.machine.bucket.width_outside;
+    const Vector2d inward = Vector2d(-side.y(), side.x()).normalized();
+    const double force = pressure * area;
+    r.heel_force += force * (inward - std::tan(soil.tool_friction_angle) * motion);
+    r.heel_point += force * point;
+    pressed += force;
+  }
+  if (pressed > 0.0) r.heel_point /= pressed;
+}
+
+/// Top of the ground behind the lip: what the tip has left there, or never came to; NaN where
+/// unknown. `pose` is where to look first, and then where x was found.
+double BucketResistance::level_behind(double x, std::size_t& pose) const {
+  // Between the centres of cells, so that slopes are no stairs.
+  const HeightMap& map = ground_.before().bank;
+  const double last = static_cast<double>(map.z.cols() - 1);
+  const double at = std::clamp((x - map.origin.x()) / map.cell - 0.5, 0.0, last);
+  const auto col = static_cast<Index>(at);
+  const double t = at - static_cast<double>(col);
+  const double uncut =
+      (1.0 - t) * uncut_at(col) + t * uncut_at(std::min(col + 1, map.z.cols() - 1));
+
+  const std::vector<DigPose>& poses = path_.poses;
+  while (pose > 0 && poses[pose].bucket.x < x) --pose;
+  const BucketPose& behind = poses[pose].bucket;
+  if (behind.x < x) return uncut;
+  const BucketPose& ahead = poses[pose + 1].bucket;
+  const double share = std::min(1.0, (x - ahead.x) / (behind.x - ahead.x));
+  const double swept = ahead.z + share * (behind.z - ahead.z);
+  return swept > uncut ? uncut : swept;
+}
+
+// ---- Parts of them ------------------------------------------------------------------------------
+
+BucketResistance::Strip BucketResistance::strip_at(Index row, Index col, double tip_z) const {
+  const double bank = ground_.before().bank.z(row, col) - tip_z;
+  const double loose = ground_.loose(row, col);
+  if (!(bank + loose > 0.0)) return {};
+  return {std::max(0.0, bank), std::min(loose, bank + loose)};
+}
+
+SoilState BucketResistance::soil_at(Index row, Index col) const {
+  return ground_.bank_state(row, col);
+}
+
+SoilState BucketResistance::mean_soil_at(Index col) const {
+  if (ground_.bank_is_even()) return model_.bank;
+  const double e = swath_.mean([&](Index row) { return ground_.bank_void_ratio(row, col); });
+  return bank_state_of_void_ratio(
+      model_.soil, std::clamp(e, model_.soil.void_ratio_min, model_.soil.void_ratio_max));
+}
+
+/// Slope of the surface ahead of the lip along the travel, positive uphill.
+double BucketResistance::surface_slope(Index col) const {
+  const auto reach = std::max<Index>(1, std::lround(slope_reach / ground_.cell()));
+  const Index ahead = std::max<Index>(0, col - reach);
+  if (ahead == col) return 0.0;
+  const double rise = uncut_at(ahead) - uncut_at(col);
+  return std::isnan(rise) ? 0.0
+                          : std::atan2(rise, ground_.cell() * static_cast<double>(col - ahead));
+}
+
+/// Area of lip or teeth that meets soil which cannot yield, `driven` along the floor. The lip
+/// between teeth follows in soil that they have broken. The cone index holds the friction on its
+/// cone; teeth are other wedges.
+double BucketResistance::penetrating_area(double driven, const SoilState& soil) const {
+  const Bucket& bucket = model_.machine.bucket;
+  if (!bucket.teeth) return bucket.edge_thickness * bucket.width_outside;
+  const Teeth& teeth = *bucket.teeth;
+  const double friction = std::tan(soil.tool_friction_angle);
+  const double wedge =
+      (1.0 + friction / std::tan(0.5 * teeth.angle)) / (1.0 + friction / std::tan(cone_half_angle));
+  return std::min(1.0, driven / teeth.length) * wedge * teeth.count * teeth.width * teeth.thickness;
+}
+
+/// Blunt lip in soil that yields towards the surface (Balovnev 1983, thin edge); the part of a
+/// motion that goes down meets soil that cannot yield, and the cone index.
+double BucketResistance::edge_force(double depth, double climb, const SoilState& soil) const {
+  if (!(depth > 0.0)) return 0.0;
+  const Bucket& bucket = model_.machine.bucket;
+  const double phi = soil.friction_angle;
+  const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
+  const double pressure = 0.5 * bucket.edge_thickness * soil.unit_weight +
+                          soil.cohesion / std::tan(phi) + depth * soil.unit_weight * active;
+  const double yielding = pressure * blunt_edge_ratio(0.5 * pi, phi, soil.tool_friction_angle) *
+                          bucket.edge_thickness * bucket.width_outside;
+  const double plunge = std::max(0.0, -std::sin(climb));
+  const double driving =
+      plunge > 0.0 ? cone_index(model_.soil, soil, depth) * penetrating_area(floor_length(), soil)
+                   : 0.0;
+  return (1.0 - plunge) * yielding + plunge * driving;
+}
+
+/// Side plate below the surface: the triangle between floor and surface.
+double BucketResistance::side_plate_area(double depth, double floor) const {
+  return std::min(0.5 * depth * depth / std::tan(floor), depth * floor_length());
+}
+
+}  // namespace excavplan

@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/machine.hpp>
+#include <excavplan/simulation/earthmoving.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/soil/soil.hpp>
+
+#include "bucket_cavity.hpp"
+#include "soil_layers.hpp"
+
+namespace excavplan {
+
+/// What HeightMapSimulator knows before it sees any ground.
+struct HeightMapModel {
+  HeightMapModel(const Machine& machine, const SoilKind& soil, double density_percent);
+
+  /// Factors of the wedge on a face of steel or of packed soil, in soil of this state.
+  EarthmovingFactors factors(double rake, double slope, const SoilState& state, bool packed) const;
+
+  Machine machine;
+  SoilKind soil;
+  SoilState bank;
+  SoilState loose;
+  HoldingSlopes slopes;
+  CriticalWedges on_steel;   ///< in soil as dense as `bank`
+  CriticalWedges on_packed;  ///< the same, sliding on soil
+
+ private:
+  /// Tables for ground of uneven density, made when such ground is first seen.
+  mutable std::once_flag uneven_made_;
+  mutable std::optional<FrictionWedges> uneven_on_steel_;
+  mutable std::optional<FrictionWedges> uneven_on_packed_;
+};
+
+/// The rows of a map that the bucket covers.
+class Swath {
+ public:
+  /// @throws Error (bad_input) if the map does not hold the bucket's width
+  Swath(const HeightMap& map, double width);
+
+  Eigen::Index first_row() const { return first_row_; }
+  Eigen::Index rows() const { return cover_.size(); }
+  Eigen::Index end_row() const { return first_row_ + cover_.size(); }
+  double cover(Eigen::Index i) const { return cover_(i); }  ///< of row first_row() + i, 0 .. 1
+  double cover_sum() const { return cover_.sum(); }
+
+  /// @throws Error (bad_input) if x is off the map
+  Eigen::Index column(double x) const;
+
+  /// Mean over the width of what a function gives for each row.
+  template <typename OfRow>
+  double mean(OfRow&& of_row) const {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < cover_.size(); ++i) sum += cover_(i) * of_row(first_row_ + i);
+    return sum / cover_.sum();
+  }
+
+ private:
+  const HeightMap& map_;
+  Eigen::Index first_row_ = 0;
+  Eigen::ArrayXd cover_;
+};
+
+/// One stretch of the path: the tip goes from `from` to `to` while the joints turn by `turn`.
+struct Stretch {
+  DigPhase phase = DigPhase::penetrate;
+  std::size_t pose = 0;  ///< where it begins, in the path
+  Eigen::Vector2d from;
+  Eigen::Vector2d to;
+  JointAngles joints;  ///< half-way
+  JointAngles turn;
+  LinkPositions at;  ///< half-way
+  double length = 0.0;
+
+  Eigen::Vector2d direction() const { return (to - from) / length; }
+};
+
+/// What the soil does to the bucket: a force in the face, one at the lip, one under the heel [N].
+struct Resistance {
+  Eigen::Vector2d face_force = Eigen::Vector2d::Zero();
+  Eigen::Vector2d face_point = Eigen::Vector2d::Zero();
+  Eigen::Vector2d lip_force = Eigen::Vector2d::Zero();
+  Eigen::Vector2d heel_force = Eigen::Vector2d::Zero();
+  Eigen::Vector2d heel_point = Eigen::Vector2d::Zero();
+  double borne_weight = 0.0;  ///< of the soil on the face, which the payload must not count again
+
+  Eigen::Vector2d total() const { return face_force + lip_force + heel_force; }
+};
+
+/// The forces of the ground on the bucket at one stretch of a path (docs/methods.md#simulation).
+class BucketResistance {
+ public:
+  BucketResistance(const HeightMapModel& model, const GroundWindow& ground, const Swath& swath,
+                   const DigPath& path)
+      : model_(model), ground_(ground), swath_(swath), path_(path) {}
+
+  /// `cavity` is turned as the bucket stands, half-way of the stretch, and holds `fill` [m^3].
+  Resistance at(const Stretch& stretch, const Cavity& cavity, double fill) const;
+
+  /// Length of the bucket's floor [m].
+  double floor_length() const;
+  /// Top of the ground in a column, mean over the width: as it was, and with loose soil on it [m].
+  double uncut_at(Eigen::Index col) const;
+  double surface_at(Eigen::Index col) const;
+
+ private:
+  struct Attitude;
+  struct SlidingFace;
+  struct FaceForce;
+  struct Strip;
+
+  Resistance drive_in(const Eigen::Vector2d& tip, Eigen::Index col, double floor,
+                      const Eigen::Vector2d& motion) const;
+  Resistance push_wedge(const Eigen::Vector2d& tip, Eigen::Index col, const Attitude& attitude,
+                        const Eigen::Vector2d& motion) const;
+  FaceForce slide(const SlidingFace& face, const Eigen::Vector2d& tip, Eigen::Index col,
+                  double turn) const;
+  void press_heel(const Stretch& stretch, const Cavity& cavity, Resistance& resistance) const;
+  double level_behind(double x, std::size_t& pose) const;
+
+  Strip strip_at(Eigen::Index row, Eigen::Index col, double tip_z) const;
+  double loose_on_wedge(Eigen::Index row, Eigen::Index col, const Strip& strip,
+                        const EarthmovingFactors& n) const;
+  SoilState soil_at(Eigen::Index row, Eigen::Index col) const;
+  SoilState mean_soil_at(Eigen::Index col) const;
+  double surface_slope(Eigen::Index col) const;
+  double penetrating_area(double driven, const SoilState& soil) const;
+  double edge_force(double depth, double climb, const SoilState& soil) const;
+  double side_plate_area(double depth, double floor) const;
+
+  const HeightMapModel& model_;
+  const GroundWindow& ground_;
+  const Swath& swath_;
+  const DigPath& path_;
+};
+
+}  // namespace excavplan
