@@ -43,7 +43,8 @@ struct Cavity::Slice {
   bool open_above = false;
 };
 
-Cavity::Cavity(const Bucket& bucket) : bucket_(bucket), corners_(bucket.profile.size()) {
+Cavity::Cavity(const Bucket& bucket)
+    : bucket_(bucket), corners_(bucket.profile.size()), sides_(bucket.profile.size()) {
   turn_to(0.0);
 }
 
@@ -55,6 +56,12 @@ void Cavity::turn_to(double phi3) {
     x_max_ = std::max(x_max_, corners_[i].x());
   }
   centroid_ = centroid_of(corners_);
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Vector2d& a = corners_[i];
+    const Vector2d& b = corners_[(i + 1) % corners_.size()];
+    const double slope = (b.y() - a.y()) / (b.x() - a.x());  // unused where upright
+    sides_[i] = {std::min(a.x(), b.x()), std::max(a.x(), b.x()), a.y() - slope * a.x(), slope};
+  }
 }
 
 double Cavity::capacity(double support, const HoldingSlopes& slopes) const {
@@ -100,12 +107,10 @@ double Cavity::packed_front(double volume) const {
 
 Cavity::Slice Cavity::at(double x) const {
   Slice slice;
-  for (std::size_t k = 0; k < corners_.size(); ++k) {
-    const bool mouth = k + 1 == corners_.size();
-    const Vector2d& a = corners_[k];
-    const Vector2d& b = corners_[mouth ? 0 : k + 1];
-    if ((a.x() <= x) == (b.x() <= x)) continue;
-    const double z = a.y() + (b.y() - a.y()) * (x - a.x()) / (b.x() - a.x());
+  for (const Side& side : sides_) {
+    if (!(side.x_low <= x && x < side.x_high)) continue;
+    const bool mouth = &side == &sides_.back();
+    const double z = side.offset + side.slope * x;
     if (z < slice.low) {
       slice.low = z;
       slice.open_below = mouth;

@@ -32,10 +32,18 @@ class Cavity {
 
  private:
   struct Slice;
+  /// A side of the profile as a line over x, from `x_low` to before `x_high`.
+  struct Side {
+    double x_low = 0.0;
+    double x_high = 0.0;
+    double offset = 0.0;
+    double slope = 0.0;
+  };
   Slice at(double x) const;
 
   const Bucket& bucket_;
   std::vector<Eigen::Vector2d> corners_;
+  std::vector<Side> sides_;  ///< from corner to corner; the last is the mouth
   Eigen::Vector2d centroid_ = Eigen::Vector2d::Zero();
   double x_min_ = 0.0;
   double x_max_ = 0.0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <excavplan/error.hpp>
@@ -222,6 +223,28 @@ Resistance BucketResistance::push_wedge(const Vector2d& tip, Index col, const At
   return r;
 }
 
+/// What the wedge's force takes from soil and face, for a strip of any depth.
+struct BucketResistance::FaceTerms {
+  FaceTerms(const SoilState& state, const EarthmovingFactors& factors, bool packed)
+      : soil(state),
+        n(factors),
+        adhesion(packed ? state.cohesion : state.adhesion),
+        sin_face(std::sin(n.rake + friction(packed))),
+        cos_face(std::cos(n.rake + friction(packed))),
+        cot_rake(1.0 / std::tan(n.rake)),
+        cot_failure(1.0 / std::tan(n.failure)),
+        tan_friction(std::tan(state.friction_angle)) {}
+
+  double friction(bool packed) const {
+    return packed ? soil.friction_angle : soil.tool_friction_angle;
+  }
+
+  SoilState soil;
+  EarthmovingFactors n;
+  double adhesion;
+  double sin_face, cos_face, cot_rake, cot_failure, tan_friction;
+};
+
 BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Vector2d& tip,
                                                     Index col, double turn) const {
   const double slope = surface_slope(col);
@@ -229,43 +252,40 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
   // the climb; it shears the soil above it off instead.
   const double fade = std::cos(turn);
   FaceForce force;
-  const auto push = [&](double passive, double adhesion, const EarthmovingFactors& n,
-                        double friction) {
-    force.along += fade * (passive * std::sin(n.rake + friction) + adhesion / std::tan(n.rake));
-    force.across += fade * (passive * std::cos(n.rake + friction) - adhesion);
+  const auto push = [&](double passive, double adhesion, const FaceTerms& t) {
+    force.along += fade * (passive * t.sin_face + adhesion * t.cot_rake);
+    force.across += fade * (passive * t.cos_face - adhesion);
   };
+  const auto terms_of = [&](const SoilState& soil) {
+    return FaceTerms(soil, model_.factors(face.rake, slope, soil, face.packed), face.packed);
+  };
+  const FaceTerms mean = terms_of(mean_soil_at(col));
   const bool even = ground_.bank_is_even();
-  const EarthmovingFactors mean = model_.factors(face.rake, slope, mean_soil_at(col), face.packed);
   for (Index i = 0; i < swath_.rows(); ++i) {
     const Index row = swath_.first_row() + i;
     const double width = swath_.cover(i) * ground_.cell();
     const Strip strip = strip_at(row, col, tip.y());
     if (strip.bank + strip.loose <= 0.0) continue;
-    const SoilState soil = soil_at(row, col);
-    const EarthmovingFactors n = even ? mean : model_.factors(face.rake, slope, soil, face.packed);
-    const double on_face = face.packed ? soil.cohesion : soil.adhesion;
-    const double friction = face.packed ? soil.friction_angle : soil.tool_friction_angle;
-    const double loose = loose_on_wedge(row, col, strip, n);
+    const FaceTerms t = even ? mean : terms_of(ground_.bank_state(row, col));
+    const double loose = loose_on_wedge(row, col, strip, t);
     const double surcharge = model_.loose.unit_weight * loose;
-    const double passive = strip.bank * (soil.unit_weight * strip.bank * n.gamma +
-                                         soil.cohesion * n.c + surcharge * n.q + on_face * n.ca) +
-                           surcharge * loose * n.gamma;
-    push(width * passive, width * on_face * strip.bank, n, friction);
-    const double shear = strip.bank * (soil.cohesion + at_rest_pressure(soil, strip.bank) *
-                                                           std::tan(soil.friction_angle));
-    force.along += width * (1.0 - fade) * shear;
-    force.borne_weight +=
-        width * 0.5 * soil.unit_weight * strip.bank * strip.bank / std::tan(n.rake);
+    const double passive =
+        strip.bank * (t.soil.unit_weight * strip.bank * t.n.gamma + t.soil.cohesion * t.n.c +
+                      surcharge * t.n.q + t.adhesion * t.n.ca) +
+        surcharge * loose * t.n.gamma;
+    push(width * passive, width * t.adhesion * strip.bank, t);
+    const double shear = t.soil.cohesion + at_rest_pressure(t.soil, strip.bank) * t.tan_friction;
+    force.along += width * (1.0 - fade) * strip.bank * shear;
+    force.borne_weight += width * 0.5 * t.soil.unit_weight * strip.bank * strip.bank * t.cot_rake;
     force.depth += width * strip.bank;
   }
   force.depth /= model_.machine.bucket.width_outside;
   if (force.depth > 0.0) {
-    const SoilState soil = mean_soil_at(col);
-    const double friction = face.packed ? soil.friction_angle : soil.tool_friction_angle;
-    const CuttingWedge wedge{mean.rake, soil.friction_angle, friction, 0.0};
+    const SoilState& soil = mean.soil;
+    const CuttingWedge wedge{mean.n.rake, soil.friction_angle, mean.friction(face.packed), 0.0};
     const SoilStrength strength = {soil.unit_weight, soil.cohesion, soil.adhesion};
-    const double sides = side_plane_force(wedge, mean, strength, force.depth);
-    push(sides * side_plane_share(wedge, mean), 0.0, mean, friction);
+    const double sides = side_plane_force(wedge, mean.n, strength, force.depth);
+    push(sides * side_plane_share(wedge, mean.n), 0.0, mean);
   }
   return force;
 }
@@ -273,15 +293,15 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
 /// Loose soil over the top of the wedge, as an even layer on all of it; what lies over the face is
 /// in the bucket, and payload. Where the tip runs in loose soil alone, that [m].
 double BucketResistance::loose_on_wedge(Index row, Index col, const Strip& strip,
-                                        const EarthmovingFactors& n) const {
+                                        const FaceTerms& terms) const {
   if (!(strip.bank > 0.0)) return strip.loose;
-  const double ahead = strip.bank / std::tan(n.failure);
+  const double ahead = strip.bank * terms.cot_failure;
   const double cells = ahead / ground_.cell();
   double sum = 0.0;
   for (Index i = 0; static_cast<double>(i) < cells && col - i >= ground_.cells().col_begin; ++i) {
     sum += std::min(1.0, cells - static_cast<double>(i)) * ground_.loose(row, col - i);
   }
-  return sum * ground_.cell() / (ahead + strip.bank / std::tan(n.rake));
+  return sum * ground_.cell() / (ahead + strip.bank * terms.cot_rake);
 }
 
 /// Where the outline behind the lip reaches below what the tip has cut, the ground bears it like a
@@ -289,6 +309,7 @@ double BucketResistance::loose_on_wedge(Index row, Index col, const Strip& strip
 void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resistance& r) const {
   const double footing = bearing_settlement * floor_length();
   const double segments = std::min<double>(2.0, static_cast<double>(cavity.corners() - 1));
+  constexpr double least_sunk = 1e-6;  // rounding of a floor that runs along itself [m]
   double pressed = 0.0;
   std::size_t behind = s.pose;
   const Vector2d motion = s.direction();
@@ -297,9 +318,10 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
     const auto k = static_cast<std::size_t>(along);
     const Vector2d side = cavity.corner(k + 1) - cavity.corner(k);
     const Vector2d point = s.at.tip + cavity.corner(k) + (along - std::floor(along)) * side;
-    if (!(point.x() > s.to.x())) continue;
-    const double sunk = level_behind(point.x(), behind) - point.y();
-    if (!(sunk > 1e-6)) continue;
+    if (!(point.x() > s.to.x() && swept_to(point.x(), behind) > point.y() + least_sunk)) continue;
+    const double level = std::min(swept_to(point.x(), behind), uncut_between(point.x()));
+    const double sunk = level - point.y();
+    if (!(sunk > least_sunk)) continue;
     const Index col = swath_.column(point.x());
     const SoilState soil = mean_soil_at(col);
     const double depth = std::max(0.0, uncut_at(col) - point.y());
@@ -315,10 +337,20 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
   if (pressed > 0.0) r.heel_point /= pressed;
 }
 
-/// Top of the ground behind the lip: what the tip has left there, or never came to; NaN where
-/// unknown. `pose` is where to look first, and then where x was found.
-double BucketResistance::level_behind(double x, std::size_t& pose) const {
-  // Between the centres of cells, so that slopes are no stairs.
+/// What the tip has left at x behind the lip; infinite where it never was. `pose` is where to look
+/// first, and then where x was found.
+double BucketResistance::swept_to(double x, std::size_t& pose) const {
+  const std::vector<DigPose>& poses = path_.poses;
+  while (pose > 0 && poses[pose].bucket.x < x) --pose;
+  const BucketPose& behind = poses[pose].bucket;
+  if (behind.x < x) return std::numeric_limits<double>::infinity();
+  const BucketPose& ahead = poses[pose + 1].bucket;
+  const double share = std::min(1.0, (x - ahead.x) / (behind.x - ahead.x));
+  return ahead.z + share * (behind.z - ahead.z);
+}
+
+/// uncut_at() between the centres of cells, so that slopes are no stairs; -infinity where unknown.
+double BucketResistance::uncut_between(double x) const {
   const HeightMap& map = ground_.before().bank;
   const double last = static_cast<double>(map.z.cols() - 1);
   const double at = std::clamp((x - map.origin.x()) / map.cell - 0.5, 0.0, last);
@@ -326,15 +358,7 @@ double BucketResistance::level_behind(double x, std::size_t& pose) const {
   const double t = at - static_cast<double>(col);
   const double uncut =
       (1.0 - t) * uncut_at(col) + t * uncut_at(std::min(col + 1, map.z.cols() - 1));
-
-  const std::vector<DigPose>& poses = path_.poses;
-  while (pose > 0 && poses[pose].bucket.x < x) --pose;
-  const BucketPose& behind = poses[pose].bucket;
-  if (behind.x < x) return uncut;
-  const BucketPose& ahead = poses[pose + 1].bucket;
-  const double share = std::min(1.0, (x - ahead.x) / (behind.x - ahead.x));
-  const double swept = ahead.z + share * (behind.z - ahead.z);
-  return swept > uncut ? uncut : swept;
+  return std::isnan(uncut) ? -std::numeric_limits<double>::infinity() : uncut;
 }
 
 // ---- Parts of them ------------------------------------------------------------------------------
@@ -344,10 +368,6 @@ BucketResistance::Strip BucketResistance::strip_at(Index row, Index col, double 
   const double loose = ground_.loose(row, col);
   if (!(bank + loose > 0.0)) return {};
   return {std::max(0.0, bank), std::min(loose, bank + loose)};
-}
-
-SoilState BucketResistance::soil_at(Index row, Index col) const {
-  return ground_.bank_state(row, col);
 }
 
 SoilState BucketResistance::mean_soil_at(Index col) const {

@@ -115,6 +115,7 @@ class BucketResistance {
   struct Attitude;
   struct SlidingFace;
   struct FaceForce;
+  struct FaceTerms;
   struct Strip;
 
   Resistance drive_in(const Eigen::Vector2d& tip, Eigen::Index col, double floor,
@@ -124,12 +125,12 @@ class BucketResistance {
   FaceForce slide(const SlidingFace& face, const Eigen::Vector2d& tip, Eigen::Index col,
                   double turn) const;
   void press_heel(const Stretch& stretch, const Cavity& cavity, Resistance& resistance) const;
-  double level_behind(double x, std::size_t& pose) const;
+  double swept_to(double x, std::size_t& pose) const;
+  double uncut_between(double x) const;
 
   Strip strip_at(Eigen::Index row, Eigen::Index col, double tip_z) const;
   double loose_on_wedge(Eigen::Index row, Eigen::Index col, const Strip& strip,
-                        const EarthmovingFactors& n) const;
-  SoilState soil_at(Eigen::Index row, Eigen::Index col) const;
+                        const FaceTerms& terms) const;
   SoilState mean_soil_at(Eigen::Index col) const;
   double surface_slope(Eigen::Index col) const;
   double penetrating_area(double driven, const SoilState& soil) const;

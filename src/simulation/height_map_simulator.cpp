@@ -23,10 +23,10 @@ constexpr double pi = 3.14159265358979323846;
 
 // Numbers of our own choice; docs/methods.md#simulation says why.
 constexpr double sweeps_per_step = 3.0;  // of slumping while the bucket moves, on 5 cm cells; as
-                                          // many more as a slide takes on smaller ones
-constexpr int sweeps_at_the_end = 2000;   // until all is at rest; a dig needs some tens
-constexpr double spread_ahead = 0.15;     // overflow lands within this ahead of the lip [m]
-constexpr double room_around = 0.5;       // of the ground looked at first, around the path [m]
+                                         // many more as a slide takes on smaller ones
+constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
+constexpr double spread_ahead = 0.15;    // overflow lands within this ahead of the lip [m]
+constexpr double room_around = 0.5;      // of the ground looked at first, around the path [m]
 
 /// One dig from its first pose to its end.
 class Dig {
