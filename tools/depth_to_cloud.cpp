@@ -2,6 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/survey/depth_image.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include <excavplan/survey/scan_pose.hpp>
+
+#include "json_file.hpp"
+#include "table.hpp"
 #include "tool.hpp"
 
 namespace excavplan::tools {
@@ -10,18 +19,31 @@ namespace {
 struct Inputs {
   std::string image;
   std::string intrinsics;
+  std::string average;
   std::optional<std::string> pose;
+  bool level = false;
+  std::optional<std::string> points;
+  std::optional<std::string> pose_out;
   std::string out;
 };
 
 const About about = {
     "depth-to-cloud",
-    "Turns a depth image (16-bit single-channel PNG) into a cloud in the site frame. The "
-    "intrinsics are a JSON file {\"format\": \"excavplan-depth-intrinsics\", \"version\": 1, "
-    "\"fx\": 615.5, \"fy\": 615.5, \"cx\": 320, \"cy\": 240} in pixels, optionally with "
-    "depth_unit_m (0.001), min_depth_m (0.1) and max_depth_m (20).",
+    "Turns a depth image (16-bit single-channel PNG), or several frames of one view averaged, into "
+    "a cloud in the site frame. The intrinsics are a JSON file {\"format\": "
+    "\"excavplan-depth-intrinsics\", \"version\": 1, \"fx\": 615.5, \"fy\": 615.5, \"cx\": 320, "
+    "\"cy\": 240} in pixels, optionally with depth_unit_m (0.001), min_depth_m (0.1) and "
+    "max_depth_m (20). Where the camera stood is given (--pose), found from known points "
+    "(--points), or, up and height alone, from the plane of the ground (--level). Scans before and "
+    "after a dig need one pose: find it once with --pose-out and give it to the second with "
+    "--pose.",
     {{"depth-to-cloud depth.png --intrinsics d435i.json --pose camera_pose.txt --out scan.pcd",
       "the pose takes the camera (x right, y down, z forward) into the site frame"},
+     {"depth-to-cloud first.png --average frames --intrinsics d435i.json --level --pose-out "
+      "pose.txt --out before.pcd",
+      "averages first.png and all .png files of the folder frames; z = 0 is the ground"},
+     {"depth-to-cloud depth.png --intrinsics d435i.json --points markers.csv --out scan.pcd",
+      "markers.csv has the columns u_px,v_px,x_m,y_m,z_m: pixel and place in the site"},
      {"depth-to-cloud depth.png --intrinsics d435i.json --out camera.ply",
       "a cloud that stays in the camera frame"}}};
 
@@ -29,19 +51,126 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("IMAGE", inputs.image, "depth image, 16-bit PNG");
   arguments.file("intrinsics", inputs.intrinsics, "camera intrinsics, JSON");
   arguments.require("intrinsics");
+  arguments.text("average", "FILES", inputs.average,
+                 "more frames of the same view, averaged with IMAGE pixel by pixel: files with "
+                 "commas between them, or a folder, which stands for its .png files");
   arguments.file("pose", inputs.pose,
                  "4 x 4 text matrix that takes the camera into the site frame");
+  arguments.flag("level", inputs.level,
+                 "level the cloud by the plane of the ground: origin on the ground below the "
+                 "camera, z up, x where the camera looks");
+  arguments.file("points", inputs.points,
+                 "CSV of 3 or more known points: u_px,v_px (or camera_x_m,camera_y_m,camera_z_m) "
+                 "and x_m,y_m,z_m in the site");
+  arguments.file("pose-out", inputs.pose_out, "write the pose found, for --pose of the next scan");
   arguments.file("out", inputs.out, "cloud to write: .pcd, .ply, .xyz, .txt or .asc");
   arguments.require("out");
 }
 
+/// IMAGE and the frames of --average, each once.
+std::vector<std::string> frames_of(const Inputs& inputs) {
+  std::vector<std::string> frames = {inputs.image};
+  std::istringstream words(inputs.average);
+  for (std::string word; std::getline(words, word, ',');) {
+    std::vector<std::string> files = {word};
+    if (std::filesystem::is_directory(word)) {
+      files.clear();
+      for (const auto& entry : std::filesystem::directory_iterator(word)) {
+        if (entry.path().extension() == ".png") files.push_back(entry.path().string());
+      }
+      std::sort(files.begin(), files.end());
+    }
+    for (const std::string& file : files) {
+      std::error_code none;
+      if (!std::filesystem::equivalent(file, inputs.image, none)) frames.push_back(file);
+    }
+  }
+  return frames;
+}
+
+/// A pose with what is known of its error.
+struct FoundPose {
+  Eigen::Matrix4d site_from_camera;
+  nlohmann::ordered_json json;
+  std::string line;
+};
+
+std::string millimetres(double metres) {
+  return number_text(std::round(metres * 1e4) / 10.0) + " mm";
+}
+
+FoundPose level(const Cloud& cloud) {
+  const LevelPose pose = level_on_ground(cloud);
+  return {pose.site_from_scan,
+          {{"method", "level"},
+           {"height_m", pose.height},
+           {"tilt_rad", pose.tilt},
+           {"residual_sd_m", pose.residual_sd},
+           {"ground_share", pose.ground_share}},
+          "ground found in " + std::to_string(std::lround(100.0 * pose.ground_share)) +
+              " % of the pixels, " + number_text(std::round(pose.height * 1e3) / 1e3) +
+              " m below the camera, flat within " + millimetres(pose.residual_sd)};
+}
+
+FoundPose pose_from_points(const std::string& path, const Cloud& cloud,
+                           const DepthIntrinsics& intrinsics) {
+  const Table table = Table::read(path);
+  const bool by_pixel = table.has("u_px");
+  std::vector<Eigen::Vector3d> in_camera;
+  std::vector<Eigen::Vector3d> in_site;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto value = [&](const char* name) { return table.column(name)[i]; };
+    in_camera.push_back(
+        by_pixel ? point_at_pixel(cloud, intrinsics, value("u_px"), value("v_px"))
+                 : Eigen::Vector3d(value("camera_x_m"), value("camera_y_m"), value("camera_z_m")));
+    in_site.emplace_back(value("x_m"), value("y_m"), value("z_m"));
+  }
+  const PointPose pose = pose_of_points(in_camera, in_site);
+  const double worst = *std::max_element(pose.residuals.begin(), pose.residuals.end());
+  return {pose.site_from_scan,
+          {{"method", "points"}, {"residuals_m", pose.residuals}, {"residual_rms_m", pose.rms}},
+          std::to_string(in_site.size()) + " known points fit within " + millimetres(pose.rms) +
+              " (rms), the worst within " + millimetres(worst)};
+}
+
+std::optional<FoundPose> find_pose(const Inputs& inputs, const Cloud& cloud,
+                                   const DepthIntrinsics& intrinsics) {
+  if (inputs.level) return level(cloud);
+  if (inputs.points) return pose_from_points(*inputs.points, cloud, intrinsics);
+  if (inputs.pose) return FoundPose{read_frame(*inputs.pose), {{"method", "given"}}, {}};
+  return std::nullopt;
+}
+
+std::string matrix_text(const Eigen::Matrix4d& matrix) {
+  std::string text;
+  for (Eigen::Index row = 0; row < 4; ++row) {
+    for (Eigen::Index col = 0; col < 4; ++col) {
+      text += number_text(matrix(row, col)) + (col == 3 ? "\n" : " ");
+    }
+  }
+  return text;
+}
+
+void check(const Inputs& inputs) {
+  if ((inputs.pose ? 1 : 0) + (inputs.level ? 1 : 0) + (inputs.points ? 1 : 0) > 1) {
+    throw Error(ErrorKind::bad_input, "--pose, --level and --points exclude each other");
+  }
+  if (inputs.pose_out && !inputs.level && !inputs.points) {
+    throw Error(ErrorKind::bad_input, "--pose-out needs --level or --points, which find a pose");
+  }
+}
+
 Outcome convert(const Inputs& inputs) {
+  check(inputs);
   const CloudFormat format = cloud_format_of_name(inputs.out);
   const DepthIntrinsics intrinsics = load_intrinsics(inputs.intrinsics);
-  const auto pose = inputs.pose ? std::optional(read_frame(*inputs.pose)) : std::nullopt;
-  Cloud cloud = depth_image_to_cloud(inputs.image, intrinsics);
-  if (pose) transform(cloud, *pose);
+  const std::vector<std::string> frames = frames_of(inputs);
+  AveragedDepth average = average_depth_images(frames, intrinsics);
+  Cloud& cloud = average.cloud;
+  const auto pose = find_pose(inputs, cloud, intrinsics);
+  if (pose) transform(cloud, pose->site_from_camera);
   const CloudSummary summary = summarise(cloud);
+  if (inputs.pose_out) write_file(*inputs.pose_out, matrix_text(pose->site_from_camera));
   write_cloud(inputs.out, cloud, format);
 
   Outcome outcome;
@@ -49,14 +178,19 @@ Outcome convert(const Inputs& inputs) {
                   {"width", cloud.width},
                   {"height", cloud.height},
                   {"finite_points", summary.finite_points},
+                  {"frames", frames.size()},
                   {"frame", pose ? "site" : "camera"},
+                  {"pose", pose ? pose->json : nlohmann::ordered_json()},
                   {"out", inputs.out}};
   outcome.lines = {std::to_string(summary.finite_points) + " of " + std::to_string(summary.points) +
-                       " pixels hold a depth",
-                   "written to " + inputs.out};
+                   " pixels hold a depth" +
+                   (frames.size() > 1 ? " in " + std::to_string(frames.size()) + " frames" : "")};
+  if (pose && !pose->line.empty()) outcome.lines.push_back(pose->line);
+  outcome.lines.push_back("written to " + inputs.out);
   if (!pose) {
-    outcome.warnings.push_back(
-        {"camera_frame", "without --pose the cloud stays in the camera frame"});
+    outcome.warnings.push_back({"camera_frame",
+                                "without --pose, --level or --points the cloud stays in the "
+                                "camera frame"});
   }
   if (summary.finite_points == 0) {
     outcome.warnings.push_back({"no_finite_points", inputs.image + " holds no depth in range"});

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/simulation/depth_camera.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -13,25 +16,54 @@
 namespace excavplan {
 namespace {
 
-void check(const DepthCamera& camera) {
-  const auto require = [](bool holds, const char* rule, double value) {
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double edge_share = 0.02;  // ours: neighbours that differ by more lie across an edge [-]
+
+// Streams of a scan beyond those of its rows, which are 0 .. 9999.
+constexpr std::uint64_t pattern_stream = 1000000;
+constexpr std::uint64_t edge_stream = 2000000;
+
+/// Refuses what breaks a rule, in the name of the sensor.
+class Rules {
+ public:
+  explicit Rules(const char* sensor) : sensor_(sensor) {}
+  void require(bool holds, const char* rule, double value) const {
     if (!holds) {
       throw Error(ErrorKind::bad_input,
-                  std::string("depth camera: ") + rule + ", got " + std::to_string(value));
+                  std::string(sensor_) + ": " + rule + ", got " + std::to_string(value));
     }
-  };
-  require(camera.width > 0 && camera.width <= 10000, "width must be in 1 .. 10000", camera.width);
-  require(camera.height > 0 && camera.height <= 10000, "height must be in 1 .. 10000",
-          camera.height);
-  require(camera.horizontal_view > 0.0 && camera.horizontal_view < 3.0,
-          "horizontal view must be in 0 .. 3 rad", camera.horizontal_view);
-  require(camera.noise >= 0.0, "noise must be >= 0 m", camera.noise);
-  require(camera.dropouts >= 0.0 && camera.dropouts < 1.0, "dropouts must be in 0 .. 1",
-          camera.dropouts);
-  require(camera.max_range > 0.0, "range must be > 0 m", camera.max_range);
-  require((camera.target - camera.position).norm() > 1e-6,
-          "distance from position to target must be > 0 m",
-          (camera.target - camera.position).norm());
+  }
+  void require_share(const char* name, double value) const {
+    require(value >= 0.0 && value < 1.0, (std::string(name) + " must be in 0 .. 1").c_str(), value);
+  }
+
+ private:
+  const char* sensor_;
+};
+
+void check(const DepthCamera& camera) {
+  const Rules rules("depth camera");
+  rules.require(camera.width > 0 && camera.width <= 10000, "width must be in 1 .. 10000",
+                camera.width);
+  rules.require(camera.height > 0 && camera.height <= 10000, "height must be in 1 .. 10000",
+                camera.height);
+  rules.require(camera.horizontal_view > 0.0 && camera.horizontal_view < 3.0,
+                "horizontal view must be in 0 .. 3 rad", camera.horizontal_view);
+  rules.require(camera.noise >= 0.0, "noise must be >= 0 m", camera.noise);
+  rules.require_share("dropouts", camera.dropouts);
+  rules.require(camera.max_range > 0.0, "range must be > 0 m", camera.max_range);
+  rules.require(camera.frames > 0 && camera.frames <= 10000, "frames must be in 1 .. 10000",
+                camera.frames);
+  rules.require(camera.pattern_noise >= 0.0, "pattern noise must be >= 0 m", camera.pattern_noise);
+  rules.require(camera.pattern_length >= 0.0 && camera.pattern_length <= 1000.0,
+                "pattern length must be in 0 .. 1000 pixels", camera.pattern_length);
+  rules.require(camera.disparity_step >= 0.0, "disparity step must be >= 0 per m",
+                camera.disparity_step);
+  rules.require(camera.flying_pixels >= 0.0 && camera.flying_pixels <= 1.0,
+                "flying pixels must be in 0 .. 1", camera.flying_pixels);
+  rules.require((camera.target - camera.position).norm() > 1e-6,
+                "distance from position to target must be > 0 m",
+                (camera.target - camera.position).norm());
 }
 
 /// Columns: right, down, forward in the site frame. A camera that looks straight down has the
@@ -50,19 +82,209 @@ Eigen::Matrix3d site_from_camera(const DepthCamera& camera) {
 double hit(const HeightMap& surface, const Eigen::Vector3d& from, const Eigen::Vector3d& ray,
            double range) {
   const double step = 0.5 * surface.cell;
-  double last = std::nan("");
+  double last = nan;
   double last_distance = 0.0;
   for (double distance = 0.0; distance <= range; distance += step) {
     const Eigen::Vector3d point = from + distance * ray;
     const double above = point.z() - height_at(surface, point.x(), point.y());
     if (above <= 0.0) {
-      if (!(last > 0.0)) return std::nan("");  // unknown ground hides where it was met
+      if (!(last > 0.0)) return nan;  // unknown ground hides where it was met
       return last_distance + (distance - last_distance) * last / (last - above);
     }
     last = above;
     last_distance = distance;
   }
-  return std::nan("");
+  return nan;
+}
+
+double highest(const HeightMap& surface) {
+  return surface.z.isNaN().select(-1e300, surface.z).maxCoeff();
+}
+
+/// The same, skipping what lies above the top of the ground.
+double hit_from_above(const HeightMap& surface, double top, const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& ray, double range) {
+  if (!(ray.z() < 0.0)) return nan;
+  // Nothing can be met before the ray is down at the highest point of the ground.
+  const double skipped = std::max(0.0, (top + surface.cell - from.z()) / ray.z());
+  return skipped + hit(surface, from + skipped * ray, ray, range - skipped);
+}
+
+/// The image plane of a camera: one ray (right, down, 1) per pixel.
+class ImagePlane {
+ public:
+  explicit ImagePlane(const DepthCamera& camera)
+      : width_(camera.width),
+        height_(camera.height),
+        focal_(0.5 * camera.width / std::tan(0.5 * camera.horizontal_view)) {}
+  Eigen::Vector3d pixel(Eigen::Index v, Eigen::Index u) const {
+    return {(static_cast<double>(u) + 0.5 - 0.5 * width_) / focal_,
+            (static_cast<double>(v) + 0.5 - 0.5 * height_) / focal_, 1.0};
+  }
+
+ private:
+  int width_;
+  int height_;
+  double focal_;
+};
+
+/// True depth of every pixel (row, column of the image) [m], NaN where nothing is met.
+Eigen::ArrayXXd depths(const HeightMap& surface, const DepthCamera& camera,
+                       const Eigen::Matrix3d& axes) {
+  const ImagePlane plane(camera);
+  const double top = highest(surface);
+  Eigen::ArrayXXd depth(camera.height, camera.width);
+  for (Eigen::Index u = 0; u < depth.cols(); ++u) {
+    for (Eigen::Index v = 0; v < depth.rows(); ++v) {
+      const Eigen::Vector3d pixel = plane.pixel(v, u);
+      depth(v, u) = hit_from_above(surface, top, camera.position, axes * pixel.normalized(),
+                                   camera.max_range) /
+                    pixel.norm();
+    }
+  }
+  return depth;
+}
+
+/// Moves pixels at a step of depth somewhere between both sides of it.
+void let_pixels_fly(Eigen::ArrayXXd& depth, double share, std::uint64_t seed) {
+  const Eigen::ArrayXXd truth = depth;
+  for (Eigen::Index v = 0; v < depth.rows(); ++v) {
+    Random random(seed, edge_stream + static_cast<std::uint64_t>(v));
+    for (Eigen::Index u = 0; u < depth.cols(); ++u) {
+      const bool flies = random.uniform() < share;
+      const double way = random.uniform();
+      double across = truth(v, u);
+      for (const auto& [dv, du] : {std::array{0, 1}, {0, -1}, {1, 0}, {-1, 0}}) {
+        const Eigen::Index row = v + dv;
+        const Eigen::Index col = u + du;
+        if (row < 0 || col < 0 || row >= depth.rows() || col >= depth.cols()) continue;
+        const double other = truth(row, col);
+        if (std::abs(other - truth(v, u)) > std::abs(across - truth(v, u))) across = other;
+      }
+      const bool at_edge = std::abs(across - truth(v, u)) > edge_share * truth(v, u);
+      if (flies && at_edge) depth(v, u) += way * (across - truth(v, u));
+    }
+  }
+}
+
+/// Normal deviates of variance 1 whose covariance falls as exp(-d^2 / (2 length^2)).
+Eigen::ArrayXXd smooth_noise(Eigen::Index rows, Eigen::Index cols, double length,
+                             std::uint64_t seed) {
+  const auto reach = static_cast<Eigen::Index>(std::ceil(2.2 * length));
+  Eigen::ArrayXXd white(rows + 2 * reach, cols + 2 * reach);
+  for (Eigen::Index row = 0; row < white.rows(); ++row) {
+    Random random(seed, pattern_stream + static_cast<std::uint64_t>(row));
+    for (Eigen::Index col = 0; col < white.cols(); ++col) white(row, col) = random.normal();
+  }
+  if (reach == 0) return white;
+  Eigen::ArrayXd weight(2 * reach + 1);
+  for (Eigen::Index i = -reach; i <= reach; ++i) {
+    weight(i + reach) = std::exp(-std::pow(static_cast<double>(i) / length, 2));
+  }
+  weight /= std::sqrt(weight.square().sum());
+  Eigen::ArrayXXd along = Eigen::ArrayXXd::Zero(rows, white.cols());
+  for (Eigen::Index i = 0; i < weight.size(); ++i) along += weight(i) * white.middleRows(i, rows);
+  Eigen::ArrayXXd both = Eigen::ArrayXXd::Zero(rows, cols);
+  for (Eigen::Index i = 0; i < weight.size(); ++i) both += weight(i) * along.middleCols(i, cols);
+  return both;
+}
+
+double in_steps(double depth, double disparity_step) {
+  if (!(disparity_step > 0.0)) return depth;
+  return 1.0 / (disparity_step * std::max(1.0, std::round(1.0 / (depth * disparity_step))));
+}
+
+/// Depths as the camera gives them after averaging its frames; NaN where most frames have none.
+Eigen::ArrayXXd measured(Eigen::ArrayXXd depth, const DepthCamera& camera, std::uint64_t seed) {
+  if (camera.flying_pixels > 0.0) let_pixels_fly(depth, camera.flying_pixels, seed);
+  Eigen::ArrayXXd pattern = Eigen::ArrayXXd::Zero(depth.rows(), depth.cols());
+  if (camera.pattern_noise > 0.0) {
+    pattern = camera.pattern_noise *
+              smooth_noise(depth.rows(), depth.cols(), camera.pattern_length, seed);
+  }
+  Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(depth.rows(), depth.cols());
+  Eigen::ArrayXXi count = Eigen::ArrayXXi::Zero(depth.rows(), depth.cols());
+  for (int frame = 0; frame < camera.frames; ++frame) {
+    for (Eigen::Index v = 0; v < depth.rows(); ++v) {
+      Random random(seed, static_cast<std::uint64_t>(v), static_cast<std::uint64_t>(frame));
+      for (Eigen::Index u = 0; u < depth.cols(); ++u) {
+        const bool dropped = random.uniform() < camera.dropouts;
+        const double noise = random.normal();
+        if (dropped) continue;
+        const double z = depth(v, u);
+        sum(v, u) += in_steps(z + camera.noise * z * z * noise + pattern(v, u) * z * z,
+                              camera.disparity_step);
+        ++count(v, u);
+      }
+    }
+  }
+  return (2 * count >= camera.frames).select(sum / count.cast<double>(), nan);
+}
+
+void check(const Lidar& lidar) {
+  const Rules rules("lidar");
+  for (const auto* window : {&lidar.azimuth, &lidar.elevation}) {
+    rules.require((*window)(1) >= (*window)(0), "a window must not end before it starts, rad",
+                  (*window)(1) - (*window)(0));
+  }
+  rules.require(lidar.angle_step.minCoeff() > 0.0, "angle step must be > 0 rad",
+                lidar.angle_step.minCoeff());
+  rules.require(lidar.range_noise >= 0.0, "range noise must be >= 0 m", lidar.range_noise);
+  rules.require(lidar.divergence >= 0.0 && lidar.divergence < 0.5,
+                "divergence must be in 0 .. 0.5 rad", lidar.divergence);
+  rules.require(lidar.pulse_length >= 0.0, "pulse length must be >= 0 m", lidar.pulse_length);
+  rules.require_share("dropouts", lidar.dropouts);
+  rules.require(lidar.max_range > 0.0, "range must be > 0 m", lidar.max_range);
+  const double beams = (1.0 + (lidar.azimuth(1) - lidar.azimuth(0)) / lidar.angle_step(0)) *
+                       (1.0 + (lidar.elevation(1) - lidar.elevation(0)) / lidar.angle_step(1));
+  rules.require(beams <= 1e8, "beams must be at most 100 million", beams);
+}
+
+struct Beam {
+  Eigen::Vector3d direction;
+  Eigen::Vector3d left;  ///< both at right angles to the direction
+  Eigen::Vector3d up;
+};
+
+Beam beam_at(double azimuth, double elevation) {
+  const Eigen::Vector3d left(-std::sin(azimuth), std::cos(azimuth), 0.0);
+  const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
+                                  std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+  return {direction, left, direction.cross(left)};
+}
+
+/// Range that a beam returns without noise; NaN if nothing is met.
+double mixed_range(const HeightMap& surface, double top, const Lidar& lidar, const Beam& beam) {
+  // Quadrature of a disc: its centre and six points at sqrt(2/3) of the radius.
+  constexpr int ring = 6;
+  constexpr double centre_weight = 0.25;
+  constexpr double ring_weight = 0.125;
+  constexpr double turn = 6.283185307179586;
+  const double radius = std::sqrt(2.0 / 3.0) * std::tan(0.5 * lidar.divergence);
+  std::array<double, ring + 1> range{};
+  for (int i = 0; i <= ring; ++i) {
+    const double angle = turn * i / ring;
+    const double off = i == ring ? 0.0 : radius;
+    const Eigen::Vector3d ray =
+        beam.direction + off * std::cos(angle) * beam.left + off * std::sin(angle) * beam.up;
+    range[static_cast<std::size_t>(i)] =
+        hit_from_above(surface, top, lidar.position, ray.normalized(), lidar.max_range);
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double r : range) nearest = r < nearest ? r : nearest;
+  double sum = 0.0;
+  double weights = 0.0;
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    if (!(range[i] <= nearest + lidar.pulse_length)) continue;
+    const double weight = i == ring ? centre_weight : ring_weight;
+    sum += weight * range[i];
+    weights += weight;
+  }
+  return weights > 0.0 ? sum / weights : nan;
+}
+
+Eigen::Index steps(const Eigen::Vector2d& window, double step) {
+  return 1 + static_cast<Eigen::Index>(std::floor((window(1) - window(0)) / step + 1e-9));
 }
 
 }  // namespace
@@ -74,32 +296,51 @@ DepthCamera camera_above(const Eigen::Vector2d& ground_point, double ground_z) {
   return camera;
 }
 
+DepthCamera d435i(DepthCamera camera) {
+  constexpr double focal_times_baseline = 22.35;  // [px m], at 848 x 480
+  camera.width = 848;
+  camera.height = 480;
+  camera.noise = 0.05 / focal_times_baseline;
+  camera.pattern_noise = 0.06 / focal_times_baseline;
+  camera.disparity_step = 1.0 / 32.0 / focal_times_baseline;
+  camera.flying_pixels = 0.5;
+  return camera;
+}
+
 std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const DepthCamera& camera,
                                           std::uint64_t seed) {
   check(camera);
   const Eigen::Matrix3d axes = site_from_camera(camera);
-  const double focal = 0.5 * camera.width / std::tan(0.5 * camera.horizontal_view);
-  const double highest = surface.z.isNaN().select(-1e300, surface.z).maxCoeff();
+  const ImagePlane plane(camera);
+  const Eigen::ArrayXXd depth = measured(depths(surface, camera, axes), camera, seed);
   std::vector<Eigen::Vector3d> points;
-  points.reserve(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
-  for (int v = 0; v < camera.height; ++v) {
-    Random random(seed, static_cast<std::uint64_t>(v));
-    for (int u = 0; u < camera.width; ++u) {
-      const bool dropped = random.uniform() < camera.dropouts;
+  points.reserve(static_cast<std::size_t>(depth.size()));
+  for (Eigen::Index v = 0; v < depth.rows(); ++v) {
+    for (Eigen::Index u = 0; u < depth.cols(); ++u) {
+      if (std::isnan(depth(v, u))) continue;
+      points.push_back(camera.position + depth(v, u) * (axes * plane.pixel(v, u)));
+    }
+  }
+  return points;
+}
+
+std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const Lidar& lidar,
+                                          std::uint64_t seed) {
+  check(lidar);
+  const double top = highest(surface);
+  std::vector<Eigen::Vector3d> points;
+  for (Eigen::Index row = 0; row < steps(lidar.elevation, lidar.angle_step(1)); ++row) {
+    Random random(seed, static_cast<std::uint64_t>(row));
+    const double elevation = lidar.elevation(0) + static_cast<double>(row) * lidar.angle_step(1);
+    for (Eigen::Index col = 0; col < steps(lidar.azimuth, lidar.angle_step(0)); ++col) {
+      const double azimuth = lidar.azimuth(0) + static_cast<double>(col) * lidar.angle_step(0);
+      const bool dropped = random.uniform() < lidar.dropouts;
       const double noise = random.normal();
-      const Eigen::Vector3d pixel((u + 0.5 - 0.5 * camera.width) / focal,
-                                  (v + 0.5 - 0.5 * camera.height) / focal, 1.0);
-      const Eigen::Vector3d ray = axes * pixel.normalized();
-      if (dropped || !(ray.z() < 0.0)) continue;
-      // Nothing can be met before the ray is down at the highest point of the ground.
-      const double skipped =
-          std::max(0.0, (highest + surface.cell - camera.position.z()) / ray.z());
-      const double distance =
-          skipped + hit(surface, camera.position + skipped * ray, ray, camera.max_range - skipped);
-      if (std::isnan(distance)) continue;
-      const double depth = distance / pixel.norm();
-      const double measured = depth + camera.noise * depth * depth * noise;
-      points.push_back(camera.position + measured * (axes * pixel));
+      if (dropped) continue;
+      const Beam beam = beam_at(azimuth, elevation);
+      const double range = mixed_range(surface, top, lidar, beam);
+      if (std::isnan(range)) continue;
+      points.push_back(lidar.position + (range + lidar.range_noise * noise) * beam.direction);
     }
   }
   return points;

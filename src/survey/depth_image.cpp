@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/survey/depth_image.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -124,6 +125,83 @@ cv::Mat read_depth_image(const std::string& path) {
   return image;
 }
 
+/// Refuses bad intrinsics once, then turns counts into depths and pixels into points.
+class Camera {
+ public:
+  explicit Camera(const DepthIntrinsics& intrinsics) : intrinsics_(intrinsics) {
+    require_valid(intrinsics);
+  }
+  bool sees(std::uint16_t count) const {
+    const double z = count * intrinsics_.depth_unit;
+    return count > 0 && z >= intrinsics_.min_depth && z <= intrinsics_.max_depth;
+  }
+  Eigen::Vector3d point(double u, double v, double z) const {
+    return {(u - intrinsics_.cx) / intrinsics_.fx * z, (v - intrinsics_.cy) / intrinsics_.fy * z,
+            z};
+  }
+  Eigen::Vector3d point_of_counts(int u, int v, double counts) const {
+    return point(u, v, counts * intrinsics_.depth_unit);
+  }
+
+ private:
+  DepthIntrinsics intrinsics_;
+};
+
+std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths) {
+  constexpr std::size_t most_frames = 10000;
+  constexpr std::size_t most_pixels = 2000000000;
+  if (paths.empty() || paths.size() > most_frames) {
+    throw Error(ErrorKind::bad_input,
+                "depth images: " + std::to_string(paths.size()) + " frames, must be 1 to 10000");
+  }
+  std::vector<cv::Mat> frames;
+  for (const std::string& path : paths) {
+    frames.push_back(read_depth_image(path));
+    const cv::Size first = frames.front().size();
+    if (frames.back().size() != first) {
+      throw Error(ErrorKind::bad_file, path + ": found " + std::to_string(frames.back().cols) +
+                                           " x " + std::to_string(frames.back().rows) +
+                                           " pixels, expected " + std::to_string(first.width) +
+                                           " x " + std::to_string(first.height) + " as in " +
+                                           paths.front());
+    }
+    if (frames.size() * frames.front().total() > most_pixels) {
+      throw Error(ErrorKind::bad_input, "depth images: more than 2 billion pixels up to " + path);
+    }
+  }
+  return frames;
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+struct RobustMean {
+  double value = 0.0;
+  int count = 0;
+};
+
+RobustMean robust_mean(const std::vector<double>& values) {
+  constexpr double mad_to_sd = 1.4826;
+  constexpr double within = 3.0;
+  RobustMean mean;
+  if (values.empty()) return mean;
+  std::vector<double> work = values;
+  const double middle = median(work);
+  for (double& value : work) value = std::abs(value - middle);
+  const double limit = std::max(1.0, within * mad_to_sd * median(work));
+  for (const double value : values) {
+    if (std::abs(value - middle) > limit) continue;
+    mean.value += value;
+    ++mean.count;
+  }
+  if (mean.count > 0) mean.value /= mean.count;
+  return mean;
+}
+
 }  // namespace
 
 DepthIntrinsics load_intrinsics(const std::string& path) {
@@ -145,24 +223,63 @@ DepthIntrinsics load_intrinsics(const std::string& path) {
 }
 
 Cloud depth_image_to_cloud(const std::string& image_path, const DepthIntrinsics& intrinsics) {
-  require_valid(intrinsics);
-  const cv::Mat image = read_depth_image(image_path);
-  Cloud cloud;
-  cloud.width = static_cast<std::size_t>(image.cols);
-  cloud.height = static_cast<std::size_t>(image.rows);
-  cloud.points.reserve(image.total());
-  for (int row = 0; row < image.rows; ++row) {
-    const auto* const counts = image.ptr<std::uint16_t>(row);
-    for (int column = 0; column < image.cols; ++column) {
-      const double z = counts[column] * intrinsics.depth_unit;
-      const bool is_seen =
-          counts[column] > 0 && z >= intrinsics.min_depth && z <= intrinsics.max_depth;
-      cloud.points.push_back(is_seen ? Eigen::Vector3d((column - intrinsics.cx) / intrinsics.fx * z,
-                                                       (row - intrinsics.cy) / intrinsics.fy * z, z)
-                                     : Eigen::Vector3d::Constant(unknown));
+  return average_depth_images({image_path}, intrinsics).cloud;
+}
+
+AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
+                                   const DepthIntrinsics& intrinsics) {
+  const Camera camera(intrinsics);
+  const std::vector<cv::Mat> frames = read_frames(image_paths);
+  AveragedDepth average;
+  average.cloud.width = static_cast<std::size_t>(frames.front().cols);
+  average.cloud.height = static_cast<std::size_t>(frames.front().rows);
+  average.cloud.points.reserve(frames.front().total());
+  average.frames.reserve(frames.front().total());
+  std::vector<double> counts;
+  for (int row = 0; row < frames.front().rows; ++row) {
+    for (int column = 0; column < frames.front().cols; ++column) {
+      counts.clear();
+      for (const cv::Mat& frame : frames) {
+        const std::uint16_t count = frame.ptr<std::uint16_t>(row)[column];
+        if (camera.sees(count)) counts.push_back(count);
+      }
+      const RobustMean mean = robust_mean(counts);
+      const bool is_known =
+          mean.count > 0 && 2 * static_cast<std::size_t>(mean.count) >= frames.size();
+      average.frames.push_back(is_known ? mean.count : 0);
+      average.cloud.points.push_back(is_known ? camera.point_of_counts(column, row, mean.value)
+                                              : Eigen::Vector3d::Constant(unknown));
     }
   }
-  return cloud;
+  return average;
+}
+
+Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrinsics, double u,
+                               double v) {
+  const Camera camera(intrinsics);
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorKind::bad_input,
+                "pixel (" + number_text(u) + ", " + number_text(v) + ") " + what);
+  };
+  const auto width = static_cast<double>(cloud.width);
+  const auto height = static_cast<double>(cloud.height);
+  if (!(u >= -0.5 && u < width - 0.5 && v >= -0.5 && v < height - 0.5)) {
+    refuse("is outside the image of " + std::to_string(cloud.width) + " x " +
+           std::to_string(cloud.height));
+  }
+  std::vector<double> depths;
+  for (double row = std::round(v) - 2.0; row <= std::round(v) + 2.0; ++row) {
+    for (double column = std::round(u) - 2.0; column <= std::round(u) + 2.0; ++column) {
+      if (row < 0.0 || column < 0.0 || row >= height || column >= width) continue;
+      const double z = cloud.points[static_cast<std::size_t>(row * width + column)].z();
+      if (std::isfinite(z)) depths.push_back(z);
+    }
+  }
+  if (depths.size() < 3) {
+    refuse("has " + std::to_string(depths.size()) +
+           " pixels with a depth within 2 of it, must be 3 or more");
+  }
+  return camera.point(u, v, median(depths));
 }
 
 }  // namespace excavplan

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include <excavplan/survey/cloud.hpp>
 
@@ -29,5 +32,29 @@ DepthIntrinsics load_intrinsics(const std::string& path);
 /// @throws Error (bad_file) if the file is not such an image; (bad_input) if an intrinsic is out of
 /// range
 Cloud depth_image_to_cloud(const std::string& image_path, const DepthIntrinsics& intrinsics);
+
+/// Several frames of one view in one cloud.
+struct AveragedDepth {
+  Cloud cloud;              ///< in the camera frame, NaN where most frames saw nothing
+  std::vector<int> frames;  ///< averaged into each pixel, 0 where unknown
+};
+
+/// Averages depth images of a camera that stood still, pixel by pixel: the mean of the depths
+/// within 3 robust sd (1.4826 MAD, at least one count) of their median; unknown where fewer than
+/// half of the frames agree. Noise falls with the square root of the frames; what all frames have
+/// in common (a stereo camera's fixed pattern) stays.
+///
+/// @throws Error (bad_file) as depth_image_to_cloud(), or if the images differ in size; (bad_input)
+/// without an image, with more than 10000, or if they hold more than 2 billion pixels together
+AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
+                                   const DepthIntrinsics& intrinsics);
+
+/// The point of an organised cloud at a place of the image [pixel]: on the ray of that place, at
+/// the median depth of the 5 x 5 pixels around it.
+///
+/// @throws Error (bad_input) if the place is outside the image or fewer than 3 of the pixels hold a
+/// depth
+Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrinsics, double u,
+                               double v);
 
 }  // namespace excavplan

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/survey/scan_pose.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <Eigen/Dense>
+
+#include <excavplan/error.hpp>
+#include <excavplan/random.hpp>
+
+#include "json_file.hpp"
+
+namespace excavplan {
+namespace {
+
+// Ours.
+constexpr std::size_t fewest_points = 100;
+constexpr std::size_t sampled_points = 5000;  // RANSAC counts on these
+constexpr int trials = 500;           // finds a plane of a fifth of the points, odds 50 to 1
+constexpr double plane_width = 0.01;  // of the median range [-]
+constexpr double least_share = 0.2;
+constexpr double least_height = 0.05;  // [m]
+constexpr double steep_look = 0.9962;  // cosine of 5 deg
+constexpr int most_rounds = 20;
+constexpr double thin = 1e-3;  // points whose spread across their line is less lie on it [-]
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorKind::bad_input, "pose of a scan: " + what);
+}
+
+struct Plane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double offset = 0.0;
+  double distance(const Eigen::Vector3d& p) const { return normal.dot(p) + offset; }
+};
+
+std::vector<Eigen::Vector3d> finite_points(const Cloud& scan) {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(scan.points.size());
+  for (const Eigen::Vector3d& p : scan.points) {
+    if (p.allFinite() && p.squaredNorm() > 0.0) points.push_back(p);
+  }
+  return points;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double median_range(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<double> ranges;
+  for (const Eigen::Vector3d& p : points) ranges.push_back(p.norm());
+  return median(std::move(ranges));
+}
+
+/// The plane through three of the points that most of them lie on.
+Plane most_common_plane(const std::vector<Eigen::Vector3d>& points, double width, Random random) {
+  std::vector<Eigen::Vector3d> sample;
+  for (std::size_t i = 0; i < sampled_points; ++i) {
+    sample.push_back(points[random.index(points.size())]);
+  }
+  Plane best;
+  std::ptrdiff_t most = -1;
+  for (int trial = 0; trial < trials; ++trial) {
+    const Eigen::Vector3d& a = sample[random.index(sample.size())];
+    const Eigen::Vector3d& b = sample[random.index(sample.size())];
+    const Eigen::Vector3d& c = sample[random.index(sample.size())];
+    Plane plane;
+    plane.normal = (b - a).cross(c - a);
+    if (!(plane.normal.norm() > width * width)) continue;
+    plane.normal.normalize();
+    plane.offset = -plane.normal.dot(a);
+    const auto count = std::count_if(sample.begin(), sample.end(), [&](const Eigen::Vector3d& p) {
+      return std::abs(plane.distance(p)) < width;
+    });
+    if (count > most) {
+      most = count;
+      best = plane;
+    }
+  }
+  return best;
+}
+
+/// Least squares over the points within `width` of `plane`.
+Plane refitted(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double width) {
+  double weights = 0.0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    if (std::abs(plane.distance(p)) > width) continue;
+    const double weight = 1.0 / (p.squaredNorm() * p.squaredNorm());
+    weights += weight;
+    sum += weight * p;
+    squares += weight * p * p.transpose();
+  }
+  const Eigen::Vector3d mean = sum / weights;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(squares / weights -
+                                                            mean * mean.transpose());
+  Plane fitted;
+  fitted.normal = axes.eigenvectors().col(0);
+  fitted.offset = -fitted.normal.dot(mean);
+  return fitted;
+}
+
+struct Ground {
+  Plane plane;
+  double sd = 0.0;
+  double share = 0.0;
+};
+
+Ground find_ground(const std::vector<Eigen::Vector3d>& points, std::uint64_t seed) {
+  constexpr double mad_to_sd = 1.4826;
+  constexpr double within = 2.5;
+  double width = plane_width * median_range(points);
+  Ground ground;
+  ground.plane = most_common_plane(points, width, Random(seed));
+  for (int round = 0; round < most_rounds; ++round) {
+    const Plane last = ground.plane;
+    ground.plane = refitted(points, last, width);
+    std::vector<double> away;
+    for (const Eigen::Vector3d& p : points) {
+      const double distance = std::abs(ground.plane.distance(p));
+      if (distance <= width) away.push_back(distance);
+    }
+    ground.share = static_cast<double>(away.size()) / static_cast<double>(points.size());
+    if (ground.share < least_share) {
+      refuse("only " + number_text(std::round(1000.0 * ground.share) / 10.0) +
+             " % of its points lie on one plane, less than 20 %: no ground to level it by");
+    }
+    ground.sd = mad_to_sd * median(std::move(away));
+    width = std::max(within * ground.sd, 0.1 * plane_width * median_range(points));
+    if ((ground.plane.normal - last.normal).norm() < 1e-7) break;
+  }
+  if (ground.plane.offset < 0.0) {  // up is where the sensor is
+    ground.plane.normal = -ground.plane.normal;
+    ground.plane.offset = -ground.plane.offset;
+  }
+  return ground;
+}
+
+void check(const std::vector<Eigen::Vector3d>& in_scan,
+           const std::vector<Eigen::Vector3d>& in_site) {
+  if (in_scan.size() != in_site.size()) {
+    refuse(std::to_string(in_scan.size()) + " points of the scan, but " +
+           std::to_string(in_site.size()) + " known places; each point needs one");
+  }
+  if (in_scan.size() < 3) {
+    refuse(std::to_string(in_scan.size()) + " known points, must be 3 or more");
+  }
+  for (std::size_t i = 0; i < in_scan.size(); ++i) {
+    if (!in_scan[i].allFinite() || !in_site[i].allFinite()) {
+      refuse("known point " + std::to_string(i + 1) + " has a coordinate that is not finite");
+    }
+  }
+}
+
+Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+}  // namespace
+
+LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed) {
+  const std::vector<Eigen::Vector3d> points = finite_points(scan);
+  if (points.size() < fewest_points) {
+    refuse(std::to_string(points.size()) + " finite points, must be 100 or more to level it");
+  }
+  const Ground ground = find_ground(points, seed);
+  const Eigen::Vector3d up = ground.plane.normal;
+  LevelPose pose;
+  pose.height = ground.plane.offset;
+  pose.residual_sd = ground.sd;
+  pose.ground_share = ground.share;
+  if (pose.height < least_height) {
+    refuse("its largest plane passes the sensor at " + number_text(pose.height) +
+           " m, nearer than 0.05 m: that is not the ground");
+  }
+  const Eigen::Vector3d look = Eigen::Vector3d::UnitZ();
+  pose.tilt = std::acos(std::clamp(-look.dot(up), -1.0, 1.0));
+  const Eigen::Vector3d ahead =
+      std::abs(look.dot(up)) > steep_look ? Eigen::Vector3d(-Eigen::Vector3d::UnitY()) : look;
+  const Eigen::Vector3d x = (ahead - ahead.dot(up) * up).normalized();
+  pose.site_from_scan.topLeftCorner<3, 3>() << x.transpose(), up.cross(x).transpose(),
+      up.transpose();
+  pose.site_from_scan(2, 3) = pose.height;
+  return pose;
+}
+
+PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
+                         const std::vector<Eigen::Vector3d>& in_site) {
+  check(in_scan, in_site);
+  const Eigen::Vector3d scan_mean = mean_of(in_scan);
+  const Eigen::Vector3d site_mean = mean_of(in_site);
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < in_scan.size(); ++i) {
+    products += (in_site[i] - site_mean) * (in_scan[i] - scan_mean).transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (!(svd.singularValues()(1) > thin * thin * svd.singularValues()(0))) {
+    refuse("the known points lie on one line, about which it could turn freely");
+  }
+  Eigen::Vector3d sign = Eigen::Vector3d::Ones();
+  sign.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  const Eigen::Matrix3d rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  PointPose pose;
+  pose.site_from_scan.topLeftCorner<3, 3>() = rotation;
+  pose.site_from_scan.topRightCorner<3, 1>() = site_mean - rotation * scan_mean;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < in_scan.size(); ++i) {
+    const Eigen::Vector3d placed = rotation * (in_scan[i] - scan_mean) + site_mean;
+    pose.residuals.push_back((placed - in_site[i]).norm());
+    squares += (placed - in_site[i]).squaredNorm();
+  }
+  pose.rms = std::sqrt(squares / static_cast<double>(in_scan.size()));
+  return pose;
+}
+
+}  // namespace excavplan
