@@ -290,6 +290,15 @@ TEST_F(LawFile, PaperLawIsShippedAsPublished) {
   EXPECT_EQ(line.b, -152.87);
   EXPECT_EQ(line.r2, 0.9811);
   EXPECT_NEAR(line.residual_sd, 30.2765 * std::sqrt(1.0 - 0.9811), 0.05);
+  EXPECT_EQ(std::get<DensityLine>(law.freed_form).a, 161.57);  // it has no other
+}
+
+TEST_F(LawFile, AFormAsMeasuredHasItsFreedTwin) {
+  DensityCalibration made = calibration();
+  const DensityLaw law = load(to_json(made));
+  EXPECT_EQ(std::get<DensityClosedForm>(law.form).B, made.closed_form_as_measured->B);
+  EXPECT_EQ(std::get<DensityClosedForm>(law.freed_form).B, made.closed_form.B);
+  EXPECT_NE(made.closed_form.B, made.closed_form_as_measured->B);
 }
 
 TEST_F(LawFile, WhatIsWrittenIsReadBack) {

@@ -41,7 +41,7 @@ TEST_F(FallbackTest, IsWhatTheSimulatorSaysFellBack) {
     const Fallback found =
         measure_fallback(machine_, path_, ground_.bank, result.after(ground_).surface());
     EXPECT_NEAR(found.cut, result.soil.bank_cut, 2e-3 * result.soil.bank_cut);
-    EXPECT_NEAR(found.fraction.value, result.soil.fallback_fraction, 8e-3) << density;
+    EXPECT_NEAR(found.fraction.value, result.soil.fallback_fraction, 0.012) << density;
     EXPECT_EQ(found.seen_share, 1.0);
   }
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include <excavplan/ground/bulking.hpp>
+#include <excavplan/planning/fallback.hpp>
+#include <excavplan/planning/planner.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/survey/cloud.hpp>
 
@@ -27,6 +29,8 @@ const About about = {
     {{"estimate-density before.pcd after.pcd", "two scans that show dig and heap"},
      {"estimate-density dig0.ply dig1.ply --dump-before heap0.ply --dump-after heap1.ply",
       "separate scans of the dig area and of the dump area"},
+     {"estimate-density before.pcd after.pcd --dug-path 45deg,0.35m,1.5m --dug-start 6.05",
+      "the path is known: soil that fell back into the cut is taken into account"},
      {"estimate-density before.pcd after.pcd --json --plot change.svg",
       "figures for a program, a picture for you"}},
     true};
@@ -40,6 +44,9 @@ struct Inputs {
   ChangeOptions change;
   std::string method = "surface";
   std::optional<double> cell;
+  std::optional<DigParameters> dug_path;
+  std::optional<double> dug_start;
+  std::string machine = "zx120";
   std::string law = "default";
   std::optional<std::string> plot;
 };
@@ -64,6 +71,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "of the points, at least 0.05)");
   arguments.text("law", "NAME|FILE", inputs.law,
                  "density law: default (built-in simulator, ZX120 in loam), paper, or a law file");
+  arguments.option(
+      "dug-path", inputs.dug_path,
+      "the path that was dug: finds the soil that fell back into the cut and frees the "
+      "bulking factor of it; needs scans in the site frame");
+  arguments.option("dug-start", inputs.dug_start, Quantity::length,
+                   "x where that path met the ground");
+  arguments.machine(inputs.machine);
   arguments.plot(inputs.plot, "the height change with its zones");
 }
 
@@ -199,18 +213,34 @@ DensityLaw law_named(const std::string& name) {
 }
 
 struct Estimate {
-  std::optional<Measured> bulking;
+  std::optional<Measured> bulking;  ///< as the height maps give it
+  std::optional<Fallback> fallback;
+  std::optional<Measured> freed;  ///< bulking, freed of the fallback
   std::optional<DensityEstimate> density;
+  double density_without_fallback = 0.0;  ///< were `bulking` free of it [%]
   bool trustworthy = true;
   std::vector<Warning> warnings;
 };
 
-Estimate estimate(const VolumeChange& change, const DensityLaw& law) {
+/// k = f + (1 - f) k_measured with the errors of both.
+Measured freed_of(const Measured& bulking, const Measured& fallback) {
+  return {free_of_fallback(bulking.value, fallback.value),
+          std::hypot((1.0 - fallback.value) * bulking.sd, (1.0 - bulking.value) * fallback.sd)};
+}
+
+Estimate estimate(const VolumeChange& change, const std::optional<Fallback>& fallback,
+                  DensityLaw law) {
   Estimate result;
   result.warnings = change.warnings;
   result.bulking = bulking_factor(change);
   if (result.bulking) {
-    Measured k = *result.bulking;
+    result.fallback = fallback;
+    result.density_without_fallback = density_of_bulking(law.freed_form, result.bulking->value);
+    if (fallback) {
+      result.freed = freed_of(*result.bulking, fallback->fraction);
+      law.form = law.freed_form;
+    }
+    Measured k = result.freed.value_or(*result.bulking);
     const bool known_error = !std::isnan(k.sd);
     if (!known_error) {
       k.sd = 0.0;
@@ -250,6 +280,17 @@ nlohmann::ordered_json estimate_json(const VolumeChange& change, const Estimate&
     json["density_raw_percent"] = result.density->raw_percent;
     json["density_sd_percent"] = result.density->sd_percent;
     json["density_interval_percent"] = result.density->interval_percent;
+    json["density_without_fallback_percent"] = result.density_without_fallback;
+  }
+  json["fallback"] = nullptr;
+  if (result.fallback) {
+    json["fallback"] = {{"fraction", result.fallback->fraction.value},
+                        {"fraction_sd", result.fallback->fraction.sd},
+                        {"cut_m3", result.fallback->cut},
+                        {"in_pit_m3", result.fallback->in_pit},
+                        {"seen_share", result.fallback->seen_share},
+                        {"bulking_factor_freed", result.freed->value},
+                        {"bulking_factor_freed_sd", result.freed->sd}};
   }
   json["law"] = law.name;
   json["trustworthy"] = result.trustworthy;
@@ -283,11 +324,63 @@ std::vector<std::string> estimate_lines(const VolumeChange& change, const Estima
   }
   const DensityEstimate& d = *result.density;
   lines.push_back("bulking    " + readable(result.bulking->value, result.bulking->sd));
+  if (result.fallback) {
+    lines.push_back(
+        "fallback   " +
+        readable(100.0 * result.fallback->fraction.value, 100.0 * result.fallback->fraction.sd) +
+        " % of the cut; freed of it, bulking is " +
+        readable(result.freed->value, result.freed->sd));
+  }
   lines.push_back("density    " + readable(d.percent, d.sd_percent) + " %, 95 % interval " +
                   readable(d.interval_percent[0]) + " .. " + readable(d.interval_percent[1]) +
                   " %");
   lines.push_back("law        " + law.name + (result.trustworthy ? "" : " (NOT TRUSTWORTHY)"));
+  const double bias = result.density_without_fallback - d.raw_percent;
+  if (!result.fallback && std::abs(bias) > 0.05) {
+    lines.push_back(
+        "           holds for digs whose bucket spilled as in its calibration; had nothing "
+        "fallen back, " +
+        readable(std::clamp(result.density_without_fallback, 0.0, 100.0)) +
+        " % (--dug-path finds out)");
+  }
   return lines;
+}
+
+/// Mean height under the bucket, 15 cm to both sides of x: one cell's noise would move
+/// the whole path.
+GroundProfile ground_under(const HeightMap& map, double width) {
+  return [&map, width](double x) {
+    constexpr double reach = 0.15;  // [m], ours
+    double sum = 0.0;
+    int count = 0;
+    for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+      if (std::abs(map.x(col) - x) > reach) continue;
+      for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+        if (std::abs(map.y(row)) > 0.5 * width || std::isnan(map.z(row, col))) continue;
+        sum += map.z(row, col);
+        ++count;
+      }
+    }
+    return count > 0 ? sum / count : std::nan("");
+  };
+}
+
+/// What lies on the floor of the path that was dug, if it was given.
+std::optional<Fallback> fallback_of(const Inputs& inputs, const Survey& survey,
+                                    const VolumeChange& surface) {
+  if (inputs.dug_path.has_value() != inputs.dug_start.has_value()) {
+    throw Error(ErrorKind::bad_input, "--dug-path and --dug-start go together");
+  }
+  if (!inputs.dug_path) return std::nullopt;
+  const Machine machine = machine_named(inputs.machine);
+  SurfacePair dig = surfaces(survey.dig, survey.cell);
+  dig.after.z -= surface.areas.front().datum;
+  const auto path = make_dig_path(machine, *inputs.dug_path, *inputs.dug_start,
+                                  ground_under(dig.before, machine.bucket.width_outside));
+  if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
+    throw Error(ErrorKind::bad_input, "--dug-path: " + infeasible->message);
+  }
+  return measure_fallback(machine, std::get<DigPath>(path), dig.before, dig.after);
 }
 
 Outcome work(const Inputs& inputs) {
@@ -297,7 +390,7 @@ Outcome work(const Inputs& inputs) {
   refuse_swapped(surface, inputs);
   const bool paper = inputs.method == "paper";
   const VolumeChange change = paper ? paper_change(inputs, survey, surface) : surface;
-  const Estimate result = estimate(change, law);
+  const Estimate result = estimate(change, fallback_of(inputs, survey, surface), law);
 
   Outcome outcome;
   outcome.json = estimate_json(change, result, law);

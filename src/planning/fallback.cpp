@@ -59,7 +59,9 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
                 "fallback: the maps before and after must be on one grid: same origin, cell and "
                 "size");
   }
-  const double half = 0.5 * machine.bucket.width_outside;
+  // A scan blurs the walls of the cut over a cell: the floor between them stands for all of it.
+  const double whole = 0.5 * machine.bucket.width_outside;
+  const double half = whole > 2.0 * before.cell ? whole - before.cell : whole;
   Swept sum;
   for (Eigen::Index row = 0; row < before.z.rows(); ++row) {
     const double low = before.y(row) - 0.5 * before.cell;
@@ -86,8 +88,8 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
   }
   Fallback fallback;
   fallback.seen_share = seen_share;
-  fallback.cut = sum.cut / seen_share;
-  fallback.in_pit = sum.in_pit / seen_share;
+  fallback.cut = sum.cut / seen_share * whole / half;
+  fallback.in_pit = sum.in_pit / seen_share * whole / half;
   // A path that lay deeper than thought by d cut d * area more and left as much more in the pit.
   const double fraction = sum.in_pit / sum.cut;
   fallback.fraction.value = std::clamp(fraction, 0.0, 1.0);

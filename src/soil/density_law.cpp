@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include <nlopt.hpp>
@@ -219,18 +220,18 @@ DensityLaw load_density_law(const std::string& path) {
   law.name = file.text("name");
   law.source = file.text("source");
   const std::string use = file.text("use");
-  bool found = false;
+  std::map<std::string, DensityForm> forms;
   for (const char* key : {"line", "closed_form", "line_as_measured", "closed_form_as_measured"}) {
     if (!file.has(key)) continue;
     const bool is_line = std::string(key).rfind("line", 0) == 0;
-    const DensityForm form = is_line ? DensityForm(read_line(file.object(key)))
-                                     : DensityForm(read_closed_form(file.object(key)));
-    if (use == key) {
-      law.form = form;
-      found = true;
-    }
+    forms[key] = is_line ? DensityForm(read_line(file.object(key)))
+                         : DensityForm(read_closed_form(file.object(key)));
   }
-  if (!found) {
+  if (const auto used = forms.find(use); used != forms.end()) {
+    law.form = used->second;
+    const auto freed = forms.find(use.substr(0, use.find("_as_measured")));
+    law.freed_form = freed != forms.end() ? freed->second : law.form;
+  } else {
     file.fail("use", "is '" + use +
                          "', must name a form in this file: line, closed_form, line_as_measured "
                          "or closed_form_as_measured");

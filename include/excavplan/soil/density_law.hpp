@@ -52,6 +52,9 @@ struct DensityLaw {
   std::string name;
   std::string source;
   DensityForm form;
+  /// For k freed of what fell back into the cut (free_of_fallback()): the twin of an
+  /// "..._as_measured" form where the file has one, else `form` itself.
+  DensityForm freed_form{};
 };
 
 /// Reads a law file (docs/formats.md) and takes the form that its key "use" names.
