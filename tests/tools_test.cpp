@@ -676,6 +676,52 @@ TEST_F(Tools, PaperMethodGivesItsVolumesAndNoTrust) {
   answer("estimate-density", words + Words{"--strict"}, 4);
 }
 
+TEST_F(Tools, AKnownPathFreesTheBulkingFactorOfWhatFellBack) {
+  const ScanPair scans = scan_pair(folder, 90, 2);
+  const double start = number(scans.truth, "/path/start_x_m");
+  const Words words = {scans.before, scans.after};
+  const json without = answer("estimate-density", words);
+  const json with = answer("estimate-density", words + Words{"--dug-path", "45deg,0.35m,1.5m",
+                                                             "--dug-start", std::to_string(start)});
+  EXPECT_TRUE(without["fallback"].is_null());
+  EXPECT_TRUE(without["bulking_factor_corrected"].is_null());
+  EXPECT_GT(number(without, "/density_without_fallback_percent"),
+            number(without, "/density_raw_percent") + 1.0);
+  EXPECT_NEAR(number(with, "/fallback/fraction"), number(scans.truth, "/fallback_fraction"), 0.02);
+  EXPECT_NEAR(number(with, "/fallback/cut_m3"), 0.326, 0.01);
+  const double k = number(with, "/bulking_factor_corrected");
+  EXPECT_EQ(number(with, "/bulking_factor"), number(without, "/bulking_factor"));
+  EXPECT_LT(k, number(with, "/bulking_factor"));
+  EXPECT_NEAR(k, number(scans.truth, "/bulking_factor_true"),
+              2.0 * number(with, "/bulking_factor_corrected_sd"));
+  EXPECT_NEAR(number(with, "/density_percent"), 90.0, 5.0);
+}
+
+TEST_F(Tools, BothMethodsAreShownWhenAsked) {
+  const Words words = quickstart(folder) + Words{"--compare-methods"};
+  if (contains(run_program("estimate-density", words).err, "built without it")) {
+    GTEST_SKIP() << "built without EXCAVPLAN_SURVEY";
+  }
+  const json both = answer("estimate-density", words);
+  const json surface = answer("estimate-density", quickstart(folder));
+  const json paper = answer("estimate-density", quickstart(folder) + Words{"--method", "paper"});
+  EXPECT_EQ(both["method"], "surface");
+  EXPECT_EQ(both["volume"], surface["volume"]);
+  EXPECT_EQ(both["methods"]["surface"]["density_percent"], surface["density_percent"]);
+  EXPECT_EQ(both["methods"]["paper"]["volume"], paper["volume"]);
+}
+
+TEST_F(Tools, ASurveyIsPlannedWithoutScans) {
+  const json near = answer("estimate-density", {"--plan-survey", "height=2,offset=1"});
+  const json far = answer("estimate-density", {"--plan-survey", "height=4,offset=2,target=1"});
+  EXPECT_LT(number(near, "/density_sd_percent"), 0.4 * number(far, "/density_sd_percent"));
+  EXPECT_NEAR(number(near, "/range_m"), std::sqrt(5.0), 0.05);
+  EXPECT_LT(number(far, "/needs/range_at_most_m"), number(far, "/range_m"));
+  double shares = 0.0;
+  for (const auto& share : near["variance_shares"]) shares += share.get<double>();
+  EXPECT_NEAR(shares, 1.0, 1e-9);
+}
+
 TEST_F(Tools, WithoutDumpedSoilThereAreVolumesButNoDensity) {
   const json result = answer("estimate-density", quickstart(folder) + Words{"--area", "0,-3,12,2"});
   expect_keys(result, "number", volume_keys);
@@ -946,6 +992,18 @@ TEST_F(BadInput, FilesThatAreNoCloudsAreRefused) {
     refused(3, reason, "plan-path", {"--density", "40", "--terrain", file, "--plot", plot});
     refused(3, reason, "simulate-dig", {"--density", "40", "--terrain", file, "--plot", plot});
   }
+}
+
+TEST_F(BadInput, HalfATaskIsRefused) {
+  const std::string tool = "estimate-density";
+  refused(2, "AFTER is missing", tool, {scan});
+  refused(2, "BEFORE is missing", tool, {});
+  refused(2, "--dug-path and --dug-start go together", tool,
+          {scan, later_scan, "--dug-start", "6"});
+  refused(2, "takes no scans", tool, {scan, later_scan, "--plan-survey", "height=2"});
+  refused(2, "'hight' is not understood; it takes", tool, {"--plan-survey", "hight=2"});
+  refused(2, "frames is 1.5, must be a whole number", tool, {"--plan-survey", "frames=1.5"});
+  refused(2, "'height' must be KEY=VALUE", tool, {"--plan-survey", "height"});
 }
 
 TEST_F(BadInput, SwappedScansAreRefused) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/ground/blocks.hpp>
 #include <excavplan/planning/fallback.hpp>
 #include <excavplan/planning/planner.hpp>
 #include <excavplan/soil/density_law.hpp>
@@ -13,10 +13,12 @@
 #include <excavplan/survey/paper_method.hpp>
 #endif
 
+#include "estimate.hpp"
 #include "figures.hpp"
 #include "json_file.hpp"
 #include "results.hpp"
 #include "scans.hpp"
+#include "survey_planning.hpp"
 #include "tool.hpp"
 
 namespace excavplan::tools {
@@ -31,18 +33,22 @@ const About about = {
       "separate scans of the dig area and of the dump area"},
      {"estimate-density before.pcd after.pcd --dug-path 45deg,0.35m,1.5m --dug-start 6.05",
       "the path is known: soil that fell back into the cut is taken into account"},
+     {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
+      "no scans yet: how well a D435i on a mast of 2.5 m will tell the density"},
      {"estimate-density before.pcd after.pcd --json --plot change.svg",
       "figures for a program, a picture for you"}},
     true};
 
 struct Inputs {
-  std::string before;
-  std::string after;
+  std::optional<std::string> before;
+  std::optional<std::string> after;
   std::optional<std::string> dump_before;
   std::optional<std::string> dump_after;
   ScanFrames frames;
   ChangeOptions change;
   std::string method = "surface";
+  bool compare = false;
+  std::optional<std::string> plan_survey;
   std::optional<double> cell;
   std::optional<DigParameters> dug_path;
   std::optional<double> dug_start;
@@ -66,6 +72,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
   arguments.choice("method", inputs.method, {"surface", "paper"},
                    "surface: signed change of one height map; paper: the pipeline as published");
+  arguments.flag("compare-methods", inputs.compare, "show what both methods give");
   arguments.option("cell", inputs.cell, Quantity::length,
                    "cell of the height map, voxel of the paper's method (default: from the density "
                    "of the points, at least 0.05)");
@@ -79,6 +86,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "x where that path met the ground");
   arguments.machine(inputs.machine);
   arguments.plot(inputs.plot, "the height change with its zones");
+  arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
 
 // ---- Clouds to volumes ------------------------------------------------------------------------
@@ -104,7 +112,7 @@ Survey read_survey(const Inputs& inputs) {
     throw Error(ErrorKind::bad_input, "--dump-before and --dump-after go together");
   }
   Survey survey;
-  survey.dig = read_scans(inputs.before, inputs.after, inputs.frames);
+  survey.dig = read_scans(*inputs.before, *inputs.after, inputs.frames);
   survey.cell = cell_for(survey.dig);
   if (inputs.dump_before) {
     survey.dump = read_scans(*inputs.dump_before, *inputs.dump_after, inputs.frames);
@@ -114,21 +122,36 @@ Survey read_survey(const Inputs& inputs) {
   return survey;
 }
 
-VolumeChange surface_change(const Inputs& inputs, const Survey& survey) {
-  const SurfacePair dig = surfaces(survey.dig, survey.cell);
-  const std::string files = survey.dig.files();
-  if (!survey.dump) {
-    return measured(files, [&] { return measure_change(dig.before, dig.after, inputs.change); });
+/// The height maps of a survey.
+struct Maps {
+  SurfacePair dig;
+  std::optional<SurfacePair> dump;
+
+  std::vector<HeightMap> after() const {
+    return dump ? std::vector<HeightMap>{dig.after, dump->after}
+                : std::vector<HeightMap>{dig.after};
   }
-  const SurfacePair dump = surfaces(*survey.dump, survey.cell);
-  return measured(files, [&] { return measure_change(dig, dump, inputs.change); });
+};
+
+Maps maps_of(const Survey& survey) {
+  Maps maps;
+  maps.dig = surfaces(survey.dig, survey.cell);
+  if (survey.dump) maps.dump = surfaces(*survey.dump, survey.cell);
+  return maps;
+}
+
+VolumeChange surface_change(const Inputs& inputs, const Survey& survey, const Maps& maps) {
+  return measured(survey.dig.files(), [&] {
+    return maps.dump ? measure_change(maps.dig, *maps.dump, inputs.change)
+                     : measure_change(maps.dig.before, maps.dig.after, inputs.change);
+  });
 }
 
 void refuse_swapped(const VolumeChange& change, const Inputs& inputs) {
   for (const Warning& warning : change.warnings) {
     if (warning.code == "looks_swapped") {
       throw Error(ErrorKind::bad_file,
-                  inputs.before + ", " + inputs.after + ": " + warning.message);
+                  *inputs.before + ", " + *inputs.after + ": " + warning.message);
     }
   }
 }
@@ -187,7 +210,7 @@ VolumeChange paper_change(const Inputs& inputs, const Survey& survey, const Volu
   const double dig_ground = median_height(survey.dig.before);
   const double heap_ground = median_height(heap.before);
   const Cloud still = levelled(survey.dig.before, dig_area, dig_ground);  // nothing rises in it
-  VolumeChange change = measured(inputs.before + ", " + inputs.after, [&] {
+  VolumeChange change = measured(*inputs.before + ", " + *inputs.after, [&] {
     return paper_volumes(still, levelled(survey.dig.after, dig_area, dig_ground),
                          no_heap ? still : levelled(heap.before, dump_area, heap_ground),
                          no_heap ? still : levelled(heap.after, dump_area, heap_ground), options);
@@ -212,91 +235,6 @@ DensityLaw law_named(const std::string& name) {
   return load_density_law(shipped_or_file("laws", name == "default" ? "zx120-loam" : name));
 }
 
-struct Estimate {
-  std::optional<Measured> bulking;  ///< as the height maps give it
-  std::optional<Fallback> fallback;
-  std::optional<Measured> freed;  ///< bulking, freed of the fallback
-  std::optional<DensityEstimate> density;
-  double density_without_fallback = 0.0;  ///< were `bulking` free of it [%]
-  bool trustworthy = true;
-  std::vector<Warning> warnings;
-};
-
-/// k = f + (1 - f) k_measured with the errors of both.
-Measured freed_of(const Measured& bulking, const Measured& fallback) {
-  return {free_of_fallback(bulking.value, fallback.value),
-          std::hypot((1.0 - fallback.value) * bulking.sd, (1.0 - bulking.value) * fallback.sd)};
-}
-
-Estimate estimate(const VolumeChange& change, const std::optional<Fallback>& fallback,
-                  DensityLaw law) {
-  Estimate result;
-  result.warnings = change.warnings;
-  result.bulking = bulking_factor(change);
-  if (result.bulking) {
-    result.fallback = fallback;
-    result.density_without_fallback = density_of_bulking(law.freed_form, result.bulking->value);
-    if (fallback) {
-      result.freed = freed_of(*result.bulking, fallback->fraction);
-      law.form = law.freed_form;
-    }
-    Measured k = result.freed.value_or(*result.bulking);
-    const bool known_error = !std::isnan(k.sd);
-    if (!known_error) {
-      k.sd = 0.0;
-      result.warnings.push_back(
-          {"volume_error_unknown",
-           "this method tells no error of its volumes: the interval of the density holds the "
-           "scatter of the law only"});
-    }
-    result.density = estimate_density(law, k);
-    result.trustworthy = known_error && result.density->trustworthy;
-    for (const Warning& warning : result.density->warnings) result.warnings.push_back(warning);
-  } else {
-    result.trustworthy = false;
-  }
-  for (const Warning& warning : change.warnings) {
-    if (warning.code == "zone_at_border" || warning.code == "zone_partly_unseen") {
-      result.trustworthy = false;
-    }
-  }
-  return result;
-}
-
-nlohmann::ordered_json estimate_json(const VolumeChange& change, const Estimate& result,
-                                     const DensityLaw& law) {
-  nlohmann::ordered_json json;
-  json["volume"] = volumes_json(change);
-  json["bulking_factor"] = nullptr;
-  json["bulking_factor_sd"] = nullptr;
-  json["density_percent"] = nullptr;
-  json["density_raw_percent"] = nullptr;
-  json["density_sd_percent"] = nullptr;
-  json["density_interval_percent"] = nullptr;
-  if (result.bulking) {
-    json["bulking_factor"] = result.bulking->value;
-    json["bulking_factor_sd"] = result.bulking->sd;
-    json["density_percent"] = result.density->percent;
-    json["density_raw_percent"] = result.density->raw_percent;
-    json["density_sd_percent"] = result.density->sd_percent;
-    json["density_interval_percent"] = result.density->interval_percent;
-    json["density_without_fallback_percent"] = result.density_without_fallback;
-  }
-  json["fallback"] = nullptr;
-  if (result.fallback) {
-    json["fallback"] = {{"fraction", result.fallback->fraction.value},
-                        {"fraction_sd", result.fallback->fraction.sd},
-                        {"cut_m3", result.fallback->cut},
-                        {"in_pit_m3", result.fallback->in_pit},
-                        {"seen_share", result.fallback->seen_share},
-                        {"bulking_factor_freed", result.freed->value},
-                        {"bulking_factor_freed_sd", result.freed->sd}};
-  }
-  json["law"] = law.name;
-  json["trustworthy"] = result.trustworthy;
-  return json;
-}
-
 nlohmann::ordered_json zones_json(const VolumeChange& change) {
   auto list = nlohmann::ordered_json::array();
   for (const ChangeZone& zone : change.zones) {
@@ -310,40 +248,6 @@ nlohmann::ordered_json zones_json(const VolumeChange& change) {
           {zone.extent.x_min, zone.extent.y_min, zone.extent.x_max, zone.extent.y_max}}});
   }
   return list;
-}
-
-std::vector<std::string> estimate_lines(const VolumeChange& change, const Estimate& result,
-                                        const DensityLaw& law) {
-  const auto volume = [](const Measured& v) { return readable(v.value, v.sd) + " m3"; };
-  std::vector<std::string> lines = {"hole       " + volume(change.excavated),
-                                    "spill      " + volume(change.spilled),
-                                    "heap       " + volume(change.dumped)};
-  if (!result.bulking) {
-    lines.emplace_back("bulking    unknown, and so is the density");
-    return lines;
-  }
-  const DensityEstimate& d = *result.density;
-  lines.push_back("bulking    " + readable(result.bulking->value, result.bulking->sd));
-  if (result.fallback) {
-    lines.push_back(
-        "fallback   " +
-        readable(100.0 * result.fallback->fraction.value, 100.0 * result.fallback->fraction.sd) +
-        " % of the cut; freed of it, bulking is " +
-        readable(result.freed->value, result.freed->sd));
-  }
-  lines.push_back("density    " + readable(d.percent, d.sd_percent) + " %, 95 % interval " +
-                  readable(d.interval_percent[0]) + " .. " + readable(d.interval_percent[1]) +
-                  " %");
-  lines.push_back("law        " + law.name + (result.trustworthy ? "" : " (NOT TRUSTWORTHY)"));
-  const double bias = result.density_without_fallback - d.raw_percent;
-  if (!result.fallback && std::abs(bias) > 0.05) {
-    lines.push_back(
-        "           holds for digs whose bucket spilled as in its calibration; had nothing "
-        "fallen back, " +
-        readable(std::clamp(result.density_without_fallback, 0.0, 100.0)) +
-        " % (--dug-path finds out)");
-  }
-  return lines;
 }
 
 /// Mean height under the bucket, 15 cm to both sides of x: one cell's noise would move
@@ -366,14 +270,14 @@ GroundProfile ground_under(const HeightMap& map, double width) {
 }
 
 /// What lies on the floor of the path that was dug, if it was given.
-std::optional<Fallback> fallback_of(const Inputs& inputs, const Survey& survey,
+std::optional<Fallback> fallback_of(const Inputs& inputs, const Maps& maps,
                                     const VolumeChange& surface) {
   if (inputs.dug_path.has_value() != inputs.dug_start.has_value()) {
     throw Error(ErrorKind::bad_input, "--dug-path and --dug-start go together");
   }
   if (!inputs.dug_path) return std::nullopt;
   const Machine machine = machine_named(inputs.machine);
-  SurfacePair dig = surfaces(survey.dig, survey.cell);
+  SurfacePair dig = maps.dig;
   dig.after.z -= surface.areas.front().datum;
   const auto path = make_dig_path(machine, *inputs.dug_path, *inputs.dug_start,
                                   ground_under(dig.before, machine.bucket.width_outside));
@@ -383,25 +287,91 @@ std::optional<Fallback> fallback_of(const Inputs& inputs, const Survey& survey,
   return measure_fallback(machine, std::get<DigPath>(path), dig.before, dig.after);
 }
 
-Outcome work(const Inputs& inputs) {
+/// Estimate and figures of one method as a program gets them.
+struct Answer {
+  VolumeChange change;
+  Estimate estimate;
+  nlohmann::ordered_json json;
+  std::vector<std::string> lines;
+};
+
+Answer answer_of(const std::string& method, VolumeChange change, const Knowledge& knowledge,
+                 const DensityLaw& law) {
+  Answer answer;
+  answer.estimate = estimate(change, knowledge, law);
+  answer.json = estimate_json(change, answer.estimate, law);
+  answer.json["method"] = method;
+  answer.lines = estimate_lines(change, answer.estimate, law);
+  answer.change = std::move(change);
+  return answer;
+}
+
+std::vector<Warning> new_ones(const std::vector<Warning>& warnings,
+                              const std::vector<Warning>& said) {
+  std::vector<Warning> result;
+  for (const Warning& warning : warnings) {
+    const auto same = [&](const Warning& other) { return other.message == warning.message; };
+    if (std::none_of(said.begin(), said.end(), same)) result.push_back(warning);
+  }
+  return result;
+}
+
+Outcome work_on_scans(const Inputs& inputs) {
   const DensityLaw law = law_named(inputs.law);
   const Survey survey = read_survey(inputs);
-  const VolumeChange surface = surface_change(inputs, survey);
+  const Maps maps = maps_of(survey);
+  const VolumeChange surface = surface_change(inputs, survey, maps);
   refuse_swapped(surface, inputs);
-  const bool paper = inputs.method == "paper";
-  const VolumeChange change = paper ? paper_change(inputs, survey, surface) : surface;
-  const Estimate result = estimate(change, fallback_of(inputs, survey, surface), law);
+  Knowledge knowledge;
+  knowledge.fallback = fallback_of(inputs, maps, surface);
+  knowledge.blocks = assess_blocks(maps.after(), surface);
+
+  const bool paper_counts = inputs.method == "paper";
+  std::vector<Answer> answers;
+  if (!paper_counts || inputs.compare) {
+    answers.push_back(answer_of("surface", surface, knowledge, law));
+  }
+  if (paper_counts || inputs.compare) {
+    answers.push_back(answer_of("paper", paper_change(inputs, survey, surface), knowledge, law));
+  }
+  Answer& counts = paper_counts ? answers.back() : answers.front();
 
   Outcome outcome;
-  outcome.json = estimate_json(change, result, law);
-  outcome.json["method"] = inputs.method;
+  outcome.json = counts.json;
   outcome.json["cell_m"] = survey.cell;
   outcome.json["zones"] = zones_json(surface);
-  outcome.lines = estimate_lines(change, result, law);
-  outcome.warnings = result.warnings;
-  outcome.trustworthy = result.trustworthy;
-  if (inputs.plot) write_file(*inputs.plot, height_change_figure(surface, outcome.lines));
+  outcome.lines = counts.lines;
+  outcome.warnings = counts.estimate.warnings;
+  outcome.trustworthy = counts.estimate.trustworthy;
+  if (inputs.compare) {
+    for (const Answer& answer : answers) {
+      const std::string& method = answer.json["method"].get_ref<const std::string&>();
+      outcome.json["methods"][method] = answer.json;
+      if (&answer == &counts) continue;
+      outcome.lines.push_back("method " + method + " gives");
+      for (const std::string& line : answer.lines) outcome.lines.push_back("  " + line);
+      for (const Warning& w : new_ones(answer.estimate.warnings, outcome.warnings)) {
+        outcome.warnings.push_back({w.code, "method " + method + ": " + w.message});
+      }
+    }
+  }
+  if (inputs.plot) write_file(*inputs.plot, height_change_figure(surface, counts.lines));
   return outcome;
+}
+
+Outcome work(const Inputs& inputs) {
+  if (inputs.plan_survey) {
+    if (inputs.before || inputs.after) {
+      throw Error(ErrorKind::bad_input, "--plan-survey takes no scans: it plans them");
+    }
+    return planned_survey(*inputs.plan_survey, law_named(inputs.law));
+  }
+  if (!inputs.before || !inputs.after) {
+    throw Error(ErrorKind::bad_input,
+                std::string(inputs.before ? "AFTER" : "BEFORE") +
+                    " is missing: a cloud before the dig and one after it are needed");
+  }
+  return work_on_scans(inputs);
 }
 
 }  // namespace

@@ -410,6 +410,12 @@ void Arguments::text(const std::string& name, const std::string& placeholder, st
        [&value](const std::string& text) { value = text; }});
 }
 
+void Arguments::text(const std::string& name, const std::string& placeholder,
+                     std::optional<std::string>& value, const std::string& help) {
+  add({name, placeholder, help, value.value_or(""), false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
 void Arguments::soil(std::string& name) {
   text("soil", "NAME|FILE", name, "kind of soil: loam, sand, clay, gravel, or a soil file");
 }

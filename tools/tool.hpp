@@ -84,6 +84,8 @@ class Arguments {
   /// A text that is not a file: a name, a list of its own syntax.
   void text(const std::string& name, const std::string& placeholder, std::string& value,
             const std::string& help);
+  void text(const std::string& name, const std::string& placeholder,
+            std::optional<std::string>& value, const std::string& help);
 
   /// --soil, --machine and --plot are the same in every tool; see soil_named(), machine_named().
   void soil(std::string& name);
