@@ -27,18 +27,13 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using nlohmann::json;
+using test::zx120;
+using test::zx120_path;
 
 constexpr double pi = 3.141592653589793;
 constexpr double degree = pi / 180.0;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-std::string zx120_path() { return find_data_file("machines/zx120.json"); }
-
-const Machine& zx120() {
-  static const Machine machine = load_machine(zx120_path());
-  return machine;
-}
 
 const Cylinder& cylinder(std::size_t joint) { return zx120().cylinders.value()[joint]; }
 

@@ -12,10 +12,19 @@
 
 #include <nlohmann/json.hpp>
 
+#include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
 #include <excavplan/machine/machine.hpp>
 
 namespace excavplan::test {
+
+inline std::string zx120_path() { return find_data_file("machines/zx120.json"); }
+
+/// The shipped machine.
+inline const Machine& zx120() {
+  static const Machine machine = load_machine(zx120_path());
+  return machine;
+}
 
 /// What load_machine says about a machine file, without the file's name; "accepted" if nothing.
 inline std::string complaint_about_file(const nlohmann::json& file) {

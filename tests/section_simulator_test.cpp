@@ -58,16 +58,6 @@ class Section : public testing::Test {
     return paths;
   }
 
-  Terrain rough(std::uint64_t seed) const {
-    Terrain ground = level_planning_ground(machine_);
-    Random random(seed);
-    for (Eigen::Index i = 0; i < ground.bank.z.size(); ++i) {
-      ground.bank.z.data()[i] += 0.02 * random.normal();
-      ground.loose.data()[i] = 0.05 * random.uniform();
-    }
-    return ground;
-  }
-
   Terrain slope(double gradient) const {
     Terrain ground = level_planning_ground(machine_);
     for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
@@ -352,7 +342,7 @@ TEST_F(Section, SoilSwellsFromTheCellItComesFrom) {
   // Dense and loose rows side by side, on rough ground: nothing overflows, so the bucket holds what
   // the cells lost, each at its own ratio.
   const SoilKind soil = soil_kind("loam");
-  Terrain ground = rough(8);
+  Terrain ground = rough_ground(machine_, 8);
   ground.bank_void_ratio = ground.loose_void_ratio = ground.loose;
   for (Eigen::Index row = 0; row < ground.loose.rows(); ++row) {
     ground.bank_void_ratio.row(row) = row % 2 == 0 ? 0.5 : 1.2;
@@ -488,7 +478,7 @@ TEST_F(Section, SaysWhatIsWrongWithAPath) {
 }
 
 TEST_F(Section, RepeatedDigsAtOneSpotLoseNothing) {
-  Terrain ground = rough(3);
+  Terrain ground = rough_ground(machine_, 3);
   const SectionSimulator simulator(machine_, soil_kind("loam"), 60.0);
   Random random(17);
   for (int i = 0; i < 300; ++i) {

@@ -33,6 +33,17 @@ struct SimulatorCase {
   std::function<std::unique_ptr<SoilSimulator>(const Machine&, double density_percent)> make;
 };
 
+/// The planning ground with 2 cm of relief and up to 5 cm of loose soil.
+inline Terrain rough_ground(const Machine& machine, std::uint64_t seed) {
+  Terrain ground = level_planning_ground(machine);
+  Random random(seed);
+  for (Eigen::Index i = 0; i < ground.bank.z.size(); ++i) {
+    ground.bank.z.data()[i] += 0.02 * random.normal();
+    ground.loose.data()[i] = 0.05 * random.uniform();
+  }
+  return ground;
+}
+
 class SoilSimulatorContract : public testing::TestWithParam<SimulatorCase> {
  protected:
   static DigPath path_on(const Machine& machine, const Terrain& ground,
@@ -44,16 +55,6 @@ class SoilSimulatorContract : public testing::TestWithParam<SimulatorCase> {
       return {};
     }
     return std::get<DigPath>(path);
-  }
-
-  static Terrain rough_ground(const Machine& machine, std::uint64_t seed) {
-    Terrain ground = level_planning_ground(machine);
-    Random random(seed);
-    for (Eigen::Index i = 0; i < ground.bank.z.size(); ++i) {
-      ground.bank.z.data()[i] += 0.02 * random.normal();
-      ground.loose.data()[i] = 0.05 * random.uniform();
-    }
-    return ground;
   }
 
   static bool same_bytes(const DigResult& a, const DigResult& b) {

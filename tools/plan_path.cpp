@@ -157,7 +157,7 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
         "the library's path does not work here (--search may find one): " + describe(*failure));
   }
   plan.dig = std::get<PlannedDig>(outcome);
-  plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground.surface()));
+  plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
   return plan;
 }
 
@@ -180,7 +180,7 @@ Plan search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& s
     throw Error(ErrorKind::bad_input,
                 "no dig inside the search ranges can be driven on this ground");
   }
-  const GroundProfile ground = boom_plane_profile(site.ground.surface());
+  const GroundProfile ground = boom_plane_profile(site.ground);
   return {found->dig, lay_out(machine, found->dig, ground), "search", found->evaluations,
           found->stopped};
 }
@@ -220,11 +220,10 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Trajectory trajectory = time_dig_path(machine, plan.path);
   if (inputs.trajectory) write_file(*inputs.trajectory, to_csv(trajectory));
   if (inputs.plot) {
-    write_file(*inputs.plot,
-               dig_figure(machine, plan.path, {boom_plane_profile(site.ground.surface())},
-                          "Planned dig in " + soil.name + " at " + readable(density.percent) +
-                              " % relative density",
-                          outcome.lines));
+    write_file(*inputs.plot, dig_figure(machine, plan.path, {boom_plane_profile(site.ground)},
+                                        "Planned dig in " + soil.name + " at " +
+                                            readable(density.percent) + " % relative density",
+                                        outcome.lines));
   }
   outcome.json = plan_json(plan, density.percent, watch.seconds());
   return outcome;

@@ -106,8 +106,8 @@ Row run(const Inputs& inputs, const Setting& setting, const Condition& condition
       undisturbed(flat_ground(scene_extent(setting.machine, default_dump_point()), inputs.cell));
   const HeightMapSimulator simulator(setting.machine, setting.soil, condition.density);
   const PlannedDig fixed = dig_or_fail(setting, simulator, setting.fixed);
-  const auto path = make_dig_path(setting.machine, fixed.parameters, fixed.start_x,
-                                  boom_plane_profile(scene.surface()));
+  const auto path =
+      make_dig_path(setting.machine, fixed.parameters, fixed.start_x, boom_plane_profile(scene));
   DigOptions dump;
   dump.dump_at = default_dump_point();
   const DigResult result = simulator.dig(scene, std::get<DigPath>(path), dump);

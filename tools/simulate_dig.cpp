@@ -93,7 +93,7 @@ Cloud scan(const Terrain& terrain, const Inputs& inputs, const Eigen::Vector2d& 
 
 DigPath lay_out(const Inputs& inputs, const Machine& machine, const Terrain& ground) {
   const DigParameters parameters = inputs.path.value_or(paper_fixed_path());
-  const GroundProfile profile = boom_plane_profile(ground.surface());
+  const GroundProfile profile = boom_plane_profile(ground);
   auto path = inputs.start ? make_dig_path(machine, parameters, *inputs.start, profile)
                            : make_dig_path_anywhere(machine, parameters, profile);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
@@ -304,10 +304,9 @@ Outcome work(const Inputs& inputs) {
   write_scans(inputs, dug);
   const std::string title = soil.name + " at " + readable(inputs.density) + " % relative density";
   const auto figure = [&] {
-    return dig_figure(
-        machine, dug.path,
-        {boom_plane_profile(dug.before.surface()), boom_plane_profile(dug.after.surface())},
-        "Dig in " + title, outcome.lines);
+    return dig_figure(machine, dug.path,
+                      {boom_plane_profile(dug.before), boom_plane_profile(dug.after)},
+                      "Dig in " + title, outcome.lines);
   };
   if (inputs.history) write_file(*inputs.history, to_csv(machine, dug.result.history));
   if (inputs.plot) write_file(*inputs.plot, figure());

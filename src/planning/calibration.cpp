@@ -29,8 +29,7 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
                                    const CalibrationOptions& options) {
   const Eigen::Vector2d dump_at = default_dump_point();
   const Terrain ground = undisturbed(flat_ground(scene_extent(machine, dump_at), options.cell));
-  const auto laid_out =
-      make_dig_path_anywhere(machine, options.path, boom_plane_profile(ground.surface()));
+  const auto laid_out = make_dig_path_anywhere(machine, options.path, boom_plane_profile(ground));
   if (const auto* infeasible = std::get_if<Infeasible>(&laid_out)) {
     throw Error(ErrorKind::bad_input, "calibration: " + infeasible->message);
   }

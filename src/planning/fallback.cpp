@@ -29,7 +29,7 @@ double swept_to(const DigPath& path, double x) {
   return std::isinf(lowest) ? std::nan("") : lowest;
 }
 
-/// Sums over one column of cells.
+/// Sums over the swept ground.
 struct Swept {
   double cut = 0.0;
   double in_pit = 0.0;
@@ -63,15 +63,15 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
   const double whole = 0.5 * machine.bucket.width_outside;
   const double half = whole > 2.0 * before.cell ? whole - before.cell : whole;
   Swept sum;
-  for (Eigen::Index row = 0; row < before.z.rows(); ++row) {
-    const double low = before.y(row) - 0.5 * before.cell;
-    const double cover = std::min(half, low + before.cell) - std::max(-half, low);
-    if (!(cover > 0.0)) continue;
-    for (Eigen::Index col = 0; col < before.z.cols(); ++col) {
-      for (int i = 0; i < samples_per_cell; ++i) {
-        const double x = before.x(col) + before.cell * ((i + 0.5) / samples_per_cell - 0.5);
-        const double floor = swept_to(path, x);
-        if (std::isnan(floor)) continue;
+  for (Eigen::Index col = 0; col < before.z.cols(); ++col) {
+    for (int i = 0; i < samples_per_cell; ++i) {
+      const double x = before.x(col) + before.cell * ((i + 0.5) / samples_per_cell - 0.5);
+      const double floor = swept_to(path, x);
+      if (std::isnan(floor)) continue;
+      for (Eigen::Index row = 0; row < before.z.rows(); ++row) {
+        const double low = before.y(row) - 0.5 * before.cell;
+        const double cover = std::min(half, low + before.cell) - std::max(-half, low);
+        if (!(cover > 0.0)) continue;
         add_cell(floor, before.z(row, col), after.z(row, col),
                  cover * before.cell / samples_per_cell, sum);
       }
