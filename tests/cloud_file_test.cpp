@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <clocale>
 #include <cmath>
 #include <cstdio>
@@ -278,6 +279,134 @@ TEST(ReadCloud, DoesNotFollowTheLocale) {
     expect_points(read_content("1 2 3\n-4 5.5 60\n"), two_points);
   }
   std::setlocale(LC_ALL, "C");
+}
+
+/// All points of a file as they stream by, and how they came.
+struct Streamed {
+  Cloud cloud;
+  std::size_t largest = 0;
+};
+Streamed streamed(const string& path) {
+  Streamed all;
+  stream_cloud(path, [&all](const Points& points) {
+    all.largest = std::max(all.largest, points.size());
+    all.cloud.points.insert(all.cloud.points.end(), points.begin(), points.end());
+  });
+  return all;
+}
+
+TEST(StreamCloud, GivesThePointsOfReadCloudAroundEveryBoundary) {
+  Random random(3);
+  for (const int count : {0, 1, 2047, 2048, 2049, 4096, 30000}) {
+    Cloud cloud;
+    for (int i = 0; i < count; ++i) {
+      cloud.points.emplace_back(random.normal(), random.normal(), 1e6 * random.normal());
+    }
+    cloud.width = cloud.points.size();
+    for (const auto format : {CloudFormat::pcd_ascii, CloudFormat::pcd_binary,
+                              CloudFormat::ply_ascii, CloudFormat::ply_binary, CloudFormat::xyz}) {
+      if (count == 0 && format == CloudFormat::xyz) continue;
+      const TempFile file;
+      write_cloud(file.path(), cloud, format);
+      const Streamed all = streamed(file.path());
+      expect_points(all.cloud, cloud.points);
+      expect_points(read_cloud(file.path()), cloud.points);
+      EXPECT_LE(all.largest, 4096u);
+    }
+  }
+}
+
+TEST(StreamCloud, ListsStandAcrossTheWindow) {
+  string body;
+  Points expected;
+  for (int i = 0; i < 40000; ++i) {
+    const auto length = static_cast<std::uint8_t>(i % 7);
+    body += bytes_of<std::uint8_t>({length}) + string(4U * length, 'x') +
+            bytes_of<float>({0.5F * static_cast<float>(i), 1.0F, -2.0F});
+    expected.emplace_back(0.5 * i, 1.0, -2.0);
+  }
+  const TempFile file(
+      "ply\nformat binary_little_endian 1.0\nelement noise 30000\nproperty double t\n"
+      "element vertex 40000\nproperty list uchar int i\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n" +
+      string(240000, 'y') + body);
+  expect_points(streamed(file.path()).cloud, expected);
+}
+
+/// LZF that repeats the block of 8192 bytes before as often as it can.
+string packed_lzf(const string& bytes) {
+  constexpr std::size_t back = 8192;
+  string out;
+  std::size_t at = 0;
+  while (at < bytes.size()) {
+    std::size_t same = 0;
+    while (at >= back && same < 264 && at + same < bytes.size() &&
+           bytes[at + same] == bytes[at + same - back]) {
+      ++same;
+    }
+    if (same >= 9) {
+      out += string("\xff") + static_cast<char>(same - 9) + '\xff';
+      at += same;
+      continue;
+    }
+    const std::size_t run = std::min<std::size_t>(32, bytes.size() - at);
+    out += static_cast<char>(run - 1) + bytes.substr(at, run);
+    at += run;
+  }
+  return out;
+}
+
+// Blocks of 240000 bytes, far longer than what unpacking keeps at hand, between fields to skip.
+TEST(StreamCloud, CompressedFieldsLongerThanTheWindow) {
+  Points expected;
+  std::array<string, 3> fields;
+  for (int i = 0; i < 60000; ++i) {
+    const Eigen::Vector3f p(static_cast<float>(i % 2048), 0.25F * static_cast<float>(i / 500),
+                            static_cast<float>(i % 3));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      fields[axis] += bytes_of<float>({p[static_cast<Eigen::Index>(axis)]});
+    }
+    expected.push_back(p.cast<double>());
+  }
+  const string block = string(60000, 'a') + fields[2] + fields[0] + string(120000, 'b') + fields[1];
+  const string packed = packed_lzf(block);
+  ASSERT_LT(packed.size(), block.size());
+  const TempFile file(
+      "VERSION 0.7\nFIELDS _ z x t y\nSIZE 1 4 4 2 4\nTYPE U F F U F\nWIDTH 60000\nHEIGHT 1\n"
+      "POINTS 60000\nDATA binary_compressed\n" +
+      bytes_of<std::uint32_t>(
+          {static_cast<std::uint32_t>(packed.size()), static_cast<std::uint32_t>(block.size())}) +
+      packed);
+  expect_points(streamed(file.path()).cloud, expected);
+  expect_points(read_cloud(file.path()), expected);
+}
+
+TEST(StreamCloud, RefusesWithTheErrorsOfReadCloud) {
+  for (const string& content :
+       {string("1 2 3\n4 5\n"), replaced(pcd_ascii, "POINTS 2", "POINTS 3"), pcd_binary + "abc",
+        ply_ascii + "1 2 3\n", string("LASF"), string()}) {
+    const TempFile file(content);
+    const string error = error_of([&] { read_cloud(file.path()); }, file.path());
+    EXPECT_EQ(error_of([&] { streamed(file.path()); }, file.path()), error);
+    EXPECT_NE(error, "no error");
+  }
+}
+
+TEST(StreamCloud, NoLimitHoldsForWhatIsNotKept) {
+  const TempFile temp(replaced(replaced(pcd_head("binary"), "WIDTH 2", "WIDTH 500000000"),
+                               "POINTS 2", "POINTS 500000000"));
+  const auto head = static_cast<off_t>(std::filesystem::file_size(temp.path()));
+  ASSERT_EQ(::truncate(temp.path().c_str(), head + off_t{12} * 500000000), 0);  // sparse: zeros
+  struct Enough {};
+  std::size_t points = 0;
+  EXPECT_THROW(stream_cloud(temp.path(),
+                            [&points](const Points& some) {
+                              points += some.size();
+                              if (points > 10000) throw Enough{};
+                            }),
+               Enough);
+  EXPECT_NE(error_of([&] { read_cloud(temp.path()); }, temp.path()).find("4.000 GiB of memory"),
+            string::npos);
 }
 
 struct BadFile {
@@ -598,7 +727,10 @@ const std::vector<CloudFormat> all_formats = {CloudFormat::pcd_ascii, CloudForma
 
 TEST(WriteCloud, RoundTripIsExact) {
   Cloud small = sample_cloud(1.0, true);
-  for (auto& point : small.points) point = point.cast<float>().cast<double>();
+  for (auto& point : small.points) {
+    const Eigen::Vector3f rounded = point.cast<float>();
+    point = rounded.cast<double>();
+  }
   for (const Cloud& cloud : {small, sample_cloud(1e7, true), sample_cloud(1e300, false)}) {
     for (const CloudFormat format : all_formats) {
       const TempFile file;

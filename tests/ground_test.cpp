@@ -318,9 +318,9 @@ TEST(VolumeChange, ZonesAndDifferenceAreHandedOver) {
   for (const ChangeZone& zone : change.zones) {
     EXPECT_EQ(zone.unknown_share, 0.0);
     if (zone.kind != ZoneKind::dump) continue;
-    EXPECT_NEAR(zone.area, 3.1416 * std::pow(heap_radius + 0.15, 2), 0.1);
-    EXPECT_NEAR(zone.extent.x_min, 8.479 - heap_radius - 0.15, 0.05);
-    EXPECT_NEAR(zone.extent.x_max, 8.479 + heap_radius + 0.15, 0.05);
+    EXPECT_NEAR(zone.area, 3.1416 * std::pow(heap_radius + 0.10, 2), 0.1);
+    EXPECT_NEAR(zone.extent.x_min, 8.479 - heap_radius - 0.10, 0.05);
+    EXPECT_NEAR(zone.extent.x_max, 8.479 + heap_radius + 0.10, 0.05);
   }
 }
 
@@ -505,7 +505,7 @@ TEST(VolumeChange, UnrelatedChangesAreLeftOutWithAWarning) {
   ASSERT_EQ(change.warnings.size(), 1u);
   EXPECT_EQ(change.warnings[0].code, "other_change");
   EXPECT_EQ(change.warnings[0].message,
-            "ground that rose by 0.06 m^3 over 0.45 m^2 around (10.15, 4.25) m is neither hole, "
+            "ground that rose by 0.06 m^3 over 0.34 m^2 around (10.15, 4.25) m is neither hole, "
             "spill nor heap: left out of every volume");
 }
 

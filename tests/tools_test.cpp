@@ -1296,21 +1296,43 @@ TEST_F(RealScans, AreRead) {
   EXPECT_NEAR(number(site, "/max_m/2"), 8.1, 0.05);
 }
 
-TEST_F(RealScans, OfAWheelLoadersBiteGiveTheVolumesOthersFound) {
-  const std::string pair = shared("dig-pair-livox/");
-  const json result =
-      answer("estimate-density",
-             {pair + "before.pcd", pair + "after.pcd", "--before-frame", pair + "before_frame.txt",
-              "--after-frame", pair + "after_frame.txt", "--area", "-1,-1,10,12", "--cell", "0.2"});
-  const double removed = number(result, "/volume/excavated_m3");
-  const double added = number(result, "/volume/spilled_m3") + number(result, "/volume/dumped_m3");
-  std::cout << "  removed " << removed << " (CloudCompare 2.61), added " << added << " (1.47), net "
-            << added - removed << " (-1.14) m3\n";
-  EXPECT_NEAR(removed, 2.61, 0.4);
-  EXPECT_NEAR(added, 1.47, 0.4);
-  EXPECT_NEAR(added - removed, -1.14, 0.3);
-  EXPECT_TRUE(warns(result, "no_dumped_soil")) << result["warnings"];
-  expect_keys(result, "null", {"bulking_factor", "density_percent"});
+/// A wheel loader's bite. No truth is known; others found with the frames that came with the scans
+/// (CloudCompare) 2.61 m3 removed and 1.47 added, and after registration on the walls and the
+/// ground around 2.80 .. 2.96 and 0.36 .. 0.38.
+class WheelLoadersBite : public RealScans {
+ protected:
+  static json volumes(const Words& options) {
+    const std::string pair = shared("dig-pair-livox/");
+    Words words = {
+        pair + "before.pcd", pair + "after.pcd",       "--before-frame", pair + "before_frame.txt",
+        "--after-frame",     pair + "after_frame.txt", "--area",         "-1,-1,10,12"};
+    words.insert(words.end(), options.begin(), options.end());
+    return answer("estimate-density", words);
+  }
+  static double added(const json& result) {
+    return number(result, "/volume/spilled_m3") + number(result, "/volume/dumped_m3");
+  }
+};
+
+TEST_F(WheelLoadersBite, HasTheVolumesOthersFoundAfterRegistrationWhateverTheCell) {
+  for (const char* const cell : {"0.1", "0.15", "0.2"}) {
+    SCOPED_TRACE(cell);
+    const json result = volumes({"--cell", cell});
+    const double removed = number(result, "/volume/excavated_m3");
+    std::cout << "  removed " << removed << ", added " << added(result) << " m3\n";
+    EXPECT_NEAR(removed, 2.9, 0.25);
+    EXPECT_NEAR(added(result), 0.37, 0.12);
+    EXPECT_EQ(result.at("/registration/dig/lateral_is_significant"_json_pointer), true);
+    EXPECT_TRUE(warns(result, "no_dumped_soil")) << result["warnings"];
+    expect_keys(result, "null", {"bulking_factor", "density_percent"});
+  }
+}
+
+TEST_F(WheelLoadersBite, HasAboutTheVolumesOfADifferenceOfRastersAsTheScansLie) {
+  const json result = volumes({"--cell", "0.2", "--no-register"});
+  EXPECT_NEAR(number(result, "/volume/excavated_m3"), 2.61, 0.4);
+  EXPECT_NEAR(added(result), 1.47, 0.5);
+  EXPECT_EQ(result.at("registration"), nullptr);
 }
 
 TEST_F(RealScans, OfASiteAreGroundToPlanOn) {

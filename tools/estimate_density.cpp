@@ -48,6 +48,7 @@ struct Inputs {
   ChangeOptions change;
   std::string method = "surface";
   bool compare = false;
+  bool still = false;
   std::optional<std::string> plan_survey;
   std::optional<double> cell;
   std::optional<DigParameters> dug_path;
@@ -72,6 +73,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
   arguments.choice("method", inputs.method, {"surface", "paper"},
                    "surface: signed change of one height map; paper: the pipeline as published");
+  arguments.flag("no-register", inputs.still,
+                 "the sensor stood still between the scans: do not bring them onto each other");
   arguments.flag("compare-methods", inputs.compare, "show what both methods give");
   arguments.option("cell", inputs.cell, Quantity::length,
                    "cell of the height map, voxel of the paper's method (default: from the density "
@@ -102,8 +105,8 @@ VolumeChange measured(const std::string& files, const Measure& measure) {
 }
 
 struct Survey {
-  ScanPair dig;
-  std::optional<ScanPair> dump;
+  SeenPair dig;
+  std::optional<SeenPair> dump;
   double cell = 0.05;
 };
 
@@ -122,28 +125,55 @@ Survey read_survey(const Inputs& inputs) {
   return survey;
 }
 
-/// The height maps of a survey.
+/// The surfaces of a survey.
 struct Maps {
-  SurfacePair dig;
-  std::optional<SurfacePair> dump;
+  RegisteredPair dig;
+  std::optional<RegisteredPair> dump;
 
   std::vector<HeightMap> after() const {
-    return dump ? std::vector<HeightMap>{dig.after, dump->after}
-                : std::vector<HeightMap>{dig.after};
+    std::vector<HeightMap> maps = {dig.surfaces.after.height};
+    if (dump) maps.push_back(dump->surfaces.after.height);
+    return maps;
   }
 };
 
-Maps maps_of(const Survey& survey) {
+Maps maps_of(const Survey& survey, bool align_them) {
   Maps maps;
-  maps.dig = surfaces(survey.dig, survey.cell);
-  if (survey.dump) maps.dump = surfaces(*survey.dump, survey.cell);
+  maps.dig = surveyed(survey.dig, survey.cell, align_them);
+  if (survey.dump) maps.dump = surveyed(*survey.dump, survey.cell, align_them);
   return maps;
+}
+
+nlohmann::ordered_json registration_json(const RegisteredPair& pair) {
+  const Alignment& alignment = pair.first;
+  const auto numbers = [](const Motion& motion) {
+    return nlohmann::ordered_json(std::vector<double>(motion.data(), motion.data() + 6));
+  };
+  nlohmann::ordered_json correction = nlohmann::ordered_json::array();
+  for (const auto& row : pair.correction.rowwise()) {
+    correction.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return {{"correction", correction},
+          {"found", numbers(alignment.found)},
+          {"found_sd", numbers(alignment.covariance.diagonal().cwiseMax(0.0).cwiseSqrt())},
+          {"vertical_is_significant", alignment.vertical_is_significant},
+          {"lateral_is_significant", alignment.lateral_is_significant},
+          {"residual_sd_m", alignment.residual_sd},
+          {"stable_share", alignment.stable_share}};
+}
+
+/// Null where the sensor stood still and said so.
+nlohmann::ordered_json registration_json(const Maps& maps, bool registered) {
+  if (!registered) return nullptr;
+  nlohmann::ordered_json json = {{"dig", registration_json(maps.dig)}, {"dump", nullptr}};
+  if (maps.dump) json["dump"] = registration_json(*maps.dump);
+  return json;
 }
 
 VolumeChange surface_change(const Inputs& inputs, const Survey& survey, const Maps& maps) {
   return measured(survey.dig.files(), [&] {
-    return maps.dump ? measure_change(maps.dig, *maps.dump, inputs.change)
-                     : measure_change(maps.dig.before, maps.dig.after, inputs.change);
+    return maps.dump ? measure_change(maps.dig.surfaces, maps.dump->surfaces, inputs.change)
+                     : measure_change(maps.dig.surfaces, inputs.change);
   });
 }
 
@@ -199,7 +229,7 @@ double median_height(const Cloud& cloud) {
 VolumeChange paper_change(const Inputs& inputs, const Survey& survey, const VolumeChange& surface) {
   PaperMethodOptions options;
   options.leaf = survey.cell;
-  const ScanPair& heap = survey.dump ? *survey.dump : survey.dig;
+  const SeenPair& heap = survey.dump ? *survey.dump : survey.dig;
   auto dig_area = inputs.change.dig_area;
   auto dump_area = inputs.change.dump_area;
   if (!survey.dump) {
@@ -207,13 +237,17 @@ VolumeChange paper_change(const Inputs& inputs, const Survey& survey, const Volu
     if (!dump_area) dump_area = extent_of(surface, {ZoneKind::dump});
   }
   const bool no_heap = !survey.dump && !dump_area;
-  const double dig_ground = median_height(survey.dig.before);
-  const double heap_ground = median_height(heap.before);
-  const Cloud still = levelled(survey.dig.before, dig_area, dig_ground);  // nothing rises in it
+  const Cloud before = survey.dig.before.cloud();
+  const Cloud after = survey.dig.after.cloud();
+  const Cloud heap_before = survey.dump ? heap.before.cloud() : before;
+  const Cloud heap_after = survey.dump ? heap.after.cloud() : after;
+  const double dig_ground = median_height(before);
+  const double heap_ground = median_height(heap_before);
+  const Cloud still = levelled(before, dig_area, dig_ground);  // nothing rises in it
   VolumeChange change = measured(*inputs.before + ", " + *inputs.after, [&] {
-    return paper_volumes(still, levelled(survey.dig.after, dig_area, dig_ground),
-                         no_heap ? still : levelled(heap.before, dump_area, heap_ground),
-                         no_heap ? still : levelled(heap.after, dump_area, heap_ground), options);
+    return paper_volumes(still, levelled(after, dig_area, dig_ground),
+                         no_heap ? still : levelled(heap_before, dump_area, heap_ground),
+                         no_heap ? still : levelled(heap_after, dump_area, heap_ground), options);
   });
   for (const Warning& warning : surface.warnings) change.warnings.push_back(warning);
   return change;
@@ -277,14 +311,15 @@ std::optional<Fallback> fallback_of(const Inputs& inputs, const Maps& maps,
   }
   if (!inputs.dug_path) return std::nullopt;
   const Machine machine = machine_named(inputs.machine);
-  SurfacePair dig = maps.dig;
-  dig.after.z -= surface.areas.front().datum;
+  const HeightMap& before = maps.dig.surfaces.before.height;
+  HeightMap after = realigned(maps.dig.surfaces.after.height, maps.dig.surfaces.alignment);
+  after.z -= surface.areas.front().datum;
   const auto path = make_dig_path(machine, *inputs.dug_path, *inputs.dug_start,
-                                  ground_under(dig.before, machine.bucket.width_outside));
+                                  ground_under(before, machine.bucket.width_outside));
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
     throw Error(ErrorKind::bad_input, "--dug-path: " + infeasible->message);
   }
-  return measure_fallback(machine, std::get<DigPath>(path), dig.before, dig.after);
+  return measure_fallback(machine, std::get<DigPath>(path), before, after);
 }
 
 /// Estimate and figures of one method as a program gets them.
@@ -319,7 +354,7 @@ std::vector<Warning> new_ones(const std::vector<Warning>& warnings,
 Outcome work_on_scans(const Inputs& inputs) {
   const DensityLaw law = law_named(inputs.law);
   const Survey survey = read_survey(inputs);
-  const Maps maps = maps_of(survey);
+  const Maps maps = maps_of(survey, !inputs.still);
   const VolumeChange surface = surface_change(inputs, survey, maps);
   refuse_swapped(surface, inputs);
   Knowledge knowledge;
@@ -339,6 +374,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   Outcome outcome;
   outcome.json = counts.json;
   outcome.json["cell_m"] = survey.cell;
+  outcome.json["registration"] = registration_json(maps, !inputs.still);
   outcome.json["zones"] = zones_json(surface);
   outcome.lines = counts.lines;
   outcome.warnings = counts.estimate.warnings;

@@ -238,7 +238,7 @@ Cost read_cost(const RunInputs& run, std::vector<Warning>& warnings) {
 
 /// Volume of the heap between two scans of the dump area.
 Measured heap_volume(const RunInputs& run, const Inputs& inputs, std::vector<Warning>& warnings) {
-  const ScanPair scans =
+  const SeenPair scans =
       read_scans(*run.dump_before, *run.dump_after, {inputs.before_frame, inputs.after_frame, {}});
   const std::string files = scans.files() + ": ";
   const SurfacePair dump = surfaces(scans, inputs.cell.value_or(cell_for(scans)));

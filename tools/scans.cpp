@@ -3,8 +3,8 @@
 #include "scans.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
+#include <vector>
 
 #include <excavplan/error.hpp>
 
@@ -13,29 +13,19 @@
 namespace excavplan::tools {
 namespace {
 
-/// A scan and how dense it is.
-struct Scan {
-  Cloud cloud;
-  double density = 0.0;
-};
+Scan scan_of(const std::string& file, const std::optional<std::string>& frame,
+             const std::optional<Rectangle>& area) {
+  Scan scan;
+  scan.files = {file};
+  if (frame) scan.site_from_scan = read_frame(*frame);
+  scan.area = area;
+  return scan;
+}
 
-Scan read_in_site_frame(const std::string& file, const std::optional<std::string>& frame,
-                        const std::optional<Rectangle>& area) {
-  Cloud cloud = read_cloud(file);
-  if (frame) transform(cloud, read_frame(*frame));
-  if (area) {
-    const auto outside = [&](const Eigen::Vector3d& p) { return !area->contains(p.x(), p.y()); };
-    cloud.points.erase(std::remove_if(cloud.points.begin(), cloud.points.end(), outside),
-                       cloud.points.end());
-    cloud.width = cloud.points.size();
-    cloud.height = 1;
-  }
-  const CloudSummary summary = summarise(cloud);
-  if (summary.finite_points < 100) {
-    throw Error(ErrorKind::bad_file,
-                file + ": holds fewer than 100 finite points" + (area ? " inside --area" : ""));
-  }
-  return {std::move(cloud), summary.density};
+void require_points(const std::string& file, const SeenScan& seen) {
+  if (seen.outline.finite_points >= 100) return;
+  throw Error(ErrorKind::bad_file, file + ": holds fewer than 100 finite points" +
+                                       (seen.scan.area ? " inside --area" : ""));
 }
 
 std::string text(const Rectangle& r) {
@@ -43,10 +33,10 @@ std::string text(const Rectangle& r) {
          " .. " + readable(r.y_max) + " m";
 }
 
-Rectangle overlap(const ScanPair& scans) {
+Rectangle overlap(const SeenPair& scans) {
   constexpr double least = 0.2;  // [m], ours
-  const Rectangle a = plan_extent(scans.before);
-  const Rectangle b = plan_extent(scans.after);
+  const Rectangle& a = *scans.before.outline.extent;
+  const Rectangle& b = *scans.after.outline.extent;
   const Rectangle both = {std::max(a.x_min, b.x_min), std::max(a.y_min, b.y_min),
                           std::min(a.x_max, b.x_max), std::min(a.y_max, b.y_max)};
   if (!(both.x_max - both.x_min > least && both.y_max - both.y_min > least)) {
@@ -60,20 +50,52 @@ Rectangle overlap(const ScanPair& scans) {
 
 }  // namespace
 
-ScanPair read_scans(const std::string& before, const std::string& after, const ScanFrames& frames) {
-  Scan first = read_in_site_frame(before, frames.before, frames.area);
-  Scan second = read_in_site_frame(after, frames.after, frames.area);
-  return {before, after, std::move(first.cloud), std::move(second.cloud),
-          std::min(first.density, second.density)};
+Cloud SeenScan::cloud() const {
+  Cloud cloud = read_cloud(scan.files.front());
+  transform(cloud, scan.site_from_scan);
+  if (scan.area) {
+    const auto outside = [this](const Eigen::Vector3d& p) {
+      return !scan.area->contains(p.x(), p.y());
+    };
+    cloud.points.erase(std::remove_if(cloud.points.begin(), cloud.points.end(), outside),
+                       cloud.points.end());
+    cloud.width = cloud.points.size();
+    cloud.height = 1;
+  }
+  return cloud;
 }
 
-double cell_for(const ScanPair& scans) { return std::max(0.05, std::sqrt(6.0 / scans.density)); }
+SeenPair read_scans(const std::string& before, const std::string& after, const ScanFrames& frames) {
+  std::vector<Scan> scans = {scan_of(before, frames.before, frames.area),
+                             scan_of(after, frames.after, frames.area)};
+  const std::vector<ScanOutline> seen = outlines(scans);
+  SeenPair pair{before, after, {std::move(scans[0]), seen[0]}, {std::move(scans[1]), seen[1]}};
+  require_points(before, pair.before);
+  require_points(after, pair.after);
+  return pair;
+}
 
-SurfacePair surfaces(const ScanPair& scans, double cell) {
+double cell_for(const SeenPair& scans) {
+  return excavplan::cell_for({scans.before.outline, scans.after.outline});
+}
+
+RegisteredPair surveyed(const SeenPair& scans, double cell, bool align_them) {
   RasterOptions raster;
   raster.cell = cell;
   const Rectangle extent = overlap(scans);
-  return {rasterise(scans.before, extent, raster), rasterise(scans.after, extent, raster)};
+  const Scan& before = scans.before.scan;
+  const Scan& after = scans.after.scan;
+  if (align_them) return survey_registered({before, after}, extent, raster, cell_for(scans));
+  std::vector<Surface> both = survey_surfaces({before, after}, extent, raster);
+  RegisteredPair pair;
+  pair.surfaces.before = std::move(both[0]);
+  pair.surfaces.after = std::move(both[1]);
+  return pair;
+}
+
+SurfacePair surfaces(const SeenPair& scans, double cell) {
+  SurveyedPair pair = surveyed(scans, cell, false).surfaces;
+  return {std::move(pair.before.height), std::move(pair.after.height)};
 }
 
 }  // namespace excavplan::tools

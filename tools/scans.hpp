@@ -6,7 +6,7 @@
 #include <string>
 
 #include <excavplan/ground/volume_change.hpp>
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/survey/scan_surface.hpp>
 
 namespace excavplan::tools {
 
@@ -17,25 +17,39 @@ struct ScanFrames {
   std::optional<Rectangle> area;  ///< points outside are left out
 };
 
+/// A scan that stays in its file, and what a first look told of it.
+struct SeenScan {
+  Scan scan;
+  ScanOutline outline;
+
+  /// All its points in the site frame, for methods that need them.
+  /// @throws Error (bad_file)
+  Cloud cloud() const;
+};
+
 /// Two scans of one area in the site frame.
-struct ScanPair {
+struct SeenPair {
   std::string before_file;
   std::string after_file;
-  Cloud before;
-  Cloud after;
-  double density = 0.0;  ///< of the sparser scan [points/m^2 of ground]
+  SeenScan before;
+  SeenScan after;
 
   std::string files() const { return before_file + ", " + after_file; }
 };
 
 /// @throws Error (bad_file) if one cannot be read or holds fewer than 100 finite points
-ScanPair read_scans(const std::string& before, const std::string& after, const ScanFrames& frames);
+SeenPair read_scans(const std::string& before, const std::string& after, const ScanFrames& frames);
 
-/// Cell that holds six points of the sparser scan, 0.05 m at least; ours.
-double cell_for(const ScanPair& scans);
+/// That of excavplan::cell_for().
+double cell_for(const SeenPair& scans);
 
-/// Both scans on one grid over the ground that both see.
+/// Both scans on one grid over the ground that both see. With `align_them` the one after is brought
+/// onto the one before by the ground that did not change, as far as that is significant; without,
+/// only the height of one against the other is left open.
 /// @throws Error (bad_file) if they do not overlap
-SurfacePair surfaces(const ScanPair& scans, double cell);
+RegisteredPair surveyed(const SeenPair& scans, double cell, bool align_them);
+
+/// The heights of these, not aligned.
+SurfacePair surfaces(const SeenPair& scans, double cell);
 
 }  // namespace excavplan::tools

@@ -10,10 +10,11 @@
 namespace excavplan {
 
 std::optional<Measured> bulking_factor(const VolumeChange& change) {
-  const bool soil_is_missing =
-      std::any_of(change.warnings.begin(), change.warnings.end(),
-                  [](const Warning& warning) { return warning.code == "no_dumped_soil"; });
-  if (soil_is_missing || !(change.before.value > 0.0) || !(change.after.value > 0.0)) {
+  const bool volume_is_missing =
+      std::any_of(change.warnings.begin(), change.warnings.end(), [](const Warning& warning) {
+        return warning.code == "no_dumped_soil" || warning.code == "zone_unseen";
+      });
+  if (volume_is_missing || !(change.before.value > 0.0) || !(change.after.value > 0.0)) {
     return std::nullopt;
   }
   const double before = change.before.value;
@@ -26,6 +27,17 @@ std::optional<Measured> bulking_factor(const VolumeChange& change) {
   const double factor = after / before;
   // This order keeps an unknown (NaN) variance unknown.
   return Measured{factor, factor * std::sqrt(std::max(relative_variance, 0.0))};
+}
+
+BulkingErrors bulking_errors(const VolumeChange& change) {
+  const auto factor = bulking_factor(change);
+  if (!factor) return {};
+  const Eigen::Vector3d slope = Eigen::Vector3d(-factor->value, 1.0, 1.0) / change.before.value;
+  const auto sd = [&](const Eigen::Matrix3d& covariance) {
+    return std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
+  };
+  return {sd(change.errors.noise), sd(change.errors.correlated), sd(change.errors.datum),
+          sd(change.errors.holes), sd(change.errors.faces)};
 }
 
 double free_of_fallback(double bulking_measured, double fallback_fraction) {

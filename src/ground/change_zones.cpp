@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "ground/grid_cells.hpp"
 
@@ -17,6 +18,7 @@ constexpr double mad_to_sd = 1.4826;             // of a normal distribution
 constexpr double clip = 4.0;                     // residuals beyond are not noise [sd]
 constexpr std::size_t fewest_stable_cells = 25;  // ours: noise and datum cannot be told from fewer
 constexpr int most_rounds = 8;
+constexpr std::size_t most_by_chance = 16;  // ours: unknown cells together in a sparse scan
 constexpr int stable = -1;
 
 /// A value for the middle of a distribution and the spread about it.
@@ -121,11 +123,14 @@ Eigen::ArrayXXi widened(const Eigen::ArrayXXi& label, double radius) {
 /// Finds zones and the noise of the ground between them, each from the other.
 class ChangeFinder {
  public:
-  ChangeFinder(Eigen::ArrayXXd difference, double cell, const ChangeOptions& options)
+  ChangeFinder(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance, double cell,
+               const ChangeOptions& options)
       : cell_(cell), options_(options) {
     found_.difference = std::move(difference);
-    found_.filled = fill_holes(found_.difference);
-    smoothed_ = smooth(found_.difference);
+    found_.holes = fill_holes(found_.difference);
+    find_rim();
+    smoothed_ = smooth(at_rim_.select(nan, found_.difference));
+    weigh(variance);
   }
 
   ChangedGround find() {
@@ -142,17 +147,35 @@ class ChangeFinder {
       learn_from_stable_ground();
     }
     found_.difference -= found_.datum;
-    find_correlation();
+    find_residual();
     return std::move(found_);
   }
 
  private:
   bool is_known(Cell cell) const {
-    return found_.filled.hole(cell.row, cell.col) < 0 &&
-           !std::isnan(found_.difference(cell.row, cell.col));
+    return found_.holes.index(cell.row, cell.col) < 0 && !at_rim_(cell.row, cell.col);
   }
   bool is_stable(Cell cell) const {
     return is_known(cell) && found_.zone(cell.row, cell.col) == stable;
+  }
+
+  /// Cells at the rim of what was seen hold only the points that errors moved outwards, and those
+  /// lie too low under a sensor that looks out and down: they tell neither change nor noise.
+  void find_rim() {
+    at_rim_ = found_.difference.isNaN();
+    for_each_cell(found_.difference, [&](Cell cell) {
+      if (!std::isnan(found_.difference(cell.row, cell.col))) return;
+      for_each_neighbour(found_.difference, cell, [&](Cell n) { at_rim_(n.row, n.col) = true; });
+    });
+  }
+
+  /// Cells whose points scatter more than most say less.
+  void weigh(const Eigen::ArrayXXd& variance) {
+    std::vector<double> told =
+        values(variance, [&](Cell cell) { return !std::isnan(variance(cell.row, cell.col)); });
+    if (told.empty()) return;
+    const double usual = median(told);
+    scatter_ = variance.isNaN().select(0.0, (variance - usual).max(0.0) / 9.0);
   }
 
   template <typename Wanted>
@@ -166,8 +189,9 @@ class ChangeFinder {
 
   /// Change of the block around a cell in standard deviations of stable ground.
   double significance(Cell cell) const {
+    const double excess = scatter_.size() > 0 ? scatter_(cell.row, cell.col) : 0.0;
     return (smoothed_.mean(cell.row, cell.col) - found_.datum) *
-           smoothed_.evidence(cell.row, cell.col) / smooth_sd_;
+           smoothed_.evidence(cell.row, cell.col) / std::sqrt(smooth_sd_ * smooth_sd_ + excess);
   }
 
   void find_zones() {
@@ -183,7 +207,7 @@ class ChangeFinder {
       const double sign = change > 0.0 ? 1.0 : -1.0;
       const int index = static_cast<int>(found_.zone_is_cut.size());
       const std::vector<Cell> cells = mark_connected(label, seed, index, [&](Cell cell) {
-        return significance(cell) * sign >= options_.growth;
+        return significance(cell) * sign >= options_.growth && !in_shadow(cell);
       });
       if (static_cast<double>(cells.size()) * cell_ * cell_ < options_.min_zone_area) {
         for (const Cell cell : cells) label(cell.row, cell.col) = too_small;
@@ -191,16 +215,65 @@ class ChangeFinder {
         found_.zone_is_cut.push_back(reaches_the_edge(cells));
       }
     });
-    label = (label == too_small).select(stable, label);
-    found_.zone = found_.difference.isNaN().select(stable, widened(label, options_.margin / cell_));
+    label = (label < 0).select(stable, label);
+    take_in_shadows(label);
+    found_.zone = found_.difference.isNaN().select(stable, widened(label, margin() / cell_));
+  }
+
+  /// In a hole too large to be chance between points.
+  bool in_shadow(Cell cell) const {
+    const int hole = found_.holes.index(cell.row, cell.col);
+    return hole >= 0 && found_.holes.cells[static_cast<std::size_t>(hole)].size() > most_by_chance;
+  }
+
+  /// A cell in a shadow belongs to the zone of the nearest cell that was seen, as far as its
+  /// filling has changed: from farther away nothing says what happened there.
+  void take_in_shadows(Eigen::ArrayXXi& label) const {
+    constexpr int unvisited = -3;
+    for (const std::vector<Cell>& hole : found_.holes.cells) {
+      if (hole.size() <= most_by_chance) continue;
+      for (const Cell cell : hole) label(cell.row, cell.col) = unvisited;
+      std::vector<Cell> front = rim_of(hole);
+      for (std::size_t next = 0; next < front.size(); ++next) {
+        const int nearest = label(front[next].row, front[next].col);
+        for_each_neighbour(label, front[next], [&](Cell n) {
+          if (label(n.row, n.col) != unvisited) return;
+          label(n.row, n.col) = nearest;
+          front.push_back(n);
+        });
+      }
+      for (const Cell cell : hole) {
+        if (std::abs(significance(cell)) < options_.growth) label(cell.row, cell.col) = stable;
+      }
+    }
+  }
+
+  /// The known cells around a hole, each once.
+  std::vector<Cell> rim_of(const std::vector<Cell>& hole) const {
+    std::vector<Cell> rim;
+    for (const Cell cell : hole) {
+      for_each_neighbour(found_.holes.index, cell, [&](Cell n) {
+        if (found_.holes.index(n.row, n.col) < 0) rim.push_back(n);
+      });
+    }
+    const auto place = [](Cell c) { return std::pair(c.col, c.row); };
+    std::sort(rim.begin(), rim.end(), [&](Cell a, Cell b) { return place(a) < place(b); });
+    rim.erase(
+        std::unique(rim.begin(), rim.end(), [&](Cell a, Cell b) { return place(a) == place(b); }),
+        rim.end());
+    return rim;
+  }
+
+  /// A zone's edge below the threshold: soil that lies at 27 degrees or more, at least one cell.
+  double margin() const {
+    constexpr double gentlest = 0.5;
+    return std::max({options_.margin, cell_, options_.growth * smooth_sd_ / gentlest});
   }
 
   bool reaches_the_edge(const std::vector<Cell>& cells) const {
     return std::any_of(cells.begin(), cells.end(), [&](Cell cell) {
       bool edge = on_border(found_.difference, cell);
-      for_each_neighbour(found_.difference, cell, [&](Cell n) {
-        edge = edge || std::isnan(found_.difference(n.row, n.col));
-      });
+      for_each_neighbour(at_rim_, cell, [&](Cell n) { edge = edge || at_rim_(n.row, n.col); });
       return edge;
     });
   }
@@ -231,71 +304,30 @@ class ChangeFinder {
     return sum / count;
   }
 
-  /// Correlation of the stable residuals at ever larger lags until it can no longer be told from
-  /// none (Bartlett's bound), taken for isotropic and summed over the plane.
-  void find_correlation() {
-    Eigen::ArrayXXd residual = found_.difference;
-    double stable_cells = 0.0;
-    for_each_cell(residual, [&](Cell cell) {
-      double& value = residual(cell.row, cell.col);
-      const double bound = clip * found_.noise_sd;
-      value = is_stable(cell) ? std::clamp(value, -bound, bound) : nan;
-      stable_cells += is_stable(cell) ? 1.0 : 0.0;
+  /// What stable ground differs by, outliers drawn in.
+  void find_residual() {
+    const double bound = clip * found_.noise_sd;
+    found_.residual = found_.difference.max(-bound).min(bound);
+    for_each_cell(found_.residual, [&](Cell cell) {
+      if (!is_stable(cell)) found_.residual(cell.row, cell.col) = nan;
     });
-    const double variance = products(residual, 0, 0).mean();
-    double squares = 1.0;
-    const auto farthest = std::min(residual.rows(), residual.cols()) / 3;
-    for (Eigen::Index lag = 1; lag <= farthest && variance > 0.0; ++lag) {
-      Products both = products(residual, lag, 0);
-      both += products(residual, 0, lag);
-      const double rho = both.count > 0.0 ? both.mean() / variance : 0.0;
-      const double ring = 6.283185307179586 * static_cast<double>(lag);
-      if (both.count == 0.0) break;
-      if (const double bound = 2.0 * std::sqrt(squares / both.count); rho < bound) {
-        found_.correlation += ring * bound;  // so much could hide there
-        break;
-      }
-      found_.correlation += ring * rho;
-      squares += ring * rho * rho;
-    }
-    found_.datum_sd = found_.noise_sd * std::sqrt(found_.correlation / std::max(stable_cells, 1.0));
-  }
-
-  struct Products {
-    double sum = 0.0;
-    double count = 0.0;
-    double mean() const { return count > 0.0 ? sum / count : 0.0; }
-    void operator+=(const Products& other) {
-      sum += other.sum;
-      count += other.count;
-    }
-  };
-
-  static Products products(const Eigen::ArrayXXd& field, Eigen::Index down, Eigen::Index right) {
-    Products found;
-    for (Eigen::Index col = 0; col + right < field.cols(); ++col) {
-      for (Eigen::Index row = 0; row + down < field.rows(); ++row) {
-        const double product = field(row, col) * field(row + down, col + right);
-        if (std::isnan(product)) continue;
-        found.sum += product;
-        found.count += 1.0;
-      }
-    }
-    return found;
   }
 
   double cell_;
   const ChangeOptions& options_;
   ChangedGround found_;
   Smoothed smoothed_;
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> at_rim_;  // of the survey
   std::size_t known_cells_ = 0;
+  Eigen::ArrayXXd scatter_;  // what a cell's points add to the variance of a 3 x 3 mean [m^2]
   double smooth_sd_ = least_noise;  // of a 3 x 3 mean on stable ground [m]
 };
 
 }  // namespace
 
-ChangedGround find_change(Eigen::ArrayXXd difference, double cell, const ChangeOptions& options) {
-  return ChangeFinder(std::move(difference), cell, options).find();
+ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance, double cell,
+                          const ChangeOptions& options) {
+  return ChangeFinder(std::move(difference), variance, cell, options).find();
 }
 
 std::vector<bool> zones_near(const Eigen::ArrayXXi& zone, const std::vector<bool>& chosen,

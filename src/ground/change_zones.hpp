@@ -14,20 +14,21 @@ namespace excavplan {
 
 /// Where two surveys of one area differ by more than their noise, and what that noise is.
 struct ChangedGround {
-  Eigen::ArrayXXd difference;  ///< after - before, less the datum, holes filled; NaN outside [m]
-  FilledHoles filled;
+  Eigen::ArrayXXd difference;     ///< after - before, less the datum, holes filled; NaN outside [m]
+  Holes holes;                    ///< of the difference, filled by a membrane
+  Eigen::ArrayXXd residual;       ///< of stable cells, within 4 sd; NaN elsewhere [m]
   Eigen::ArrayXXi zone;           ///< -1 for stable ground
   std::vector<bool> zone_is_cut;  ///< the zone reaches the edge of what was surveyed
   double noise_sd = 0.0;          ///< of one stable cell [m]
-  double correlation = 1.0;       ///< sum of the noise's correlation over all lags [-], >= 1
   double datum = 0.0;             ///< [m]
-  double datum_sd = 0.0;          ///< [m]
   double stable_share = 0.0;      ///< of the known cells [-]
 };
 
 /// @param difference after - before [m], NaN where unknown, at least 100 known cells
+/// @param variance of each cell of it as its own points tell, NaN where they do not [m^2]
 /// @param cell edge of a cell [m]
-ChangedGround find_change(Eigen::ArrayXXd difference, double cell, const ChangeOptions& options);
+ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance, double cell,
+                          const ChangeOptions& options);
 
 /// The zones within `distance_cells` of the chosen ones, which count as near themselves.
 std::vector<bool> zones_near(const Eigen::ArrayXXi& zone, const std::vector<bool>& chosen,

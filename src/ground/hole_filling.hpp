@@ -6,22 +6,47 @@
 
 #include <Eigen/Core>
 
+#include "ground/grid_cells.hpp"
+
 namespace excavplan {
 
-/// A connected piece of unknown cells with known cells all around it.
-struct Hole {
-  Eigen::Index cells = 0;
-  /// Mean square of the height steps between neighbouring known cells of its rim [m^2].
-  double squared_rim_step = 0.0;
+/// The connected pieces of unknown cells with known cells all around them.
+struct Holes {
+  Eigen::ArrayXXi index;  ///< into `cells`, -1 for known cells and for what lies outside the survey
+  std::vector<std::vector<Cell>> cells;
 };
 
-struct FilledHoles {
-  Eigen::ArrayXXi hole;  ///< index into `holes`, -1 for known cells and for what stays unknown
-  std::vector<Hole> holes;
+/// Unknown cells that connect to the border of the field lie outside the survey and are no holes.
+Holes find_holes(const Eigen::ArrayXXd& z);
+
+/// Energy that the filled surface makes least.
+enum class Filling {
+  membrane,    ///< squared slope: no overshoot
+  thin_plate,  ///< squared curvature and a little squared slope: carries slopes on
 };
 
-/// Fills the holes of a height field by a membrane through their rims (Laplace's equation).
-/// Unknown cells that connect to the border of the field lie outside the survey and stay NaN.
-FilledHoles fill_holes(Eigen::ArrayXXd& z);
+/// Fills the given cells of a height field, smoothly from their known neighbours.
+void fill(Eigen::ArrayXXd& z, const std::vector<Cell>& unknown, Filling filling);
+
+/// Fills all holes by a membrane (Laplace's equation).
+Holes fill_holes(Eigen::ArrayXXd& z);
+
+/// How far the sum of a filled hole may be off.
+struct FillError {
+  double variance = 0.0;  ///< of the sum of the filled heights [m^2]
+  int places = 0;         ///< at which it was tried
+};
+
+/// Tries a hole's filling at places that are known: the hole's shape is moved there, turned and
+/// mirrored, filled by a thin plate and compared. An error counts by the relief of the rim where
+/// it was tried against that of the hole itself, for a hole on a wall errs more than one on level
+/// ground; it is at least the difference between thin plate and membrane.
+///
+/// @param z heights, NaN in the hole and wherever nothing is known
+/// @param hole all cells of the hole
+/// @param summed those of them whose sum matters
+/// @param tried where the shape may be tried
+FillError error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& hole,
+                           const std::vector<Cell>& summed, const std::vector<Cell>& tried);
 
 }  // namespace excavplan

@@ -6,48 +6,25 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
-#include "ground/change_zones.hpp"
-#include "ground/grid_cells.hpp"
+#include <Eigen/Geometry>
+
+#include "ground/surveyed_area.hpp"
+#include "ground/zone_kinds.hpp"
 #include "json_file.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr Eigen::Index fewest_known_cells = 100;
-// Ours: error of the mean height of a filled hole, in units of hole radius times rim slope. A
-// membrane over a step that crosses the hole at random is off by 0.12 of the step.
-/// A scan samples steep faces more or less densely than the ground beside them, which moves the
-/// heights of the cells they cross: 0.2 to 0.4 % of a pit with upright walls seen from above, as
-/// measured in the tests of rasterise(); ours.
-constexpr double steep_face_error = 0.004;   // of the volume
 constexpr double least_warned_share = 0.01;  // of its kind's volume: a speck at the border is none
-constexpr double fill_error = 0.2;
-constexpr double least_stable_share = 0.4;  // ours
-constexpr double largest_noise = 0.1;       // ours: of a cell; coarser than any range sensor [m]
-constexpr double least_after_share = 0.5;   // ours: with less, the heap is not in the scans
-constexpr double least_dumped_share = 0.2;  // ours: a smaller rise away from the hole is no heap
-constexpr double least_bulking = 0.97;      // loosest soil keeps its volume; ours: 3 % below that
-constexpr double largest_bulking = 3.0;     // ours: blocks give about 2
-
-/// A zone with what the sums over zones need.
-struct ZoneSum {
-  double volume = 0.0;    // [m^3]
-  double area = 0.0;      // [m^2]
-  double variance = 0.0;  // of the volume, without the datum's [m^6]
-  double unknown = 0.0;   // area that was filled [m^2]
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  Rectangle extent;
-  bool is_cut = false;
-};
-
-/// One surveyed area, its zones and what they are.
-struct Area {
-  HeightMap grid;  // without heights
-  ChangedGround ground;
-  std::vector<ZoneSum> zones;
-  std::vector<ZoneKind> kinds;
-};
+constexpr double least_refused_share = 0.1;  // likewise: one part of several may be unseen
+constexpr double least_stable_share = 0.4;   // ours
+constexpr double largest_noise = 0.1;        // ours: of a cell; coarser than any range sensor [m]
+constexpr double least_after_share = 0.5;    // ours: with less, the heap is not in the scans
+constexpr double least_dumped_share = 0.2;   // ours: a smaller rise away from the hole is no heap
+constexpr double least_bulking = 0.97;       // loosest soil keeps its volume; ours: 3 % below that
+constexpr double largest_bulking = 3.0;      // ours: blocks give about 2
 
 void require(bool holds, const std::string& option, double value, const std::string& rule) {
   if (!holds) {
@@ -75,222 +52,39 @@ void check(const ChangeOptions& options) {
   require(options.spill_distance >= 0.0, "spill_distance", options.spill_distance, "0 or more");
   require(options.max_unknown_share >= 0.0 && options.max_unknown_share <= 1.0, "max_unknown_share",
           options.max_unknown_share, "in 0 .. 1");
+  require(options.refused_unknown_share >= options.max_unknown_share, "refused_unknown_share",
+          options.refused_unknown_share,
+          "not below max_unknown_share (" + number_text(options.max_unknown_share) + ")");
 }
 
-/// Sums the difference over each zone: area, volume, place.
-std::vector<ZoneSum> sum_zones(const HeightMap& grid, const ChangedGround& ground) {
-  std::vector<ZoneSum> zones(ground.zone_is_cut.size());
-  const double cell_area = grid.cell * grid.cell;
-  for_each_cell(ground.zone, [&](Cell cell) {
-    const int index = ground.zone(cell.row, cell.col);
-    if (index < 0) return;
-    ZoneSum& zone = zones[static_cast<std::size_t>(index)];
-    const Eigen::Vector2d place(grid.x(cell.col), grid.y(cell.row));
-    const double half = 0.5 * grid.cell;
-    if (zone.area == 0.0) zone.extent = {place.x(), place.y(), place.x(), place.y()};
-    zone.extent = {std::min(zone.extent.x_min, place.x() - half),
-                   std::min(zone.extent.y_min, place.y() - half),
-                   std::max(zone.extent.x_max, place.x() + half),
-                   std::max(zone.extent.y_max, place.y() + half)};
-    zone.volume += cell_area * ground.difference(cell.row, cell.col);
-    zone.area += cell_area;
-    zone.centre += cell_area * place;
-    if (ground.filled.hole(cell.row, cell.col) >= 0) zone.unknown += cell_area;
-  });
-  for (std::size_t i = 0; i < zones.size(); ++i) {
-    zones[i].centre /= zones[i].area;
-    zones[i].is_cut = ground.zone_is_cut[i];
-  }
-  return zones;
-}
-
-/// Variance of a zone's volume: noise of its cells with their correlation (an upper bound, for the
-/// zone is taken to be larger than the reach of the correlation), and the error of filled holes.
-void find_variances(const ChangedGround& ground, double cell, std::vector<ZoneSum>& zones) {
-  const double cell_area = cell * cell;
-  const double cell_variance = ground.noise_sd * ground.noise_sd;
-  for (ZoneSum& zone : zones) {
-    zone.variance = cell_variance * ground.correlation * zone.area * cell_area +
-                    std::pow(steep_face_error * zone.volume, 2);
-  }
-  std::vector<std::vector<double>> filled_cells(
-      zones.size(), std::vector<double>(ground.filled.holes.size(), 0.0));
-  for_each_cell(ground.zone, [&](Cell at) {
-    const int zone = ground.zone(at.row, at.col);
-    const int hole = ground.filled.hole(at.row, at.col);
-    if (zone < 0 || hole < 0) return;
-    filled_cells[static_cast<std::size_t>(zone)][static_cast<std::size_t>(hole)] += 1.0;
-  });
-  for (std::size_t i = 0; i < zones.size(); ++i) {
-    for (std::size_t h = 0; h < filled_cells[i].size(); ++h) {
-      const Hole& hole = ground.filled.holes[h];
-      const double radius_cells = std::sqrt(static_cast<double>(hole.cells) / 3.141592653589793);
-      const double rim_step = 2.0 * std::max(0.0, hole.squared_rim_step - 2.0 * cell_variance);
-      const double sd = fill_error * radius_cells * std::sqrt(rim_step) * filled_cells[i][h];
-      zones[i].variance += sd * sd * cell_area * cell_area;
-    }
-  }
-}
-
-Area survey(const HeightMap& before, const HeightMap& after, const ChangeOptions& options) {
-  if (!same_grid(before, after)) {
-    throw Error(ErrorKind::bad_input,
-                "the maps before and after must be on one grid: same origin, cell and size");
-  }
-  Eigen::ArrayXXd difference = after.z - before.z;
-  const Eigen::Index known = difference.size() - difference.isNaN().count();
-  if (known < fewest_known_cells) {
-    throw Error(ErrorKind::bad_input, "the maps before and after share " + std::to_string(known) +
-                                          " known cells, at least " +
-                                          std::to_string(fewest_known_cells) +
-                                          " are needed: do the scans overlap?");
-  }
-  Area area;
-  area.grid.origin = before.origin;
-  area.grid.cell = before.cell;
-  area.ground = find_change(std::move(difference), before.cell, options);
-  area.zones = sum_zones(area.grid, area.ground);
-  find_variances(area.ground, before.cell, area.zones);
-  area.kinds.assign(area.zones.size(), ZoneKind::other);
-  return area;
-}
-
-using Chosen = std::vector<bool>;  // by index of the zone
-
-bool any(const Chosen& chosen) {
-  return std::find(chosen.begin(), chosen.end(), true) != chosen.end();
-}
-
-/// The zones that changed in the direction of `sign` and that `wanted` accepts.
-template <typename Wanted>
-Chosen choose(const Area& area, double sign, Wanted wanted) {
-  Chosen chosen(area.zones.size(), false);
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    chosen[i] = sign * area.zones[i].volume > 0.0 && wanted(i);
-  }
-  return chosen;
-}
-
-Chosen near(const Area& area, const Chosen& chosen, const ChangeOptions& options) {
-  return zones_near(area.ground.zone, chosen, options.spill_distance / area.grid.cell);
-}
-
-/// The given area's zones, or else the largest candidate and the candidates near to it.
-Chosen main_zones(const Area& area, double sign, const Chosen& candidates,
-                  const std::optional<Rectangle>& place, const ChangeOptions& options) {
-  if (place) {
-    return choose(area, sign, [&](std::size_t i) {
-      return candidates[i] && place->contains(area.zones[i].centre.x(), area.zones[i].centre.y());
-    });
-  }
-  std::size_t largest = candidates.size();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i]) continue;
-    if (largest == candidates.size() ||
-        sign * area.zones[i].volume > sign * area.zones[largest].volume) {
-      largest = i;
-    }
-  }
-  Chosen chosen(candidates.size(), false);
-  if (largest == candidates.size()) return chosen;
-  chosen[largest] = true;
-  const Chosen beside = near(area, chosen, options);
-  return choose(area, sign, [&](std::size_t i) { return candidates[i] && beside[i]; });
-}
-
-double volume_of(const Area& area, const Chosen& chosen) {
-  double volume = 0.0;
-  for (std::size_t i = 0; i < chosen.size(); ++i) volume += chosen[i] ? area.zones[i].volume : 0.0;
-  return volume;
-}
-
-void set_kind(Area& area, const Chosen& chosen, ZoneKind kind) {
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (chosen[i]) area.kinds[i] = kind;
-  }
-}
-
-/// Marks the hole; what rose beside it is spill. Returns the zones beside the hole.
-Chosen classify_hole(Area& area, const ChangeOptions& options) {
-  const auto all = [](std::size_t) { return true; };
-  const Chosen hole = main_zones(area, -1.0, choose(area, -1.0, all), options.dig_area, options);
-  if (!any(hole)) return hole;
-  const Chosen beside = near(area, hole, options);
-  set_kind(area, choose(area, 1.0, [&](std::size_t i) { return beside[i]; }), ZoneKind::spill);
-  set_kind(area, hole, ZoneKind::dig);
-  return beside;
-}
-
-/// The heap is what rose away from the hole. Where nothing did, but the largest rise beside the
-/// hole could hold the dug soil, that is the heap.
-void classify_scene(Area& area, const ChangeOptions& options) {
-  const Chosen beside = classify_hole(area, options);
-  if (!any(beside)) return;
-  const Chosen away =
-      choose(area, 1.0, [&](std::size_t i) { return options.dump_area || !beside[i]; });
-  Chosen heap = main_zones(area, 1.0, away, options.dump_area, options);
-  if (!any(heap) && !options.dump_area) {
-    ChangeOptions alone = options;
-    alone.spill_distance = 0.0;
-    const Chosen risen_beside = choose(area, 1.0, [&](std::size_t i) { return beside[i]; });
-    heap = main_zones(area, 1.0, risen_beside, std::nullopt, alone);
-    const Chosen hole =
-        choose(area, -1.0, [&](std::size_t i) { return area.kinds[i] == ZoneKind::dig; });
-    if (volume_of(area, heap) < -least_after_share * volume_of(area, hole)) return;
-  }
-  set_kind(area, heap, ZoneKind::dump);
-}
-
-void classify_heap(Area& area, const ChangeOptions& options) {
-  const Chosen risen = choose(area, 1.0, [](std::size_t) { return true; });
-  set_kind(area, main_zones(area, 1.0, risen, options.dump_area, options), ZoneKind::dump);
-}
-
-/// A sum of zones over all areas. Zones of one area share the error of its datum.
-struct Total {
-  double volume = 0.0;
-  double variance = 0.0;
-  std::vector<double> area;  // by surveyed area [m^2]
-};
-
-template <typename Wanted>
-Total total(const std::vector<Area>& areas, Wanted wanted) {
-  Total sum;
-  for (const Area& area : areas) {
-    double ground = 0.0;
-    for (std::size_t i = 0; i < area.zones.size(); ++i) {
-      if (!wanted(area.kinds[i])) continue;
-      sum.volume += area.zones[i].volume;
-      sum.variance += area.zones[i].variance;
-      ground += area.zones[i].area;
-    }
-    sum.variance += std::pow(ground * area.ground.datum_sd, 2);
-    sum.area.push_back(ground);
-  }
-  return sum;
-}
-
-Measured measured(const Total& sum, double sign) {
-  return {sum.volume == 0.0 ? 0.0 : sign * sum.volume, std::sqrt(sum.variance)};
-}
-
+/// Sums excavated, spilled and dumped over all areas; the errors of areas are independent.
 void sum_volumes(const std::vector<Area>& areas, VolumeChange& change) {
-  const auto of = [&](ZoneKind kind) {
-    return total(areas, [kind](ZoneKind other) { return other == kind; });
-  };
-  const Total fallen = of(ZoneKind::dig);
-  const Total risen =
-      total(areas, [](ZoneKind kind) { return kind == ZoneKind::spill || kind == ZoneKind::dump; });
-  change.excavated = measured(fallen, -1.0);
-  change.spilled = measured(of(ZoneKind::spill), 1.0);
-  change.dumped = measured(of(ZoneKind::dump), 1.0);
-  change.before = change.excavated;
-  change.after = measured(risen, 1.0);
-  // A datum that is too high makes the hole deeper and the heap lower.
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    change.covariance_before_after -=
-        fallen.area[i] * risen.area[i] * std::pow(areas[i].ground.datum_sd, 2);
+  Eigen::Vector3d volume = Eigen::Vector3d::Zero();
+  for (const Area& area : areas) {
+    const auto count = static_cast<Eigen::Index>(area.zones.size());
+    Eigen::MatrixXd part = Eigen::MatrixXd::Zero(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const ZoneSum& zone = area.zones[static_cast<std::size_t>(i)];
+      const ZoneKind kind = area.kinds[static_cast<std::size_t>(i)];
+      if (kind == ZoneKind::dig) part(0, i) = -1.0;
+      if (kind == ZoneKind::spill) part(1, i) = 1.0;
+      if (kind == ZoneKind::dump) part(2, i) = 1.0;
+      volume += part.col(i) * zone.volume;
+      change.errors.noise += zone.noise * part.col(i) * part.col(i).transpose();
+      change.errors.holes += zone.holes * part.col(i) * part.col(i).transpose();
+      change.errors.faces += zone.faces * part.col(i) * part.col(i).transpose();
+    }
+    change.errors.correlated += part * area.errors.correlated * part.transpose();
+    change.errors.datum += part * area.errors.datum * part.transpose();
   }
+  const Eigen::Matrix3d covariance = change.errors.total();
+  const Eigen::Vector3d after(0.0, 1.0, 1.0);
+  change.excavated = {volume(0), std::sqrt(covariance(0, 0))};
+  change.spilled = {volume(1), std::sqrt(covariance(1, 1))};
+  change.dumped = {volume(2), std::sqrt(covariance(2, 2))};
+  change.before = change.excavated;
+  change.after = {volume(1) + volume(2), std::sqrt(after.dot(covariance * after))};
+  change.covariance_before_after = covariance.row(0).dot(after);
 }
 
 std::string litres_as_m3(double volume) {
@@ -309,8 +103,9 @@ std::string text_of(const ZoneSum& zone) {
          place_of(zone);
 }
 
-/// One warning however many there are: a scene full of leaves must not bury what matters.
-void warn_of_others(const std::vector<Area>& areas, std::vector<Warning>& warnings) {
+/// One warning however many there are, and none for specks that come to nothing beside the hole: a
+/// scene full of leaves must not bury what matters.
+void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
   const ZoneSum* largest = nullptr;
   int count = 0;
   double sum = 0.0;
@@ -323,17 +118,17 @@ void warn_of_others(const std::vector<Area>& areas, std::vector<Warning>& warnin
       ++count;
     }
   }
-  if (count == 0) return;
+  if (!(sum > least_warned_share * change.excavated.value)) return;
   std::string message =
       text_of(*largest) + " is neither hole, spill nor heap: left out of every volume";
   if (count > 1) {
     message += ", like what changed at " + std::to_string(count - 1) + " more places, " +
                litres_as_m3(sum) + " in all";
   }
-  warnings.push_back({"other_change", message});
+  change.warnings.push_back({"other_change", message});
 }
 
-void warn_of_zone(const ZoneSum& zone, const ChangeOptions& options,
+void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& options,
                   std::vector<Warning>& warnings) {
   const std::string what = text_of(zone);
   if (zone.is_cut) {
@@ -341,7 +136,13 @@ void warn_of_zone(const ZoneSum& zone, const ChangeOptions& options,
                                                  "of it may be missing from its volume"});
   }
   const double share = zone.unknown / zone.area;
-  if (share > options.max_unknown_share) {
+  if (share > options.refused_unknown_share && matters) {
+    warnings.push_back({"zone_unseen", what + " was seen by no scan in " +
+                                           hundredths(100.0 * share) + " % of its cells, over " +
+                                           hundredths(100.0 * options.refused_unknown_share) +
+                                           " %: its volume is not to be trusted, so the bulking "
+                                           "factor is unknown"});
+  } else if (share > options.max_unknown_share) {
     warnings.push_back({"zone_partly_unseen",
                         what + " was seen by no scan in " + hundredths(100.0 * share) +
                             " % of its cells, which were filled; more than " +
@@ -413,6 +214,32 @@ double total_of(const VolumeChange& change, ZoneKind kind) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// Objects are reported as zones of their own that count for nothing.
+void report_objects(const Area& area, VolumeChange& change, AreaChange& result) {
+  const double half = 0.5 * area.grid.cell;
+  for (const Object& object : area.objects) {
+    if (object.is_blunder) continue;
+    ChangeZone zone;
+    zone.volume.value = object.volume;
+    zone.area = area.grid.cell * area.grid.cell * static_cast<double>(object.cells.size());
+    zone.unknown_share = 1.0;
+    Eigen::AlignedBox2d box;
+    for (const Cell at : object.cells) {
+      box.extend(Eigen::Vector2d(area.grid.x(at.col), area.grid.y(at.row)));
+      result.zone(at.row, at.col) = static_cast<int>(change.zones.size());
+    }
+    zone.extent = {box.min().x() - half, box.min().y() - half, box.max().x() + half,
+                   box.max().y() + half};
+    change.zones.push_back(zone);
+    change.warnings.push_back(
+        {"object_taken_out",
+         std::string("something too steep for soil stands in the scan ") +
+             (object.is_before ? "before" : "after") + " around (" + hundredths(box.center().x()) +
+             ", " + hundredths(box.center().y()) + ") m, over " + hundredths(zone.area) +
+             " m^2: taken out of the scan, the ground under it is counted as unseen"});
+  }
+}
+
 /// Hands one area's zones over to the result.
 void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
   const int first = static_cast<int>(change.zones.size());
@@ -420,23 +247,27 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
     const ZoneSum& sum = area.zones[i];
     ChangeZone zone;
     zone.kind = area.kinds[i];
+    const auto at = static_cast<Eigen::Index>(i);
     zone.volume = {sum.volume,
-                   std::sqrt(sum.variance + std::pow(sum.area * area.ground.datum_sd, 2))};
+                   std::sqrt(sum.noise + sum.holes + sum.faces + area.errors.correlated(at, at) +
+                             area.errors.datum(at, at))};
     zone.area = sum.area;
     zone.unknown_share = sum.unknown / sum.area;
     zone.extent = sum.extent;
     change.zones.push_back(zone);
-    if (std::abs(sum.volume) > least_warned_share * total_of(change, zone.kind)) {
-      warn_of_zone(sum, options, change.warnings);
+    const double total = total_of(change, zone.kind);
+    if (std::abs(sum.volume) > least_warned_share * total) {
+      warn_of_zone(sum, std::abs(sum.volume) > least_refused_share * total, options,
+                   change.warnings);
     }
   }
   warn_of_ground(area.ground, change.warnings);
   AreaChange result;
   result.difference = std::move(area.grid);
   result.difference.z =
-      (area.ground.filled.hole >= 0)
-          .select(std::numeric_limits<double>::quiet_NaN(), area.ground.difference);
+      (area.unknown != 0).select(std::numeric_limits<double>::quiet_NaN(), area.ground.difference);
   result.zone = (area.ground.zone >= 0).select(area.ground.zone + first, -1);
+  report_objects(area, change, result);
   result.noise_sd = area.ground.noise_sd;
   result.datum = area.ground.datum;
   change.areas.push_back(std::move(result));
@@ -446,7 +277,7 @@ VolumeChange result_of(std::vector<Area> areas, const ChangeOptions& options) {
   VolumeChange change;
   sum_volumes(areas, change);
   warn_of_balance(change);
-  warn_of_others(areas, change.warnings);
+  warn_of_others(areas, change);
   for (Area& area : areas) report(area, options, change);
   return change;
 }
@@ -467,24 +298,34 @@ const char* name(ZoneKind kind) {
   return "other";
 }
 
-VolumeChange measure_change(const HeightMap& before, const HeightMap& after,
-                            const ChangeOptions& options) {
+VolumeChange measure_change(const SurveyedPair& scene, const ChangeOptions& options) {
   check(options);
   std::vector<Area> areas(1);
-  areas[0] = survey(before, after, options);
+  areas[0] = survey(scene, options);
   classify_scene(areas[0], options);
   return result_of(std::move(areas), options);
 }
 
-VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
+VolumeChange measure_change(const SurveyedPair& dig, const SurveyedPair& dump,
                             const ChangeOptions& options) {
   check(options);
   std::vector<Area> areas(2);
-  areas[0] = survey(dig.before, dig.after, options);
-  areas[1] = survey(dump.before, dump.after, options);
+  areas[0] = survey(dig, options);
+  areas[1] = survey(dump, options);
   classify_hole(areas[0], options);
   classify_heap(areas[1], options);
   return result_of(std::move(areas), options);
+}
+
+VolumeChange measure_change(const HeightMap& before, const HeightMap& after,
+                            const ChangeOptions& options) {
+  return measure_change(SurveyedPair{{before, {}, {}}, {after, {}, {}}, {}}, options);
+}
+
+VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
+                            const ChangeOptions& options) {
+  return measure_change(SurveyedPair{{dig.before, {}, {}}, {dig.after, {}, {}}, {}},
+                        SurveyedPair{{dump.before, {}, {}}, {dump.after, {}, {}}, {}}, options);
 }
 
 }  // namespace excavplan

@@ -8,6 +8,8 @@
 
 #include <excavplan/error.hpp>
 
+#include "cloud_outline.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -137,6 +139,44 @@ CloudSummary summarise(const Cloud& cloud) {
   }
   summary.frame_guess = guess_frame(cloud, summary);
   return summary;
+}
+
+void CloudOutline::add(const std::vector<Eigen::Vector3d>& points) {
+  outline_.points += points.size();
+  for (const Eigen::Vector3d& point : points) {
+    if (point.allFinite()) ++outline_.finite_points;
+  }
+  sample_.add(points);
+}
+
+ScanOutline CloudOutline::result() const {
+  ScanOutline outline = outline_;
+  outline.density = unknown;
+  Cloud cloud;
+  for (const Eigen::Vector3d& point : sample_.values()) {
+    if (point.allFinite()) cloud.points.push_back(point);
+  }
+  if (cloud.points.empty()) return outline;
+  outline.extent = plan_extent(cloud);
+  const auto sampled = static_cast<double>(cloud.points.size());
+  outline.density = points_per_area(cloud, cloud.points.size()) *
+                    (static_cast<double>(outline.finite_points) / sampled);
+  return outline;
+}
+
+double cell_for(const std::vector<ScanOutline>& outlines) {
+  constexpr double points_per_cell = 12.0;
+  constexpr double widest_fine = 0.05;  // [m]
+  constexpr double fewest_cells_along = 100.0;
+  double least = widest_fine;
+  double density = std::numeric_limits<double>::infinity();
+  for (const ScanOutline& outline : outlines) {
+    if (!outline.extent) continue;
+    const Rectangle& r = *outline.extent;
+    least = std::min(least, std::min(r.x_max - r.x_min, r.y_max - r.y_min) / fewest_cells_along);
+    if (outline.density < density) density = outline.density;
+  }
+  return std::max(least, std::sqrt(points_per_cell / density));
 }
 
 Rectangle plan_extent(const Cloud& cloud) {

@@ -31,7 +31,7 @@ bool looks_like_ply(std::string_view text) {
 }
 
 /// A file that is neither text nor one of ours is named, where people are likely to try it.
-void require_text(const FileBytes& file) {
+void require_text(FileStream& file) {
   struct Signature {
     std::string_view bytes;
     const char* name;
@@ -42,11 +42,11 @@ void require_text(const FileBytes& file) {
                                  {"\x89PNG", "a PNG image"}};
   const std::string expected = "a cloud as PCD, PLY or XYZ text";
   for (const Signature& signature : known) {
-    if (file.text().substr(0, signature.bytes.size()) == signature.bytes) {
+    if (file.peek(signature.bytes.size()) == signature.bytes) {
       file.fail("byte 0", signature.name, expected);
     }
   }
-  const std::string_view start = file.text().substr(0, longest_line);
+  const std::string_view start = file.peek(longest_line);
   const auto odd = std::find_if(start.begin(), start.end(), [](char c) {
     return static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\n' && c != '\r';
   });
@@ -55,6 +55,74 @@ void require_text(const FileBytes& file) {
               "the byte " + std::to_string(static_cast<unsigned char>(*odd)), expected);
   }
 }
+
+CloudShape stream(FileStream& file, PointSink& sink) {
+  if (looks_like_ply(file.peek(5))) return stream_ply(file, sink);
+  if (looks_like_pcd(file)) return stream_pcd(file, sink);
+  require_text(file);
+  return stream_xyz(file, sink);
+}
+
+std::string gibibytes(std::uint64_t bytes) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, static_cast<double>(bytes) / (1 << 30),
+                                 std::chars_format::fixed, 3)
+                       .ptr;
+  return {text, end};
+}
+
+[[noreturn]] void refuse_size(const FileStream& file, std::uint64_t points, std::uint64_t limit) {
+  file.refuse("found " + std::to_string(file.size()) + " bytes for " + std::to_string(points) +
+              " points, expected what fits into " + gibibytes(limit) + " GiB of memory");
+}
+
+/// Keeps all points. The limit counts them and the file.
+class Collector : public PointSink {
+ public:
+  Collector(const FileStream& file, std::uint64_t limit, std::vector<Eigen::Vector3d>& points)
+      : file_(file), limit_(limit), points_(points) {}
+
+  void require_memory(std::uint64_t points, std::uint64_t more_bytes) override {
+    const std::uint64_t free = limit_ > file_.size() ? limit_ - file_.size() : 0;
+    const bool fits = file_.size() <= limit_ && more_bytes <= free &&
+                      points <= (free - more_bytes) / sizeof(Eigen::Vector3d);
+    if (!fits) refuse_size(file_, points, limit_);
+    points_.reserve(points);
+  }
+
+  void take(const std::vector<Eigen::Vector3d>& points) override {
+    const std::size_t needed = points_.size() + points.size();
+    if (needed > points_.capacity()) {
+      require_memory(std::max(needed, std::min(2 * points_.capacity(), most_points())), 0);
+    }
+    points_.insert(points_.end(), points.begin(), points.end());
+  }
+
+ private:
+  std::size_t most_points() const {
+    return (limit_ - std::min(limit_, file_.size())) / sizeof(Eigen::Vector3d);
+  }
+
+  const FileStream& file_;
+  std::uint64_t limit_;
+  std::vector<Eigen::Vector3d>& points_;
+};
+
+/// Keeps no point.
+class Passage : public PointSink {
+ public:
+  Passage(const FileStream& file, const PointVisitor& visit) : file_(file), visit_(visit) {}
+
+  void require_memory(std::uint64_t points, std::uint64_t more_bytes) override {
+    constexpr std::uint64_t limit = std::uint64_t{4} << 30;
+    if (more_bytes > limit) refuse_size(file_, points, limit);
+  }
+  void take(const std::vector<Eigen::Vector3d>& points) override { visit_(points); }
+
+ private:
+  const FileStream& file_;
+  const PointVisitor& visit_;
+};
 
 /// Appends the shortest text of a number that reads back the same.
 void append_number(std::string& text, double value) {
@@ -80,7 +148,8 @@ bool needs_double(const Cloud& cloud) {
   return std::any_of(cloud.points.begin(), cloud.points.end(), [](const Eigen::Vector3d& point) {
     if (!point.allFinite()) return false;
     if (point.cwiseAbs().maxCoeff() > std::numeric_limits<float>::max()) return true;
-    return (point - point.cast<float>().cast<double>()).norm() > farthest;
+    const Eigen::Vector3f rounded = point.cast<float>();
+    return (point - rounded.cast<double>()).norm() > farthest;
   });
 }
 
@@ -133,11 +202,20 @@ std::string content_of(const Cloud& cloud, CloudFormat format) {
 }  // namespace
 
 Cloud read_cloud(const std::string& path, std::uint64_t memory_limit) {
-  const FileBytes file(path, memory_limit);
-  if (looks_like_ply(file.text())) return read_ply(file);
-  if (looks_like_pcd(file)) return read_pcd(file);
-  require_text(file);
-  return read_xyz(file);
+  FileStream file(path);
+  Cloud cloud;
+  Collector collector(file, memory_limit, cloud.points);
+  collector.require_memory(0, 0);
+  const CloudShape shape = stream(file, collector);
+  cloud.width = shape.width;
+  cloud.height = shape.height;
+  return cloud;
+}
+
+void stream_cloud(const std::string& path, const PointVisitor& visit) {
+  FileStream file(path);
+  Passage passage(file, visit);
+  stream(file, passage);
 }
 
 void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format) {
@@ -160,9 +238,13 @@ CloudFormat cloud_format_of_name(const std::string& path) {
 }
 
 Eigen::Matrix4d read_frame(const std::string& path) {
-  constexpr std::uint64_t memory_limit = 1 << 20;
+  constexpr std::uint64_t largest = 1 << 20;
   constexpr double tolerance = 1e-4;
-  const FileBytes file(path, memory_limit);
+  FileStream file(path);
+  if (file.size() > largest) {
+    file.refuse("found " + std::to_string(file.size()) + " bytes, expected at most " +
+                std::to_string(largest) + " for a frame");
+  }
   LineReader lines(file);
   std::vector<double> numbers;
   while (lines.next_filled()) {

@@ -20,31 +20,6 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "binary PCD is read and
 
 constexpr std::string_view blanks = " \t";
 
-/// Closes a file however its reading ends.
-class Descriptor {
- public:
-  explicit Descriptor(const std::string& path)
-      : value_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int value() const { return value_; }
-
- private:
-  int value_;
-};
-
-std::string gibibytes(std::uint64_t bytes) {
-  std::array<char, 32> text{};
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), static_cast<double>(bytes) / (1 << 30),
-                    std::chars_format::fixed, 3)
-          .ptr;
-  return {text.data(), end};
-}
-
 /// Calls `body` with a value of the C++ type that `type` stands for.
 template <typename Body>
 auto with_type(ScalarType type, Body body) {
@@ -83,68 +58,134 @@ double load(const char* bytes, bool swapped) {
   return static_cast<double>(value);
 }
 
-}  // namespace
+/// True if every point is three float32 of this machine and nothing else, as most are.
+bool are_plain_floats(const Columns& columns, bool swapped) {
+  constexpr std::size_t size = sizeof(float);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (columns.type[axis] != ScalarType::float32 || columns.stride[axis] != 3 * size ||
+        columns.offset[axis] != columns.offset[0] + axis * size) {
+      return false;
+    }
+  }
+  return !swapped;
+}
 
-FileBytes::FileBytes(std::string path, std::uint64_t memory_limit)
-    : path_(std::move(path)), memory_limit_(memory_limit) {
-  const auto refuse = [this](const std::string& why) {
-    throw Error(ErrorKind::bad_file, path_ + ": " + why);
-  };
-  const Descriptor file(path_);
-  if (file.value() < 0) refuse(std::string("cannot be opened: ") + std::strerror(errno));
-  struct stat status {};
-  if (::fstat(file.value(), &status) != 0) refuse("cannot be examined");
-  if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
-  if (status.st_size == 0) refuse("is empty");
-  size_ = static_cast<std::size_t>(status.st_size);
-  require_memory(0);
-
-  data_.reset(new char[size_]);
-  for (std::size_t done = 0; done < size_;) {
-    const ssize_t got = ::read(file.value(), data_.get() + done, size_ - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) refuse(std::string("cannot be read: ") + std::strerror(errno));
-    if (got == 0) refuse("became shorter while it was read");
-    done += static_cast<std::size_t>(got);
+void copy_points(const char* block, const Columns& columns, bool swapped,
+                 std::vector<Eigen::Vector3d>& points) {
+  if (are_plain_floats(columns, swapped)) {
+    std::array<float, 3 * points_at_a_time> raw;
+    std::memcpy(raw.data(), block + columns.offset[0], points.size() * 3 * sizeof(float));
+    const auto count = static_cast<Eigen::Index>(3 * points.size());
+    Eigen::Map<Eigen::ArrayXd>(points.data()->data(), count) =
+        Eigen::Map<const Eigen::ArrayXf>(raw.data(), count).cast<double>();
+    return;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const char* const column = block + columns.offset[axis];
+    const std::size_t stride = columns.stride[axis];
+    with_type(columns.type[axis], [&](auto value) {
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        points[i][static_cast<Eigen::Index>(axis)] =
+            load<decltype(value)>(column + i * stride, swapped);
+      }
+    });
   }
 }
 
-void FileBytes::require_memory(std::uint64_t points, std::uint64_t more) const {
-  const std::uint64_t free = memory_limit_ > size_ ? memory_limit_ - size_ : 0;
-  const bool fits =
-      size_ <= memory_limit_ && more <= free && points <= (free - more) / sizeof(Eigen::Vector3d);
-  if (fits) return;
-  throw Error(ErrorKind::bad_file, path_ + ": found " + std::to_string(size_) + " bytes for " +
-                                       std::to_string(points) +
-                                       " points, expected what fits into " +
-                                       gibibytes(memory_limit_) + " GiB of memory");
+}  // namespace
+
+FileStream::FileStream(std::string path) : path_(std::move(path)) {
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor_ < 0) refuse(std::string("cannot be opened: ") + std::strerror(errno));
+  try {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) refuse("cannot be examined");
+    if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
+    if (status.st_size == 0) refuse("is empty");
+    size_ = static_cast<std::uint64_t>(status.st_size);
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
 }
 
-void FileBytes::require_end(std::size_t end) const {
-  const std::string_view surplus = text().substr(end);
-  constexpr std::string_view padding(" \t\r\n\0", 5);
-  if (surplus.size() > longest_surplus || surplus.find_first_not_of(padding) != surplus.npos) {
-    fail("byte " + std::to_string(end), std::to_string(surplus.size()) + " bytes more",
+FileStream::~FileStream() { ::close(descriptor_); }
+
+void FileStream::fill(std::size_t count) {
+  constexpr std::size_t usual_window = std::size_t{1} << 18;
+  const std::size_t kept = filled_ - begin_;
+  if (count > capacity_) {
+    const std::size_t capacity = std::max(count, usual_window);
+    std::unique_ptr<char[]> window(new char[capacity]);
+    std::copy_n(window_.get() + begin_, kept, window.get());
+    window_ = std::move(window);
+    capacity_ = capacity;
+  } else {
+    std::copy_n(window_.get() + begin_, kept, window_.get());
+  }
+  begin_ = 0;
+  filled_ = kept;
+  const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(capacity_, left()));
+  while (filled_ < wanted) {
+    const ssize_t got = ::read(descriptor_, window_.get() + filled_, wanted - filled_);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(std::string("cannot be read: ") + std::strerror(errno));
+    if (got == 0) refuse("became shorter while it was read");
+    filled_ += static_cast<std::size_t>(got);
+  }
+}
+
+void FileStream::skip(std::uint64_t count) {
+  while (count > filled_ - begin_) {
+    count -= filled_ - begin_;
+    offset_ += filled_ - begin_;
+    begin_ = filled_ = 0;
+    fill(1);
+  }
+  begin_ += static_cast<std::size_t>(count);
+  offset_ += count;
+}
+
+void FileStream::require_end(std::uint64_t ahead) const {
+  const std::uint64_t end = offset_ + ahead;
+  const std::uint64_t surplus = size_ - end;
+  std::array<char, longest_surplus> bytes;
+  const auto is_padding = [&] {
+    const ssize_t got = ::pread(descriptor_, bytes.data(), surplus, static_cast<off_t>(end));
+    if (got != static_cast<ssize_t>(surplus)) refuse("became shorter while it was read");
+    constexpr std::string_view padding(" \t\r\n\0", 5);
+    return std::string_view(bytes.data(), surplus).find_first_not_of(padding) ==
+           std::string_view::npos;
+  };
+  if (surplus > longest_surplus || !is_padding()) {
+    fail("byte " + std::to_string(end), std::to_string(surplus) + " bytes more",
          "the end of the file after the last point");
   }
 }
 
-void FileBytes::fail(const std::string& place, const std::string& found,
-                     const std::string& expected) const {
-  throw Error(ErrorKind::bad_file,
-              path_ + ": " + place + ": found " + found + ", expected " + expected);
+void FileStream::fail(const std::string& place, const std::string& found,
+                      const std::string& expected) const {
+  refuse(place + ": found " + found + ", expected " + expected);
+}
+
+void FileStream::fail_here(const std::string& found, const std::string& expected) const {
+  fail("byte " + std::to_string(offset_), found, expected);
+}
+
+void FileStream::refuse(const std::string& why) const {
+  throw Error(ErrorKind::bad_file, path_ + ": " + why);
 }
 
 bool LineReader::next() {
-  const std::string_view rest = file_.text().substr(offset_);
-  if (rest.empty()) return false;
+  const std::string_view ahead = file_.peek(longest_line + 2);
+  if (ahead.empty()) return false;
   ++number_;
-  const std::size_t end = rest.substr(0, longest_line + 2).find('\n');
-  if (end == rest.npos && rest.size() > longest_line) {
+  const std::size_t end = ahead.find('\n');
+  if (end == ahead.npos && ahead.size() > longest_line) {
     fail("a line of more than " + std::to_string(longest_line) + " bytes", "a shorter one");
   }
-  line_ = rest.substr(0, end);
-  offset_ += line_.size() + (end == rest.npos ? 0 : 1);
+  line_ = ahead.substr(0, end);
+  file_.skip(line_.size() + (end == ahead.npos ? 0 : 1));
   if (!line_.empty() && line_.back() == '\r') line_.remove_suffix(1);
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (number_ == 1 && line_.substr(0, 3) == byte_order_mark) line_.remove_prefix(3);
@@ -223,21 +264,29 @@ double load_scalar(ScalarType type, const char* bytes, bool swapped) {
   return with_type(type, [&](auto value) { return load<decltype(value)>(bytes, swapped); });
 }
 
-void copy_points(const char* block, const Columns& columns, bool swapped,
-                 std::vector<Eigen::Vector3d>& points) {
-  constexpr std::size_t batch = 1024;  // stays in the nearest cache for all three axes
-  for (std::size_t begin = 0; begin < points.size(); begin += batch) {
-    const std::size_t end = std::min(begin + batch, points.size());
+void stream_block(const char* block, std::uint64_t count, const Columns& columns, PointSink& sink) {
+  std::vector<Eigen::Vector3d> points;
+  Columns part = columns;
+  for (std::uint64_t begin = 0; begin < count; begin += points.size()) {
+    points.resize(std::min<std::uint64_t>(points_at_a_time, count - begin));
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const char* const column = block + columns.offset[axis];
-      const std::size_t stride = columns.stride[axis];
-      with_type(columns.type[axis], [&](auto value) {
-        for (std::size_t i = begin; i < end; ++i) {
-          points[i][static_cast<Eigen::Index>(axis)] =
-              load<decltype(value)>(column + i * stride, swapped);
-        }
-      });
+      part.offset[axis] = columns.offset[axis] + begin * columns.stride[axis];
     }
+    copy_points(block, part, false, points);
+    sink.take(points);
+  }
+}
+
+void stream_rows(FileStream& file, std::uint64_t count, const Columns& columns, bool swapped,
+                 PointSink& sink) {
+  std::vector<Eigen::Vector3d> points;
+  const std::size_t row = columns.stride[0];
+  while (count > 0) {
+    points.resize(std::min<std::uint64_t>(points_at_a_time, count));
+    copy_points(file.peek(points.size() * row).data(), columns, swapped, points);
+    file.skip(points.size() * row);
+    sink.take(points);
+    count -= points.size();
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,9 +14,8 @@
 
 #include <excavplan/survey/cloud.hpp>
 
-/// @file
-/// What the readers of cloud files share: the bytes of a file, its lines, numbers of any type, and
-/// errors that name the place. Private to the library.
+/// @file What the readers of cloud files share: the bytes of a file, its lines, numbers of any
+/// type, the way points go on, and errors that name the place. Private to the library.
 
 namespace excavplan {
 
@@ -25,39 +25,95 @@ constexpr std::size_t most_fields = 64;        ///< of a point
 constexpr std::size_t longest_row = 4096;      ///< of a binary point [byte]
 constexpr std::size_t longest_surplus = 4096;  ///< blanks or zeros after the last point [byte]
 
-/// The content of a regular file, read in one go: a mapped file that another program cuts short
-/// would end ours with a bus error.
-class FileBytes {
+/// A regular file read from front to back through a window that slides over it, so that it may be
+/// larger than memory. Not mapped: a mapped file that another program cuts short would end ours
+/// with a bus error.
+class FileStream {
  public:
   /// Never waits on a pipe or device.
-  /// @throws Error (bad_file) if the file is not regular, not readable, empty or over the limit
-  FileBytes(std::string path, std::uint64_t memory_limit);
+  /// @throws Error (bad_file) if the file is not regular, not readable or empty
+  explicit FileStream(std::string path);
+  ~FileStream();
+  FileStream(const FileStream&) = delete;
+  FileStream& operator=(const FileStream&) = delete;
 
-  std::string_view text() const { return {data_.get(), size_}; }
-  const char* data() const { return data_.get(); }
-  std::size_t size() const { return size_; }
+  std::uint64_t size() const { return size_; }
+  std::uint64_t offset() const { return offset_; }  ///< of the byte that comes next
+  std::uint64_t left() const { return size_ - offset_; }
 
-  /// Asked before memory is: the content, `points` points and `more` bytes must stay in the limit.
+  /// The next `count` bytes, or all that are left, without going past them; good until the next
+  /// call. @throws Error (bad_file)
+  std::string_view peek(std::size_t count) {
+    if (filled_ - begin_ < count && filled_ - begin_ < left()) fill(count);
+    return {window_.get() + begin_, std::min(count, filled_ - begin_)};
+  }
+  /// Goes past bytes, which must be left. @throws Error (bad_file)
+  void skip(std::uint64_t count);
+  /// The file must end `ahead` bytes from here, but for a few blanks or zeros.
   /// @throws Error (bad_file)
-  void require_memory(std::uint64_t points, std::uint64_t more = 0) const;
-  /// The binary part must end at `end`, but for a few blanks or zeros. @throws Error (bad_file)
-  void require_end(std::size_t end) const;
+  void require_end(std::uint64_t ahead = 0) const;
 
   /// @throws Error (bad_file): "file: place: found ..., expected ..."
   [[noreturn]] void fail(const std::string& place, const std::string& found,
                          const std::string& expected) const;
+  [[noreturn]] void fail_here(const std::string& found, const std::string& expected) const;
+  /// @throws Error (bad_file): "file: why"
+  [[noreturn]] void refuse(const std::string& why) const;
 
  private:
+  void fill(std::size_t count);
+
   std::string path_;
-  std::uint64_t memory_limit_;
-  std::unique_ptr<char[]> data_;
-  std::size_t size_ = 0;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  std::uint64_t offset_ = 0;  ///< of window_[begin_] in the file
+  std::unique_ptr<char[]> window_;
+  std::size_t begin_ = 0;
+  std::size_t filled_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+/// Where a reader puts the points of a file, in their order.
+class PointSink {
+ public:
+  virtual ~PointSink() = default;
+  /// Asked before the points come, where a file says how many there are at most, and before more
+  /// than the points at hand is held for them. @throws Error (bad_file) if that is too much
+  virtual void require_memory(std::uint64_t points, std::uint64_t more_bytes) = 0;
+  virtual void take(const std::vector<Eigen::Vector3d>& points) = 0;
+};
+
+constexpr std::size_t points_at_a_time = 2048;  ///< stay in the second cache
+
+/// Hands on points that come one by one.
+class PointBatch {
+ public:
+  explicit PointBatch(PointSink& sink) : sink_(sink) { points_.reserve(points_at_a_time); }
+  void add(const Eigen::Vector3d& point) {
+    points_.push_back(point);
+    if (points_.size() == points_at_a_time) hand_on();
+  }
+  /// To be called after the last one.
+  void hand_on() {
+    if (!points_.empty()) sink_.take(points_);
+    points_.clear();
+  }
+
+ private:
+  PointSink& sink_;
+  std::vector<Eigen::Vector3d> points_;
+};
+
+/// What a file says of the order of its points.
+struct CloudShape {
+  std::uint64_t width = 0;
+  std::uint64_t height = 1;
 };
 
 /// The lines of a file, ended by LF or CRLF.
 class LineReader {
  public:
-  explicit LineReader(const FileBytes& file) : file_(file) {}
+  explicit LineReader(FileStream& file) : file_(file) {}
 
   /// Goes to the next line. @throws Error (bad_file) if it is too long
   /// @return false at the end of the file
@@ -65,16 +121,15 @@ class LineReader {
   /// Goes to the next line that is neither blank nor, in a header, a comment.
   bool next_filled();
 
-  std::string_view line() const { return line_; }
-  std::size_t offset() const { return offset_; }  ///< of the byte after the line
+  std::string_view line() const { return line_; }          ///< good until the next one
+  std::uint64_t offset() const { return file_.offset(); }  ///< of the byte after the line
   /// @throws Error (bad_file) naming this line
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const;
 
  private:
-  const FileBytes& file_;
+  FileStream& file_;
   std::string_view line_;
-  std::size_t offset_ = 0;
-  std::size_t number_ = 0;
+  std::uint64_t number_ = 0;
 };
 
 /// Takes the next word, delimited by blanks, off the front of a text; empty if there is none.
@@ -113,14 +168,17 @@ struct Columns {
   std::array<std::size_t, 3> offset{};  ///< of the first point [byte]
   std::array<std::size_t, 3> stride{};  ///< from point to point [byte]
 };
-void copy_points(const char* block, const Columns& columns, bool swapped,
-                 std::vector<Eigen::Vector3d>& points);
+/// Hands on `count` points that stand one behind the other in a file.
+void stream_rows(FileStream& file, std::uint64_t count, const Columns& columns, bool swapped,
+                 PointSink& sink);
+/// Hands on points that stand in memory.
+void stream_block(const char* block, std::uint64_t count, const Columns& columns, PointSink& sink);
 
-Cloud read_pcd(const FileBytes& file);
-Cloud read_ply(const FileBytes& file);
-Cloud read_xyz(const FileBytes& file);
+CloudShape stream_pcd(FileStream& file, PointSink& sink);
+CloudShape stream_ply(FileStream& file, PointSink& sink);
+CloudShape stream_xyz(FileStream& file, PointSink& sink);
 
 /// True if the first words of a file are those of a PCD header.
-bool looks_like_pcd(const FileBytes& file);
+bool looks_like_pcd(FileStream& file);
 
 }  // namespace excavplan

@@ -14,7 +14,7 @@ namespace {
 enum class Encoding { ascii, binary, compressed };
 
 struct Field {
-  std::string_view name;
+  std::string name;
   std::size_t size = 0;  ///< of one element [byte]
   char type = 0;         ///< I, U or F
   std::size_t count = 1;
@@ -44,7 +44,7 @@ void read_field_names(const Words& words, const LineReader& lines, Header& heade
   if (words.size() > most_fields) {
     lines.fail(std::to_string(words.size()) + " fields", "at most " + std::to_string(most_fields));
   }
-  for (const auto name : words) header.fields.push_back({name});
+  for (const auto name : words) header.fields.push_back({std::string(name)});
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     if (const auto times = std::count(words.begin(), words.end(), name); times != 1) {
@@ -88,8 +88,7 @@ void read_counts(const Words& words, const LineReader& lines, Header& header) {
   }
   for (const std::size_t i : header.xyz) {
     if (header.fields[i].count != 1) {
-      lines.fail("COUNT " + quoted(words[i]) + " of field " + std::string(header.fields[i].name),
-                 "1");
+      lines.fail("COUNT " + quoted(words[i]) + " of field " + header.fields[i].name, "1");
     }
   }
 }
@@ -215,16 +214,16 @@ ScalarType scalar_type(const Field& field) {
   }
 }
 
-/// Rows of points, or with `by_field` one block per field.
-Columns columns_of(const Header& header, bool by_field) {
+/// Of rows of points.
+Columns columns_of(const Header& header) {
   Columns columns;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::size_t offset = 0;
     for (std::size_t i = 0; i < header.xyz[axis]; ++i) offset += header.fields[i].bytes();
     const Field& field = header.fields[header.xyz[axis]];
     columns.type[axis] = scalar_type(field);
-    columns.offset[axis] = by_field ? offset * header.points : offset;
-    columns.stride[axis] = by_field ? field.size : header.row;
+    columns.offset[axis] = offset;
+    columns.stride[axis] = header.row;
   }
   return columns;
 }
@@ -238,15 +237,15 @@ std::array<std::size_t, 3> tokens_of_xyz(const Header& header) {
   return tokens;
 }
 
-void read_ascii(const FileBytes& file, LineReader& lines, const Header& header, Cloud& cloud) {
+void stream_ascii(FileStream& file, LineReader& lines, const Header& header, PointSink& sink) {
   const std::size_t shortest_row = 2 * header.tokens;
-  const std::uint64_t room = (file.size() - lines.offset()) / shortest_row + 1;
-  file.require_memory(std::min(header.points, room));
-  cloud.points.reserve(std::min(header.points, room));
+  sink.require_memory(std::min(header.points, file.left() / shortest_row + 1), 0);
   const std::array<std::size_t, 3> xyz = tokens_of_xyz(header);
+  PointBatch batch(sink);
+  std::uint64_t rows = 0;
   std::vector<double> values;
   while (lines.next_filled()) {
-    if (cloud.points.size() == header.points) {
+    if (rows == header.points) {
       lines.fail("more rows", "the end after POINTS " + std::to_string(header.points));
     }
     values.clear();
@@ -257,68 +256,139 @@ void read_ascii(const FileBytes& file, LineReader& lines, const Header& header, 
     if (values.size() != header.tokens) {
       lines.fail(std::to_string(values.size()) + " values", std::to_string(header.tokens));
     }
-    cloud.points.emplace_back(values[xyz[0]], values[xyz[1]], values[xyz[2]]);
+    batch.add({values[xyz[0]], values[xyz[1]], values[xyz[2]]});
+    ++rows;
   }
-  if (cloud.points.size() != header.points) {
-    lines.fail("the end after " + std::to_string(cloud.points.size()) + " rows",
-               std::to_string(header.points));
+  if (rows != header.points) {
+    lines.fail("the end after " + std::to_string(rows) + " rows", std::to_string(header.points));
   }
+  batch.hand_on();
 }
 
-void read_binary(const FileBytes& file, std::size_t begin, const Header& header, Cloud& cloud) {
-  const std::size_t left = file.size() - begin;
-  if (header.points > left / header.row) {
-    file.fail(
-        "byte " + std::to_string(begin), std::to_string(left) + " bytes of data",
+void stream_binary(FileStream& file, const Header& header, PointSink& sink) {
+  if (header.points > file.left() / header.row) {
+    file.fail_here(
+        std::to_string(file.left()) + " bytes of data",
         std::to_string(header.points) + " points of " + std::to_string(header.row) + " bytes");
   }
-  file.require_end(begin + header.points * header.row);
-  file.require_memory(header.points);
-  cloud.points.resize(header.points);
-  copy_points(file.data() + begin, columns_of(header, false), false, cloud.points);
+  file.require_end(header.points * header.row);
+  sink.require_memory(header.points, 0);
+  stream_rows(file, header.points, columns_of(header), false, sink);
 }
+
+/// What unpacking makes, of which only the blocks of x, y and z are kept: compressed PCD stores one
+/// field of all points after the other.
+class UnpackedFields {
+ public:
+  static constexpr std::size_t farthest_back = 8192;
+
+  explicit UnpackedFields(const Header& header) : window_(16 * farthest_back) {
+    std::size_t size = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Field& field = header.fields[header.xyz[axis]];
+      std::uint64_t begin = 0;
+      for (std::size_t i = 0; i < header.xyz[axis]; ++i) begin += header.fields[i].bytes();
+      columns_.type[axis] = scalar_type(field);
+      columns_.stride[axis] = field.size;
+      columns_.offset[axis] = size;
+      begin_[axis] = begin * header.points;
+      end_[axis] = begin_[axis] + field.size * header.points;
+      size += field.size * header.points;
+    }
+    kept_.resize(size);
+  }
+
+  void add(char byte) {
+    if (filled_ == window_.size()) slide();
+    window_[filled_++] = byte;
+  }
+  char back(std::size_t distance) const { return window_[filled_ - distance]; }
+  std::uint64_t size() const { return start_ + filled_; }
+
+  /// To be called after the last byte.
+  void finish() { keep(); }
+  const char* data() const { return kept_.data(); }
+  const Columns& columns() const { return columns_; }
+
+ private:
+  /// Keeps what the window holds beyond `kept_to_` of x, y and z.
+  void keep() {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::uint64_t from = std::max(begin_[axis], start_ + kept_to_);
+      const std::uint64_t to = std::min(end_[axis], start_ + filled_);
+      if (from >= to) continue;
+      std::copy_n(window_.data() + (from - start_), to - from,
+                  kept_.data() + columns_.offset[axis] + (from - begin_[axis]));
+    }
+    kept_to_ = filled_;
+  }
+  void slide() {
+    keep();
+    const std::size_t passed = filled_ - farthest_back;
+    std::copy(window_.begin() + static_cast<std::ptrdiff_t>(passed), window_.end(),
+              window_.begin());
+    start_ += passed;
+    filled_ = kept_to_ = farthest_back;
+  }
+
+  Columns columns_;  ///< in kept_
+  std::array<std::uint64_t, 3> begin_{};
+  std::array<std::uint64_t, 3> end_{};
+  std::vector<char> kept_;
+  std::vector<char> window_;
+  std::uint64_t start_ = 0;  ///< of the window in all that was made
+  std::size_t filled_ = 0;
+  std::size_t kept_to_ = 0;
+};
 
 /// Marc Lehmann's LZF: a control byte below 32 heads a run of literals, any other repeats what
-/// stands up to 8 KiB back. @return false if `packed` does not unpack to exactly `out`
-bool unpack_lzf(std::string_view packed, std::vector<char>& out) {
-  std::size_t in = 0;
-  std::size_t made = 0;
-  while (in < packed.size()) {
-    const auto control = static_cast<unsigned char>(packed[in++]);
+/// stands up to 8 KiB back. @return false if the next `packed` bytes do not unpack to exactly
+/// `unpacked`
+bool unpack_lzf(FileStream& file, std::uint64_t packed, std::uint64_t unpacked,
+                UnpackedFields& out) {
+  constexpr std::size_t longest_item = 34;
+  while (packed > 0) {
+    const std::string_view in = file.peek(std::min<std::uint64_t>(packed, longest_item));
+    const auto byte = [&](std::size_t i) {
+      return static_cast<std::size_t>(static_cast<unsigned char>(in[i]));
+    };
+    const std::size_t control = byte(0);
+    std::size_t used = 1;
     if (control < 32) {
-      const std::size_t run = control + std::size_t{1};
-      if (run > packed.size() - in || run > out.size() - made) return false;
-      std::copy_n(packed.data() + in, run, out.data() + made);
-      in += run;
-      made += run;
-      continue;
+      const std::size_t run = control + 1;
+      if (run > in.size() - 1 || run > unpacked - out.size()) return false;
+      for (; used <= run; ++used) out.add(in[used]);
+    } else {
+      std::size_t length = control >> 5U;
+      const std::size_t needed = length == 7 ? 3 : 2;
+      if (needed > in.size()) return false;
+      if (length == 7) length += byte(used++);
+      length += 2;
+      const std::size_t back = ((control & 31U) << 8U) + byte(used++) + 1;
+      if (back > out.size() || length > unpacked - out.size()) return false;
+      for (; length > 0; --length) out.add(out.back(back));
     }
-    std::size_t length = control >> 5U;
-    const std::size_t needed = length == 7 ? 2 : 1;
-    if (needed > packed.size() - in) return false;
-    if (length == 7) length += static_cast<unsigned char>(packed[in++]);
-    length += 2;
-    const std::size_t back =
-        ((control & 31U) << 8U) + static_cast<unsigned char>(packed[in++]) + std::size_t{1};
-    if (back > made || length > out.size() - made) return false;
-    for (const std::size_t end = made + length; made < end; ++made) out[made] = out[made - back];
+    file.skip(used);
+    packed -= used;
   }
-  return made == out.size();
+  return out.size() == unpacked;
 }
 
-void read_compressed(const FileBytes& file, std::size_t begin, const Header& header, Cloud& cloud) {
+void stream_compressed(FileStream& file, const Header& header, PointSink& sink) {
   constexpr std::uint64_t highest_ratio = 256;  // LZF reaches 88
-  const std::string place = "byte " + std::to_string(begin);
-  const std::size_t left = file.size() - begin;
-  if (left < 8) file.fail(place, std::to_string(left) + " bytes of data", "two sizes of 4 bytes");
+  const std::string place = "byte " + std::to_string(file.offset());
+  if (file.left() < 8) {
+    file.fail(place, std::to_string(file.left()) + " bytes of data", "two sizes of 4 bytes");
+  }
+  const std::string sizes(file.peek(8));
+  file.skip(8);
   const auto size_at = [&](std::size_t at) {
-    return static_cast<std::uint64_t>(
-        load_scalar(ScalarType::uint32, file.data() + begin + at, false));
+    return static_cast<std::uint64_t>(load_scalar(ScalarType::uint32, sizes.data() + at, false));
   };
   const std::uint64_t packed = size_at(0);
   const std::uint64_t unpacked = size_at(4);
-  if (packed > left - 8) {
-    file.fail(place, std::to_string(left - 8) + " compressed bytes", std::to_string(packed));
+  if (packed > file.left()) {
+    file.fail(place, std::to_string(file.left()) + " compressed bytes", std::to_string(packed));
   }
   std::uint64_t expected = 0;
   if (__builtin_mul_overflow(header.points, header.row, &expected) || unpacked != expected) {
@@ -330,20 +400,20 @@ void read_compressed(const FileBytes& file, std::size_t begin, const Header& hea
     file.fail(place, std::to_string(packed) + " bytes for " + std::to_string(unpacked),
               "a compression ratio of at most " + std::to_string(highest_ratio));
   }
-  file.require_end(begin + 8 + packed);
-  file.require_memory(header.points, unpacked);
-  std::vector<char> block(unpacked);
-  if (!unpack_lzf(file.text().substr(begin + 8, packed), block)) {
+  file.require_end(packed);
+  sink.require_memory(header.points, unpacked);
+  UnpackedFields fields(header);
+  if (!unpack_lzf(file, packed, unpacked, fields)) {
     file.fail(place, "damaged compressed data", std::to_string(unpacked) + " bytes of LZF");
   }
-  cloud.points.resize(header.points);
-  copy_points(block.data(), columns_of(header, true), false, cloud.points);
+  fields.finish();
+  stream_block(fields.data(), header.points, fields.columns(), sink);
 }
 
 }  // namespace
 
-bool looks_like_pcd(const FileBytes& file) {
-  std::string_view text = file.text().substr(0, longest_header);
+bool looks_like_pcd(FileStream& file) {
+  std::string_view text = file.peek(longest_header);
   if (text.substr(0, 6) == "# .PCD") return true;
   while (!text.empty()) {
     std::string_view line = text.substr(0, text.find('\n'));
@@ -356,24 +426,21 @@ bool looks_like_pcd(const FileBytes& file) {
   return false;
 }
 
-Cloud read_pcd(const FileBytes& file) {
+CloudShape stream_pcd(FileStream& file, PointSink& sink) {
   LineReader lines(file);
   const Header header = read_header(lines);
-  Cloud cloud;
   switch (header.encoding) {
     case Encoding::ascii:
-      read_ascii(file, lines, header, cloud);
+      stream_ascii(file, lines, header, sink);
       break;
     case Encoding::binary:
-      read_binary(file, lines.offset(), header, cloud);
+      stream_binary(file, header, sink);
       break;
     case Encoding::compressed:
-      read_compressed(file, lines.offset(), header, cloud);
+      stream_compressed(file, header, sink);
       break;
   }
-  cloud.width = header.width;
-  cloud.height = header.height;
-  return cloud;
+  return {header.width, header.height};
 }
 
 }  // namespace excavplan

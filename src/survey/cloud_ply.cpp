@@ -15,13 +15,13 @@ namespace {
 enum class Encoding { ascii, little_endian, big_endian };
 
 struct Property {
-  std::string_view name;
+  std::string name;
   ScalarType type = ScalarType::float32;
   std::optional<ScalarType> length_type;  ///< of a list
 };
 
 struct Element {
-  std::string_view name;
+  std::string name;
   std::uint64_t count = 0;
   std::vector<Property> properties;
 
@@ -49,7 +49,7 @@ constexpr std::size_t no_axis = 3;
 /// 0, 1, 2 for x, y, z of a vertex.
 std::size_t axis_of(const Element& element, const Property& property) {
   if (element.name != "vertex" || property.length_type || property.name.size() != 1) return no_axis;
-  return std::min(std::string_view("xyz").find(property.name), no_axis);
+  return std::min(std::string("xyz").find(property.name), no_axis);
 }
 
 ScalarType scalar_type(std::string_view name, const LineReader& lines) {
@@ -85,12 +85,12 @@ Encoding read_encoding(const Words& words, const LineReader& lines) {
 
 Element read_element(const Words& words, const LineReader& lines) {
   if (words.size() != 3) lines.fail(quoted(lines.line()), "element NAME COUNT");
-  return {words[1], count_of(words[2], lines), {}};
+  return {std::string(words[1]), count_of(words[2], lines), {}};
 }
 
 Property read_property(const Words& words, const LineReader& lines) {
   if (words.size() == 3 && words[1] != "list") {
-    return {words[2], scalar_type(words[1], lines), std::nullopt};
+    return {std::string(words[2]), scalar_type(words[1], lines), std::nullopt};
   }
   if (words.size() != 5 || words[1] != "list") {
     lines.fail(quoted(lines.line()), "property TYPE NAME or property list TYPE TYPE NAME");
@@ -99,7 +99,7 @@ Property read_property(const Words& words, const LineReader& lines) {
   if (!is_integer(length_type)) {
     lines.fail("a list length of type " + quoted(words[2]), "an integer type");
   }
-  return {words[4], scalar_type(words[3], lines), length_type};
+  return {std::string(words[4]), scalar_type(words[3], lines), length_type};
 }
 
 /// The header must describe one element vertex with x, y and z.
@@ -183,15 +183,13 @@ Eigen::Vector3d read_text_row(const Element& element, const LineReader& lines) {
   return point;
 }
 
-Cloud read_text(const FileBytes& file, LineReader& lines, const Header& header) {
-  Cloud cloud;
+void stream_text(FileStream& file, LineReader& lines, const Header& header, PointSink& sink) {
+  PointBatch batch(sink);
   for (const Element& element : header.elements) {
     const bool is_vertex = element.name == "vertex";
     if (is_vertex) {
       const std::size_t shortest_row = 2 * element.properties.size();
-      const std::uint64_t room = (file.size() - lines.offset()) / shortest_row + 1;
-      file.require_memory(std::min(element.count, room));
-      cloud.points.reserve(std::min(element.count, room));
+      sink.require_memory(std::min(element.count, file.left() / shortest_row + 1), 0);
     }
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (!lines.next_filled()) {
@@ -200,48 +198,44 @@ Cloud read_text(const FileBytes& file, LineReader& lines, const Header& header) 
             std::to_string(element.count));
       }
       const Eigen::Vector3d point = read_text_row(element, lines);
-      if (is_vertex) cloud.points.push_back(point);
+      if (is_vertex) batch.add(point);
     }
   }
   if (lines.next_filled()) lines.fail(quoted(lines.line()), "the end after the last element");
-  return cloud;
+  batch.hand_on();
 }
 
 /// Walks over the binary part.
 class BinaryBody {
  public:
-  BinaryBody(const FileBytes& file, std::size_t begin, bool swapped)
-      : file_(file), at_(begin), swapped_(swapped) {}
+  BinaryBody(FileStream& file, bool swapped, PointSink& sink)
+      : file_(file), swapped_(swapped), sink_(sink) {}
 
-  Cloud read(const std::vector<Element>& elements) {
-    Cloud cloud;
+  void stream(const std::vector<Element>& elements) {
     for (const Element& element : elements) {
       require(element.count, element.row(), element);
-      if (element.name == "vertex") {
-        file_.require_memory(element.count);
-        cloud.points.resize(element.count);
-      }
+      if (element.name == "vertex") sink_.require_memory(element.count, 0);
       if (element.has_lists()) {
-        walk(element, cloud);
+        walk(element);
+      } else if (element.name == "vertex") {
+        stream_rows(file_, element.count, columns_of(element), swapped_, sink_);
       } else {
-        copy(element, cloud);
+        file_.skip(element.count * element.row());
       }
     }
-    file_.require_end(at_);
-    return cloud;
+    file_.require_end();
   }
 
  private:
   void require(std::uint64_t count, std::size_t bytes, const Element& element) const {
-    const std::size_t left = file_.size() - at_;
-    if (count <= left / bytes) return;
-    file_.fail("byte " + std::to_string(at_), std::to_string(left) + " bytes of data",
-               std::to_string(count) + " times " + std::to_string(bytes) + " bytes of element " +
-                   quoted(element.name));
+    if (count <= file_.left() / bytes) return;
+    file_.fail_here(std::to_string(file_.left()) + " bytes of data",
+                    std::to_string(count) + " times " + std::to_string(bytes) +
+                        " bytes of element " + quoted(element.name));
   }
 
-  /// Rows of fixed size.
-  void copy(const Element& element, Cloud& cloud) {
+  /// Of rows of fixed size.
+  static Columns columns_of(const Element& element) {
     Columns columns;
     std::size_t offset = 0;
     for (const Property& property : element.properties) {
@@ -252,15 +246,14 @@ class BinaryBody {
       }
       offset += size_of(property.type);
     }
-    if (element.name == "vertex") {
-      copy_points(file_.data() + at_, columns, swapped_, cloud.points);
-    }
-    at_ += element.count * element.row();
+    return columns;
   }
 
   /// Rows with lists, each of its own size.
-  void walk(const Element& element, Cloud& cloud) {
+  void walk(const Element& element) {
+    PointBatch batch(sink_);
     for (std::uint64_t i = 0; i < element.count; ++i) {
+      Eigen::Vector3d point = Eigen::Vector3d::Zero();
       for (const Property& property : element.properties) {
         if (property.length_type) {
           skip_list(element, property);
@@ -268,44 +261,46 @@ class BinaryBody {
         }
         const double value = take(property.type, element);
         const std::size_t axis = axis_of(element, property);
-        if (axis != no_axis) cloud.points[i][static_cast<Eigen::Index>(axis)] = value;
+        if (axis != no_axis) point[static_cast<Eigen::Index>(axis)] = value;
       }
+      if (element.name == "vertex") batch.add(point);
     }
+    batch.hand_on();
   }
 
   void skip_list(const Element& element, const Property& property) {
     const double length = take(*property.length_type, element);
-    if (length < 0.0) {
-      file_.fail("byte " + std::to_string(at_), "a list of negative length", "0 or more");
-    }
+    if (length < 0.0) file_.fail_here("a list of negative length", "0 or more");
     const auto entries = static_cast<std::uint64_t>(length);
     require(entries, size_of(property.type), element);
-    at_ += entries * size_of(property.type);
+    file_.skip(entries * size_of(property.type));
   }
 
   double take(ScalarType type, const Element& element) {
     require(1, size_of(type), element);
-    const double value = load_scalar(type, file_.data() + at_, swapped_);
-    at_ += size_of(type);
+    const double value = load_scalar(type, file_.peek(size_of(type)).data(), swapped_);
+    file_.skip(size_of(type));
     return value;
   }
 
-  const FileBytes& file_;
-  std::size_t at_;
+  FileStream& file_;
   bool swapped_;
+  PointSink& sink_;
 };
 
 }  // namespace
 
-Cloud read_ply(const FileBytes& file) {
+CloudShape stream_ply(FileStream& file, PointSink& sink) {
   LineReader lines(file);
   const Header header = read_header(lines);
-  Cloud cloud = header.encoding == Encoding::ascii
-                    ? read_text(file, lines, header)
-                    : BinaryBody(file, lines.offset(), header.encoding == Encoding::big_endian)
-                          .read(header.elements);
-  cloud.width = cloud.points.size();
-  return cloud;
+  if (header.encoding == Encoding::ascii) {
+    stream_text(file, lines, header, sink);
+  } else {
+    BinaryBody(file, header.encoding == Encoding::big_endian, sink).stream(header.elements);
+  }
+  const auto vertices = std::find_if(header.elements.begin(), header.elements.end(),
+                                     [](const Element& e) { return e.name == "vertex"; });
+  return {vertices->count, 1};
 }
 
 }  // namespace excavplan

@@ -1,16 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include <excavplan/error.hpp>
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/random.hpp>
+#include <excavplan/survey/scan_surface.hpp>
 
+#include "cloud_cell.hpp"
+#include "cloud_outline.hpp"
 #include "json_file.hpp"
+#include "parallel.hpp"
 
 namespace excavplan {
 namespace {
@@ -60,206 +67,341 @@ HeightMap empty_map(const Rectangle& extent, const RasterOptions& options) {
   return map;
 }
 
-/// A point with its plan position against the centre of its cell [cell].
-struct CellPoint {
-  float x;
-  float y;
-  double z;
-};
+/// Gives all points, those that are not finite included, to a visitor; the same on every call.
+using PointSource = std::function<void(const PointVisitor&)>;
 
-/// The points of a cloud by cell; cells are counted as Eigen stores the map, column by column.
+/// The points of a scan by cell; cells are counted as Eigen stores the map, column by column. What
+/// does not fit into memory at a time is read in bands of cells, each from the source.
 class PointsByCell {
  public:
-  PointsByCell(const Cloud& cloud, const HeightMap& map) {
-    const auto cells = static_cast<std::size_t>(map.z.size());
-    if (cloud.points.size() >= outside) {
-      throw Error(ErrorKind::bad_input, "rasterise: the cloud has " +
-                                            std::to_string(cloud.points.size()) +
-                                            " points, at most 2^32 - 2 are possible");
-    }
-    begin_.assign(cells + 1, 0);
-    std::vector<std::uint32_t> cell_of(cloud.points.size());
-    for (std::size_t i = 0; i < cell_of.size(); ++i) {
-      cell_of[i] = locate(cloud.points[i], map);
-      if (cell_of[i] != outside) ++begin_[cell_of[i]];
-    }
-    std::uint32_t total = 0;
-    for (std::uint32_t& begin : begin_) total += std::exchange(begin, total);
-
-    points_.resize(total);
-    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-    const auto rows = static_cast<std::uint32_t>(map.z.rows());
-    for (std::size_t i = 0; i < cell_of.size(); ++i) {
-      if (cell_of[i] == outside) continue;
-      const Eigen::Vector3d& point = cloud.points[i];
-      const double x = (point.x() - map.x(cell_of[i] / rows)) / map.cell;
-      const double y = (point.y() - map.y(cell_of[i] % rows)) / map.cell;
-      points_[next[cell_of[i]]++] = {static_cast<float>(x), static_cast<float>(y), point.z()};
-    }
+  PointsByCell(const PointSource& source, const HeightMap& map, std::uint64_t memory)
+      : source_(source),
+        origin_(map.origin),
+        per_cell_(1.0 / map.cell),
+        rows_(map.z.rows()),
+        columns_(map.z.cols()),
+        counts_(static_cast<std::size_t>(map.z.size())) {
+    StreamSample<double> heights(1024);
+    source_([&](const std::vector<Eigen::Vector3d>& points) {
+      for (const Eigen::Vector3d& point : points) {
+        const Place place = locate(point);
+        if (place.cell == outside) continue;
+        ++counts_[place.cell];
+        heights.add(point.z());
+      }
+    });
+    base_ = heights.values().empty() ? 0.0 : middle_of(heights.values());
+    part(std::max<std::uint64_t>(memory / sizeof(CellPoint), 1));
   }
 
-  struct Range {
-    const CellPoint* first;
-    const CellPoint* last;
-    const CellPoint* begin() const { return first; }
-    const CellPoint* end() const { return last; }
-    std::size_t size() const { return static_cast<std::size_t>(last - first); }
-  };
-  Range in_cell(Index cell) const {
-    const auto i = static_cast<std::size_t>(cell);
-    return {points_.data() + begin_[i], points_.data() + begin_[i + 1]};
+  double base() const { return base_; }  ///< that heights of points are counted from [m]
+  std::size_t count(Index cell) const { return counts_[static_cast<std::size_t>(cell)]; }
+
+  /// Calls `visit(cell, points)` for every cell with points, in their order.
+  template <typename Visit>
+  void for_each_cell(const Visit& visit) {
+    for (std::size_t band = 0; band + 1 < bands_.size(); ++band) {
+      if (band != loaded_) load(band);
+      for (std::size_t cell = bands_[band]; cell < bands_[band + 1]; ++cell) {
+        if (counts_[cell] == 0) continue;
+        const std::size_t i = cell - bands_[band];
+        visit(static_cast<Index>(cell),
+              CellRange{points_.get() + begin_[i], points_.get() + begin_[i + 1]});
+      }
+    }
   }
 
  private:
-  static constexpr std::uint32_t outside = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::size_t outside = std::numeric_limits<std::size_t>::max();
 
-  static std::uint32_t locate(const Eigen::Vector3d& point, const HeightMap& map) {
-    const double column = (point.x() - map.origin.x()) / map.cell;
-    const double row = (point.y() - map.origin.y()) / map.cell;
-    const bool inside = column >= 0.0 && column < static_cast<double>(map.z.cols()) && row >= 0.0 &&
-                        row < static_cast<double>(map.z.rows()) && std::isfinite(point.z());
-    if (!inside) return outside;
-    return static_cast<std::uint32_t>(row) +
-           static_cast<std::uint32_t>(map.z.rows()) * static_cast<std::uint32_t>(column);
+  struct Place {
+    std::size_t cell = outside;
+    double column = 0.0;
+    double row = 0.0;
+  };
+
+  Place locate(const Eigen::Vector3d& point) const {
+    Place place;
+    place.column = (point.x() - origin_.x()) * per_cell_;
+    place.row = (point.y() - origin_.y()) * per_cell_;
+    const bool inside = place.column >= 0.0 && place.column < static_cast<double>(columns_) &&
+                        place.row >= 0.0 && place.row < static_cast<double>(rows_) &&
+                        std::isfinite(point.z());
+    if (inside) {
+      place.cell = static_cast<std::size_t>(place.row) +
+                   static_cast<std::size_t>(rows_) * static_cast<std::size_t>(place.column);
+    }
+    return place;
   }
 
-  std::vector<std::uint32_t> begin_;  // of the points of every cell, and the end
-  std::vector<CellPoint> points_;
+  static double middle_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  }
+
+  /// Bands of at most so many points, but of one cell at least.
+  void part(std::uint64_t most_points) {
+    bands_.assign(1, 0);
+    std::uint64_t points = 0;
+    std::uint64_t most = 0;
+    for (std::size_t cell = 0; cell < counts_.size(); ++cell) {
+      if (points > 0 && points + counts_[cell] > most_points) {
+        bands_.push_back(cell);
+        points = 0;
+      }
+      points += counts_[cell];
+      most = std::max(most, points);
+    }
+    bands_.push_back(counts_.size());
+    points_.reset(new CellPoint[most]);
+  }
+
+  void load(std::size_t band) {
+    const std::size_t first = bands_[band];
+    const std::size_t last = bands_[band + 1];
+    begin_.assign(last - first + 1, 0);
+    for (std::size_t cell = first; cell < last; ++cell) {
+      begin_[cell - first + 1] = begin_[cell - first] + counts_[cell];
+    }
+    std::vector<std::uint64_t> next(begin_.begin(), begin_.end() - 1);
+    std::uint64_t placed = 0;
+    source_([&](const std::vector<Eigen::Vector3d>& points) {
+      for (const Eigen::Vector3d& point : points) {
+        const Place place = locate(point);
+        if (place.cell - first >= last - first) continue;  // outside wraps to the largest number
+        const std::size_t cell = place.cell - first;
+        if (next[cell] == begin_[cell + 1]) refuse_change();
+        points_[next[cell]++] = {within(place.column), within(place.row),
+                                 static_cast<float>(point.z() - base_)};
+        ++placed;
+      }
+    });
+    if (placed != begin_.back()) refuse_change();
+    loaded_ = band;
+  }
+
+  static std::uint16_t within(double place) {
+    return static_cast<std::uint16_t>(65536.0 * (place - std::floor(place)));
+  }
+
+  [[noreturn]] static void refuse_change() {
+    throw Error(ErrorKind::bad_file, "a scan changed while it was read");
+  }
+
+  const PointSource& source_;
+  Eigen::Vector2d origin_;
+  double per_cell_;
+  Index rows_;
+  Index columns_;
+  std::vector<std::uint32_t> counts_;
+  std::vector<std::size_t> bands_;  ///< first cells, and the end
+  double base_ = 0.0;
+  std::size_t loaded_ = outside;
+  std::vector<std::uint64_t> begin_;  ///< of the points of every cell of the band, and the end
+  std::unique_ptr<CellPoint[]> points_;
 };
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
+/// The level of every cell and how far points may be from it.
+struct Levels {
+  Eigen::ArrayXXd height;  ///< above the base [m]; NaN without points
+  double noise = 0.0;      ///< lower quartile of the cells' robust sd [m]
+};
 
-Eigen::ArrayXXd cell_medians(const PointsByCell& points, const HeightMap& map) {
-  Eigen::ArrayXXd medians = map.z;
-  std::vector<double> heights;
-  for (Index cell = 0; cell < medians.size(); ++cell) {
-    const auto in_cell = points.in_cell(cell);
-    if (in_cell.size() == 0) continue;
-    heights.clear();
-    for (const CellPoint& point : in_cell) heights.push_back(point.z);
-    medians(cell) = median(heights);
-  }
-  return medians;
-}
-
-/// Lower quartile of the cells' robust standard deviation (1.4826 times the median absolute
-/// deviation), from some thousand cells spread over the map: level ground without outliers.
-double noise_of_level_cells(const PointsByCell& points, const Eigen::ArrayXXd& medians) {
+/// Medians of all cells, from 128 to 256 points where there are more, and the noise: lower quartile
+/// of the robust standard deviation (1.4826 times the median absolute deviation) of some thousand
+/// cells spread over the map, which is that of level ground without outliers.
+Levels find_levels(PointsByCell& points, const HeightMap& map) {
+  constexpr std::size_t enough_points = 256;
   constexpr std::size_t fewest_points = 5;
   constexpr std::size_t fewest_cells = 10;
   constexpr std::size_t most_samples = 4096;
-  std::vector<Index> cells;
-  for (Index cell = 0; cell < medians.size(); ++cell) {
-    if (points.in_cell(cell).size() >= fewest_points) cells.push_back(cell);
+  std::size_t cells = 0;
+  for (Index cell = 0; cell < map.z.size(); ++cell) {
+    if (points.count(cell) >= fewest_points) ++cells;
   }
-  if (cells.size() < fewest_cells) return std::numeric_limits<double>::infinity();
-  const std::size_t stride = (cells.size() + most_samples - 1) / most_samples;
-  std::vector<double> deviations;
+  const std::size_t stride = (cells + most_samples - 1) / most_samples;
+  Levels levels{map.z};
+  std::vector<float> values;
   std::vector<double> noise;
-  for (std::size_t i = 0; i < cells.size(); i += stride) {
-    deviations.clear();
-    for (const CellPoint& point : points.in_cell(cells[i])) {
-      deviations.push_back(std::abs(point.z - medians(cells[i])));
-    }
-    noise.push_back(1.4826 * median(deviations));
+  std::size_t seen = 0;
+  points.for_each_cell([&](Index cell, CellRange in_cell) {
+    values.clear();
+    const std::size_t step = 1 + in_cell.size() / enough_points;
+    for (std::size_t i = 0; i < in_cell.size(); i += step) values.push_back(in_cell.first[i].z);
+    const double level = median(values);
+    levels.height(cell) = level;
+    if (in_cell.size() < fewest_points || seen++ % stride != 0) return;
+    for (float& value : values) value = std::abs(value - static_cast<float>(level));
+    noise.push_back(1.4826 * median(values));
+  });
+  if (cells < fewest_cells) {
+    levels.noise = std::numeric_limits<double>::infinity();
+    return levels;
   }
   const auto quartile = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 4);
   std::nth_element(noise.begin(), quartile, noise.end());
-  return *quartile;
+  levels.noise = *quartile;
+  return levels;
 }
 
-struct Band {
-  double low;
-  double high;
-  bool contains(double z) const { return z >= low && z <= high; }
-};
+/// Cells whose upper points are no ground, with the height above which those lie.
+using Ceilings = std::unordered_map<Index, double>;
 
-/// The heights that ground in a cell may have; see rasterise(). The farthest neighbour on each side
-/// is left out only where enough others remain.
-Band band_around(const Eigen::ArrayXXd& medians, Index row, Index column, double gap) {
-  constexpr std::size_t enough = 5;
-  std::array<double, 9> heights{};
-  std::size_t count = 0;
-  const Index last_column = std::min(column + 1, medians.cols() - 1);
-  const Index last_row = std::min(row + 1, medians.rows() - 1);
-  for (Index c = std::max<Index>(column - 1, 0); c <= last_column; ++c) {
-    for (Index r = std::max<Index>(row - 1, 0); r <= last_row; ++r) {
-      if (!std::isnan(medians(r, c))) heights[count++] = medians(r, c);
+/// True if two cells around have their ground above `valley`, or too few are known.
+bool upper_level_goes_on(const Eigen::ArrayXXd& lowest, Index cell, double valley) {
+  constexpr int enough_known = 4;  // with the cell itself
+  constexpr int enough_above = 2;
+  const Index column = cell / lowest.rows();
+  const Index row = cell % lowest.rows();
+  int known = 0;
+  int above = 0;
+  for (Index c = std::max<Index>(column - 1, 0); c <= std::min(column + 1, lowest.cols() - 1);
+       ++c) {
+    for (Index r = std::max<Index>(row - 1, 0); r <= std::min(row + 1, lowest.rows() - 1); ++r) {
+      known += std::isnan(lowest(r, c)) ? 0 : 1;
+      above += lowest(r, c) >= valley ? 1 : 0;
     }
   }
-  std::sort(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(count));
-  const std::size_t dropped = count >= enough ? 1 : 0;
-  const double low = heights[dropped];
-  const double high = heights[count - 1 - dropped];
-  const double reach = gap + 0.5 * (high - low);
-  return {low - reach, high + reach};
+  return known < enough_known || above >= enough_above;
 }
 
-/// First and second moments of accepted points, heights against a reference.
-class Moments {
- public:
-  void add(const CellPoint& point, double reference) {
-    const Eigen::Vector3d p(static_cast<double>(point.x), static_cast<double>(point.y),
-                            point.z - reference);
-    ++count_;
-    sum_ += p;
-    products_ += p * p.transpose();
+/// Takes what grows or hangs above the ground off the levels. A gap must be wider than noise makes
+/// it, and than a slope does between a few points.
+Ceilings lower_to_ground(PointsByCell& points, Levels& levels, double cell_size) {
+  constexpr double gap_to_noise = 8.0;
+  constexpr double gap_to_cell = 0.5;
+  Ceilings ceilings;
+  if (!std::isfinite(levels.noise)) return ceilings;
+  const double gap = std::max(gap_to_noise * levels.noise, gap_to_cell * cell_size);
+  std::vector<Split> splits;
+  std::vector<float> heights;
+  points.for_each_cell([&](Index cell, CellRange in_cell) {
+    auto split = two_levels(in_cell, levels.height(cell), gap, heights);
+    if (!split) return;
+    split->cell = cell;
+    splits.push_back(*split);
+  });
+  Eigen::ArrayXXd lowest = levels.height;
+  for (const Split& split : splits) lowest(split.cell) = split.low;
+  for (const Split& split : splits) {
+    if (!split.among || upper_level_goes_on(lowest, split.cell, split.valley)) continue;
+    levels.height(split.cell) = split.low;
+    ceilings[split.cell] = split.valley;
   }
+  return ceilings;
+}
 
-  std::size_t count() const { return count_; }
+Surface surface_of(const PointSource& source, HeightMap map, const RasterOptions& options) {
+  PointsByCell points(source, map, options.memory);
+  Levels levels = find_levels(points, map);
+  const Ceilings ceilings = lower_to_ground(points, levels, map.cell);
+  constexpr std::size_t trusted = 5;  // points, whose median is hardly ever an outlier
+  const double gap = options.outlier_distance * levels.noise;
+  const Index rows = map.z.rows();
+  Surface surface{map, map.z, Eigen::ArrayXXi::Zero(rows, map.z.cols())};
+  points.for_each_cell([&](Index cell, CellRange in_cell) {
+    Surroundings around = surroundings_of(levels.height, cell % rows, cell / rows);
+    const double level = levels.height(cell);
+    if (in_cell.size() >= trusted) {
+      around.low = std::min(around.low, level);
+      around.high = std::max(around.high, level);
+    }
+    const double reach = gap + 0.5 * (around.high - around.low);
+    Band band{around.low - reach, around.high + reach};
+    if (const auto ceiling = ceilings.find(cell); ceiling != ceilings.end()) {
+      band.high = std::min(band.high, ceiling->second);
+    }
+    const CellHeight result = CellMean(in_cell, band, level, levels.noise).result(around.slope);
+    surface.height.z(cell) = points.base() + (level + result.height);
+    surface.variance(cell) = result.variance;
+    surface.points(cell) = result.points;
+  });
+  return surface;
+}
 
-  /// The mean height, moved to the cell's centre along a plane through the points if they are
-  /// enough and spread over the cell: at least half the standard deviation of an even spread,
-  /// 1 / sqrt(12), in every direction.
-  double height_at_centre() const {
-    constexpr std::size_t enough = 8;
-    constexpr double least_variance = 0.25 / 12.0;
-    const Eigen::Vector3d mean = sum_ / static_cast<double>(count_);
-    if (count_ < enough) return mean.z();
-    const Eigen::Matrix3d c = products_ / static_cast<double>(count_) - mean * mean.transpose();
-    const double half_trace = 0.5 * (c(0, 0) + c(1, 1));
-    const double determinant = c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1);
-    const double smallest =
-        half_trace - std::sqrt(std::max(0.0, half_trace * half_trace - determinant));
-    if (smallest < least_variance) return mean.z();
-    const double slope_x = (c(1, 1) * c(0, 2) - c(0, 1) * c(1, 2)) / determinant;
-    const double slope_y = (c(0, 0) * c(1, 2) - c(0, 1) * c(0, 2)) / determinant;
-    return mean.z() - slope_x * mean.x() - slope_y * mean.y();
+/// Takes points into the site frame and leaves out those outside the area.
+void visit_scan(const Scan& scan, const PointVisitor& visit) {
+  const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity();
+  const Eigen::Matrix3d rotation = scan.site_from_scan.topLeftCorner<3, 3>();
+  const Eigen::Vector3d shift = scan.site_from_scan.topRightCorner<3, 1>();
+  std::vector<Eigen::Vector3d> kept;
+  const auto bring_in = [&](const std::vector<Eigen::Vector3d>& points) {
+    kept.clear();
+    for (const Eigen::Vector3d& point : points) {
+      const Eigen::Vector3d p = is_moved ? Eigen::Vector3d(rotation * point + shift) : point;
+      if (!scan.area || scan.area->contains(p.x(), p.y())) kept.push_back(p);
+    }
+    visit(kept);
+  };
+  for (const std::string& file : scan.files) {
+    if (is_moved || scan.area) {
+      stream_cloud(file, bring_in);
+    } else {
+      stream_cloud(file, visit);
+    }
   }
-
- private:
-  std::size_t count_ = 0;
-  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d products_ = Eigen::Matrix3d::Zero();
-};
+}
 
 }  // namespace
 
-HeightMap rasterise(const Cloud& cloud, const Rectangle& extent, const RasterOptions& options) {
-  HeightMap map = empty_map(extent, options);
-  const PointsByCell points(cloud, map);
-  const Eigen::ArrayXXd medians = cell_medians(points, map);
-  const double gap = options.outlier_distance * noise_of_level_cells(points, medians);
-  for (Index column = 0; column < map.z.cols(); ++column) {
-    for (Index row = 0; row < map.z.rows(); ++row) {
-      const auto in_cell = points.in_cell(column * map.z.rows() + row);
-      const double reference = medians(row, column);
-      if (in_cell.size() == 1) map.z(row, column) = reference;
-      if (in_cell.size() < 2) continue;
-      const Band band = band_around(medians, row, column, gap);
-      Moments moments;
-      for (const CellPoint& point : in_cell) {
-        if (band.contains(point.z)) moments.add(point, reference);
-      }
-      if (moments.count() > 0) map.z(row, column) = reference + moments.height_at_centre();
-    }
+Surface survey_surface(const Scan& scan, const Rectangle& extent, const RasterOptions& options) {
+  const PointSource source = [&scan](const PointVisitor& visit) { visit_scan(scan, visit); };
+  return surface_of(source, empty_map(extent, options), options);
+}
+
+std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
+                                     const RasterOptions& options, unsigned threads) {
+  std::vector<Surface> surfaces(scans.size());
+  parallel_for(scans.size(), threads,
+               [&](std::size_t i) { surfaces[i] = survey_surface(scans[i], extent, options); });
+  return surfaces;
+}
+
+RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
+                                 const RasterOptions& options, double registration_cell) {
+  constexpr int most_rounds = 3;
+  RasterOptions coarse = options;
+  coarse.cell = std::max(options.cell, registration_cell);
+  const bool is_fine = coarse.cell > options.cell;
+  Scan after = scans.after;
+  RegisteredPair result;
+  SurveyedPair& pair = result.surfaces;
+  const auto survey = [&](const RasterOptions& raster) {
+    std::vector<Surface> both = survey_surfaces({scans.before, after}, extent, raster);
+    pair.before = std::move(both[0]);
+    pair.after = std::move(both[1]);
+  };
+  survey(coarse);
+  pair.alignment = result.first = align(pair.before, pair.after);
+  for (int round = 1; round < most_rounds; ++round) {
+    const double largest = pair.alignment.largest_shift(pair.after.height);
+    if (!(largest > (is_fine ? 0.0 : 0.5 * options.cell))) break;
+    result.correction = pair.alignment.correction() * result.correction;
+    after.site_from_scan = result.correction * scans.after.site_from_scan;
+    pair.after = survey_surface(after, extent, coarse);
+    pair.alignment = align(pair.before, pair.after);
   }
-  return map;
+  if (is_fine) survey(options);
+  result.correction = pair.alignment.correction() * result.correction;
+  return result;
+}
+
+ScanOutline outline(const Scan& scan) {
+  CloudOutline found;
+  visit_scan(scan, [&found](const std::vector<Eigen::Vector3d>& points) { found.add(points); });
+  return found.result();
+}
+
+std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threads) {
+  std::vector<ScanOutline> found(scans.size());
+  parallel_for(scans.size(), threads, [&](std::size_t i) { found[i] = outline(scans[i]); });
+  return found;
+}
+
+HeightMap rasterise(const Cloud& cloud, const Rectangle& extent, const RasterOptions& options) {
+  const PointSource source = [&cloud](const PointVisitor& visit) { visit(cloud.points); };
+  return surface_of(source, empty_map(extent, options), options).height;
 }
 
 }  // namespace excavplan

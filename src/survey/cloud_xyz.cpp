@@ -64,8 +64,9 @@ std::optional<std::array<std::size_t, 3>> columns_by_name(const Words& names) {
 
 }  // namespace
 
-Cloud read_xyz(const FileBytes& file) {
-  Cloud cloud;
+CloudShape stream_xyz(FileStream& file, PointSink& sink) {
+  PointBatch batch(sink);
+  std::uint64_t points = 0;
   LineReader lines(file);
   char separator = 0;
   std::array<std::size_t, 3> xyz = {0, 1, 2};
@@ -84,16 +85,13 @@ Cloud read_xyz(const FileBytes& file) {
     if (columns.size() <= *std::max_element(xyz.begin(), xyz.end())) {
       lines.fail(std::to_string(columns.size()) + " columns", "x, y and z");
     }
-    if (cloud.points.size() == cloud.points.capacity()) {
-      file.require_memory(2 * cloud.points.size());
-    }
-    cloud.points.push_back(Eigen::Vector3d{number_of(columns[xyz[0]], lines),
-                                           number_of(columns[xyz[1]], lines),
-                                           number_of(columns[xyz[2]], lines)});
+    batch.add({number_of(columns[xyz[0]], lines), number_of(columns[xyz[1]], lines),
+               number_of(columns[xyz[2]], lines)});
+    ++points;
   }
-  if (cloud.points.empty()) lines.fail("no row of numbers", "x y z");
-  cloud.width = cloud.points.size();
-  return cloud;
+  if (points == 0) lines.fail("no row of numbers", "x y z");
+  batch.hand_on();
+  return {points, 1};
 }
 
 }  // namespace excavplan

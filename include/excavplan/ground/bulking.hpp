@@ -11,9 +11,21 @@ namespace excavplan {
 /// Bulking factor k = V_after / V_before (the paper's eq. 1) and its standard deviation by the
 /// delta method, covariance included: u_k^2 = u_a^2 + u_b^2 - 2 cov / (V_a V_b).
 ///
-/// @return nothing if no hole was found or no dumped soil is in the scans, which a warning in
-///         `change` says
+/// @return nothing if no hole was found, no dumped soil is in the scans or too much of a zone was
+///         unseen, which a warning in `change` says
 std::optional<Measured> bulking_factor(const VolumeChange& change);
+
+/// Standard deviation of the bulking factor by source [-].
+struct BulkingErrors {
+  double noise = 0.0;
+  double correlated = 0.0;
+  double datum = 0.0;
+  double holes = 0.0;
+  double faces = 0.0;
+};
+
+/// Splits the standard deviation of bulking_factor(); all zero where that is nothing.
+BulkingErrors bulking_errors(const VolumeChange& change);
 
 /// Frees a bulking factor measured from height maps of the soil that fell back into the cut.
 ///

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,16 @@ enum class CloudFormat { pcd_ascii, pcd_binary, ply_ascii, ply_binary, xyz };
 /// @throws Error (bad_file) naming file, line or byte, what was found and what was expected
 Cloud read_cloud(const std::string& path, std::uint64_t memory_limit = std::uint64_t{4} << 30);
 
+using PointVisitor = std::function<void(const std::vector<Eigen::Vector3d>& points)>;
+
+/// Reads what read_cloud() reads, with the same errors, but hands the points on some thousand at a
+/// time in the order of the file and keeps none, so that a file may be of any size. Points that
+/// came before an error was found have been handed on. Of binary_compressed PCD x, y and z are
+/// held, 4 GiB of uncompressed data at most.
+///
+/// @throws Error (bad_file) as read_cloud()
+void stream_cloud(const std::string& path, const PointVisitor& visit);
+
 /// Writes a cloud; binary formats hold float64 if a coordinate needs it (float32 would move a point
 /// by more than 0.1 mm), else float32.
 ///
@@ -56,13 +67,13 @@ void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);
 struct CloudSummary {
   std::size_t points = 0;
   std::size_t finite_points = 0;
-  Eigen::Vector3d centroid =
-      Eigen::Vector3d::Zero();  ///< over the finite points [m]; NaN if there are none
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< over the finite points [m]; NaN if there
+                                                       ///< are none
   Eigen::Vector3d min = Eigen::Vector3d::Zero();
   Eigen::Vector3d max = Eigen::Vector3d::Zero();
   double density = 0.0;     ///< points per m^2 of occupied ground; NaN if they have no area
-  std::string frame_guess;  ///< "site (z up, ground near 0)", "map (large coordinates)", "camera (z
-                            ///< forward)", "unknown"
+  std::string frame_guess;  ///< "site (z up, ground near 0)", "map (large
+                            ///< coordinates)", "camera (z forward)", "unknown"
 };
 
 /// The frame is a guess for people, never acted upon: "map" if the centroid is over 10 km from the
@@ -76,18 +87,21 @@ struct RasterOptions {
   double cell = 0.05;             ///< [m], > 0
   double outlier_distance = 4.0;  ///< points this many robust sd beyond the heights found around
                                   ///< their cell are left out [-], > 0
+  std::uint64_t memory = std::uint64_t{256} << 20;  ///< for points held at a time [byte]; where
+                                                    ///< it does not do, scans are read again
 };
 
 /// One height per cell of the grid that covers `extent`, its lower corner snapped down to a
 /// multiple of the cell, so that clouds rasterised with one extent share one grid.
 ///
 /// The height is the mean of the cell's points that are no outliers, moved to the cell's centre by
-/// the local slope where the points tell it; NaN without points. Outliers lie outside the band
-/// [low - g, high + g], low and high the extreme medians of the 3 x 3 neighbourhood but for one on
-/// each side, g = outlier_distance * noise + (high - low) / 2, noise the lower quartile of the
-/// cells' robust sd: the two levels of a cell that a wall crosses both lie inside it, so that the
-/// volume between two maps stays unbiased. Where few cells hold five points nothing is left out,
-/// nor is a point that is alone in its cell.
+/// the local slope; NaN without points. Outliers lie outside the band [low - g, high + g], low and
+/// high the extreme medians of the 3 x 3 neighbourhood but for one on each side, which counts only
+/// if it is that of the cell itself and of five points at least; g = outlier_distance * noise +
+/// (high - low) / 2, noise the lower quartile of the cells' robust sd: the two levels of a cell
+/// that a wall crosses both lie inside it, so that the volume between two maps stays unbiased.
+/// Where few cells hold five points nothing is left out. survey_surface() says more, of which this
+/// is the height.
 ///
 /// @throws Error (bad_input) if an option is out of range or the map would hold more than 100
 /// million cells

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/survey/cloud.hpp>
+
+/// @file Surfaces from files of any size, which are read more than once and never held.
+
+namespace excavplan {
+
+/// Files taken at one time that together show one piece of ground.
+struct Scan {
+  std::vector<std::string> files;                                ///< each as read_cloud() reads it
+  Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();  ///< a rigid motion
+  std::optional<Rectangle> area;  ///< points outside, in the site frame, are left out
+};
+
+/// What a first look at a scan tells of its points inside the area.
+struct ScanOutline {
+  std::uint64_t points = 0;
+  std::uint64_t finite_points = 0;
+  std::optional<Rectangle> extent;  ///< as plan_extent(); none without finite points
+  double density = 0.0;             ///< points per m^2 of occupied ground; NaN if they have no area
+};
+
+/// Reads a scan once. Extent and density come from all points of a small scan, and of a large one
+/// from a random choice of 32768 to 65536 that is the same every time.
+/// @throws Error (bad_file) as read_cloud()
+ScanOutline outline(const Scan& scan);
+
+/// One outline for each scan, found side by side (0 threads: one per core).
+std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threads = 0);
+
+/// Cell for scans that are to be compared, from the sparsest of them [m]: so large that it holds 12
+/// points, which is where the noise of a volume stops falling with smaller cells, and, if it can,
+/// as large as 5 cm or a hundredth of the shorter side of the smallest scan; smaller ones show no
+/// more of what a bucket does (docs/methods.md#volumes).
+double cell_for(const std::vector<ScanOutline>& outlines);
+
+/// The surface of a scan on the grid of rasterise(), which says how outliers are told.
+///
+/// Within a cell the points are averaged by tiles of equal area as far as they are enough, so that
+/// neither a wall with few points nor a rim with many pulls the mean; then moved to the cell's
+/// centre by their own slope or, where they do not tell it, by that of the cells around. Where
+/// points lie on two levels one above the other, as with plants on the ground, and no cell around
+/// shows the upper level as its ground, the lower one counts; the two levels of a wall lie side by
+/// side and both count. The variance is that of the mean, from the scatter about the plane, not
+/// below (0.1 mm)^2; NaN for a cell with one accepted point.
+///
+/// The result does not depend on how a scan is parted into files.
+/// @throws Error (bad_file) as read_cloud(), or if a file changes while it is read; (bad_input) as
+/// rasterise()
+Surface survey_surface(const Scan& scan, const Rectangle& extent,
+                       const RasterOptions& options = {});
+
+/// One surface for each scan on one grid, found side by side (0 threads: one per core); the same
+/// for any number of threads.
+std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
+                                     const RasterOptions& options = {}, unsigned threads = 0);
+
+/// Two scans of one piece of ground.
+struct ScanPair {
+  Scan before;
+  Scan after;
+};
+
+/// Surfaces of a pair of scans, for measure_change().
+struct RegisteredPair {
+  SurveyedPair surfaces;
+  /// Takes points of the scan after to where the ground that did not change says they belong, in
+  /// the frame of the scan before; the identity where nothing significant moved.
+  Eigen::Matrix4d correction = Eigen::Matrix4d::Identity();
+  Alignment first;  ///< what align() found before anything was corrected
+};
+
+/// Surveys both scans and brings the one after onto the one before, by align() on cells of at least
+/// `registration_cell`: smaller ones of a sparse scan do not show slopes. A motion that moves
+/// points by more than half a cell in plan is taken off the points, which are then surveyed again.
+/// @throws Error as survey_surface() and align()
+RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
+                                 const RasterOptions& options, double registration_cell);
+
+}  // namespace excavplan

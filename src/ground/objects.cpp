@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/objects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ground/error_field.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double steepest = 1.7320508075688772;  // ours: 60 degrees
+constexpr double least_excess = 0.3;             // ours [m]
+constexpr double least_area = 0.02;              // ours: smaller ones are single bad cells [m^2]
+constexpr double edge_excess = 0.05;             // ours: as far as an object reaches [m]
+
+/// Height above the steepest surface that could lie there, less what one cell blurs.
+Eigen::ArrayXXd excess_of(const Eigen::ArrayXXd& z, double cell) {
+  return z - slope_limited(z, steepest * cell) - steepest * cell;
+}
+
+/// Cells within `margin` of the given ones.
+std::vector<Cell> widened(const std::vector<Cell>& cells, const Eigen::ArrayXXd& grid,
+                          double margin) {
+  const auto reach = static_cast<Eigen::Index>(std::ceil(margin));
+  Eigen::ArrayXXi taken = Eigen::ArrayXXi::Zero(grid.rows(), grid.cols());
+  std::vector<Cell> wide;
+  for (const Cell from : cells) {
+    for (Eigen::Index c = from.col - reach; c <= from.col + reach; ++c) {
+      for (Eigen::Index r = from.row - reach; r <= from.row + reach; ++r) {
+        if (r < 0 || c < 0 || r >= grid.rows() || c >= grid.cols() || taken(r, c) != 0) continue;
+        if (std::hypot(static_cast<double>(r - from.row), static_cast<double>(c - from.col)) >
+            std::max(margin, 1.5)) {
+          continue;
+        }
+        taken(r, c) = 1;
+        wide.push_back({r, c});
+      }
+    }
+  }
+  return wide;
+}
+
+/// What stands in `with` but not in `without`.
+std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd& without,
+                             double cell, double margin) {
+  constexpr int free = -1;
+  std::vector<Object> objects;
+  const Eigen::ArrayXXd rise =
+      (with - without).isNaN().select(with - without, (with - without).max(0.0));
+  const Eigen::ArrayXXd excess = excess_of(rise, cell);
+  if (!(excess > least_excess).any()) return objects;
+  const Eigen::ArrayXXd own_excess = excess_of(with, cell);
+  Eigen::ArrayXXi label = Eigen::ArrayXXi::Constant(rise.rows(), rise.cols(), free);
+  for_each_cell(rise, [&](Cell seed) {
+    if (label(seed.row, seed.col) != free) return;
+    if (!(std::min(excess(seed.row, seed.col), own_excess(seed.row, seed.col)) > least_excess)) {
+      return;
+    }
+    const auto joins = [&](Cell cell_at) { return excess(cell_at.row, cell_at.col) > edge_excess; };
+    Object object;
+    object.cells = mark_connected(label, seed, 0, joins);
+    object.is_blunder = static_cast<double>(object.cells.size()) * cell * cell < least_area;
+    if (!object.is_blunder) object.cells = widened(object.cells, rise, margin);
+    for (const Cell at : object.cells) {
+      const double change = with(at.row, at.col) - without(at.row, at.col);
+      if (!std::isnan(change)) object.volume += cell * cell * change;
+    }
+    objects.push_back(std::move(object));
+  });
+  return objects;
+}
+
+void blank(Eigen::ArrayXXd& z, const std::vector<Object>& objects) {
+  for (const Object& object : objects) {
+    for (const Cell at : object.cells) {
+      z(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell,
+                                     double margin) {
+  std::vector<Object> objects = standing(after, before, cell, margin);
+  std::vector<Object> gone = standing(before, after, cell, margin);
+  blank(after, objects);
+  blank(before, gone);
+  for (Object& object : gone) {
+    object.is_before = true;
+    object.volume = -object.volume;
+    objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,357 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/ground/registration.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <excavplan/error.hpp>
+
+#include "ground/error_field.hpp"
+#include "ground/grid_cells.hpp"
+#include "json_file.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t fewest_cells = 100;
+constexpr double least_noise = 1e-4;       // ours: no survey of soil is better [m]
+constexpr double tukey = 4.685;            // 95 % efficient for normal noise
+constexpr double quartile_to_sd = 3.1386;  // a quarter of normal residuals is within 0.3186 sd
+constexpr double least_bend = 0.02;        // ours: a shift of rough ground bends it by no more [-]
+constexpr double significant = 11.345;     // chi-square, three degrees of freedom, 99 %
+constexpr int rounds = 25;
+constexpr std::size_t most_samples = 20000;  // while weights are sought; all in the end
+
+/// Half-sample mode (Robertson and Cryer 1974).
+double half_sample_mode(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  std::size_t first = 0;
+  std::size_t count = values.size();
+  while (count > 3) {
+    const std::size_t half = (count + 1) / 2;
+    std::size_t best = first;
+    for (std::size_t i = first; i + half <= first + count; ++i) {
+      if (values[i + half - 1] - values[i] < values[best + half - 1] - values[best]) best = i;
+    }
+    first = best;
+    count = half;
+  }
+  return values[first + count / 2];
+}
+
+/// One cell known in both surfaces.
+struct Sample {
+  Cell cell;
+  double change;
+  Motion effect;
+  double bend;  ///< how far its slope changed, but for the tilt of the whole [-]
+  double weight = 1.0;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double tukey_weight(double sds) {
+  const double ratio = sds / tukey;
+  return ratio < 1.0 ? std::pow(1.0 - ratio * ratio, 2) : 0.0;
+}
+
+/// Least squares under a prior, with the columns of the motion scaled by how much of the gradient
+/// they are made of is more than noise: on level ground noise would seem to show a shift.
+class Aligner {
+ public:
+  Aligner(const Surface& before, const Surface& after, const AlignmentOptions& options)
+      : map_(before.height), options_(options) {
+    take_samples(before, after);
+    prior_.setConstant(options.turn_prior);
+    prior_.head<3>().setConstant(options.shift_prior);
+  }
+
+  Alignment find() {
+    Motion motion = Motion::Zero();
+    stride_ = samples_.size() / most_samples + 1;
+    std::vector<double> changes;
+    for (std::size_t i = 0; i < samples_.size(); i += stride_) {
+      changes.push_back(samples_[i].change);
+    }
+    motion(2) = half_sample_mode(std::move(changes));
+    for (int round = 0; round < rounds; ++round) {
+      const double before = scale_;
+      reweight(motion);
+      if (round == 0) find_reliable();
+      motion = solve(scale_ * scale_, all).motion;
+      if (round > 3 && std::abs(scale_ - before) < 1e-3 * scale_) break;
+    }
+    stride_ = 1;
+    reweight(motion);
+    find_reliable();
+    return judge(motion);
+  }
+
+ private:
+  using Chosen = std::array<bool, 6>;
+  static constexpr Chosen all = {true, true, true, true, true, true};
+
+  struct Solution {
+    Motion motion;
+    MotionCovariance covariance;
+  };
+
+  void take_samples(const Surface& before, const Surface& after) {
+    const Gradient one = gradient_of(before.height);
+    const Gradient two = gradient_of(after.height);
+    const Eigen::Vector2d tilt(tilt_of(two.x - one.x), tilt_of(two.y - one.y));
+    found_.centre = {0.0, 0.0, 0.0};
+    for_each_cell(map_.z, [&](Cell at) {
+      const Eigen::Vector2d first(one.x(at.row, at.col), one.y(at.row, at.col));
+      const Eigen::Vector2d second(two.x(at.row, at.col), two.y(at.row, at.col));
+      const Eigen::Vector2d slope = 0.5 * (first + second);
+      if (!(slope.norm() < options_.steepest)) return;
+      Sample sample;
+      sample.bend = (second - first - tilt).norm();
+      sample.cell = at;
+      sample.change = after.height.z(at.row, at.col) - before.height.z(at.row, at.col);
+      sample.effect << slope.x(), slope.y(), 0.0, 0.0, 0.0, 0.0;
+      samples_.push_back(sample);
+      found_.centre += Eigen::Vector3d(map_.x(at.col), map_.y(at.row), map_.z(at.row, at.col));
+    });
+    if (samples_.size() < fewest_cells) {
+      throw Error(ErrorKind::bad_input,
+                  "align: the surfaces share " + std::to_string(samples_.size()) +
+                      " known cells with known neighbours and no steep gradient, at least " +
+                      std::to_string(fewest_cells) + " are needed: do the scans overlap?");
+    }
+    found_.centre /= static_cast<double>(samples_.size());
+    for (Sample& sample : samples_) {
+      const Cell at = sample.cell;
+      const Eigen::Vector3d place =
+          Eigen::Vector3d(map_.x(at.col), map_.y(at.row), map_.z(at.row, at.col)) - found_.centre;
+      sample.effect = motion_effect(place, sample.effect.head<2>());
+    }
+  }
+
+  /// Median change of a slope; 0 if no cell is known in both.
+  static double tilt_of(const Eigen::ArrayXXd& change) {
+    std::vector<double> known;
+    for (const double value : change.reshaped()) {
+      if (!std::isnan(value)) known.push_back(value);
+    }
+    return known.empty() ? 0.0 : median(std::move(known));
+  }
+
+  /// Weighs by the change of height and by that of slope: the feathered edge of a hole or a heap
+  /// has a slope and a change that fit together like those of ground that was shifted.
+  void reweight(const Motion& motion) {
+    std::vector<double> away;
+    away.reserve(samples_.size() / stride_ + 1);
+    for (std::size_t i = 0; i < samples_.size(); i += stride_) {
+      away.push_back(std::abs(samples_[i].change - samples_[i].effect.dot(motion)));
+    }
+    std::vector<double> sorted = away;
+    const auto quarter = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 4);
+    std::nth_element(sorted.begin(), quarter, sorted.end());
+    scale_ = std::max(quartile_to_sd * *quarter, least_noise);
+    const double bend_sd = std::max(scale_ / (std::sqrt(6.0) * map_.cell), least_bend);
+    for (std::size_t i = 0; i < away.size(); ++i) {
+      Sample& sample = samples_[i * stride_];
+      sample.weight = tukey_weight(away[i] / scale_) * tukey_weight(sample.bend / bend_sd);
+    }
+  }
+
+  /// Share of the squared gradient on stable ground that the noise of the cells does not explain:
+  /// planes through 3 x 3 cells of two maps err by a twelfth of the variance of a difference over
+  /// the squared cell, half of that each.
+  void find_reliable() {
+    double weights = 0.0;
+    Eigen::Vector2d squares = Eigen::Vector2d::Zero();
+    for (std::size_t i = 0; i < samples_.size(); i += stride_) {
+      const Sample& sample = samples_[i];
+      weights += sample.weight;
+      squares += sample.weight * sample.effect.head<2>().cwiseAbs2();
+    }
+    const double noise = scale_ * scale_ / (24.0 * map_.cell * map_.cell);
+    constexpr double margin = 1.2;
+    const Eigen::Vector2d share =
+        (1.0 - margin * noise * (squares / weights).cwiseInverse().array()).cwiseMax(0.0);
+    reliable_ = {std::sqrt(share.x()),       std::sqrt(share.y()), 1.0, 1.0, 1.0,
+                 std::sqrt(share.maxCoeff())};
+  }
+
+  Solution solve(double variance, const Chosen& chosen) const {
+    MotionCovariance normal = MotionCovariance::Zero();
+    Motion right = Motion::Zero();
+    for (std::size_t i = 0; i < samples_.size(); i += stride_) {
+      const Sample& sample = samples_[i];
+      if (sample.weight == 0.0) continue;
+      normal.selfadjointView<Eigen::Lower>().rankUpdate(sample.effect, sample.weight / variance);
+      right += sample.weight * sample.change / variance * sample.effect;
+    }
+    normal.triangularView<Eigen::StrictlyUpper>() = normal.transpose();
+    Motion use;
+    for (int i = 0; i < 6; ++i) {
+      use(i) = chosen[static_cast<std::size_t>(i)] ? reliable_[static_cast<std::size_t>(i)] : 0.0;
+    }
+    normal = use.asDiagonal() * normal * use.asDiagonal();
+    normal.diagonal() += prior_.cwiseAbs2().cwiseInverse();
+    const Eigen::LDLT<MotionCovariance> factor(normal);
+    return {factor.solve(Motion(use.cwiseProduct(right))),
+            factor.solve(MotionCovariance::Identity())};
+  }
+
+  double inflated_variance(const Motion& motion) {
+    Eigen::ArrayXXd residual = Eigen::ArrayXXd::Constant(map_.z.rows(), map_.z.cols(), nan);
+    std::size_t stable = 0;
+    for (const Sample& sample : samples_) {
+      if (sample.weight == 0.0) continue;
+      residual(sample.cell.row, sample.cell.col) = sample.change - sample.effect.dot(motion);
+      ++stable;
+    }
+    found_.stable_share = static_cast<double>(stable) / static_cast<double>(samples_.size());
+    const double variance = find_noise(residual, map_.cell).large_area_variance(map_.cell);
+    return std::max(variance, scale_ * scale_);
+  }
+
+  /// Keeps of the motion what is significant, and says what may be left of it.
+  Alignment judge(const Motion& robust) {
+    const double variance = inflated_variance(robust);
+    const Solution full = solve(variance, all);
+    found_.found = full.motion;
+    found_.covariance = full.covariance;
+    found_.residual_sd = scale_;
+    const std::array<int, 3> vertical = {2, 3, 4};
+    const std::array<int, 3> lateral = {0, 1, 5};
+    found_.vertical_is_significant = stands_out(full, vertical);
+    found_.lateral_is_significant = stands_out(full, lateral);
+    Chosen chosen = {};
+    found_.left.setZero();
+    for (const int i : vertical) {
+      chosen[static_cast<std::size_t>(i)] = found_.vertical_is_significant;
+      for (const int j : vertical) found_.left(i, j) = full.covariance(i, j);
+      if (!found_.vertical_is_significant) continue;
+      found_.left.row(i).setZero();
+      found_.left(i, i) = prior_(i) * prior_(i);
+    }
+    for (const int i : lateral) {
+      chosen[static_cast<std::size_t>(i)] = found_.lateral_is_significant;
+      for (const int j : lateral) found_.left(i, j) = full.covariance(i, j);
+    }
+    found_.motion = solve(variance, chosen).motion;
+    for (int i = 0; i < 6; ++i) {
+      found_.supported[static_cast<std::size_t>(i)] =
+          full.covariance(i, i) < 0.25 * prior_(i) * prior_(i);
+    }
+    return found_;
+  }
+
+  static bool stands_out(const Solution& solution, const std::array<int, 3>& which) {
+    Eigen::Matrix3d covariance;
+    Eigen::Vector3d motion;
+    for (int i = 0; i < 3; ++i) {
+      motion(i) = solution.motion(which[static_cast<std::size_t>(i)]);
+      for (int j = 0; j < 3; ++j) {
+        covariance(i, j) = solution.covariance(which[static_cast<std::size_t>(i)],
+                                               which[static_cast<std::size_t>(j)]);
+      }
+    }
+    return motion.dot(covariance.ldlt().solve(motion)) > significant;
+  }
+
+  const HeightMap& map_;
+  const AlignmentOptions& options_;
+  std::vector<Sample> samples_;
+  Motion prior_;
+  std::array<double, 6> reliable_ = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  std::size_t stride_ = 1;  // of the samples looked at
+  double scale_ = 0.0;      // robust sd of a stable cell [m]
+  Alignment found_;
+};
+
+Eigen::Isometry3d rigid(const Alignment& alignment) {
+  const Eigen::Vector3d turn = alignment.motion.tail<3>();
+  const double angle = turn.norm();
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.translate(alignment.centre + alignment.motion.head<3>());
+  if (angle > 0.0) motion.rotate(Eigen::AngleAxisd(angle, turn / angle));
+  motion.translate(-alignment.centre);
+  return motion;
+}
+
+/// Slope along one axis from the known neighbours on both sides, or the one side that is known.
+double slope(double low, double here, double high, double cell) {
+  if (!std::isnan(low) && !std::isnan(high)) return (high - low) / (2.0 * cell);
+  if (!std::isnan(high)) return (high - here) / cell;
+  return std::isnan(low) ? 0.0 : (here - low) / cell;
+}
+
+void require_positive(double value, const std::string& option) {
+  if (!(value > 0.0)) {
+    throw Error(ErrorKind::bad_input,
+                "align: " + option + " is " + number_text(value) + ", must be positive");
+  }
+}
+
+}  // namespace
+
+MotionCovariance Alignment::default_left() {
+  MotionCovariance left = MotionCovariance::Zero();
+  left(2, 2) = std::pow(AlignmentOptions{}.shift_prior, 2);
+  return left;
+}
+
+Eigen::Matrix4d Alignment::correction() const { return rigid(*this).inverse().matrix(); }
+
+double Alignment::largest_shift(const HeightMap& map) const {
+  const Rectangle extent = map.extent();
+  double largest = 0.0;
+  for (const double x : {extent.x_min, extent.x_max}) {
+    for (const double y : {extent.y_min, extent.y_max}) {
+      const Eigen::Vector3d corner(x, y, centre.z());
+      largest = std::max(largest, (rigid(*this) * corner - corner).head<2>().norm());
+    }
+  }
+  return largest;
+}
+
+Alignment align(const Surface& before, const Surface& after, const AlignmentOptions& options) {
+  require_positive(options.shift_prior, "shift_prior");
+  require_positive(options.turn_prior, "turn_prior");
+  require_positive(options.steepest, "steepest");
+  if (!same_grid(before.height, after.height)) {
+    throw Error(ErrorKind::bad_input,
+                "align: the surfaces must be on one grid: same origin, cell and size");
+  }
+  return Aligner(before, after, options).find();
+}
+
+HeightMap realigned(const HeightMap& after, const Alignment& alignment) {
+  HeightMap map = after;
+  if (alignment.motion.isZero()) return map;
+  const auto z = [&](Eigen::Index row, Eigen::Index col) {
+    const bool inside = row >= 0 && col >= 0 && row < after.z.rows() && col < after.z.cols();
+    return inside ? after.z(row, col) : nan;
+  };
+  for_each_cell(after.z, [&](Cell at) {
+    const double here = after.z(at.row, at.col);
+    if (std::isnan(here)) return;
+    const Eigen::Vector2d gradient(
+        slope(z(at.row, at.col - 1), here, z(at.row, at.col + 1), after.cell),
+        slope(z(at.row - 1, at.col), here, z(at.row + 1, at.col), after.cell));
+    const Eigen::Vector3d place =
+        Eigen::Vector3d(after.x(at.col), after.y(at.row), here) - alignment.centre;
+    map.z(at.row, at.col) -= motion_effect(place, gradient).dot(alignment.motion);
+  });
+  return map;
+}
+
+}  // namespace excavplan

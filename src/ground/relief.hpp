@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <excavplan/ground/registration.hpp>
+
+#include "ground/change_zones.hpp"
+
+namespace excavplan {
+
+/// On even ground the relief of the scan before is its error, which the difference carries too:
+/// as far as stable ground shows that, it is taken off (a control variate). The ground under the
+/// zones is then known by its plane alone, so that height and tilts are open again.
+///
+/// @return the share of the relief taken off, at about -1 on even ground and 0 on rough ground
+double take_relief_off(const HeightMap& before, ChangedGround& ground, Alignment& left);
+
+}  // namespace excavplan

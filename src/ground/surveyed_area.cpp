@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/surveyed_area.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <excavplan/error.hpp>
+
+#include "ground/grid_cells.hpp"
+#include "ground/relief.hpp"
+#include "ground/zone_filling.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr Eigen::Index fewest_known_cells = 100;
+constexpr double least_noise = 1e-4;  // ours: no survey of soil is better [m]
+constexpr double steep = 1.0;         // ours: gentler faces have points enough to be averages [-]
+/// Points place a steep face no better than this share of their spacing, all along it alike;
+/// ours, from pits with upright walls under simulated cameras.
+constexpr double face_place = 0.08;
+
+/// Sums the difference over each zone: area, volume, place.
+void sum_zones(Area& area) {
+  const HeightMap& grid = area.grid;
+  const ChangedGround& ground = area.ground;
+  const double cell_area = grid.cell * grid.cell;
+  for_each_cell(ground.zone, [&](Cell cell) {
+    const int index = ground.zone(cell.row, cell.col);
+    if (index < 0) return;
+    ZoneSum& zone = area.zones[static_cast<std::size_t>(index)];
+    const Eigen::Vector2d place(grid.x(cell.col), grid.y(cell.row));
+    const double half = 0.5 * grid.cell;
+    if (zone.area == 0.0) zone.extent = {place.x(), place.y(), place.x(), place.y()};
+    zone.extent = {std::min(zone.extent.x_min, place.x() - half),
+                   std::min(zone.extent.y_min, place.y() - half),
+                   std::max(zone.extent.x_max, place.x() + half),
+                   std::max(zone.extent.y_max, place.y() + half)};
+    zone.volume += cell_area * ground.difference(cell.row, cell.col);
+    zone.area += cell_area;
+    zone.centre += cell_area * place;
+    if (area.unknown(cell.row, cell.col) != 0) zone.unknown += cell_area;
+  });
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    area.zones[i].centre /= area.zones[i].area;
+    area.zones[i].is_cut = ground.zone_is_cut[i];
+  }
+}
+
+/// Noise of the cells of each zone: what stable ground shows, or more where their points scatter.
+void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_variance) {
+  const double cell_area = area.grid.cell * area.grid.cell;
+  for_each_cell(area.ground.zone, [&](Cell cell) {
+    const int index = area.ground.zone(cell.row, cell.col);
+    if (index < 0 || area.unknown(cell.row, cell.col) != 0) return;
+    const double own = variance.size() > 0 ? variance(cell.row, cell.col) : stable_variance;
+    area.zones[static_cast<std::size_t>(index)].noise +=
+        cell_area * cell_area * (own > stable_variance ? own : stable_variance);
+  });
+}
+
+/// What a scan's steep faces may add to or take from each zone: their area seen from the side times
+/// how well the points place them.
+void sum_faces(Area& area, const Surface& scan, double noise_sd) {
+  if (scan.points.size() == 0) return;
+  const std::size_t zones = area.zones.size();
+  std::vector<double> faces(zones, 0.0);
+  std::vector<double> points(zones, 0.0);
+  const Gradient gradient = gradient_of(scan.height);
+  const double cell = area.grid.cell;
+  const double least = std::max(steep, 2.0 * noise_sd / cell);
+  for_each_cell(area.ground.zone, [&](Cell at) {
+    const int index = area.ground.zone(at.row, at.col);
+    if (index < 0) return;
+    const auto i = static_cast<std::size_t>(index);
+    points[i] += scan.points(at.row, at.col);
+    const double slope = std::hypot(gradient.x(at.row, at.col), gradient.y(at.row, at.col));
+    if (slope > least) faces[i] += slope * cell * cell;
+  });
+  for (std::size_t i = 0; i < zones; ++i) {
+    if (faces[i] == 0.0 || points[i] == 0.0) continue;
+    const double spacing = std::sqrt(area.zones[i].area / points[i]);
+    area.zones[i].faces += std::pow(face_place * spacing * faces[i], 2);
+  }
+}
+
+HeightMap with(const HeightMap& grid, Eigen::ArrayXXd z) {
+  HeightMap map;
+  map.origin = grid.origin;
+  map.cell = grid.cell;
+  map.z = std::move(z);
+  return map;
+}
+
+/// One area's scans, with motion and objects taken out.
+struct Scans {
+  HeightMap before;
+  HeightMap after;
+  Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where the scans do not tell
+  Eigen::ArrayXXd variance_after;
+
+  /// Of a cell of after - before - share * before.
+  Eigen::ArrayXXd variance_of(double share) const {
+    return std::pow(1.0 + share, 2) * variance_before + variance_after;
+  }
+};
+
+Scans prepared(const SurveyedPair& pair, const ChangeOptions& options,
+               std::vector<Object>& objects) {
+  if (!same_grid(pair.before.height, pair.after.height)) {
+    throw Error(ErrorKind::bad_input,
+                "the maps before and after must be on one grid: same origin, cell and size");
+  }
+  Scans scans{pair.before.height, realigned(pair.after.height, pair.alignment), {}, {}};
+  const bool told = pair.before.variance.size() == scans.before.z.size() &&
+                    pair.after.variance.size() == scans.after.z.size();
+  if (told) {
+    scans.variance_before = pair.before.variance;
+    scans.variance_after = pair.after.variance;
+  }
+  objects = take_out_objects(scans.before.z, scans.after.z, scans.before.cell,
+                             options.margin / scans.before.cell);
+  const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
+  const Eigen::Index known = difference.size() - difference.isNaN().count();
+  if (known < fewest_known_cells) {
+    throw Error(ErrorKind::bad_input, "the maps before and after share " + std::to_string(known) +
+                                          " known cells, at least " +
+                                          std::to_string(fewest_known_cells) +
+                                          " are needed: do the scans overlap?");
+  }
+  return scans;
+}
+
+}  // namespace
+
+Area survey(const SurveyedPair& pair, const ChangeOptions& options) {
+  Area area;
+  const Scans scans = prepared(pair, options, area.objects);
+  area.grid = with(scans.before, {});
+  const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
+  area.unknown = difference.isNaN().cast<int>();
+  area.ground = find_change(difference, scans.variance_of(0.0), scans.before.cell, options);
+  area.zones.resize(area.ground.zone_is_cut.size());
+  area.kinds.assign(area.zones.size(), ZoneKind::other);
+
+  const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
+  const double cell_area = area.grid.cell * area.grid.cell;
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    area.zones[i].holes = filling.variance[i] * cell_area * cell_area;
+  }
+  area.ground.difference = filling.difference;
+
+  Alignment left = pair.alignment;
+  const double share = take_relief_off(scans.before, area.ground, left);
+  sum_zones(area);
+  NoiseModel noise = find_noise(area.ground.residual, area.grid.cell);
+  noise.white = std::max(noise.white, least_noise * least_noise);
+  sum_noise(area, scans.variance_of(share), noise.white);
+  sum_faces(area, pair.before, area.ground.noise_sd);
+  sum_faces(area, pair.after, area.ground.noise_sd);
+  area.errors = ErrorField{scans.before,
+                           area.ground.residual,
+                           area.ground.zone,
+                           static_cast<int>(area.zones.size()),
+                           noise,
+                           left}
+                    .predict();
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    area.zones[i].volume -= area.errors.mean(static_cast<Eigen::Index>(i));
+  }
+  return area;
+}
+
+}  // namespace excavplan

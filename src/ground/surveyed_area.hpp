@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/ground/volume_change.hpp>
+
+#include "ground/change_zones.hpp"
+#include "ground/error_field.hpp"
+#include "ground/objects.hpp"
+
+namespace excavplan {
+
+/// A zone with what the sums over zones need.
+struct ZoneSum {
+  double volume = 0.0;   // [m^3]
+  double area = 0.0;     // [m^2]
+  double noise = 0.0;    // variance of the volume by the noise of single cells [m^6]
+  double holes = 0.0;    // and by the filling of unknown ones [m^6]
+  double faces = 0.0;    // and by where points place steep faces [m^6]
+  double unknown = 0.0;  // area that was filled [m^2]
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  Rectangle extent;
+  bool is_cut = false;
+};
+
+/// One surveyed area, its zones and what they are.
+struct Area {
+  HeightMap grid;  // without heights
+  ChangedGround ground;
+  Eigen::ArrayXXi unknown;  // 1 where a scan saw nothing
+  std::vector<ZoneSum> zones;
+  std::vector<ZoneKind> kinds;
+  ZoneErrors errors;
+  std::vector<Object> objects;
+};
+
+/// Surveys one area: takes out the motion and what is no soil, finds zones, fills and sums them,
+/// and takes off the error that the stable ground foretells. Zones have no kind yet.
+///
+/// @throws Error (bad_input) if the surfaces are not on one grid or share fewer than 100 known
+///         cells
+Area survey(const SurveyedPair& pair, const ChangeOptions& options);
+
+}  // namespace excavplan
