@@ -1,147 +1,284 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/data_files.hpp>
+#include <excavplan/simulation/depth_camera.hpp>
 
-#include "measured_scene.hpp"
+#include "block_heap.hpp"
+#include "estimate.hpp"
+#include "parallel.hpp"
+#include "scans.hpp"
+#include "survey_scenes.hpp"
 
 /// @file
-/// How well volumes, bulking factor and density come out of scans of known digs, as a table in
-/// Markdown; how often the 95 % interval of k holds the truth over random digs; and the same
-/// scans as PLY files for other programs.
+/// Surveys of digs whose volumes are known, from the scans' files to the density as
+/// estimate-density goes, with the paper's law: one line of CSV for each survey.
 ///
-///     accuracy [--points N] [--seeds N] [--scenes N] [--only VARIANT] [--export DIR]
+///     accuracy [--points N] [--seeds N] [--first-seed N] [--only KIND] [--export DIR]
+///     accuracy --scenes N [--points N] [--first-seed N] [--only KIND]
+///
+/// --scenes takes another dig for every survey, of random size and density. --export keeps the
+/// scans as DIR/<kind>/<layout>/<seed>/*.ply, for other programs. scripts/accuracy makes the tables
+/// of docs/accuracy.md.
 
 namespace excavplan::scenes {
 namespace {
 
-constexpr double points_per_bulking = 161.57;  ///< density per bulking factor, the paper's line
+/// What is surveyed, and how.
+struct Kind {
+  std::string name;
+  ScanErrors errors;
+  double camera_height = 0.0;  ///< above the ground [m]; 0: points spread evenly
+  bool registered = true;      ///< else the sensor is known to have stood still
+  bool blocks = false;         ///< the heap is one of blocks, another for every seed
+  void (*shape)(Dig&) = [](Dig&) {};
+};
+
+std::vector<Kind> kinds() {
+  std::vector<Kind> list;
+  for (const Variant& variant : variants()) list.push_back({variant.name, variant.errors});
+  list.push_back({"d435i-2m", {}, 2.0, false});
+  list.push_back({"d435i-3m", {}, 3.0, false});
+  list.push_back({"d435i-2m-registered", {}, 2.0});
+  list.push_back({"d435i-3m-registered", {}, 3.0});
+
+  ScanErrors errors = errors_of("noise");
+  const auto shape = [&](const char* name, void (*change)(Dig&)) {
+    list.push_back({name, errors, 0.0, true, false, change});
+  };
+  shape("flat-walls", [](Dig& dig) { dig.wall_angle = 45.0 * degree; });
+  shape("shallow", [](Dig& dig) { dig.pit_depth = 0.15, dig.ridge_height = 0.08; });
+  shape("windrow", [](Dig& dig) { dig.heap_crest = 1.6; });
+  list.push_back({"blocks", errors, 0.0, true, true});
+  errors.slope = 8.0 * degree;
+  errors.roughness = 0.10;
+  list.push_back({"uneven", errors});
+  return list;
+}
+
+/// A heap of blocks with voids between them in the middle of the dump area.
+/// @return the share of the heap that is solid
+double heap_blocks(Dig& dig, std::uint64_t seed) {
+  test::Heap heap = test::block_heap({}, seed);
+  const Rectangle extent = heap.fine.extent();
+  heap.fine.origin -=
+      Eigen::Vector2d(0.5 * (extent.x_min + extent.x_max), 0.5 * (extent.y_min + extent.y_max));
+  dig.bulking = (heap.envelope() + dig.ridge_volume()) / dig.pit_volume();
+  const double solid = heap.solids / heap.envelope();
+  dig.heap_shape = std::make_shared<HeightMap>(std::move(heap.fine));
+  return solid;
+}
+
+struct Survey {
+  Kind kind;
+  Dig dig;
+  std::uint64_t seed = 0;
+  bool whole = false;
+  std::size_t points = 0;  ///< in all clouds
+  double density = 0.0;    ///< true [%]
+  double voids = 0.0;      ///< between the blocks of the heap [m^3]
+  const DensityLaw* law = nullptr;
+
+  const char* layout() const { return whole ? "whole" : "areas"; }
+};
+
+/// The scene on cells of 1 cm, each the mean of nine heights, so that it holds the true volume.
+HeightMap surface_of(const Dig& dig, Part part, bool after) {
+  constexpr int fine = 3;
+  HeightMap map = flat_ground(extent_of(part), 0.01);
+  if (!after) return map;
+  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+      for (int i = 0; i < fine * fine; ++i) {
+        const double dx = ((i % fine + 0.5) / fine - 0.5) * map.cell;
+        const double dy = ((i / fine + 0.5) / fine - 0.5) * map.cell;
+        map.z(row, col) += change_at(dig, part, map.x(col) + dx, map.y(row) + dy);
+      }
+      map.z(row, col) /= fine * fine;
+    }
+  }
+  return map;
+}
+
+/// 848 x 480 pixels, 30 frames, half its height to the side of the dig, which fills the picture.
+Points camera_scan(const Survey& survey, Part part, bool after) {
+  DepthCamera camera;
+  camera.width = 848;
+  camera.height = 480;
+  camera.frames = 30;
+  camera.position = {0.0, -0.5 * survey.kind.camera_height, survey.kind.camera_height};
+  camera.target = {0.0, -0.15, 0.0};
+  const std::uint64_t scan = static_cast<std::uint64_t>(part) * 2 + (after ? 1 : 0);
+  return scan_surface(surface_of(survey.dig, part, after), d435i(camera), survey.seed * 8 + scan);
+}
+
+std::string write_scan(const std::string& folder, const Survey& survey, Part part, bool after) {
+  static const char* const parts[] = {"dig", "dump", "whole"};
+  Cloud cloud;
+  cloud.points = survey.kind.camera_height > 0.0
+                     ? camera_scan(survey, part, after)
+                     : scan(survey.dig, part, survey.kind.errors,
+                            survey.points / (survey.whole ? 2 : 4), survey.seed, after);
+  cloud.width = cloud.points.size();
+  std::string file = folder + "/" + parts[static_cast<std::size_t>(part)];
+  file += after ? "_after.ply" : "_before.ply";
+  write_cloud(file, cloud, CloudFormat::ply_binary);
+  return file;
+}
+
+tools::SeenPair scans_of(const std::string& folder, const Survey& survey, Part part) {
+  const std::string before = write_scan(folder, survey, part, false);
+  return tools::read_scans(before, write_scan(folder, survey, part, true), {});
+}
+
+tools::Estimate estimate(const VolumeChange& change, const std::vector<HeightMap>& after,
+                         const DensityLaw& law) {
+  tools::Knowledge knowledge;
+  knowledge.blocks = assess_blocks(after, change);
+  return tools::estimate(change, knowledge, law);
+}
+
+std::string record_of(const Survey& survey, const VolumeChange& change,
+                      const tools::Estimate& found) {
+  const Dig& dig = survey.dig;
+  const Measured none{std::nan(""), std::nan("")};
+  const Measured k = found.bulking.value_or(none);
+  const Measured free = found.corrected.value_or(k);
+  const DensityEstimate d = found.density.value_or(DensityEstimate{});
+  const double k_free = dig.bulking - survey.voids / dig.pit_volume();
+  char line[1024];
+  std::snprintf(line, sizeof line,
+                "%s,%s,%llu,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.3f,%.3f,"
+                "%.3f,%.3f,%d\n",
+                survey.kind.name.c_str(), survey.layout(),
+                static_cast<unsigned long long>(survey.seed), dig.pit_volume(), dig.ridge_volume(),
+                dig.heap_volume(), dig.bulking, k_free, change.excavated.value,
+                change.spilled.value, change.dumped.value, k.value, k.sd, free.value, free.sd,
+                survey.density, found.density ? d.raw_percent : std::nan(""), d.interval_percent[0],
+                d.interval_percent[1], found.trustworthy ? 1 : 0);
+  return line;
+}
+
+constexpr const char* header =
+    "kind,layout,seed,hole_true,spill_true,heap_true,k_true,k_free_true,hole,spill,heap,k,k_sd,"
+    "k_free,k_free_sd,d_true,d,d_low,d_high,trusted\n";
+
+/// From nothing to a line, over files in the folder.
+std::string measured(const std::string& folder, const Survey& survey) {
+  std::filesystem::create_directories(folder);
+  const bool align_them = survey.kind.registered;
+  if (survey.whole) {
+    const tools::SeenPair scans = scans_of(folder, survey, Part::whole);
+    const SurveyedPair scene = tools::surveyed(scans, cell_for(scans), align_them).surfaces;
+    const VolumeChange change = measure_change(scene);
+    return record_of(survey, change, estimate(change, {scene.after.height}, *survey.law));
+  }
+  const tools::SeenPair dig_scans = scans_of(folder, survey, Part::dig);
+  const tools::SeenPair dump_scans = scans_of(folder, survey, Part::dump);
+  const double cell = std::max(cell_for(dig_scans), cell_for(dump_scans));
+  const SurveyedPair dig = tools::surveyed(dig_scans, cell, align_them).surfaces;
+  const SurveyedPair dump = tools::surveyed(dump_scans, cell, align_them).surfaces;
+  const VolumeChange change = measure_change(dig, dump);
+  return record_of(survey, change,
+                   estimate(change, {dig.after.height, dump.after.height}, *survey.law));
+}
 
 struct Settings {
   std::size_t points = 1000000;
   std::uint64_t seeds = 10;
-  std::uint64_t scenes = 500;
+  std::uint64_t first_seed = 90001;
+  std::uint64_t scenes = 0;
   std::string only;
   std::string folder;
 };
 
-/// Errors of k in many surveys, and how often the interval held the truth.
-struct Score {
-  int surveys = 0;
-  int covered = 0;
-  int failed = 0;  // without a bulking factor
-  double sum = 0.0;
-  double squares = 0.0;
-  double density_squares = 0.0;
-  double stated_squares = 0.0;
-
-  void add(const Survey& survey) {
-    const auto k = bulking_factor(survey.measured());
-    if (!k) {
-      ++failed;
-      return;
+/// Every layout and seed of a kind.
+std::vector<Survey> repeated(const Kind& kind, const Settings& settings, const DensityLaw& law) {
+  std::vector<Survey> surveys;
+  for (const bool whole : {false, true}) {
+    if (whole && kind.camera_height > 0.0) continue;
+    for (std::uint64_t i = 0; i < settings.seeds; ++i) {
+      Survey survey{kind, {}, settings.first_seed + i, whole, settings.points, 0.0, 0.0, &law};
+      kind.shape(survey.dig);
+      if (kind.blocks) {
+        const double solid = heap_blocks(survey.dig, survey.seed);
+        survey.voids = (1.0 - solid) * survey.dig.heap_volume();
+      }
+      survey.density = density_of_bulking(law.form, survey.dig.bulking);
+      surveys.push_back(std::move(survey));
     }
-    const double error = k->value - survey.dig.bulking;
-    ++surveys;
-    covered += std::abs(error) <= 1.96 * k->sd ? 1 : 0;
-    sum += error / survey.dig.bulking;
-    squares += std::pow(error / survey.dig.bulking, 2);
-    density_squares += std::pow(error * points_per_bulking, 2);
-    stated_squares += std::pow(k->sd / survey.dig.bulking, 2);
   }
-  double bias() const { return 100.0 * sum / surveys; }
-  double rms() const { return 100.0 * std::sqrt(squares / surveys); }
-  double rms_density() const { return std::sqrt(density_squares / surveys); }
-  double stated() const { return 100.0 * std::sqrt(stated_squares / surveys); }
-  double coverage() const { return 100.0 * covered / surveys; }
-};
-
-/// Bars of rms error of k [%] at 1 M points.
-double bar_of(const std::string& variant) {
-  static const std::map<std::string, double> bars = {
-      {"clean", 0.1}, {"noise", 0.1}, {"noise20", 0.3},    {"outliers", 0.3}, {"tilt", 0.3},
-      {"rough", 0.3}, {"moved", 0.4}, {"correlated", 1.0}, {"unseen", 1.2},   {"all", 1.6}};
-  return bars.at(variant);
+  return surveys;
 }
 
-void print_table(const Settings& settings, bool whole) {
-  std::printf("\n%s, %.2f M points in all, %d seeds\n\n", whole ? "One scene" : "Two areas",
-              static_cast<double>(settings.points) * 1e-6, static_cast<int>(settings.seeds));
-  std::printf(
-      "| scans | bias of k %% | rms k %% | bar %% | rms d points | stated sd %% | in 95 %% |\n");
-  std::printf("|---|---|---|---|---|---|---|\n");
-  for (const Variant& variant : variants()) {
-    if (!settings.only.empty() && settings.only != variant.name) continue;
-    Score score;
-    for (std::uint64_t seed = 1; seed <= settings.seeds; ++seed) {
-      score.add({Dig{}, variant.errors, settings.points, seed, whole});
-    }
-    std::printf("| %s | %+.3f | %.3f | %.1f | %.2f | %.3f | %d of %d |\n", variant.name.c_str(),
-                score.bias(), score.rms(), bar_of(variant.name), score.rms_density(),
-                score.stated(), score.covered, score.surveys + score.failed);
-    std::fflush(stdout);
+/// Random digs in soil of random density whose bulking factor scatters about the law as its
+/// calibration did; each with the next kind of errors, every other one as a whole scene.
+std::vector<Survey> random_surveys(const std::vector<Kind>& all, const Settings& settings,
+                                   const DensityLaw& law) {
+  std::vector<Kind> surveyed;
+  for (const Kind& kind : all) {
+    const bool twice = kind.camera_height > 0.0 && kind.registered;
+    if (!kind.blocks && !twice && kind.name != "clean") surveyed.push_back(kind);
   }
-}
-
-/// Random digs, each surveyed with the next kind of errors, every other one as a whole scene.
-void print_coverage(const Settings& settings) {
-  std::map<std::string, Score> by_variant;
-  Score all;
-  std::vector<Variant> kinds;
-  for (const Variant& variant : variants()) {
-    if ((variant.name == "clean" && settings.only != "clean") ||
-        (!settings.only.empty() && settings.only != variant.name)) {
-      continue;
-    }
-    kinds.push_back(variant);
-  }
+  const double scatter = std::get<DensityLine>(law.form).residual_sd;
+  std::vector<Survey> surveys;
   for (std::uint64_t i = 0; i < settings.scenes; ++i) {
-    const Variant& variant = kinds[i % kinds.size()];
-    const Survey survey{random_dig(1000 + i), variant.errors, settings.points, 1000 + i,
-                        (i / kinds.size()) % 2 == 1};
-    by_variant[variant.name].add(survey);
-    all.add(survey);
+    const std::uint64_t seed = settings.first_seed + i;
+    const Kind& kind = surveyed[i % surveyed.size()];
+    const bool whole = (i / surveyed.size()) % 2 == 1 && kind.camera_height == 0.0;
+    Survey survey{kind, random_dig(seed), seed, whole, settings.points, 0.0, 0.0, &law};
+    kind.shape(survey.dig);
+    Random random(seed, 8);
+    survey.density = random.uniform(0.0, 100.0);
+    survey.dig.bulking = bulking_of_density(law.form, survey.density + scatter * random.normal());
+    surveys.push_back(std::move(survey));
   }
-  std::printf("\nRandom digs, %.2f M points in all\n\n",
-              static_cast<double>(settings.points) * 1e-6);
-  std::printf(
-      "| scans | digs | bias of k %% | rms k %% | rms d points | stated sd %% | 95 %% interval "
-      "holds |\n");
-  std::printf("|---|---|---|---|---|---|---|\n");
-  by_variant["all kinds"] = all;
-  for (const auto& [name, score] : by_variant) {
-    std::printf("| %s | %d | %+.3f | %.3f | %.2f | %.3f | %.1f %% |\n", name.c_str(),
-                score.surveys + score.failed, score.bias(), score.rms(), score.rms_density(),
-                score.stated(), score.coverage());
-  }
+  return surveys;
 }
 
-void export_scans(const Settings& settings) {
-  for (const Variant& variant : variants()) {
-    const std::string folder = settings.folder + "/" + variant.name;
-    std::filesystem::create_directories(folder);
-    const Survey survey{Dig{}, variant.errors, settings.points, 1, false};
-    const auto write = [&](const char* name, Part part, bool after) {
-      write_cloud(folder + "/" + name + ".ply", survey.cloud(part, after), CloudFormat::ply_binary);
-    };
-    write("dig_before", Part::dig, false);
-    write("dig_after", Part::dig, true);
-    write("dump_before", Part::dump, false);
-    write("dump_after", Part::dump, true);
+void run(const std::vector<Survey>& surveys, const std::string& folder, bool keep) {
+  std::vector<std::string> lines(surveys.size());
+  parallel_for(surveys.size(), 0, [&](std::size_t i) {
+    const Survey& survey = surveys[i];
+    const std::string own =
+        folder + "/" + survey.kind.name + "/" + survey.layout() + "/" + std::to_string(survey.seed);
+    lines[i] = measured(own, survey);
+    if (!keep) std::filesystem::remove_all(own);
+  });
+  for (const std::string& line : lines) std::fputs(line.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+void work(const Settings& settings) {
+  std::vector<Kind> chosen;
+  for (const Kind& kind : kinds()) {
+    if (settings.only.empty() || settings.only == kind.name) chosen.push_back(kind);
   }
-  const Dig dig;
-  std::printf("truth: pit %.6f, ridge %.6f, heap %.6f m^3, k %.4f\n", dig.pit_volume(),
-              dig.ridge_volume(), dig.heap_volume(), dig.bulking);
+  if (chosen.empty()) throw Error(ErrorKind::bad_input, "--only: no kind " + settings.only);
+  const DensityLaw law = load_density_law(find_data_file("laws/paper.json"));
+  const bool keep = !settings.folder.empty();
+  const std::string folder = keep ? settings.folder
+                                  : std::filesystem::temp_directory_path().string() + "/accuracy-" +
+                                        std::to_string(::getpid());
+  std::fputs(header, stdout);
+  if (settings.scenes > 0) {
+    run(random_surveys(chosen, settings, law), folder, keep);
+  } else {
+    for (const Kind& kind : chosen) run(repeated(kind, settings, law), folder, keep);
+  }
+  if (!keep) std::filesystem::remove_all(folder);
 }
 
 Settings read(int count, char** words) {
@@ -154,6 +291,8 @@ Settings read(int count, char** words) {
       settings.points = std::stoul(value);
     } else if (option == "--seeds") {
       settings.seeds = std::stoul(value);
+    } else if (option == "--first-seed") {
+      settings.first_seed = std::stoul(value);
     } else if (option == "--scenes") {
       settings.scenes = std::stoul(value);
     } else if (option == "--only") {
@@ -171,18 +310,8 @@ Settings read(int count, char** words) {
 }  // namespace excavplan::scenes
 
 int main(int count, char** words) {
-  using namespace excavplan::scenes;
   try {
-    const Settings settings = read(count, words);
-    if (!settings.folder.empty()) {
-      export_scans(settings);
-      return EXIT_SUCCESS;
-    }
-    if (settings.seeds > 0) {
-      print_table(settings, false);
-      print_table(settings, true);
-    }
-    if (settings.scenes > 0) print_coverage(settings);
+    excavplan::scenes::work(excavplan::scenes::read(count, words));
   } catch (const std::exception& e) {
     std::fprintf(stderr, "accuracy: %s\n", e.what());
     return EXIT_FAILURE;

@@ -193,6 +193,14 @@ TEST(DepthCamera, ModelOfTheD435iHasTheStatedErrors) {
   EXPECT_NEAR(rms_height(scan_surface(level(), camera, 5)), expected, 0.05 * expected);
 }
 
+TEST(DepthCamera, PixelsThatMeetNothingGiveNoPointsInStepsOfDisparityEither) {
+  DepthCamera camera = d435i({});
+  const HeightMap small = flat_ground({-0.5, -0.5, 0.5, 0.5}, 0.05);
+  const auto points = scan_surface(small, camera, 1);
+  EXPECT_GT(points.size(), 10000U);
+  for (const Eigen::Vector3d& p : points) ASSERT_LT(p.norm(), 1.5);
+}
+
 TEST(Lidar, SeesAPlaneWhereItIsWithTheNoiseOfItsRange) {
   HeightMap ground = flat_ground({-1, -6, 12, 6}, 0.05);
   for (Eigen::Index col = 0; col < ground.z.cols(); ++col) ground.z.col(col) = 0.1 * ground.x(col);

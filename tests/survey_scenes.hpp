@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,9 @@
 
 /// @file
 /// Scans of digs whose volumes are known in closed form: a pit with sloped walls, a spill ridge
-/// beside it and a dumped cone, on ground of any shape, with the errors of real surveys. For tests
-/// and benchmarks. What a scan shows is ground + change, so that the ground does not change the
-/// truth.
+/// beside it and a dumped cone or windrow, on ground of any shape, with the errors of real surveys.
+/// For tests and benchmarks. What a scan shows is ground + change, so that the ground does not
+/// change the truth.
 
 namespace excavplan::scenes {
 
@@ -33,6 +34,14 @@ constexpr Rectangle dig_extent = {-3.0, -2.5, 3.0, 2.5};
 constexpr Rectangle dump_extent = {-2.5, -2.5, 2.5, 2.5};
 constexpr Rectangle whole_extent = {-3.0, -2.5, 8.0, 2.5};
 constexpr double dump_offset = 5.5;  ///< x of the dump area's origin in a whole scene [m]
+
+/// 0 outside the map.
+inline double height_of_cell(const HeightMap& map, double x, double y) {
+  if (!map.extent().contains(x, y)) return 0.0;
+  const auto row = static_cast<Eigen::Index>((y - map.origin.y()) / map.cell);
+  const auto col = static_cast<Eigen::Index>((x - map.origin.x()) / map.cell);
+  return map.z(std::min(row, map.z.rows() - 1), std::min(col, map.z.cols() - 1));
+}
 
 /// Lengths in m, angles in rad; k 1.25 as it stands.
 struct Dig {
@@ -50,6 +59,9 @@ struct Dig {
   double heap_slope = 35.0 * degree;
   double heap_x = -0.021;  ///< in the dump area
   double heap_y = 0.034;
+  double heap_crest = 0.0;  ///< length of a windrow's crest, along x; a cone has none
+  /// Heights above the ground in the dump area that stand for the heap; `bulking` must fit them.
+  std::shared_ptr<const HeightMap> heap_shape;
 
   double pit_volume() const {
     const double inset = pit_depth / std::tan(wall_angle);
@@ -61,8 +73,16 @@ struct Dig {
     return ridge_height * half_width * (pit_length + pi / 3.0 * half_width);
   }
   double heap_volume() const { return bulking * pit_volume() - ridge_volume(); }
+  /// From the crest to the foot: volume = tan(slope) (pi / 3 r^3 + crest r^2), by Newton's method,
+  /// which comes down to the root from the cone's.
   double heap_radius() const {
-    return std::cbrt(3.0 * heap_volume() / (pi * std::tan(heap_slope)));
+    const double sought = heap_volume() / std::tan(heap_slope);
+    double r = std::cbrt(3.0 * sought / pi);
+    for (int i = 0; heap_crest > 0.0 && i < 30; ++i) {
+      r -= (pi / 3.0 * r * r * r + heap_crest * r * r - sought) /
+           (pi * r * r + 2.0 * heap_crest * r);
+    }
+    return r;
   }
 
   /// Change of height by pit and ridge.
@@ -74,8 +94,11 @@ struct Dig {
     const double away = std::hypot(std::max(std::abs(u) - 0.5 * pit_length, 0.0), v - ridge_offset);
     return std::max(0.0, ridge_height - away * std::tan(ridge_slope)) - pit;
   }
+  /// Change of height by the heap, in the dump area.
   double dumped(double x, double y) const {
-    const double away = std::hypot(x - heap_x, y - heap_y);
+    if (heap_shape) return height_of_cell(*heap_shape, x, y);
+    const double away =
+        std::hypot(std::max(std::abs(x - heap_x) - 0.5 * heap_crest, 0.0), y - heap_y);
     return std::max(0.0, (heap_radius() - away) * std::tan(heap_slope));
   }
 };

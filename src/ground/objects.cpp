@@ -12,7 +12,7 @@ namespace excavplan {
 namespace {
 
 constexpr double steepest = 1.7320508075688772;  // ours: 60 degrees
-constexpr double least_excess = 0.3;             // ours [m]
+constexpr double least_excess = 0.5;             // ours [m]
 constexpr double least_area = 0.02;              // ours: smaller ones are single bad cells [m^2]
 constexpr double edge_excess = 0.05;             // ours: as far as an object reaches [m]
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr Eigen::Index fewest_known_cells = 100;
 constexpr double least_noise = 1e-4;  // ours: no survey of soil is better [m]
+constexpr double gentle = 0.5;        // ours: soil beyond the edge of a scan lies steeper [-]
 constexpr double steep = 1.0;         // ours: gentler faces have points enough to be averages [-]
 /// Points place a steep face no better than this share of their spacing, all along it alike;
 /// ours, from pits with upright walls under simulated cameras.
@@ -85,6 +86,26 @@ void sum_faces(Area& area, const Surface& scan, double noise_sd) {
     const double spacing = std::sqrt(area.zones[i].area / points[i]);
     area.zones[i].faces += std::pow(face_place * spacing * faces[i], 2);
   }
+}
+
+/// What may be missing of zones that reach the edge of what was seen: from there on soil that falls
+/// or rises to the ground by a gentle slope.
+void sum_beyond_edge(Area& area) {
+  const double cell = area.grid.cell;
+  std::vector<double> missing(area.zones.size(), 0.0);
+  const auto& zone = area.ground.zone;
+  for_each_cell(zone, [&](Cell at) {
+    const int index = zone(at.row, at.col);
+    if (index < 0 || !area.zones[static_cast<std::size_t>(index)].is_cut) return;
+    bool is_edge = on_border(zone, at);
+    for_each_neighbour(zone, at, [&](Cell n) {
+      is_edge = is_edge || std::isnan(area.ground.difference(n.row, n.col));
+    });
+    if (!is_edge) return;
+    const double height = area.ground.difference(at.row, at.col);
+    missing[static_cast<std::size_t>(index)] += cell * 0.5 * height * height / gentle;
+  });
+  for (std::size_t i = 0; i < missing.size(); ++i) area.zones[i].holes += std::pow(missing[i], 2);
 }
 
 HeightMap with(const HeightMap& grid, Eigen::ArrayXXd z) {
@@ -159,6 +180,7 @@ Area survey(const SurveyedPair& pair, const ChangeOptions& options) {
   NoiseModel noise = find_noise(area.ground.residual, area.grid.cell);
   noise.white = std::max(noise.white, least_noise * least_noise);
   sum_noise(area, scans.variance_of(share), noise.white);
+  sum_beyond_edge(area);
   sum_faces(area, pair.before, area.ground.noise_sd);
   sum_faces(area, pair.after, area.ground.noise_sd);
   area.errors = ErrorField{scans.before,

@@ -214,9 +214,24 @@ double total_of(const VolumeChange& change, ZoneKind kind) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// The warning of the largest of some objects.
+Warning object_warning(const ChangeZone& zone, bool is_before, std::size_t count) {
+  const Eigen::Vector2d centre(0.5 * (zone.extent.x_min + zone.extent.x_max),
+                               0.5 * (zone.extent.y_min + zone.extent.y_max));
+  std::string message = std::string("something too steep for soil stands in the scan ") +
+                        (is_before ? "before" : "after") + " around (" + hundredths(centre.x()) +
+                        ", " + hundredths(centre.y()) + ") m, over " + hundredths(zone.area) +
+                        " m^2: taken out of the scan, the ground under it is counted as unseen";
+  if (count > 1) message += ", like " + std::to_string(count - 1) + " smaller ones";
+  return {"object_taken_out", std::move(message)};
+}
+
 /// Objects are reported as zones of their own that count for nothing.
 void report_objects(const Area& area, VolumeChange& change, AreaChange& result) {
   const double half = 0.5 * area.grid.cell;
+  std::size_t count = 0;
+  std::optional<ChangeZone> largest;
+  bool largest_is_before = false;
   for (const Object& object : area.objects) {
     if (object.is_blunder) continue;
     ChangeZone zone;
@@ -230,14 +245,14 @@ void report_objects(const Area& area, VolumeChange& change, AreaChange& result) 
     }
     zone.extent = {box.min().x() - half, box.min().y() - half, box.max().x() + half,
                    box.max().y() + half};
+    if (!largest || zone.area > largest->area) {
+      largest = zone;
+      largest_is_before = object.is_before;
+    }
     change.zones.push_back(zone);
-    change.warnings.push_back(
-        {"object_taken_out",
-         std::string("something too steep for soil stands in the scan ") +
-             (object.is_before ? "before" : "after") + " around (" + hundredths(box.center().x()) +
-             ", " + hundredths(box.center().y()) + ") m, over " + hundredths(zone.area) +
-             " m^2: taken out of the scan, the ground under it is counted as unseen"});
+    ++count;
   }
+  if (largest) change.warnings.push_back(object_warning(*largest, largest_is_before, count));
 }
 
 /// Hands one area's zones over to the result.

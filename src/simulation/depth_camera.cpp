@@ -190,7 +190,7 @@ Eigen::ArrayXXd smooth_noise(Eigen::Index rows, Eigen::Index cols, double length
 }
 
 double in_steps(double depth, double disparity_step) {
-  if (!(disparity_step > 0.0)) return depth;
+  if (!(disparity_step > 0.0) || std::isnan(depth)) return depth;
   return 1.0 / (disparity_step * std::max(1.0, std::round(1.0 / (depth * disparity_step))));
 }
 

@@ -68,7 +68,7 @@ struct VolumeErrors {
   Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();       ///< of each cell on its own
   Eigen::Matrix3d correlated = Eigen::Matrix3d::Zero();  ///< that neighbouring cells share
   Eigen::Matrix3d datum = Eigen::Matrix3d::Zero();       ///< motion left between the scans
-  Eigen::Matrix3d holes = Eigen::Matrix3d::Zero();       ///< filling of unknown cells
+  Eigen::Matrix3d holes = Eigen::Matrix3d::Zero();       ///< ground that no scan saw
   Eigen::Matrix3d faces = Eigen::Matrix3d::Zero();       ///< where points place steep faces
 
   Eigen::Matrix3d total() const { return noise + correlated + datum + holes + faces; }
