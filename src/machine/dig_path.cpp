@@ -163,6 +163,8 @@ class Layout {
     return lift();
   }
 
+  std::variant<std::vector<DigPose>, Infeasible> way_up(const DigPath& path);
+
   DigPath take() { return std::move(path_); }
 
   /// What the choice of the start point makes as large as it can [rad].
@@ -177,6 +179,7 @@ class Layout {
   std::optional<Infeasible> drag();
   std::optional<Infeasible> scoop();
   std::optional<Infeasible> lift();
+  std::optional<Infeasible> raise(DigPose pose);
 
   DigPhase first_phase() const {
     if (path_.parameters.penetration_length > 0.0) return DigPhase::penetrate;
@@ -344,11 +347,9 @@ double Layout::height_above_ground(const JointAngles& joints) const {
   return low.y() - (std::isfinite(highest) ? highest : path_.ground_z);
 }
 
-/// The boom rises and the bucket turns back by as much. Once the bucket is out of the ground it may
-/// stay at its limit.
-std::optional<Infeasible> Layout::lift() {
-  DigPose pose = path_.poses.back();
-  pose.phase = DigPhase::lift;
+/// The boom rises and the bucket turns back by as much, until it is clear of the ground. Once it is
+/// out of the ground the bucket may stay at its limit.
+std::optional<Infeasible> Layout::raise(DigPose pose) {
   const double radius =
       (link_positions(machine_, pose.joints).bucket_pin - machine_.boom_pin).norm() +
       machine_.bucket_length;
@@ -366,7 +367,7 @@ std::optional<Infeasible> Layout::lift() {
     const bool bucket_ends = bucket > machine_.limits[2].upper && height <= 0.0;
     if (boom_ends || bucket_ends) {
       Infeasible stopped =
-          stop(Reason::lift_blocked, DigPhase::lift, travelled, height, options_.lift_clearance);
+          stop(Reason::lift_blocked, pose.phase, travelled, height, options_.lift_clearance);
       stopped.joint = boom_ends ? Joint::boom : Joint::bucket;
       return stopped;
     }
@@ -377,6 +378,22 @@ std::optional<Infeasible> Layout::lift() {
     height = height_above_ground(pose.joints);
   }
   return std::nullopt;
+}
+
+std::optional<Infeasible> Layout::lift() {
+  DigPose pose = path_.poses.back();
+  pose.phase = DigPhase::lift;
+  return raise(pose);
+}
+
+/// The way up from the first pose, from there on.
+std::variant<std::vector<DigPose>, Infeasible> Layout::way_up(const DigPath& path) {
+  path_.ground_z = path.ground_z;
+  path_.limit_margin = path.limit_margin;
+  DigPose pose = path.poses.front();
+  pose.phase = DigPhase::approach;
+  if (auto stopped = raise(pose)) return *std::move(stopped);
+  return std::move(path_.poses);
 }
 
 // ---- the start point ----------------------------------------------------------------------------
@@ -492,6 +509,22 @@ std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
     scan.drivable.erase(scan.drivable.begin() + static_cast<std::ptrdiff_t>(chosen));
   }
   return make_dig_path(machine, parameters, scan.best_failing, ground, options);
+}
+
+std::variant<std::vector<DigPose>, Infeasible> way_down(const Machine& machine, const DigPath& path,
+                                                        const GroundProfile& ground,
+                                                        const DigPathOptions& options) {
+  check(options);
+  if (path.poses.empty()) throw Error(ErrorKind::bad_input, "the dig path has no pose to approach");
+  Layout layout(machine, path.parameters, ground, options, Sampling::full);
+  auto outcome = layout.way_up(path);
+  if (auto* stopped = std::get_if<Infeasible>(&outcome)) {
+    stopped->message = explain(*stopped);
+    return std::move(*stopped);
+  }
+  auto& poses = std::get<std::vector<DigPose>>(outcome);
+  std::reverse(poses.begin(), poses.end());
+  return std::move(poses);
 }
 
 }  // namespace excavplan
