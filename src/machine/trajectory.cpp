@@ -214,43 +214,48 @@ void Route::add_rounding(const Corner& corner) {
 /// What may be used of the machine's limits.
 class Limits {
  public:
-  Limits(const Machine& machine, double fraction) : machine_(machine), fraction_(fraction) {
+  Limits(const Machine& machine, double fraction) : states_oil_(machine.hydraulics.has_value()) {
     for (int i = 0; i < 3; ++i) {
-      const JointLimits& joint = machine.limits[static_cast<std::size_t>(i)];
-      speed_[i] = fraction * joint.speed;
-      acceleration_[i] = fraction * joint.acceleration;
+      const auto joint = static_cast<std::size_t>(i);
+      acceleration_[i] = fraction * machine.limits[joint].acceleration;
+      per_rate_[i] = 1.0 / (fraction * machine.limits[joint].speed);
+      if (!states_oil_) continue;
+      const Piston& piston = machine.hydraulics->pistons[joint];
+      const double share =
+          (*machine.cylinders)[joint].count() / (fraction * machine.hydraulics->pump_flow);
+      per_piston_speed_[i] = 1.0 / (fraction * piston.speed);
+      per_growth_[i] = share * piston.area_filled(1.0);
+      per_shrinking_[i] = share * piston.area_filled(-1.0);
     }
   }
 
   const JointAngles& acceleration() const { return acceleration_; }
 
-  /// How many times as fast the joints could turn at most.
-  double headroom(const JointAngles& rates) const {
-    double times = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < 3; ++i) {
-      if (rates[i] != 0.0) times = std::min(times, speed_[i] / std::abs(rates[i]));
-    }
-    return times;
+  /// The largest share of a limit of speed that these joint rates take.
+  double load(const JointAngles& rates) const {
+    return rates.cwiseAbs().cwiseProduct(per_rate_).maxCoeff();
   }
 
-  /// The same of cylinders that move; their speeds [m/s] are those at `times` = 1.
-  double cylinder_headroom(const Eigen::Vector3d& speeds) const {
-    double times = std::numeric_limits<double>::infinity();
-    if (!machine_.hydraulics) return times;
+  /// The same of cylinder speed and pump flow for cylinders that grow this fast; 0 if neither is
+  /// known.
+  double cylinder_load(const Eigen::Vector3d& growth) const {
+    if (!states_oil_) return 0.0;
+    double flow = 0.0, fastest = 0.0;
     for (int i = 0; i < 3; ++i) {
-      const Piston& piston = machine_.hydraulics->pistons[static_cast<std::size_t>(i)];
-      if (speeds[i] != 0.0) times = std::min(times, fraction_ * piston.speed / std::abs(speeds[i]));
+      const double speed = std::abs(growth[i]);
+      fastest = std::max(fastest, speed * per_piston_speed_[i]);
+      flow += speed * (growth[i] < 0.0 ? per_shrinking_[i] : per_growth_[i]);
     }
-    const double flow = oil_flow(*machine_.hydraulics, *machine_.cylinders, speeds);
-    if (flow > 0.0) times = std::min(times, fraction_ * machine_.hydraulics->pump_flow / flow);
-    return times;
+    return std::max(fastest, flow);
   }
 
  private:
-  const Machine& machine_;
-  double fraction_;
-  JointAngles speed_;
+  bool states_oil_;
   JointAngles acceleration_;
+  JointAngles per_rate_;
+  Eigen::Vector3d per_piston_speed_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d per_growth_ = Eigen::Vector3d::Zero();  // of the flow
+  Eigen::Vector3d per_shrinking_ = Eigen::Vector3d::Zero();
 };
 
 /// Time-optimal speed along the joint path q(s) between two stops, s being its length in joint
@@ -267,12 +272,7 @@ class Pass {
   Pass(std::vector<TrajectoryPoint>& points, const std::optional<Cylinders>& cylinders,
        const Limits& limits)
       : points_(points), limits_(limits), segments_(points.size()), nodes_(points.size()) {
-    if (!cylinders) return;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const auto states = cylinder_states(*cylinders, points[k].joints);
-      points[k].cylinders = {states[0].length, states[1].length, states[2].length};
-      nodes_[k].levers = {states[0].lever, states[1].lever, states[2].lever};
-    }
+    if (cylinders) place_cylinders(*cylinders);
   }
 
   /// Sets times (from the time of the first point on) and rates between two stops.
@@ -298,6 +298,7 @@ class Pass {
   struct Segment {
     double length = 0.0;   ///< [rad]
     JointAngles slope;     ///< dq/ds
+    JointAngles gain;      ///< |dq/ds| / (2 ds)
     double ceiling = 0.0;  ///< of ds/dt, from the speeds of joints and cylinders and the flow
   };
   struct Node {
@@ -308,12 +309,30 @@ class Pass {
     Eigen::Vector3d levers = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   };
 
+  /// A joint that rests leaves its cylinder as it was.
+  void place_cylinders(const Cylinders& cylinders) {
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      for (int i = 0; i < 3; ++i) {
+        if (k > 0 && points_[k].joints[i] == points_[k - 1].joints[i]) {
+          points_[k].cylinders[i] = points_[k - 1].cylinders[i];
+          nodes_[k].levers[i] = nodes_[k - 1].levers[i];
+        } else {
+          const CylinderState state =
+              cylinders[static_cast<std::size_t>(i)].at(points_[k].joints[i]);
+          points_[k].cylinders[i] = state.length;
+          nodes_[k].levers[i] = state.lever;
+        }
+      }
+    }
+  }
+
   void measure(std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       Segment& segment = segments_[k];
       const JointAngles move = points_[k + 1].joints - points_[k].joints;
       segment.length = move.norm();
       segment.slope = move / segment.length;
+      segment.gain = segment.slope.cwiseAbs() / (2.0 * segment.length);
       segment.ceiling = ceiling_of(k);
     }
     nodes_[first].curvature = nodes_[last].curvature = JointAngles::Zero();
@@ -328,9 +347,11 @@ class Pass {
   double ceiling_of(std::size_t k) const {
     const Segment& segment = segments_[k];
     const Eigen::Vector3d mean = (points_[k + 1].cylinders - points_[k].cylinders) / segment.length;
-    return std::min({limits_.headroom(segment.slope), limits_.cylinder_headroom(mean),
-                     limits_.cylinder_headroom(nodes_[k].levers.cwiseProduct(segment.slope)),
-                     limits_.cylinder_headroom(nodes_[k + 1].levers.cwiseProduct(segment.slope))});
+    const double load =
+        std::max({limits_.load(segment.slope), limits_.cylinder_load(mean),
+                  limits_.cylinder_load(nodes_[k].levers.cwiseProduct(segment.slope)),
+                  limits_.cylinder_load(nodes_[k + 1].levers.cwiseProduct(segment.slope))});
+    return 1.0 / load;
   }
 
   void bound_speed(std::size_t first, std::size_t last) {
@@ -352,7 +373,7 @@ class Pass {
   void limit_growth(std::size_t segment, std::size_t from, std::size_t to) {
     const JointAngles bend = nodes_[from].curvature.cwiseMax(nodes_[to].curvature);
     for (int i = 0; i < 3; ++i) {
-      const double gain = std::abs(segments_[segment].slope[i]) / (2.0 * segments_[segment].length);
+      const double gain = segments_[segment].gain[i];
       if (gain <= 0.0) continue;
       const double highest =
           (limits_.acceleration()[i] + gain * nodes_[from].squared) / (gain + bend[i]);
