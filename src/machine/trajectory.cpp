@@ -279,11 +279,16 @@ class Pass {
   void run(std::size_t first, std::size_t last) {
     measure(first, last);
     bound_speed(first, last);
-    for (std::size_t k = first; k < last; ++k) limit_growth(k, k, k + 1);
-    for (std::size_t k = last; k-- > first;) limit_growth(k, k + 1, k);
+    for (std::size_t k = first; k < last; ++k) {
+      limit_growth(segments_[k], nodes_[k], nodes_[k + 1]);
+    }
+    for (std::size_t k = last; k-- > first;) {
+      limit_growth(segments_[k], nodes_[k + 1], nodes_[k]);
+    }
+    double speed_before = 0.0;
     for (std::size_t k = first + 1; k <= last; ++k) {
       const double speed = std::sqrt(nodes_[k].squared);
-      const double mean = 0.5 * (std::sqrt(nodes_[k - 1].squared) + speed);
+      const double mean = 0.5 * (std::exchange(speed_before, speed) + speed);
       points_[k].time = points_[k - 1].time + segments_[k - 1].length / mean;
       points_[k].rates = nodes_[k].tangent * speed;
     }
@@ -296,9 +301,11 @@ class Pass {
  private:
   /// From a point to the next.
   struct Segment {
-    double length = 0.0;   ///< [rad]
+    double length = 0.0;  ///< [rad]
+    double per_length = 0.0;
     JointAngles slope;     ///< dq/ds
     JointAngles gain;      ///< |dq/ds| / (2 ds)
+    JointAngles per_drag;  ///< 1 / (gain + curvature); infinite for a joint that rests
     double ceiling = 0.0;  ///< of ds/dt, from the speeds of joints and cylinders and the flow
   };
   struct Node {
@@ -331,22 +338,24 @@ class Pass {
       Segment& segment = segments_[k];
       const JointAngles move = points_[k + 1].joints - points_[k].joints;
       segment.length = move.norm();
-      segment.slope = move / segment.length;
-      segment.gain = segment.slope.cwiseAbs() / (2.0 * segment.length);
+      segment.per_length = 1.0 / segment.length;
+      segment.slope = move * segment.per_length;
+      segment.gain = segment.slope.cwiseAbs() * (0.5 * segment.per_length);
       segment.ceiling = ceiling_of(k);
     }
     nodes_[first].curvature = nodes_[last].curvature = JointAngles::Zero();
     for (std::size_t k = first + 1; k < last; ++k) {
       const Segment &before = segments_[k - 1], &after = segments_[k];
-      const double both = before.length + after.length;
-      nodes_[k].tangent = (after.length * before.slope + before.length * after.slope) / both;
-      nodes_[k].curvature = 2.0 * (after.slope - before.slope).cwiseAbs() / both;
+      const double per_both = 1.0 / (before.length + after.length);
+      nodes_[k].tangent = (after.length * before.slope + before.length * after.slope) * per_both;
+      nodes_[k].curvature = (after.slope - before.slope).cwiseAbs() * (2.0 * per_both);
     }
   }
 
   double ceiling_of(std::size_t k) const {
     const Segment& segment = segments_[k];
-    const Eigen::Vector3d mean = (points_[k + 1].cylinders - points_[k].cylinders) / segment.length;
+    const Eigen::Vector3d mean =
+        (points_[k + 1].cylinders - points_[k].cylinders) * segment.per_length;
     const double load =
         std::max({limits_.load(segment.slope), limits_.cylinder_load(mean),
                   limits_.cylinder_load(nodes_[k].levers.cwiseProduct(segment.slope)),
@@ -355,6 +364,10 @@ class Pass {
   }
 
   void bound_speed(std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const JointAngles bend = nodes_[k].curvature.cwiseMax(nodes_[k + 1].curvature);
+      segments_[k].per_drag = (segments_[k].gain + bend).cwiseInverse();
+    }
     nodes_[first].squared = nodes_[last].squared = 0.0;
     for (std::size_t k = first + 1; k < last; ++k) {
       const double ceiling = std::min(segments_[k - 1].ceiling, segments_[k].ceiling);
@@ -370,15 +383,10 @@ class Pass {
   }
 
   /// Over one segment, from the point where the speed is known to be allowed to the other one.
-  void limit_growth(std::size_t segment, std::size_t from, std::size_t to) {
-    const JointAngles bend = nodes_[from].curvature.cwiseMax(nodes_[to].curvature);
-    for (int i = 0; i < 3; ++i) {
-      const double gain = segments_[segment].gain[i];
-      if (gain <= 0.0) continue;
-      const double highest =
-          (limits_.acceleration()[i] + gain * nodes_[from].squared) / (gain + bend[i]);
-      nodes_[to].squared = std::min(nodes_[to].squared, highest);
-    }
+  void limit_growth(const Segment& segment, const Node& from, Node& to) const {
+    const JointAngles highest =
+        (limits_.acceleration() + segment.gain * from.squared).cwiseProduct(segment.per_drag);
+    to.squared = std::min(to.squared, highest.minCoeff());
   }
 
   std::vector<TrajectoryPoint>& points_;
