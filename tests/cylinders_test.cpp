@@ -376,17 +376,6 @@ TEST(Oil, FillsTheSideOfThePistonOrThatOfTheRod) {
   EXPECT_NEAR(piston.area_filled(-0.3), 0.0050265482457436690, 1e-17);
 }
 
-TEST(Oil, IsWhatAllCylindersTakeTogether) {
-  const Machine& m = zx120();
-  const Hydraulics oil{{{{0.1, 0.06}, {0.2, 0.1}, {0.1, 0.05}}}, 1.0};
-  const double a = 0.0078539816339744830;  // of a piston of 0.1 m
-  EXPECT_EQ(oil_flow(oil, *m.cylinders, {0.0, 0.0, 0.0}), 0.0);
-  EXPECT_NEAR(oil_flow(oil, *m.cylinders, {0.1, 0.0, 0.0}), 2 * a * 0.1, 1e-15);  // a pair
-  EXPECT_NEAR(oil_flow(oil, *m.cylinders, {-0.1, 0.0, 0.0}), 2 * 0.64 * a * 0.1, 1e-15);
-  EXPECT_NEAR(oil_flow(oil, *m.cylinders, {0.1, -0.2, 0.3}), 2 * a * 0.1 + 3 * a * 0.2 + a * 0.3,
-              1e-15);
-}
-
 // What a relief pressure of 34.5 MPa gives on the assumed pistons, beside the digging forces.
 TEST(Oil, PressesOnPistonsThatGiveTheDiggingForces) {
   const Machine& m = zx120();

@@ -75,7 +75,7 @@ void use_joints(const Machine& machine, const Trajectory& trajectory, Used& used
   }
 }
 
-/// Of cylinders moving this fast; independent of oil_flow().
+/// Of cylinders that grow this fast.
 void use_oil(const Machine& machine, const Eigen::Vector3d& speeds, Used& used) {
   double flow = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -382,6 +382,12 @@ TEST(Trajectory, ComesDownBeforeItDigs) {
   EXPECT_EQ(trajectory.points.front().phase, DigPhase::approach);
   EXPECT_EQ(trajectory.points.front().joints, path.approach.front().joints);
   EXPECT_EQ(rates_between_phases(trajectory).size(), 4u);
+  BucketPose touch;  // the path's first pose is the corner between approach and penetration
+  for (const TrajectoryPoint& point : trajectory.points) {
+    if (point.phase == DigPhase::approach) touch = point.bucket;
+  }
+  const BucketPose& start = path.poses.front().bucket;
+  EXPECT_LE(std::hypot(touch.x - start.x, touch.z - start.z), 1.01e-3);
   const Trajectory alone = time_dig_path(zx120(), fixed_path());
   EXPECT_NEAR(trajectory.dig_duration(), alone.dig_duration(), 0.1);
   EXPECT_GT(trajectory.duration(), alone.duration() + 0.5);
@@ -395,7 +401,7 @@ struct RandomDig {
 
 /// Somewhere on a slope of up to 20 degrees, by a machine that is up to twice as fast or slow.
 RandomDig random_dig(Random& random) {
-  RandomDig dig{zx120(), {}, {random.uniform(0.3, 1.0), random.uniform(0.0, 1e-3)}};
+  RandomDig dig{zx120(), {}, {random.uniform(0.3, 1.0), std::min(1e-3, random.uniform(0.0, 2e-3))}};
   for (JointLimits& limits : dig.machine.limits) {
     limits.speed *= std::exp2(random.uniform(-1, 1));
     limits.acceleration *= std::exp2(random.uniform(-1, 1));

@@ -167,14 +167,4 @@ double Piston::area_filled(double growth) const {
   return 0.25 * pi * (diameter * diameter - rod * rod);
 }
 
-double oil_flow(const Hydraulics& hydraulics, const Cylinders& cylinders,
-                const Eigen::Vector3d& speeds) {
-  double flow = 0.0;
-  for (std::size_t i = 0; i < cylinders.size(); ++i) {
-    const double speed = speeds[static_cast<int>(i)];
-    flow += cylinders[i].count() * hydraulics.pistons[i].area_filled(speed) * std::abs(speed);
-  }
-  return flow;
-}
-
 }  // namespace excavplan

@@ -115,15 +115,11 @@ struct Piston {
   double area_filled(double growth) const;  ///< [m^2], of the side that takes oil as it grows
 };
 
-/// What drives boom, arm and bucket.
+/// What drives boom, arm and bucket. The pumps must deliver count * area filled * speed, summed
+/// over the joints: oil is not led from one side of a piston to the other (regeneration).
 struct Hydraulics {
   std::array<Piston, 3> pistons;
   double pump_flow = 0.0;  ///< of all pumps together [m^3/s]
 };
-
-/// What the pumps must deliver for cylinders that grow at these speeds (negative: shorten) [m^3/s].
-/// Oil is not led from one side of a piston to the other (regeneration).
-double oil_flow(const Hydraulics& hydraulics, const Cylinders& cylinders,
-                const Eigen::Vector3d& speeds);
 
 }  // namespace excavplan
