@@ -250,13 +250,13 @@ std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
 std::optional<Infeasible> Layout::penetrate() {
   const double angle = path_.parameters.penetration_angle;
   const double length = std::min(path_.parameters.penetration_length, longest_line());
+  const double inwards = std::cos(angle), down = std::sin(angle);
   const int count = length > 0.0 ? steps(length) : 0;
   for (int i = 0; i <= count; i += stride(count)) {
     const double s = count > 0 ? length * i / count : 0.0;
     DigPose pose;
     pose.phase = first_phase();
-    pose.bucket = {path_.start_x - s * std::cos(angle), path_.ground_z - s * std::sin(angle),
-                   angle};
+    pose.bucket = {path_.start_x - s * inwards, path_.ground_z - s * down, angle};
     const auto joints = inverse_kinematics(machine_, pose.bucket);
     if (const auto* failed = std::get_if<Unreachable>(&joints)) {
       return stop(pose.phase, s, *failed);
