@@ -78,13 +78,6 @@ void lay_out_dig_anywhere(benchmark::State& state) {
 }
 BENCHMARK(lay_out_dig_anywhere)->Unit(benchmark::kMicrosecond);
 
-void closed_form_inverse_kinematics(benchmark::State& state) {
-  const BucketPose pose{5.0, -0.3, 0.5};
-  for (auto _ : state) benchmark::DoNotOptimize(inverse_kinematics(zx120(), pose));
-  state.SetItemsProcessed(state.iterations());
-}
-BENCHMARK(closed_form_inverse_kinematics);
-
 void look_up_in_the_library(benchmark::State& state) {
   const PathLibrary library = load_path_library(find_data_file("libraries/zx120-loam.json"));
   for (auto _ : state) benchmark::DoNotOptimize(look_up(library, 42.0));

@@ -368,5 +368,59 @@ TEST(CylindersOfAFile, ThatCannotMoveTheirJointAreRefused) {
   EXPECT_EQ(set("/bucket/rocker/angle_rad", 0.0).rfind("cylinders.bucket: ", 0), 0u);
 }
 
+// ---- oil ----------------------------------------------------------------------------------------
+
+TEST(Oil, FillsTheSideOfThePistonOrThatOfTheRod) {
+  const Piston piston{0.1, 0.06};
+  EXPECT_NEAR(piston.area_filled(0.3), 0.0078539816339744830, 1e-17);
+  EXPECT_NEAR(piston.area_filled(-0.3), 0.0050265482457436690, 1e-17);
+}
+
+// What a relief pressure of 34.5 MPa gives on the assumed pistons, beside the digging forces.
+TEST(Oil, PressesOnPistonsThatGiveTheDiggingForces) {
+  const Machine& m = zx120();
+  ASSERT_TRUE(m.hydraulics);
+  EXPECT_NEAR(34.5e6 * m.hydraulics->pistons[1].area_filled(1.0), 355e3, 0.02 * 355e3);
+  EXPECT_NEAR(34.5e6 * m.hydraulics->pistons[2].area_filled(1.0), 309e3, 0.04 * 309e3);
+}
+
+TEST(Oil, OfAFileMayBeLeftOutButNotInPart) {
+  const std::string path = testing::TempDir() + "dry" + std::to_string(::getpid()) + ".json";
+  json file = json::parse(std::ifstream(zx120_path()));
+  file["cylinders"].erase("hydraulics");
+  std::ofstream(path) << file;
+  const Machine dry = load_machine(path);
+  std::remove(path.c_str());
+  EXPECT_TRUE(dry.cylinders);
+  EXPECT_FALSE(dry.hydraulics);
+
+  const auto erase = [](const char* object, const char* key) {
+    return complaint_about([&](json& c) { c[json::json_pointer(object)].erase(key); });
+  };
+  EXPECT_EQ(erase("/hydraulics", "pump_flow_m3_per_s"),
+            "cylinders.hydraulics.pump_flow_m3_per_s: is missing");
+  EXPECT_EQ(erase("/hydraulics", "arm"), "cylinders.hydraulics.arm: is missing");
+  EXPECT_EQ(erase("/hydraulics/arm", "rod_diameter_m"),
+            "cylinders.hydraulics.arm.rod_diameter_m: is missing");
+}
+
+TEST(Oil, OfAFileNamesKeyValueAndRuleOfWhatItRefuses) {
+  const auto set = [](const char* key, const json& value) {
+    return complaint_about(
+        [&](json& c) { c[json::json_pointer(std::string("/hydraulics/") + key)] = value; });
+  };
+  const std::string where = "cylinders.hydraulics.";
+  EXPECT_EQ(set("boom/speed_m_per_s", 0.5), "accepted");
+  EXPECT_EQ(set("boom/speed_m_per_s", 0),
+            where + "boom.speed_m_per_s: is 0, must be above 0 and at most 100");
+  EXPECT_EQ(set("pump_flow_m3_per_s", 190),
+            where + "pump_flow_m3_per_s: is 190, must be above 0 and at most 1");
+  EXPECT_EQ(set("boom/piston_diameter_m", 105),
+            where + "boom.piston_diameter_m: is 105, must be above 0 and at most 1");
+  EXPECT_EQ(set("boom/rod_diameter_m", 0.105),
+            where + "boom.rod_diameter_m: is 0.105, must be below piston_diameter_m = 0.105");
+  EXPECT_EQ(set("swing", 1), where + "swing: is not a key of this file");
+}
+
 }  // namespace
 }  // namespace excavplan

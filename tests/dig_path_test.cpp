@@ -477,6 +477,48 @@ std::string complaint(const DigPathOptions& options) {
   return "accepted";
 }
 
+TEST(WayDown, LowersTheBucketInItsAttitudeFromWhereItIsClear) {
+  Random random(31);
+  for (int n = 0; n < 200; ++n) {
+    const double slope = std::tan(random.uniform(-0.3, 0.3));
+    const auto ground = [slope](double x) { return slope * (x - 6.0); };
+    const auto outcome = make_dig_path_anywhere(zx120(), random_parameters(random), ground);
+    if (std::holds_alternative<Infeasible>(outcome)) continue;
+    const DigPath& path = std::get<DigPath>(outcome);
+    const auto down = way_down(zx120(), path, ground);
+    ASSERT_TRUE(std::holds_alternative<std::vector<DigPose>>(down));
+    std::vector<DigPose> poses = std::get<std::vector<DigPose>>(down);
+    const DigPose& start = path.poses.front();
+    ASSERT_FALSE(poses.empty());
+    const LinkPositions at = link_positions(zx120(), poses.front().joints);
+    EXPECT_GE(lowest_point(zx120(), poses.front()), ground(at.tip.x()) + 0.3 - 1e-12);
+    poses.push_back(start);
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      EXPECT_EQ(poses[i - 1].phase, DigPhase::approach);
+      EXPECT_EQ(poses[i - 1].joints[1], start.joints[1]);
+      EXPECT_NEAR(poses[i - 1].bucket.floor_angle, start.bucket.floor_angle, 1e-12);
+      EXPECT_GE(limit_margin(zx120(), poses[i - 1].joints).margin, 0.0);
+      EXPECT_GT(poses[i - 1].bucket.z, poses[i].bucket.z);
+      EXPECT_LE(std::hypot(poses[i - 1].bucket.x - poses[i].bucket.x,
+                           poses[i - 1].bucket.z - poses[i].bucket.z),
+                0.025 + 1e-12);
+    }
+  }
+}
+
+TEST(WayDown, SaysWhatBlocksIt) {
+  const DigPath path = driven(make_dig_path(zx120(), paper_fixed_path(), 6.0, flat));
+  Machine low = zx120();
+  low.limits[0].lower = path.poses.front().joints[0] - 0.01;
+  const auto outcome = way_down(low, path, flat);
+  ASSERT_TRUE(std::holds_alternative<Infeasible>(outcome));
+  const Infeasible& blocked = std::get<Infeasible>(outcome);
+  EXPECT_EQ(blocked.reason, Reason::lift_blocked);
+  EXPECT_EQ(blocked.phase, DigPhase::approach);
+  EXPECT_EQ(blocked.message.rfind("approach, after 0.0", 0), 0u) << blocked.message;
+  EXPECT_THROW(way_down(zx120(), DigPath(), flat), Error);
+}
+
 TEST(DigPath, BadOptionsAreErrorsThatNameThem) {
   const auto with = [](double DigPathOptions::*field, double value) {
     DigPathOptions options;

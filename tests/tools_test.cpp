@@ -15,7 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/trajectory.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "run_program.hpp"
@@ -439,11 +439,14 @@ TEST_F(Tools, TrajectoryIsTheTableOfTheContract) {
   std::istringstream lines(content_of(file));
   std::string line;
   std::getline(lines, line);
-  EXPECT_EQ(line, "time_s,phase,boom_rad,arm_rad,bucket_rad,tip_x_m,tip_z_m,bucket_angle_rad");
+  EXPECT_EQ(
+      line.rfind("time_s,phase,boom_rad,arm_rad,bucket_rad,tip_x_m,tip_z_m,bucket_angle_rad,", 0),
+      0U);
+  const auto commas = std::count(line.begin(), line.end(), ',');
   double last = -1.0;
   Words phases;
   while (std::getline(lines, line)) {
-    ASSERT_EQ(std::count(line.begin(), line.end(), ','), 7) << line;
+    ASSERT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
     const double time = std::stod(line);
     EXPECT_GT(time, last);
     last = time;
@@ -451,8 +454,17 @@ TEST_F(Tools, TrajectoryIsTheTableOfTheContract) {
     const std::string phase = line.substr(start, line.find(',', start) - start);
     if (phases.empty() || phases.back() != phase) phases.push_back(phase);
   }
-  ASSERT_GE(phases.size(), 3U);
-  EXPECT_EQ(Words(phases.begin(), phases.begin() + 3), Words({"penetrate", "drag", "scoop"}));
+  EXPECT_EQ(phases, Words({"approach", "penetrate", "drag", "scoop", "lift"}));
+}
+
+TEST_F(Tools, TrajectoryIsJsonIfItsFileIsCalledSo) {
+  const std::string file = folder.file("dig.json");
+  answer("plan-path", {"--density", "40", "--trajectory", file});
+  const Trajectory trajectory = load_trajectory(file);
+  EXPECT_EQ(trajectory.machine, "zx120");
+  EXPECT_EQ(trajectory.points.front().phase, DigPhase::approach);
+  EXPECT_GT(trajectory.points.front().bucket.z, 0.3);
+  EXPECT_EQ(trajectory.points.back().phase, DigPhase::lift);
 }
 
 Words fields_of(const std::string& line) {

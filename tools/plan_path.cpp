@@ -56,7 +56,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("generations", inputs.genetic.generations, "generations of the search");
   arguments.option("seed", inputs.genetic.seed, "seed of the search");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
-  arguments.file("trajectory", inputs.trajectory, "write the joint trajectory, CSV");
+  arguments.file("trajectory", inputs.trajectory,
+                 "write the joint trajectory, CSV, or JSON as .json");
   arguments.plot(inputs.plot, "the section of the dig");
 }
 
@@ -194,6 +195,22 @@ nlohmann::ordered_json plan_json(const Plan& plan, double density, double second
   return json;
 }
 
+/// From above the ground to above the ground, JSON or CSV by the name of the file.
+void write_trajectory(const std::string& file, const Machine& machine, DigPath path,
+                      const GroundProfile& ground, std::vector<Warning>& warnings) {
+  auto approach = way_down(machine, path, ground);
+  if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
+    warnings.push_back(
+        {"approach_blocked",
+         "the trajectory begins on the ground, the way down is blocked: " + blocked->message});
+  } else {
+    path.approach = std::get<std::vector<DigPose>>(std::move(approach));
+  }
+  const Trajectory trajectory = time_dig_path(machine, path);
+  const bool json = file.size() >= 5 && file.compare(file.size() - 5, 5, ".json") == 0;
+  write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
+}
+
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
   const Density density = density_of(inputs);
@@ -217,8 +234,10 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.lines.push_back(
       "source       " + plan.source +
       (plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : ""));
-  const Trajectory trajectory = time_dig_path(machine, plan.path);
-  if (inputs.trajectory) write_file(*inputs.trajectory, to_csv(trajectory));
+  if (inputs.trajectory) {
+    write_trajectory(*inputs.trajectory, machine, plan.path, boom_plane_profile(site.ground),
+                     outcome.warnings);
+  }
   if (inputs.plot) {
     write_file(*inputs.plot, dig_figure(machine, plan.path, {boom_plane_profile(site.ground)},
                                         "Planned dig in " + soil.name + " at " +

@@ -54,7 +54,12 @@ Vector2d apex(const Vector2d& from, const Vector2d& to, double to_from, double t
 }  // namespace
 
 Cylinder::Cylinder(const CylinderGeometry& geometry, double lower, double upper)
-    : geometry_(geometry), lower_(lower), upper_(upper) {
+    : geometry_(geometry),
+      foot_(fixed(geometry.foot)),
+      rocker_pin_(joint_pin),
+      lower_(lower),
+      upper_(upper) {
+  if (const auto* bars = std::get_if<FourBar>(&geometry.rod)) rocker_pin_ = fixed(bars->rocker.pin);
   if (geometry.count < 1) refuse("has count " + std::to_string(geometry.count) + ", must be >= 1");
   if (!(lower < upper)) {
     refuse("has a joint range from " + number_text(lower) + " to " + number_text(upper) +
@@ -71,14 +76,12 @@ Cylinder::Cylinder(const CylinderGeometry& geometry, double lower, double upper)
 
 void Cylinder::choose_assembly() {
   const double middle = 0.5 * (lower_ + upper_);
-  Vector2d pivot = joint_pin;
   if (const auto* bars = std::get_if<FourBar>(&geometry_.rod)) {
-    pivot = fixed(bars->rocker.pin);
     const Vector2d link_pin = turned(bars->link.pin, middle);
-    loop_side_ = -side_of(pivot, link_pin, joint_pin);
+    loop_side_ = -side_of(rocker_pin_, link_pin, joint_pin);
     link_side_ = side_of(joint_pin, rod_end(middle).position, link_pin);
   }
-  rod_side_ = side_of(pivot, fixed(geometry_.foot), rod_end(middle).position);
+  rod_side_ = side_of(rocker_pin_, foot_, rod_end(middle).position);
 }
 
 void Cylinder::prove_one_to_one() const {
@@ -109,30 +112,29 @@ Cylinder::RodEnd Cylinder::rod_end(double joint) const {
     return {position, -quarter_turn(position)};
   }
   const auto& bars = std::get<FourBar>(geometry_.rod);
-  const Vector2d pivot = fixed(bars.rocker.pin);
   const Vector2d link_pin = turned(bars.link.pin, joint);
-  const Vector2d position = apex(pivot, link_pin, bars.rocker.length, bars.link.length, loop_side_);
+  const Vector2d position =
+      apex(rocker_pin_, link_pin, bars.rocker.length, bars.link.length, loop_side_);
   // The link stays as long as it is: along it, both its ends are equally fast.
   const Vector2d link = position - link_pin;
-  const Vector2d across_rocker = quarter_turn(position - pivot);
+  const Vector2d across_rocker = quarter_turn(position - rocker_pin_);
   return {position, across_rocker * (link.dot(-quarter_turn(link_pin)) / link.dot(across_rocker))};
 }
 
 CylinderState Cylinder::at(double joint) const {
   const RodEnd rod = rod_end(joint);
-  const Vector2d cylinder = rod.position - fixed(geometry_.foot);
+  const Vector2d cylinder = rod.position - foot_;
   const double length = cylinder.norm();
   return {length, cylinder.dot(rod.velocity) / length};
 }
 
 double Cylinder::solve(double length) const {
-  const Vector2d foot = fixed(geometry_.foot);
   if (const auto* rod = std::get_if<PolarPin>(&geometry_.rod)) {
-    const Vector2d position = apex(joint_pin, foot, rod->distance, length, rod_side_);
+    const Vector2d position = apex(joint_pin, foot_, rod->distance, length, rod_side_);
     return rod->angle - std::atan2(position.y(), position.x());
   }
   const auto& bars = std::get<FourBar>(geometry_.rod);
-  const Vector2d rod = apex(fixed(bars.rocker.pin), foot, bars.rocker.length, length, rod_side_);
+  const Vector2d rod = apex(rocker_pin_, foot_, bars.rocker.length, length, rod_side_);
   const Vector2d link_pin =
       apex(joint_pin, rod, bars.link.pin.distance, bars.link.length, link_side_);
   return bars.link.pin.angle - std::atan2(link_pin.y(), link_pin.x());
@@ -158,6 +160,11 @@ Eigen::Vector3d cylinder_forces(const Cylinders& cylinders, const Eigen::Vector3
                                 const Eigen::Vector3d& torque) {
   return {cylinders[0].force(joints[0], torque[0]), cylinders[1].force(joints[1], torque[1]),
           cylinders[2].force(joints[2], torque[2])};
+}
+
+double Piston::area_filled(double growth) const {
+  const double rod = growth < 0.0 ? rod_diameter : 0.0;
+  return 0.25 * pi * (diameter * diameter - rod * rod);
 }
 
 }  // namespace excavplan

@@ -133,7 +133,9 @@ std::optional<Infeasible> find_bad_parameter(const DigParameters& parameters, do
 
 // ---- the path -----------------------------------------------------------------------------------
 
-enum class Sampling { full, scan };
+/// Of the poses: all of them; few, to compare start points; of these only those at the ends of
+/// penetration, drag and scoop, the same to the bit: no start point is better than they are.
+enum class Sampling { full, scan, ends };
 
 /// Lays one dig out phase by phase. Every phase adds its poses and returns what stops it, if
 /// anything; messages are left to the caller, who may not want them.
@@ -160,8 +162,10 @@ class Layout {
     if (auto stopped = penetrate()) return stopped;
     if (auto stopped = drag()) return stopped;
     if (auto stopped = scoop()) return stopped;
-    return lift();
+    return sampling_ == Sampling::ends ? std::nullopt : lift();
   }
+
+  std::variant<std::vector<DigPose>, Infeasible> way_up(const DigPath& path);
 
   DigPath take() { return std::move(path_); }
 
@@ -177,6 +181,7 @@ class Layout {
   std::optional<Infeasible> drag();
   std::optional<Infeasible> scoop();
   std::optional<Infeasible> lift();
+  std::optional<Infeasible> raise(DigPose pose);
 
   DigPhase first_phase() const {
     if (path_.parameters.penetration_length > 0.0) return DigPhase::penetrate;
@@ -204,6 +209,7 @@ class Layout {
 
   std::optional<Infeasible> add(double distance, const DigPose& pose);
   int steps(double tip_travel) const;
+  int stride(int count) const { return sampling_ == Sampling::ends ? std::max(1, count) : 1; }
   /// No straight line longer than this stays within reach.
   double longest_line() const { return 2.0 * machine_.full_length(); }
   double height_above_ground(const JointAngles& joints) const;
@@ -218,7 +224,7 @@ class Layout {
 
 int Layout::steps(double tip_travel) const {
   const double needed = std::max(1.0, std::ceil(tip_travel / options_.step));
-  if (sampling_ == Sampling::scan) return static_cast<int>(std::min<double>(needed, scan_poses));
+  if (sampling_ != Sampling::full) return static_cast<int>(std::min<double>(needed, scan_poses));
   require(needed <= most_poses, "step", options_.step,
           "so large that no phase has more than 10000 poses");
   return static_cast<int>(needed);
@@ -244,13 +250,13 @@ std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
 std::optional<Infeasible> Layout::penetrate() {
   const double angle = path_.parameters.penetration_angle;
   const double length = std::min(path_.parameters.penetration_length, longest_line());
+  const double inwards = std::cos(angle), down = std::sin(angle);
   const int count = length > 0.0 ? steps(length) : 0;
-  for (int i = 0; i <= count; ++i) {
+  for (int i = 0; i <= count; i += stride(count)) {
     const double s = count > 0 ? length * i / count : 0.0;
     DigPose pose;
     pose.phase = first_phase();
-    pose.bucket = {path_.start_x - s * std::cos(angle), path_.ground_z - s * std::sin(angle),
-                   angle};
+    pose.bucket = {path_.start_x - s * inwards, path_.ground_z - s * down, angle};
     const auto joints = inverse_kinematics(machine_, pose.bucket);
     if (const auto* failed = std::get_if<Unreachable>(&joints)) {
       return stop(pose.phase, s, *failed);
@@ -268,7 +274,7 @@ std::optional<Infeasible> Layout::drag() {
   path_.heel_clearance = start.bucket.floor_angle;
   const double length = std::min(path_.parameters.drag_length, longest_line());
   const int count = length > 0.0 ? steps(length) : -1;
-  for (int i = 0; i <= count; ++i) {
+  for (int i = 0; i <= count; i += stride(count)) {
     const double s = length * i / count;
     DigPose pose = start;
     pose.phase = DigPhase::drag;
@@ -303,7 +309,7 @@ std::optional<Infeasible> Layout::scoop() {
   const double turn = start.bucket.floor_angle + beta_;
   const double allowed = machine_.limits[2].upper - start.joints[2];
   const int count = steps(turn * machine_.bucket_length);
-  for (int i = 1; i <= count; ++i) {
+  for (int i = stride(count); i <= count; i += stride(count)) {
     const double turned = std::min(turn * i / count, allowed);
     const double phi3 = start.bucket.floor_angle - turned + beta_ - pi;
     DigPose pose;
@@ -344,11 +350,9 @@ double Layout::height_above_ground(const JointAngles& joints) const {
   return low.y() - (std::isfinite(highest) ? highest : path_.ground_z);
 }
 
-/// The boom rises and the bucket turns back by as much. Once the bucket is out of the ground it may
-/// stay at its limit.
-std::optional<Infeasible> Layout::lift() {
-  DigPose pose = path_.poses.back();
-  pose.phase = DigPhase::lift;
+/// The boom rises and the bucket turns back by as much, until it is clear of the ground. Once it is
+/// out of the ground the bucket may stay at its limit.
+std::optional<Infeasible> Layout::raise(DigPose pose) {
   const double radius =
       (link_positions(machine_, pose.joints).bucket_pin - machine_.boom_pin).norm() +
       machine_.bucket_length;
@@ -366,7 +370,7 @@ std::optional<Infeasible> Layout::lift() {
     const bool bucket_ends = bucket > machine_.limits[2].upper && height <= 0.0;
     if (boom_ends || bucket_ends) {
       Infeasible stopped =
-          stop(Reason::lift_blocked, DigPhase::lift, travelled, height, options_.lift_clearance);
+          stop(Reason::lift_blocked, pose.phase, travelled, height, options_.lift_clearance);
       stopped.joint = boom_ends ? Joint::boom : Joint::bucket;
       return stopped;
     }
@@ -379,32 +383,46 @@ std::optional<Infeasible> Layout::lift() {
   return std::nullopt;
 }
 
+std::optional<Infeasible> Layout::lift() {
+  DigPose pose = path_.poses.back();
+  pose.phase = DigPhase::lift;
+  return raise(pose);
+}
+
+/// The way up from the first pose, from there on.
+std::variant<std::vector<DigPose>, Infeasible> Layout::way_up(const DigPath& path) {
+  path_.ground_z = path.ground_z;
+  path_.limit_margin = path.limit_margin;
+  DigPose pose = path.poses.front();
+  pose.phase = DigPhase::approach;
+  if (auto stopped = raise(pose)) return *std::move(stopped);
+  return std::move(path_.poses);
+}
+
 // ---- the start point ----------------------------------------------------------------------------
+
+/// Those that are compared.
+struct StartPoints {
+  int first = 0;
+  int last = -1;
+  static double at(int i) { return static_cast<double>(i) / scan_per_metre; }
+};
 
 struct Candidate {
   double start_x = 0.0;
-  double margin = 0.0;  ///< if it can be driven
-};
-
-struct Scan {
-  std::vector<Candidate> drivable;
-  double best_failing = 0.0;  ///< start point that gets furthest
+  double margin = 0.0;
 };
 
 /// Of equals the one in the middle.
 std::size_t middle_of(const std::vector<std::size_t>& equals) { return equals[equals.size() / 2]; }
 
-Scan scan_start_points(Layout& layout, int first, int last) {
+/// The start point that gets furthest where none gets to the end.
+double best_failing(Layout layout, const StartPoints& points) {
   using Progress = std::pair<DigPhase, double>;
-  Scan scan;
   std::vector<std::pair<double, Progress>> failing;
-  for (int i = first; i <= last; ++i) {
-    const double start_x = static_cast<double>(i) / scan_per_metre;
-    if (const auto stopped = layout.lay_out(start_x)) {
-      failing.emplace_back(start_x, Progress(stopped->phase, stopped->distance));
-    } else {
-      scan.drivable.push_back({start_x, layout.margin()});
-    }
+  for (int i = points.first; i <= points.last; ++i) {
+    const auto stopped = layout.lay_out(points.at(i));
+    if (stopped) failing.push_back({points.at(i), {stopped->phase, stopped->distance}});
   }
   Progress furthest(DigPhase::approach, 0.0);
   for (const auto& entry : failing) furthest = std::max(furthest, entry.second);
@@ -412,19 +430,56 @@ Scan scan_start_points(Layout& layout, int first, int last) {
   for (std::size_t i = 0; i < failing.size(); ++i) {
     if (failing[i].second == furthest) equals.push_back(i);
   }
-  if (!equals.empty()) scan.best_failing = failing[middle_of(equals)].first;
-  return scan;
+  return equals.empty() ? 0.0 : failing[middle_of(equals)].first;
 }
 
-std::size_t widest_margin(const std::vector<Candidate>& candidates) {
-  double widest = -std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : candidates) widest = std::max(widest, candidate.margin);
-  std::vector<std::size_t> equals;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].margin >= widest - scan_tie) equals.push_back(i);
+/// Start points that can be driven, the one with the widest margin first. Most are never laid out:
+/// the ends of their phases alone keep them below the best.
+class DrivableStarts {
+ public:
+  DrivableStarts(Layout ends, Layout scan, const StartPoints& points) : layout_(std::move(scan)) {
+    for (int i = points.first; i <= points.last; ++i) {
+      if (!ends.lay_out(points.at(i))) promising_.push_back({points.at(i), ends.margin()});
+    }
+    std::sort(promising_.begin(), promising_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.margin < b.margin; });
   }
-  return middle_of(equals);
-}
+
+  /// Of those as wide as the widest the one in the middle; nothing when all are taken.
+  std::optional<double> take() {
+    find_widest();
+    if (drivable_.empty()) return std::nullopt;
+    std::vector<std::size_t> equals;
+    for (std::size_t i = 0; i < drivable_.size(); ++i) {
+      if (drivable_[i].margin >= widest_ - scan_tie) equals.push_back(i);
+    }
+    std::sort(equals.begin(), equals.end(), [this](std::size_t a, std::size_t b) {
+      return drivable_[a].start_x < drivable_[b].start_x;
+    });
+    const std::size_t chosen = middle_of(equals);
+    const double start_x = drivable_[chosen].start_x;
+    drivable_.erase(drivable_.begin() + static_cast<std::ptrdiff_t>(chosen));
+    return start_x;
+  }
+
+ private:
+  void find_widest() {
+    widest_ = -std::numeric_limits<double>::infinity();
+    for (const Candidate& candidate : drivable_) widest_ = std::max(widest_, candidate.margin);
+    while (!promising_.empty() && promising_.back().margin >= widest_ - scan_tie) {
+      const double start_x = promising_.back().start_x;
+      promising_.pop_back();
+      if (layout_.lay_out(start_x)) continue;
+      drivable_.push_back({start_x, layout_.margin()});
+      widest_ = std::max(widest_, layout_.margin());
+    }
+  }
+
+  Layout layout_;
+  std::vector<Candidate> promising_;  // margin: no wider than this; the widest last
+  std::vector<Candidate> drivable_;
+  double widest_ = 0.0;
+};
 
 }  // namespace
 
@@ -481,17 +536,33 @@ std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
   const double furthest = machine.boom_pin.x() + reach;
   if (nearest > furthest) return make_dig_path(machine, parameters, furthest, ground, options);
 
-  Layout layout(machine, parameters, ground, options, Sampling::scan);
-  Scan scan = scan_start_points(layout, static_cast<int>(std::ceil(nearest * scan_per_metre)),
-                                static_cast<int>(std::floor(furthest * scan_per_metre)));
-  while (!scan.drivable.empty()) {
-    const std::size_t chosen = widest_margin(scan.drivable);
-    scan.best_failing = scan.drivable[chosen].start_x;
-    auto path = make_dig_path(machine, parameters, scan.best_failing, ground, options);
-    if (std::holds_alternative<DigPath>(path) || scan.drivable.size() == 1) return path;
-    scan.drivable.erase(scan.drivable.begin() + static_cast<std::ptrdiff_t>(chosen));
+  const StartPoints points{static_cast<int>(std::ceil(nearest * scan_per_metre)),
+                           static_cast<int>(std::floor(furthest * scan_per_metre))};
+  const Layout scan(machine, parameters, ground, options, Sampling::scan);
+  DrivableStarts starts(Layout(machine, parameters, ground, options, Sampling::ends), scan, points);
+  std::optional<std::variant<DigPath, Infeasible>> path;
+  while (const std::optional<double> start_x = starts.take()) {
+    path = make_dig_path(machine, parameters, *start_x, ground, options);
+    if (std::holds_alternative<DigPath>(*path)) break;
   }
-  return make_dig_path(machine, parameters, scan.best_failing, ground, options);
+  if (path) return *std::move(path);
+  return make_dig_path(machine, parameters, best_failing(scan, points), ground, options);
+}
+
+std::variant<std::vector<DigPose>, Infeasible> way_down(const Machine& machine, const DigPath& path,
+                                                        const GroundProfile& ground,
+                                                        const DigPathOptions& options) {
+  check(options);
+  if (path.poses.empty()) throw Error(ErrorKind::bad_input, "the dig path has no pose to approach");
+  Layout layout(machine, path.parameters, ground, options, Sampling::full);
+  auto outcome = layout.way_up(path);
+  if (auto* stopped = std::get_if<Infeasible>(&outcome)) {
+    stopped->message = explain(*stopped);
+    return std::move(*stopped);
+  }
+  auto& poses = std::get<std::vector<DigPose>>(outcome);
+  std::reverse(poses.begin(), poses.end());
+  return std::move(poses);
 }
 
 }  // namespace excavplan

@@ -210,19 +210,45 @@ CylinderGeometry read_cylinder(JsonObject file) {
   return geometry;
 }
 
-Cylinders read_cylinders(JsonObject file, const std::array<JointLimits, 3>& limits) {
+Piston read_piston(JsonObject file) {
+  Piston piston;
+  piston.diameter = positive(file, "piston_diameter_m", 1.0);
+  piston.rod_diameter = positive(file, "rod_diameter_m", 1.0);
+  if (piston.rod_diameter >= piston.diameter) {
+    file.fail("rod_diameter_m",
+              "is " + number_text(piston.rod_diameter) +
+                  ", must be below piston_diameter_m = " + number_text(piston.diameter));
+  }
+  if (file.has("speed_m_per_s")) piston.speed = positive(file, "speed_m_per_s", 100.0);
+  file.done();
+  return piston;
+}
+
+Hydraulics read_hydraulics(JsonObject file) {
+  Hydraulics hydraulics;
+  hydraulics.pump_flow = positive(file, "pump_flow_m3_per_s", 1.0);
+  for (std::size_t i = 0; i < all_joints.size(); ++i) {
+    hydraulics.pistons[i] = read_piston(file.object(name(all_joints[i])));
+  }
+  file.ignore("sources");
+  file.done();
+  return hydraulics;
+}
+
+void read_cylinders(JsonObject file, Machine& machine) {
   const auto cylinder = [&](std::size_t i) {
     const char* key = name(all_joints[i]);
+    const JointLimits& limits = machine.limits[i];
     try {
-      return Cylinder(read_cylinder(file.object(key)), limits[i].lower, limits[i].upper);
+      return Cylinder(read_cylinder(file.object(key)), limits.lower, limits.upper);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::bad_file) throw;
       file.fail(key, error.what());
     }
   };
-  const Cylinders cylinders = {cylinder(0), cylinder(1), cylinder(2)};
+  machine.cylinders = Cylinders{cylinder(0), cylinder(1), cylinder(2)};
+  if (file.has("hydraulics")) machine.hydraulics = read_hydraulics(file.object("hydraulics"));
   file.done();
-  return cylinders;
 }
 
 // ---- inverse kinematics -------------------------------------------------------------------------
@@ -307,9 +333,7 @@ Machine load_machine(const std::string& path) {
     machine.links[i] = read_link(links.object(key));
   }
   machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length);
-  if (file.has("cylinders")) {
-    machine.cylinders = read_cylinders(file.object("cylinders"), machine.limits);
-  }
+  if (file.has("cylinders")) read_cylinders(file.object("cylinders"), machine);
   for (JsonObject* object : {&joints, &links, &file}) {
     object->ignore("sources");
     object->done();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <excavplan/error.hpp>
 
@@ -13,28 +14,14 @@
 namespace excavplan {
 namespace {
 
-constexpr double standstill = 1e-9;  // poses closer than this are one pose [rad]
-
-struct Limits {
-  JointAngles speed;
-  JointAngles acceleration;
-};
-
-/// One stretch between two stops: points first .. last of the trajectory.
-struct Stretch {
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
-
-Limits usable_limits(const Machine& machine, double fraction) {
-  Limits limits;
-  for (int i = 0; i < 3; ++i) {
-    const JointLimits& joint = machine.limits[static_cast<std::size_t>(i)];
-    limits.speed[i] = fraction * joint.speed;
-    limits.acceleration[i] = fraction * joint.acceleration;
-  }
-  return limits;
-}
+constexpr double standstill = 1e-9;         // poses closer than this are one pose [rad]
+constexpr double largest_tolerance = 0.01;  // [m]
+// Ours, of the rounding of a corner, along the joint path to either side [rad]:
+constexpr double shortest_reach = 1e-5;  // a shorter one is as slow as a stop
+constexpr double longest_reach = 0.02;
+constexpr int steps_a_side = 4;
+constexpr double room_share = 0.4;      // of a phase that the rounding of one corner may take
+constexpr double sharpest_turn = -0.5;  // cosine of the turn beyond which the machine stops
 
 void check(const DigPath& path, const TrajectoryOptions& options) {
   if (!(options.speed_fraction > 0.0 && options.speed_fraction <= 1.0)) {
@@ -42,16 +29,27 @@ void check(const DigPath& path, const TrajectoryOptions& options) {
                                           number_text(options.speed_fraction) +
                                           ", must be above 0 and at most 1");
   }
+  if (!(options.corner_tolerance >= 0.0 && options.corner_tolerance <= largest_tolerance)) {
+    throw Error(ErrorKind::bad_input,
+                "TrajectoryOptions::corner_tolerance is " + number_text(options.corner_tolerance) +
+                    ", must be in 0 .. " + number_text(largest_tolerance) + " m");
+  }
   if (path.poses.size() < 2) {
     throw Error(ErrorKind::bad_input, "the dig path has " + std::to_string(path.poses.size()) +
                                           " poses, must have at least 2");
   }
-  for (std::size_t i = 0; i < path.poses.size(); ++i) {
-    if (path.poses[i].joints.allFinite()) continue;
-    throw Error(ErrorKind::bad_input,
-                "pose " + std::to_string(i) + " of the dig path has a joint that is not finite");
-  }
+  const auto check_finite = [](const std::vector<DigPose>& poses, const char* of_what) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (poses[i].joints.allFinite()) continue;
+      throw Error(ErrorKind::bad_input, "pose " + std::to_string(i) + " of the " + of_what +
+                                            " has a joint that is not finite");
+    }
+  };
+  check_finite(path.approach, "approach");
+  check_finite(path.poses, "dig path");
 }
+
+// ---- where the trajectory goes ------------------------------------------------------------------
 
 TrajectoryPoint point_at(const DigPose& pose) {
   TrajectoryPoint point;
@@ -61,121 +59,340 @@ TrajectoryPoint point_at(const DigPose& pose) {
   return point;
 }
 
-TrajectoryPoint halfway(const Machine& machine, const DigPose& a, const DigPose& b) {
-  DigPose between;
-  between.phase = b.phase;
-  between.joints = 0.5 * (a.joints + b.joints);
-  between.bucket = forward_kinematics(machine, between.joints);
-  return point_at(between);
-}
-
-/// The poses that move on, in order. A phase of a single step gets a point halfway, where it can
-/// have a speed; between its two stops it would have none.
-std::vector<TrajectoryPoint> points_of(const Machine& machine, const DigPath& path) {
-  std::vector<DigPose> poses = {path.poses.front()};
+/// The poses of approach and dig that move on. A pose between two phases is of the earlier one.
+std::vector<DigPose> moving_poses(const DigPath& path) {
+  std::vector<DigPose> poses;
+  poses.reserve(path.approach.size() + path.poses.size());
+  const auto add = [&](const DigPose& pose) {
+    if (poses.empty() || (pose.joints - poses.back().joints).norm() > standstill) {
+      poses.push_back(pose);
+    }
+  };
+  for (const DigPose& pose : path.approach) add(pose);
   for (const DigPose& pose : path.poses) {
-    if ((pose.joints - poses.back().joints).norm() > standstill) poses.push_back(pose);
+    add(pose);
+    if (&pose == &path.poses.front() && !path.approach.empty()) {
+      poses.back().phase = path.approach.back().phase;
+    }
   }
   if (poses.size() > 1) poses.front().phase = poses[1].phase;
-  std::vector<TrajectoryPoint> points = {point_at(poses.front())};
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    const bool begins = i == 1 || poses[i].phase != poses[i - 1].phase;
-    const bool ends = i + 1 == poses.size() || poses[i + 1].phase != poses[i].phase;
-    if (begins && ends) points.push_back(halfway(machine, poses[i - 1], poses[i]));
-    points.push_back(point_at(poses[i]));
-  }
-  return points;
+  return poses;
 }
 
-std::vector<Stretch> stretches_of(const std::vector<TrajectoryPoint>& points) {
-  std::vector<Stretch> stretches;
-  std::size_t first = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    if (i + 1 < points.size() && points[i + 1].phase == points[i].phase) continue;
-    stretches.push_back({first, i});
-    first = i;
-  }
-  return stretches;
+/// How fast the tip moves per unit of joint motion [m/rad], or the bucket's attitude over the
+/// length of the bucket if that is more.
+double bucket_motion(const Machine& machine, const JointAngles& joints, const JointAngles& motion) {
+  const LinkPositions at = link_positions(machine, joints);
+  const auto about = [&](const Eigen::Vector2d& pin) -> Eigen::Vector2d {
+    return {at.tip.y() - pin.y(), pin.x() - at.tip.x()};
+  };
+  const Eigen::Vector2d tip = motion[0] * about(machine.boom_pin) + motion[1] * about(at.arm_pin) +
+                              motion[2] * about(at.bucket_pin);
+  return std::max(tip.norm(), std::abs(motion.sum()) * machine.bucket_length);
 }
 
-/// Time-optimal speed along the joint path q(s) of one stretch, s being its length in joint space
-/// [rad]. The squared speed x is bounded at each point by the joint speeds and by the curvature
-/// q''; then |q'' x| + |q' dx/(2 ds)| <= acceleration limits how fast it may grow, forwards, and
-/// fall, backwards (Bobrow, Dubowsky and Gibson 1985, on a grid).
+/// The pose between two phases, at the length `along` of the joint path.
+struct Corner {
+  std::size_t pose = 0;
+  double along = 0.0;
+  JointAngles turn = JointAngles::Zero();  ///< of the unit direction of the joints
+  double reach = 0.0;                      ///< of its rounding to either side; 0: a stop [rad]
+};
+
+/// Lays the points of the trajectory out: the poses, but round the corners. There the path q(s)
+/// gets turn · (reach - |s|)² / (4 reach) added, s counted from the corner: a parabola, which
+/// leaves the path by at most turn · reach / 4, and whose curvature is turn / (2 reach).
+class Route {
+ public:
+  Route(const Machine& machine, const DigPath& path, double tolerance)
+      : machine_(machine), poses_(moving_poses(path)) {
+    along_.reserve(poses_.size());
+    along_.push_back(0.0);
+    for (std::size_t i = 1; i < poses_.size(); ++i) {
+      along_.push_back(along_.back() + (poses_[i].joints - poses_[i - 1].joints).norm());
+    }
+    find_corners(tolerance);
+    lay_out();
+  }
+
+  std::vector<TrajectoryPoint> take_points() { return std::move(points_); }
+  /// Points where the machine rests: the first, the last, and those it stops at between.
+  const std::vector<std::size_t>& stops() const { return stops_; }
+
+ private:
+  void find_corners(double tolerance);
+  double reach_at(const Corner& corner, double tolerance) const;
+  void lay_out();
+  void stop_at(const DigPose& pose);
+  void add_rounding(const Corner& corner);
+
+  const Machine& machine_;
+  std::vector<DigPose> poses_;
+  std::vector<double> along_;  // of each pose [rad]
+  std::vector<Corner> corners_;
+  std::vector<TrajectoryPoint> points_;
+  std::vector<std::size_t> stops_;
+};
+
+void Route::find_corners(double tolerance) {
+  for (std::size_t i = 1; i + 1 < poses_.size(); ++i) {
+    if (poses_[i + 1].phase == poses_[i].phase) continue;
+    corners_.emplace_back();
+    corners_.back().pose = i;
+    corners_.back().along = along_[i];
+  }
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    Corner& corner = corners_[c];
+    const double begin = c == 0 ? 0.0 : corners_[c - 1].along;
+    const double end = c + 1 == corners_.size() ? along_.back() : corners_[c + 1].along;
+    const JointAngles& at = poses_[corner.pose].joints;
+    const JointAngles before = (at - poses_[corner.pose - 1].joints).normalized();
+    const JointAngles after = (poses_[corner.pose + 1].joints - at).normalized();
+    corner.turn = after - before;
+    if (before.dot(after) < sharpest_turn) continue;
+    const double room = room_share * std::min(corner.along - begin, end - corner.along);
+    const double deviation = 0.25 * bucket_motion(machine_, at, corner.turn);
+    const double reach = std::min({longest_reach, room, tolerance / deviation});
+    if (reach >= shortest_reach) corner.reach = reach;
+  }
+}
+
+void Route::lay_out() {
+  constexpr double spacing = 1.25;  // no pose is kept nearer than this to the corner [reach]
+  points_.reserve(poses_.size() + 2 * steps_a_side * corners_.size() + 1);
+  stop_at(poses_.front());
+  std::size_t i = 1;
+  for (const Corner& corner : corners_) {
+    while (i < corner.pose && along_[i] < corner.along - spacing * corner.reach) {
+      points_.push_back(point_at(poses_[i++]));
+    }
+    if (corner.reach > 0.0) {
+      add_rounding(corner);
+    } else {
+      stop_at(poses_[corner.pose]);
+    }
+    i = corner.pose + 1;
+    while (along_[i] < corner.along + spacing * corner.reach) ++i;
+  }
+  while (i + 1 < poses_.size()) points_.push_back(point_at(poses_[i++]));
+  if (i < poses_.size()) stop_at(poses_[i]);
+}
+
+/// Between two stops there is always a point that can have a speed.
+void Route::stop_at(const DigPose& pose) {
+  if (!stops_.empty() && stops_.back() + 1 == points_.size()) {
+    DigPose between;
+    between.phase = pose.phase;
+    between.joints = 0.5 * (points_.back().joints + pose.joints);
+    between.bucket = forward_kinematics(machine_, between.joints);
+    points_.push_back(point_at(between));
+  }
+  stops_.push_back(points_.size());
+  points_.push_back(point_at(pose));
+}
+
+void Route::add_rounding(const Corner& corner) {
+  std::size_t end = corner.pose;  // of the step of the path that holds the point
+  while (end > 1 && along_[end - 1] > corner.along - corner.reach) --end;
+  for (int step = -steps_a_side; step <= steps_a_side; ++step) {
+    const double share = static_cast<double>(step) / steps_a_side;
+    const double along = corner.along + share * corner.reach;
+    while (end + 1 < poses_.size() && along_[end] < along) ++end;
+    const double part = (along - along_[end - 1]) / (along_[end] - along_[end - 1]);
+    const double off_path = 0.25 * corner.reach * (1.0 - std::abs(share)) * (1.0 - std::abs(share));
+    const JointAngles& from = poses_[end - 1].joints;
+    DigPose pose;
+    pose.phase = poses_[share > 0.0 ? corner.pose + 1 : corner.pose].phase;
+    pose.joints = from + part * (poses_[end].joints - from) + off_path * corner.turn;
+    pose.bucket = forward_kinematics(machine_, pose.joints);
+    points_.push_back(point_at(pose));
+  }
+}
+
+// ---- how fast -----------------------------------------------------------------------------------
+
+/// What may be used of the machine's limits.
+class Limits {
+ public:
+  Limits(const Machine& machine, double fraction) : states_oil_(machine.hydraulics.has_value()) {
+    for (int i = 0; i < 3; ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      acceleration_[i] = fraction * machine.limits[joint].acceleration;
+      per_rate_[i] = 1.0 / (fraction * machine.limits[joint].speed);
+      if (!states_oil_) continue;
+      const Piston& piston = machine.hydraulics->pistons[joint];
+      const double share =
+          (*machine.cylinders)[joint].count() / (fraction * machine.hydraulics->pump_flow);
+      per_piston_speed_[i] = 1.0 / (fraction * piston.speed);
+      per_growth_[i] = share * piston.area_filled(1.0);
+      per_shrinking_[i] = share * piston.area_filled(-1.0);
+    }
+  }
+
+  const JointAngles& acceleration() const { return acceleration_; }
+
+  /// The largest share of a limit of speed that these joint rates take.
+  double load(const JointAngles& rates) const {
+    return rates.cwiseAbs().cwiseProduct(per_rate_).maxCoeff();
+  }
+
+  /// The same of cylinder speed and pump flow for cylinders that grow this fast; 0 if neither is
+  /// known.
+  double cylinder_load(const Eigen::Vector3d& growth) const {
+    if (!states_oil_) return 0.0;
+    double flow = 0.0, fastest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const double speed = std::abs(growth[i]);
+      fastest = std::max(fastest, speed * per_piston_speed_[i]);
+      flow += speed * (growth[i] < 0.0 ? per_shrinking_[i] : per_growth_[i]);
+    }
+    return std::max(fastest, flow);
+  }
+
+ private:
+  bool states_oil_;
+  JointAngles acceleration_;
+  JointAngles per_rate_;
+  Eigen::Vector3d per_piston_speed_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d per_growth_ = Eigen::Vector3d::Zero();  // of the flow
+  Eigen::Vector3d per_shrinking_ = Eigen::Vector3d::Zero();
+};
+
+/// Time-optimal speed along the joint path q(s) between two stops, s being its length in joint
+/// space [rad]. The squared speed x is bounded at each point by the speeds of joints and cylinders,
+/// by the flow and by the curvature q''; then |q'' x| + |q' dx/(2 ds)| <= acceleration limits how
+/// fast it may grow, forwards, and fall, backwards (Bobrow, Dubowsky and Gibson 1985, on a grid).
 ///
 /// q' is taken from each segment and q'' from its change over half of both neighbours. With these,
 /// rates and accelerations that a controller forms as differences of the samples, and those between
-/// the stated rates, are averages of bounded terms: they keep the limits exactly, not nearly.
+/// the stated rates, are averages of bounded terms: they keep the limits exactly, not nearly. So do
+/// speeds of the cylinders: each segment is bounded by its levers at both ends and by its mean.
 class Pass {
  public:
-  Pass(std::vector<TrajectoryPoint>& points, const Stretch& stretch, const Limits& limits)
-      : points_(points), first_(stretch.first), limits_(limits) {
-    const std::size_t count = stretch.last - stretch.first;
-    for (std::size_t k = 0; k < count; ++k) {
-      const JointAngles move = joints(k + 1) - joints(k);
-      length_.push_back(move.norm());
-      slope_.push_back(move / length_.back());
-    }
-    tangent_.assign(count + 1, JointAngles::Zero());
-    curvature_.assign(count + 1, JointAngles::Zero());
-    for (std::size_t k = 1; k < count; ++k) {
-      const double before = length_[k - 1], after = length_[k];
-      tangent_[k] = (after * slope_[k - 1] + before * slope_[k]) / (before + after);
-      curvature_[k] = 2.0 * (slope_[k] - slope_[k - 1]).cwiseAbs() / (before + after);
-    }
+  Pass(std::vector<TrajectoryPoint>& points, const std::optional<Cylinders>& cylinders,
+       const Limits& limits)
+      : points_(points), limits_(limits), segments_(points.size()), nodes_(points.size()) {
+    if (cylinders) place_cylinders(*cylinders);
   }
 
-  /// Sets times (from the time of the first point on) and rates of the stretch.
-  void run() {
-    bound_speed();
-    const std::size_t count = length_.size();
-    for (std::size_t k = 0; k < count; ++k) limit_growth(k, k, k + 1);
-    for (std::size_t k = count; k-- > 0;) limit_growth(k, k + 1, k);
-    for (std::size_t k = 1; k <= count; ++k) {
-      const double mean = 0.5 * (std::sqrt(squared_[k - 1]) + std::sqrt(squared_[k]));
-      points_[first_ + k].time = points_[first_ + k - 1].time + length_[k - 1] / mean;
-      points_[first_ + k].rates = tangent_[k] * std::sqrt(squared_[k]);
+  /// Sets times (from the time of the first point on) and rates between two stops.
+  void run(std::size_t first, std::size_t last) {
+    measure(first, last);
+    bound_speed(first, last);
+    for (std::size_t k = first; k < last; ++k) {
+      limit_growth(segments_[k], nodes_[k], nodes_[k + 1]);
+    }
+    for (std::size_t k = last; k-- > first;) {
+      limit_growth(segments_[k], nodes_[k + 1], nodes_[k]);
+    }
+    double speed_before = 0.0;
+    for (std::size_t k = first + 1; k <= last; ++k) {
+      const double speed = std::sqrt(nodes_[k].squared);
+      const double mean = 0.5 * (std::exchange(speed_before, speed) + speed);
+      points_[k].time = points_[k - 1].time + segments_[k - 1].length / mean;
+      points_[k].rates = nodes_[k].tangent * speed;
+    }
+    for (std::size_t k = first; k <= last; ++k) {
+      points_[k].cylinder_speeds =
+          nodes_[k].levers.cwiseProduct(points_[k].rates).array() + 0.0;  // no negative zero
     }
   }
 
  private:
-  const JointAngles& joints(std::size_t k) const { return points_[first_ + k].joints; }
+  /// From a point to the next.
+  struct Segment {
+    double length = 0.0;  ///< [rad]
+    double per_length = 0.0;
+    JointAngles slope;     ///< dq/ds
+    JointAngles gain;      ///< |dq/ds| / (2 ds)
+    JointAngles per_drag;  ///< 1 / (gain + curvature); infinite for a joint that rests
+    double ceiling = 0.0;  ///< of ds/dt, from the speeds of joints and cylinders and the flow
+  };
+  struct Node {
+    JointAngles tangent = JointAngles::Zero();    ///< dq/ds
+    JointAngles curvature = JointAngles::Zero();  ///< |d²q/ds²| [1/rad]
+    double squared = 0.0;                         ///< (ds/dt)²
+    /// d length / dq of the cylinders [m/rad]
+    Eigen::Vector3d levers = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  };
 
-  void bound_speed() {
-    squared_.assign(length_.size() + 1, 0.0);
-    for (std::size_t k = 1; k < length_.size(); ++k) {
-      const JointAngles steepest = slope_[k - 1].cwiseAbs().cwiseMax(slope_[k].cwiseAbs());
+  /// A joint that rests leaves its cylinder as it was.
+  void place_cylinders(const Cylinders& cylinders) {
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      for (int i = 0; i < 3; ++i) {
+        if (k > 0 && points_[k].joints[i] == points_[k - 1].joints[i]) {
+          points_[k].cylinders[i] = points_[k - 1].cylinders[i];
+          nodes_[k].levers[i] = nodes_[k - 1].levers[i];
+        } else {
+          const CylinderState state =
+              cylinders[static_cast<std::size_t>(i)].at(points_[k].joints[i]);
+          points_[k].cylinders[i] = state.length;
+          nodes_[k].levers[i] = state.lever;
+        }
+      }
+    }
+  }
+
+  void measure(std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      Segment& segment = segments_[k];
+      const JointAngles move = points_[k + 1].joints - points_[k].joints;
+      segment.length = move.norm();
+      segment.per_length = 1.0 / segment.length;
+      segment.slope = move * segment.per_length;
+      segment.gain = segment.slope.cwiseAbs() * (0.5 * segment.per_length);
+      segment.ceiling = ceiling_of(k);
+    }
+    nodes_[first].curvature = nodes_[last].curvature = JointAngles::Zero();
+    for (std::size_t k = first + 1; k < last; ++k) {
+      const Segment &before = segments_[k - 1], &after = segments_[k];
+      const double per_both = 1.0 / (before.length + after.length);
+      nodes_[k].tangent = (after.length * before.slope + before.length * after.slope) * per_both;
+      nodes_[k].curvature = (after.slope - before.slope).cwiseAbs() * (2.0 * per_both);
+    }
+  }
+
+  double ceiling_of(std::size_t k) const {
+    const Segment& segment = segments_[k];
+    const Eigen::Vector3d mean =
+        (points_[k + 1].cylinders - points_[k].cylinders) * segment.per_length;
+    const double load =
+        std::max({limits_.load(segment.slope), limits_.cylinder_load(mean),
+                  limits_.cylinder_load(nodes_[k].levers.cwiseProduct(segment.slope)),
+                  limits_.cylinder_load(nodes_[k + 1].levers.cwiseProduct(segment.slope))});
+    return 1.0 / load;
+  }
+
+  void bound_speed(std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const JointAngles bend = nodes_[k].curvature.cwiseMax(nodes_[k + 1].curvature);
+      segments_[k].per_drag = (segments_[k].gain + bend).cwiseInverse();
+    }
+    nodes_[first].squared = nodes_[last].squared = 0.0;
+    for (std::size_t k = first + 1; k < last; ++k) {
+      const double ceiling = std::min(segments_[k - 1].ceiling, segments_[k].ceiling);
       // The neighbours' curvature as well: else slowing down for it could break the growth behind.
       const JointAngles bend =
-          curvature_[k - 1].cwiseMax(curvature_[k]).cwiseMax(curvature_[k + 1]);
-      double bound = std::numeric_limits<double>::infinity();
+          nodes_[k - 1].curvature.cwiseMax(nodes_[k].curvature).cwiseMax(nodes_[k + 1].curvature);
+      nodes_[k].squared = ceiling * ceiling;
       for (int i = 0; i < 3; ++i) {
-        if (steepest[i] > 0.0) bound = std::min(bound, std::pow(limits_.speed[i] / steepest[i], 2));
-        if (bend[i] > 0.0) bound = std::min(bound, limits_.acceleration[i] / bend[i]);
+        if (bend[i] <= 0.0) continue;
+        nodes_[k].squared = std::min(nodes_[k].squared, limits_.acceleration()[i] / bend[i]);
       }
-      squared_[k] = bound;
     }
   }
 
   /// Over one segment, from the point where the speed is known to be allowed to the other one.
-  void limit_growth(std::size_t segment, std::size_t from, std::size_t to) {
-    const JointAngles bend = curvature_[from].cwiseMax(curvature_[to]);
-    for (int i = 0; i < 3; ++i) {
-      const double gain = std::abs(slope_[segment][i]) / (2.0 * length_[segment]);
-      if (gain <= 0.0) continue;
-      const double highest = (limits_.acceleration[i] + gain * squared_[from]) / (gain + bend[i]);
-      squared_[to] = std::min(squared_[to], highest);
-    }
+  void limit_growth(const Segment& segment, const Node& from, Node& to) const {
+    const JointAngles highest =
+        (limits_.acceleration() + segment.gain * from.squared).cwiseProduct(segment.per_drag);
+    to.squared = std::min(to.squared, highest.minCoeff());
   }
 
   std::vector<TrajectoryPoint>& points_;
-  std::size_t first_;
   const Limits& limits_;
-  std::vector<double> length_;          // of each segment [rad]
-  std::vector<JointAngles> slope_;      // dq/ds of each segment
-  std::vector<JointAngles> tangent_;    // dq/ds at each point
-  std::vector<JointAngles> curvature_;  // |d²q/ds²| at each point [1/rad]
-  std::vector<double> squared_;         // (ds/dt)² at each point
+  std::vector<Segment> segments_;
+  std::vector<Node> nodes_;
 };
 
 }  // namespace
@@ -192,26 +409,15 @@ double Trajectory::dig_duration() const {
 Trajectory time_dig_path(const Machine& machine, const DigPath& path,
                          const TrajectoryOptions& options) {
   check(path, options);
-  const Limits limits = usable_limits(machine, options.speed_fraction);
+  Route route(machine, path, options.corner_tolerance);
   Trajectory trajectory;
-  trajectory.points = points_of(machine, path);
-  for (const Stretch& stretch : stretches_of(trajectory.points)) {
-    Pass(trajectory.points, stretch, limits).run();
-  }
+  trajectory.machine = machine.name;
+  trajectory.points = route.take_points();
+  const Limits limits(machine, options.speed_fraction);
+  Pass pass(trajectory.points, machine.cylinders, limits);
+  const std::vector<std::size_t>& stops = route.stops();
+  for (std::size_t i = 1; i < stops.size(); ++i) pass.run(stops[i - 1], stops[i]);
   return trajectory;
-}
-
-std::string to_csv(const Trajectory& trajectory) {
-  std::string csv = "time_s,phase,boom_rad,arm_rad,bucket_rad,tip_x_m,tip_z_m,bucket_angle_rad\n";
-  for (const TrajectoryPoint& point : trajectory.points) {
-    csv += number_text(point.time) + ',' + name(point.phase);
-    for (const double value : {point.joints[0], point.joints[1], point.joints[2], point.bucket.x,
-                               point.bucket.z, point.bucket.floor_angle}) {
-      csv += ',' + number_text(value);
-    }
-    csv += '\n';
-  }
-  return csv;
 }
 
 }  // namespace excavplan

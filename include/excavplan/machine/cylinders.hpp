@@ -3,13 +3,15 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <variant>
 
 #include <Eigen/Core>
 
 /// @file
-/// The hydraulic cylinders behind the joints: how long they are, how hard they push.
+/// The hydraulic cylinders behind the joints: how long they are, how hard they push, how much oil
+/// they take.
 ///
 /// Every pin is polar about the pin of its joint, so a linkage does not depend on how long the
 /// links are. Joint angles are those of the machine: positive turns down and curls in.
@@ -83,6 +85,8 @@ class Cylinder {
   double solve(double length) const;
 
   CylinderGeometry geometry_;
+  Eigen::Vector2d foot_;
+  Eigen::Vector2d rocker_pin_;  // of a four-bar; else of the joint
   double lower_, upper_;
   double shortest_ = 0.0, longest_ = 0.0;
   // Which of two assemblies: +1 if, going from one pin to the next, the third is on the left.
@@ -101,5 +105,21 @@ std::array<CylinderState, 3> cylinder_states(const Cylinders& cylinders,
 /// The weight of cylinders, rocker and link, and friction in the pins, are left out.
 Eigen::Vector3d cylinder_forces(const Cylinders& cylinders, const Eigen::Vector3d& joints,
                                 const Eigen::Vector3d& torque);
+
+/// The inside of one cylinder.
+struct Piston {
+  double diameter = 0.0;                                   ///< [m]
+  double rod_diameter = 0.0;                               ///< [m], below diameter
+  double speed = std::numeric_limits<double>::infinity();  ///< it may have, either way [m/s]
+
+  double area_filled(double growth) const;  ///< [m^2], of the side that takes oil as it grows
+};
+
+/// What drives boom, arm and bucket. The pumps must deliver count * area filled * speed, summed
+/// over the joints: oil is not led from one side of a piston to the other (regeneration).
+struct Hydraulics {
+  std::array<Piston, 3> pistons;
+  double pump_flow = 0.0;  ///< of all pumps together [m^3/s]
+};
 
 }  // namespace excavplan

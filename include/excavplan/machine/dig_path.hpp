@@ -63,8 +63,10 @@ struct DigPose {
 /// pose of a phase is the first of the next and is stored once, with the earlier phase.
 struct DigPath {
   DigParameters parameters;
-  double start_x = 0.0;         ///< where the tip meets the ground [m]
-  double ground_z = 0.0;        ///< height of the ground there [m]
+  double start_x = 0.0;   ///< where the tip meets the ground [m]
+  double ground_z = 0.0;  ///< height of the ground there [m]
+  /// The way down to the first pose, which is not repeated; empty unless set (way_down()).
+  std::vector<DigPose> approach;
   std::vector<DigPose> poses;   ///< penetrate, drag, scoop, lift; at least two
   double heel_clearance = 0.0;  ///< smallest floor angle during the drag [rad]
   LimitMargin limit_margin;     ///< smallest over all poses
@@ -132,5 +134,15 @@ std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
                                                          const DigParameters& parameters,
                                                          const GroundProfile& ground,
                                                          const DigPathOptions& options = {});
+
+/// The way down to the first pose of a path, for DigPath::approach: with the bucket's attitude that
+/// of the first pose, the boom lowers it from where it is clear of the ground by lift_clearance. It
+/// is the lift backwards, with the same rules.
+///
+/// @return the poses, the highest first and without the first pose of the path, or what blocks them
+/// @throws Error (bad_input) if an option is out of range or the path has no pose
+std::variant<std::vector<DigPose>, Infeasible> way_down(const Machine& machine, const DigPath& path,
+                                                        const GroundProfile& ground,
+                                                        const DigPathOptions& options = {});
 
 }  // namespace excavplan

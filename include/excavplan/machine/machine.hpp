@@ -84,7 +84,8 @@ struct Machine {
   std::array<JointLimits, 3> limits;
   std::array<LinkMass, 3> links;
   Bucket bucket;
-  std::optional<Cylinders> cylinders;  ///< nothing if the file does not state them
+  std::optional<Cylinders> cylinders;    ///< nothing if the file does not state them
+  std::optional<Hydraulics> hydraulics;  ///< likewise; never without cylinders
 
   /// Boom pin to tip with all links in one line: nothing is ever further away [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }
