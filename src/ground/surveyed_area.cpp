@@ -20,9 +20,9 @@ constexpr Eigen::Index fewest_known_cells = 100;
 constexpr double least_noise = 1e-4;  // ours: no survey of soil is better [m]
 constexpr double gentle = 0.5;        // ours: soil beyond the edge of a scan lies steeper [-]
 constexpr double steep = 1.0;         // ours: gentler faces have points enough to be averages [-]
-/// Points place a steep face no better than this share of their spacing, all along it alike;
-/// ours, from pits with upright walls under simulated cameras.
-constexpr double face_place = 0.08;
+/// A lattice of points places a steep face no better than this share of its spacing, all along it
+/// alike; ours, from pits with upright walls under simulated cameras.
+constexpr double face_place = 0.15;
 
 /// Sums the difference over each zone: area, volume, place.
 void sum_zones(Area& area) {
@@ -63,14 +63,32 @@ void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_varian
   });
 }
 
+/// How regularly points lie: 0 if as by chance, then two cells' counts differ by the square root of
+/// their sum; towards 1 on a lattice, as that of a camera.
+double regularity_of(const Eigen::ArrayXXi& points, const Eigen::ArrayXXi& zone) {
+  double squares = 0.0;
+  double sums = 0.0;
+  for_each_cell(points, [&](Cell at) {
+    if (at.row == 0 || zone(at.row, at.col) >= 0 || zone(at.row - 1, at.col) >= 0) return;
+    const double one = points(at.row - 1, at.col);
+    const double two = points(at.row, at.col);
+    if (one == 0.0 || two == 0.0) return;
+    squares += (one - two) * (one - two);
+    sums += one + two;
+  });
+  return sums > 0.0 ? std::max(0.0, 1.0 - squares / sums) : 0.0;
+}
+
 /// What a scan's steep faces may add to or take from each zone: their area seen from the side times
-/// how well the points place them.
+/// how well the points place them. Points that lie by chance err anew in every cell, which the
+/// noise of the cells tells; rows of points along a face err alike.
 void sum_faces(Area& area, const Surface& scan, double noise_sd) {
   if (scan.points.size() == 0) return;
   const std::size_t zones = area.zones.size();
   std::vector<double> faces(zones, 0.0);
   std::vector<double> points(zones, 0.0);
   const Gradient gradient = gradient_of(scan.height);
+  const double regularity = regularity_of(scan.points, area.ground.zone);
   const double cell = area.grid.cell;
   const double least = std::max(steep, 2.0 * noise_sd / cell);
   for_each_cell(area.ground.zone, [&](Cell at) {
@@ -84,7 +102,7 @@ void sum_faces(Area& area, const Surface& scan, double noise_sd) {
   for (std::size_t i = 0; i < zones; ++i) {
     if (faces[i] == 0.0 || points[i] == 0.0) continue;
     const double spacing = std::sqrt(area.zones[i].area / points[i]);
-    area.zones[i].faces += std::pow(face_place * spacing * faces[i], 2);
+    area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);
   }
 }
 
