@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/planning/genetic.hpp>
+#include <excavplan/planning/search_analysis.hpp>
 
 #include <unistd.h>
 
@@ -708,6 +709,95 @@ TEST_F(SearchCheckpointFile, AFolderThatDoesNotExistIsNoticedBeforeTheSearch) {
   };
   EXPECT_EQ(error_of([&] { search(with_fingerprint(never), nowhere); }),
             "/nowhere/at/all.json: there is no folder /nowhere/at");
+}
+
+// What a search found out ------------------------------------------------------------------------
+
+TEST(SearchInsights, RangesOfAQuadraticAreItsEllipsoid) {
+  // 10 - d' M d, M with a cross term; worth 98 % where d' M d <= 0.2: half-widths of the ellipsoid
+  // are sqrt(0.2 (M^-1)_ii).
+  const SearchBox box{VectorXd::Zero(2), VectorXd::Constant(2, 2.0)};
+  const auto bowl = [](const VectorXd& x) {
+    const double u = x(0) - 0.9;
+    const double v = x(1) - 1.1;
+    return 10.0 - (2.0 * u * u + 8.0 * v * v + 4.0 * u * v);
+  };
+  const SearchResult result = search({box, bowl}, with_seed(2));
+  const SearchInsight insight = explain(box, result);
+  ASSERT_EQ(insight.fitted.size(), 2U);
+  const double half[2] = {std::sqrt(0.2 * 8.0 / 12.0), std::sqrt(0.2 * 2.0 / 12.0)};
+  const double centre[2] = {0.9, 1.1};
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(insight.fitted[i].low, centre[i] - half[i], 1e-3);
+    EXPECT_NEAR(insight.fitted[i].high, centre[i] + half[i], 1e-3);
+    EXPECT_GE(insight.seen[i].low, insight.fitted[i].low - 1e-3);
+    EXPECT_LE(insight.seen[i].high, insight.fitted[i].high + 1e-3);
+    EXPECT_GT(insight.seen[i].high - insight.seen[i].low, half[i]);
+  }
+}
+
+TEST(SearchInsights, NameTheSecondBasin) {
+  const auto twin = [](const VectorXd& x) {
+    const auto hump = [&](double height, double place) {
+      return height * std::exp(-10.0 * (x.array() - place).square().sum());
+    };
+    return std::max(hump(1.0, 0.2), hump(0.9, 0.8));
+  };
+  const SearchResult result = search(problem(twin), with_seed(1));
+  const SearchInsight insight = explain(unit_cube(), result);
+  EXPECT_LT((result.best - VectorXd::Constant(3, 0.2)).norm(), 0.05);
+  ASSERT_TRUE(insight.second_basin);
+  const SearchRecord& second = result.history[static_cast<std::size_t>(*insight.second_basin)];
+  EXPECT_LT((second.point - VectorXd::Constant(3, 0.8)).norm(), 0.05);
+  for (const ParameterRange& range : insight.seen) EXPECT_LT(range.high, 0.5);
+}
+
+TEST(SearchInsights, SayNothingOfASearchThatFoundNothing) {
+  const SearchResult none =
+      search(problem([](const VectorXd&) { return std::optional<double>(); }), with_seed(1));
+  const SearchInsight insight = explain(unit_cube(), none);
+  EXPECT_FALSE(insight.second_basin);
+  EXPECT_TRUE(insight.seen.empty() && insight.fitted.empty());
+  EXPECT_TRUE(evaluate_again(none, [](const VectorXd&, int) { return 1.0; }).empty());
+}
+
+TEST(SearchInsights, RepeatsTakeTheLuckOutOfTheBest) {
+  const auto noisy = [](const VectorXd& x, int repeat) {
+    return hartmann(x) * functions::noise_at(x, 0.03, 100 + static_cast<std::uint64_t>(repeat));
+  };
+  double too_good = 0.0;
+  double fair = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SearchResult result =
+        search(problem([&](const VectorXd& x) { return noisy(x, -1); }), with_seed(seed));
+    const auto again = evaluate_again(result, noisy, 5, 8, 2);
+    ASSERT_EQ(again.size(), 5U);
+    EXPECT_EQ(again[0].ok, 8);
+    EXPECT_GE(again[0].mean, again[1].mean);
+    EXPECT_NEAR(again[0].sd, 0.03 * hartmann_maximum, 0.1);
+    too_good += result.outcome.fitness / hartmann(result.best) - 1.0;
+    fair += again[0].mean / hartmann(again[0].point) - 1.0;
+  }
+  EXPECT_GT(too_good / 20.0, 0.03);
+  EXPECT_LT(std::abs(fair) / 20.0, 0.015);
+  EXPECT_LT(fair, too_good / 3.0);
+}
+
+TEST(SearchInsights, HistoryAsCsvRedrawsTheSearch) {
+  SearchOptions options = with_seed(1);
+  options.stop.evaluations = 30;
+  const SearchResult result = search(problem([](const VectorXd& x) -> Evaluation {
+                                       if (x(0) < 0.5) return Evaluation::failed("a \"b\", c");
+                                       return hill(x);
+                                     }),
+                                     options);
+  const std::string csv = to_csv(result);
+  EXPECT_EQ(csv.find("place,generation,origin,polish,parents,source,status,fitness,violation,"
+                     "reason,x1,x2,x3\n0,0,space filling,0,,simulated,"),
+            0U);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), result.asked + 1);
+  EXPECT_NE(csv.find(",failed,,0,\"a \"\"b\"\", c\","), std::string::npos);
+  EXPECT_NE(csv.find(",polish,1,"), std::string::npos);
 }
 
 // Bad input -------------------------------------------------------------------------------------

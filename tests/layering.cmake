@@ -21,7 +21,7 @@ set(third_parties "pcl/" "opencv2/" "nlopt" "nlohmann/" "CLI/")
 set(third_party_places
   "^(src/survey/paper_method|tests/paper_method_test)\\.cpp$"
   "^(src/survey/depth_image|tests/depth_image_test)\\.cpp$"
-  "^src/(soil|planning)/[a-z_]+\\.cpp$"
+  "^(src/(soil|planning)/[a-z_]+|benchmarks/optimiser_benchmark)\\.cpp$"
   "^(src/json_file\\.hpp|src/.*\\.cpp|tools/.*|tests/.*)$"
   "^tools/tool\\.cpp$")
 
