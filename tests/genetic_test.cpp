@@ -163,6 +163,7 @@ TEST(PapersAlgorithm, WithoutMutationEveryGeneComesFromTheFirstGeneration) {
 /// Evaluations until the true value of an asked point reaches a share of the maximum; 0: never.
 int evaluations_to(double share, const functions::Function& function, SearchOptions options,
                    const Objective& objective) {
+  if (!function.seen) options.stop.target = share * function.maximum;
   const SearchResult result = search(problem(objective), options);
   int evaluations = 0;
   for (const SearchRecord& record : result.history) {

@@ -160,9 +160,10 @@ std::vector<int> SearchLog::evaluate(int generation, const std::vector<Candidate
                [&](std::size_t i) { batch[i] = prepare(generation, candidates[i]); });
   std::vector<int> places;
   for (std::size_t done = 0; done < batch.size() && !stop_reason_;) {
-    const int doubtful = failed_ == evaluations_ ? certain - evaluations_ : 0;
-    const std::size_t count =
-        doubtful > 0 ? std::min<std::size_t>(doubtful, batch.size() - done) : batch.size() - done;
+    std::size_t count = batch.size() - done;
+    if (failed_ == evaluations_ && evaluations_ < certain) {
+      count = std::min(count, static_cast<std::size_t>(certain - evaluations_));
+    }
     evaluate_part(&batch[done], count, places);
     refuse_if_all_failed(certain);
     done += count;
