@@ -176,7 +176,7 @@ class Memetic {
     if (places.empty()) return std::nullopt;
     const std::vector<int> sorted = best_first(places);
     const Evaluation inherited = log_[sorted.front()].outcome;
-    polish_separate(sorted, method_.basins);
+    polish(separate(sorted, method_.basins), given_step);
     return inherited;
   }
 
@@ -193,7 +193,7 @@ class Memetic {
                          [&](int place) { return !better(log_[place].outcome, *inherited); }),
           places.end());
     }
-    polish_separate(places, method_.basins);
+    polish(separate(places, method_.basins), first_step);
   }
 
   /// A simplex that has shrunk at a cliff or a step may go on from there when spread again.
@@ -270,10 +270,6 @@ class Memetic {
     return outcome.ok() || (outcome.violation > 0.0 && !log_[log_.best()].outcome.ok());
   }
 
-  void polish_separate(const std::vector<int>& places, int count) {
-    polish(separate(places, count), first_step);
-  }
-
   void polish(const std::vector<int>& starts, double step) {
     if (log_.stopped()) return;
     std::vector<Polish> polishes;
@@ -289,6 +285,7 @@ class Memetic {
 
   // Lengths of the simplex and of mutations as shares of the box; ours, after
   // docs/methods.md#search.
+  static constexpr double given_step = 0.05;
   static constexpr double first_step = 0.1;
   static constexpr double restart_step = 0.15;
   static constexpr double widest = 0.2;
