@@ -14,7 +14,7 @@ namespace excavplan {
 /// An outcome that a file can hold: a finite fitness, a reason in UTF-8 of limited length.
 Evaluation sound(Evaluation outcome);
 
-/// The outcomes of a search's evaluations, in memory and in a file (docs/formats.md#search). A
+/// The outcomes of a search's evaluations, in memory and in a file (docs/formats.md#search-checkpoint). A
 /// search is determined by its options and these outcomes, so that nothing else need be kept.
 class SearchCheckpoint {
  public:

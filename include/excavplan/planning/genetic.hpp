@@ -82,11 +82,11 @@ struct GeneticAlgorithm {
 /// best and fresh space-filling immigrants, with a polish wherever a new basin looks good.
 struct MemeticSearch {
   int first_generation = 16;    ///< points, >= 0; 0 only with given points
-  int generations = 12;         ///< after the polish, >= 0
+  int generations = 4;          ///< after the polish, >= 0; some 50 evaluations each
   int generation_size = 12;     ///< points, >= 1
   double immigrants = 0.25;     ///< share of a generation [0, 1]
   int basins = 3;               ///< polished of the first generation, >= 0
-  int polish_evaluations = 45;  ///< of one polish, >= 0
+  int polish_evaluations = 45;  ///< of one polish, >= 0; 15 for each dimension do well
   double basin_radius = 0.2;    ///< two basins are farther apart than this share of the box, > 0
 };
 
