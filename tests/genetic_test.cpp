@@ -402,6 +402,7 @@ TEST_P(BothMethods, ProgressKnowsWhatIsLeft) {
   };
   search(problem(hill), watched);
   EXPECT_EQ(last.evaluations, 120);
+  EXPECT_EQ(last.planned, 120);
   EXPECT_EQ(last.seconds_left, 0.0);
   EXPECT_LE(last.mean, last.best);
 }
@@ -555,6 +556,22 @@ TEST_P(BothMethods, ARepairThatRefusesAllEnds) {
   EXPECT_FALSE(result.feasible());
   EXPECT_EQ(result.evaluations, 0);
   EXPECT_EQ(result.outcome.reason, "no");
+}
+
+TEST_P(BothMethods, ARepairThatBreaksIsAFailureOfThePoint) {
+  SearchProblem broken = problem(hill);
+  broken.repair = [](const VectorXd& x) -> std::variant<VectorXd, Evaluation> {
+    if (x(0) < 0.1) return VectorXd(VectorXd::Zero(2));
+    if (x(0) < 0.2) return VectorXd(VectorXd::Constant(3, std::nan("")));
+    if (x(0) < 0.3) return Evaluation(5.0);
+    if (x(0) < 0.4) throw std::runtime_error("no spare part");
+    return x;
+  };
+  const SearchResult result = search(broken, options());
+  EXPECT_GT(result.outcome.fitness, 1.98);
+  for (const SearchRecord& record : result.history) {
+    EXPECT_EQ(record.outcome.status, record.point(0) < 0.4 ? Status::failed : Status::ok);
+  }
 }
 
 TEST_P(BothMethods, StepsMakePointsOfAGridAndTheCacheMeetsThem) {

@@ -170,7 +170,7 @@ Plan search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& s
   options.threads = static_cast<unsigned>(inputs.threads);
   options.known_good = known_good(inputs, machine, soil, density);
   options.progress = [&](const SearchProgress& p) {
-    console.progress(static_cast<double>(p.generation) / inputs.genetic.generations,
+    console.progress(static_cast<double>(p.evaluations) / p.planned,
                      "generation " + std::to_string(p.generation) + ": best " +
                          readable(1000.0 * p.best) + ", mean " + readable(1000.0 * p.mean) +
                          " kg/kJ, " + std::to_string(p.evaluations) + " digs");

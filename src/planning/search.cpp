@@ -86,6 +86,16 @@ std::vector<VectorXd> clipped(const std::vector<VectorXd>& points, const SearchB
   return inside;
 }
 
+int planned_evaluations(const GeneticAlgorithm& method) {
+  return method.population + (method.generations - 1) * (method.population - 1);
+}
+
+int planned_evaluations(const MemeticSearch& method) {
+  const int polishes = method.basins > 0 ? method.basins + 1 + method.generations : 0;
+  return method.first_generation + polishes * method.polish_evaluations +
+         method.generations * method.generation_size;
+}
+
 /// Rank of a status: feasible before infeasible before unknown.
 int rank(const Evaluation& outcome) {
   using Status = Evaluation::Status;
@@ -171,14 +181,14 @@ SearchResult search(const SearchProblem& problem, const SearchOptions& options) 
   check(problem);
   check(options);
   const SearchTask task{problem.box, options.seed, clipped(options.start, problem.box)};
-  SearchLog log(problem, options);
-  std::visit(
+  return std::visit(
       [&](const auto& method) {
         check(method, task);
+        SearchLog log(problem, options, planned_evaluations(method));
         run(method, task, log);
+        return log.finish();
       },
       options.method);
-  return log.finish();
 }
 
 }  // namespace excavplan

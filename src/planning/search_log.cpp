@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -41,6 +42,18 @@ auto caught(const Call& call) -> decltype(call()) {
   }
 }
 
+std::variant<VectorXd, Evaluation> repair(const SearchProblem& problem, const VectorXd& point) {
+  using Repaired = std::variant<VectorXd, Evaluation>;
+  Repaired repaired = caught([&]() -> Repaired { return problem.repair(point); });
+  if (const auto* refusal = std::get_if<Evaluation>(&repaired)) {
+    if (refusal->ok()) return Evaluation::failed("the repair gave a fitness, not a point");
+  } else if (const auto& fit = std::get<VectorXd>(repaired);
+             fit.size() != point.size() || !fit.allFinite()) {
+    return Evaluation::failed("the repair gave no finite point of the box's dimensions");
+  }
+  return repaired;
+}
+
 VectorXd snapped(const VectorXd& point, const SearchProblem& problem) {
   VectorXd result = point;
   for (Eigen::Index i = 0; i < problem.step.size(); ++i) {
@@ -54,8 +67,10 @@ VectorXd snapped(const VectorXd& point, const SearchProblem& problem) {
 
 }  // namespace
 
-SearchLog::SearchLog(const SearchProblem& problem, const SearchOptions& options)
+SearchLog::SearchLog(const SearchProblem& problem, const SearchOptions& options, int planned)
     : problem_(problem), options_(options), checkpoint_(problem, options) {
+  const int limit = options.stop.evaluations;
+  progress_.planned = limit > 0 ? std::min(limit, planned) : planned;
   progress_.best = progress_.mean = progress_.seconds_left = unknown;
 }
 
@@ -71,14 +86,12 @@ SearchLog::Prepared SearchLog::prepare(int generation, const Candidate& candidat
   record.generation = generation;
   record.point = clip(snapped(clip(candidate.point), problem_));
   if (problem_.repair) {
-    using Repaired = std::variant<VectorXd, Evaluation>;
-    auto repaired = caught([&]() -> Repaired { return problem_.repair(record.point); });
+    auto repaired = repair(problem_, record.point);
     if (const auto* point = std::get_if<VectorXd>(&repaired)) {
       record.point = clip(*point);
     } else {
       record.source = SearchRecord::Source::repair;
       record.outcome = std::get<Evaluation>(std::move(repaired));
-      if (record.outcome.ok()) record.outcome = Evaluation::failed("the repair gave a fitness");
     }
   }
   prepared.key = key_of(record.point);
@@ -114,7 +127,13 @@ void SearchLog::tell(double seconds) {
   progress_.seconds = seconds;
   progress_.seconds_left = seconds_left();
   if (options_.stop.seconds > 0.0 && seconds >= options_.stop.seconds) halt(StopReason::seconds);
-  if (options_.progress && !halted_ && !options_.progress(progress_)) halt(StopReason::cancelled);
+  if (!options_.progress || halted_) return;
+  try {
+    if (!options_.progress(progress_)) halt(StopReason::cancelled);
+  } catch (...) {
+    halt(StopReason::cancelled);  // for the other threads
+    throw;
+  }
 }
 
 void SearchLog::halt(StopReason reason) {
@@ -123,14 +142,10 @@ void SearchLog::halt(StopReason reason) {
 }
 
 double SearchLog::seconds_left() const {
-  double left = unknown;
-  if (options_.stop.evaluations > 0 && fresh_ > 0) {
-    left = progress_.seconds / fresh_ * (options_.stop.evaluations - progress_.evaluations);
-  }
-  if (options_.stop.seconds > 0.0) {
-    left = std::fmin(left, options_.stop.seconds - progress_.seconds);
-  }
-  return std::fmax(left, 0.0 * left);  // NaN stays NaN
+  const int evaluations_left = std::max(0, progress_.planned - progress_.evaluations);
+  const double left = fresh_ > 0 ? progress_.seconds / fresh_ * evaluations_left : unknown;
+  const double limit = options_.stop.seconds;
+  return limit > 0.0 ? std::fmin(left, std::max(0.0, limit - progress_.seconds)) : left;
 }
 
 int SearchLog::room() const {
@@ -172,13 +187,13 @@ std::vector<int> SearchLog::evaluate(int generation, const std::vector<Candidate
   return places;
 }
 
-void SearchLog::evaluate_part(Prepared* batch, std::size_t count, std::vector<int>& places) {
+std::vector<SearchRecord*> SearchLog::mark_fresh(Prepared* batch, std::size_t& count) {
   std::vector<SearchRecord*> fresh;
-  std::map<Key, std::size_t> places_in_batch;
+  std::set<Key> in_batch;
   for (std::size_t i = 0; i < count; ++i) {
     Prepared& it = batch[i];
     if (it.record.source == SearchRecord::Source::repair) continue;
-    if (seen_.count(it.key) > 0 || !places_in_batch.emplace(it.key, i).second) {
+    if (seen_.count(it.key) > 0 || !in_batch.insert(it.key).second) {
       it.record.source = SearchRecord::Source::cached;
     } else if (static_cast<int>(fresh.size()) == room()) {
       count = i;
@@ -187,6 +202,11 @@ void SearchLog::evaluate_part(Prepared* batch, std::size_t count, std::vector<in
       fresh.push_back(&it.record);
     }
   }
+  return fresh;
+}
+
+void SearchLog::evaluate_part(Prepared* batch, std::size_t count, std::vector<int>& places) {
+  const std::vector<SearchRecord*> fresh = mark_fresh(batch, count);
   std::vector<std::optional<Evaluation>> outcomes(fresh.size());
   parallel_for(fresh.size(), options_.threads,
                [&](std::size_t i) { outcomes[i] = simulate(fresh[i]->point); });

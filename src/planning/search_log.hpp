@@ -31,7 +31,8 @@ class SearchLog {
  public:
   class Strand;
 
-  SearchLog(const SearchProblem& problem, const SearchOptions& options);
+  /// @param planned  evaluations that the method will about make, for the progress
+  SearchLog(const SearchProblem& problem, const SearchOptions& options, int planned);
 
   /// Evaluates candidates side by side; returns the places of their records. Fewer than asked if a
   /// stop rule cut it short.
@@ -71,6 +72,8 @@ class SearchLog {
 
   int room() const;  ///< evaluations that the rules still allow
   int take(SearchRecord record);
+  /// Those of a batch that must be evaluated; shortens it where the rules leave no room.
+  std::vector<SearchRecord*> mark_fresh(Prepared* batch, std::size_t& count);
   void evaluate_part(Prepared* batch, std::size_t count, std::vector<int>& places);
   void note_generation(int generation, const std::vector<int>& places);
   bool reaches_target(const Evaluation& outcome) const;

@@ -101,6 +101,7 @@ struct StopRules {
 struct SearchProgress {
   int generation = 0;  ///< 0: the first
   int evaluations = 0;
+  int planned = 0;    ///< evaluations in all, at most; an estimate
   double best = 0.0;  ///< fitness; NaN while nothing feasible was found
   double mean = 0.0;  ///< of the feasible of the last generation; NaN before and if there are none
   double seconds = 0.0;
