@@ -244,17 +244,21 @@ void SearchLog::run_strands(int generation, int evaluations,
   check_rules();
 }
 
+const Evaluation* SearchLog::Strand::remembered(const Key& key) const {
+  if (const auto own = seen_.find(key); own != seen_.end()) return &own->second;
+  const auto all = log_.seen_.find(key);
+  return all != log_.seen_.end() ? &all->second : nullptr;
+}
+
 std::optional<Evaluation> SearchLog::Strand::ask(const Candidate& candidate) {
   if (reached_) return std::nullopt;
   Prepared prepared = log_.prepare(generation_, candidate);
   SearchRecord& record = prepared.record;
   record.polish = number_;
   if (record.source != SearchRecord::Source::repair) {
-    const auto own = seen_.find(prepared.key);
-    const auto known = own != seen_.end() ? own : log_.seen_.find(prepared.key);
-    if (own != seen_.end() || known != log_.seen_.end()) {
+    if (const Evaluation* known = remembered(prepared.key)) {
       record.source = SearchRecord::Source::cached;
-      record.outcome = known->second;
+      record.outcome = *known;
     } else {
       if (evaluations_ == limit_) return std::nullopt;
       const std::optional<Evaluation> outcome = log_.simulate(record.point);

@@ -113,6 +113,8 @@ class SearchLog::Strand {
   Strand(SearchLog& log, int generation, int number, int limit)
       : log_(log), generation_(generation), number_(number), limit_(limit) {}
 
+  const Evaluation* remembered(const Key& key) const;
+
   SearchLog& log_;
   int generation_;
   int number_;
