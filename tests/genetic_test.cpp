@@ -362,6 +362,20 @@ TEST_P(BothMethods, StopsForTheReasonItGives) {
   EXPECT_EQ(late.evaluations, 1);
 }
 
+TEST(Search, APolishEndsAtTheTarget) {
+  SearchOptions options = with_seed(1);
+  options.stop.target = 1.99;
+  const SearchResult result = search(problem(hill), options);
+  int reached = 0;
+  for (std::size_t i = 0; i < result.history.size(); ++i) {
+    const SearchRecord& record = result.history[i];
+    if (record.polish == 0 || record.outcome.fitness < 1.99) continue;
+    ++reached;
+    EXPECT_TRUE(i + 1 == result.history.size() || result.history[i + 1].polish != record.polish);
+  }
+  EXPECT_GT(reached, 0);
+}
+
 TEST_P(BothMethods, AShorterSearchIsTheBeginningOfALongerOne) {
   const SearchResult whole = search(problem(hartmann), options());
   SearchOptions stop = options();
