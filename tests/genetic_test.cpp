@@ -355,6 +355,13 @@ TEST_P(BothMethods, StopsForTheReasonItGives) {
   stop.stop.stall = 40;
   EXPECT_EQ(search(problem([](const VectorXd&) { return 1.0; }), stop).stopped_by,
             StopReason::stall);
+  const SearchResult stalled = search(problem(hill), stop);
+  int at_best = 0;
+  for (const SearchRecord& record : stalled.history) {
+    at_best += record.source == Source::simulated ? 1 : 0;
+    if (record.outcome.fitness == stalled.outcome.fitness) break;
+  }
+  EXPECT_GE(stalled.evaluations - at_best, 40);
   stop = options();
   stop.stop.seconds = 1e-9;
   const SearchResult late = search(problem(hill), stop);
@@ -545,12 +552,14 @@ TEST_P(BothMethods, RepairComesFirstAndIsFree) {
   SearchProblem repaired = problem([](const VectorXd& x) {
     EXPECT_GE(x(0), 0.5);
     EXPECT_LE(x(1), 0.8);
+    EXPECT_LE(x(2), 1.0);
     return hill(x);
   });
   repaired.repair = [](const VectorXd& x) -> std::variant<VectorXd, Evaluation> {
     if (x(1) > 0.8) return Evaluation::infeasible(x(1) - 0.8, "too long");
     VectorXd fit = x;
     fit(0) = std::max(0.5, fit(0));
+    if (x(2) > 0.9) fit(2) = 7.0;  // clipped
     return fit;
   };
   const SearchResult result = search(repaired, options());
@@ -594,6 +603,7 @@ TEST_P(BothMethods, StepsMakePointsOfAGridAndTheCacheMeetsThem) {
     return hill(x);
   });
   stepped.step = VectorXd::Constant(3, 0.1);
+  stepped.box.upper.setConstant(0.97);  // no multiple of the step
   const SearchResult result = search(stepped, options());
   EXPECT_GT(result.cached, 20);
   EXPECT_NEAR(result.outcome.fitness, 2.0, 1e-12);
