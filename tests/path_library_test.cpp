@@ -131,10 +131,10 @@ class LibraryBuild : public testing::Test {
 
 TEST_F(LibraryBuild, SameBytesForAnyNumberOfThreads) {
   LibraryBuildOptions options = quick();
-  options.search.genetic.threads = 1;
+  options.search.threads = 1;
   const std::string one = to_json(build_path_library(machine_, soil_, {20, 60}, options));
   for (const unsigned threads : {2U, 8U}) {
-    options.search.genetic.threads = threads;
+    options.search.threads = threads;
     EXPECT_EQ(to_json(build_path_library(machine_, soil_, {20, 60}, options)), one);
   }
 }

@@ -21,7 +21,7 @@ class Planner : public testing::Test {
     DigSearchOptions options;
     options.genetic.population = 20;
     options.genetic.generations = 6;
-    options.genetic.threads = threads;
+    options.threads = threads;
     return options;
   }
 
@@ -64,7 +64,7 @@ TEST_F(Planner, SameSeedSameBytesForAnyNumberOfThreads) {
 TEST_F(Planner, AKnownGoodPathIsNeverLost) {
   const auto good = search_dig(machine_, simulator(80.0), level_, small_search());
   DigSearchOptions options = small_search();
-  options.genetic.seed = 99;
+  options.seed = 99;
   options.genetic.generations = 1;
   options.polish_evaluations = 0;
   options.known_good = good->dig.parameters;

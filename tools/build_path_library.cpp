@@ -25,7 +25,8 @@ struct Inputs {
   std::string densities = "0:5:100";
   std::string soil = "loam";
   std::string machine = "zx120";
-  GeneticOptions genetic;
+  GeneticAlgorithm genetic;
+  std::uint64_t seed = DigSearchOptions{}.seed;
   int polish = DigSearchOptions{}.polish_evaluations;
   double cell = 0.05;
   std::uint64_t threads = 0;
@@ -43,7 +44,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("polish", inputs.polish,
                    "digs of the Nelder-Mead search after the last generation, 0 for none");
   arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
-  arguments.option("seed", inputs.genetic.seed, "seed; the same seed gives the same file");
+  arguments.option("seed", inputs.seed, "seed; the same seed gives the same file");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core; same file for any");
   arguments.flag("resume", inputs.resume, "keep the densities that --out already holds");
   arguments.file("out", inputs.out, "library file to write");
@@ -56,7 +57,7 @@ std::vector<PathLibraryEntry> earlier_entries(const Inputs& inputs, const Machin
   if (!inputs.resume || !std::filesystem::exists(inputs.out)) return {};
   PathLibrary library = load_path_library(inputs.out);
   if (library.machine != machine.name || library.soil != soil.name ||
-      library.seed != inputs.genetic.seed || library.cell != inputs.cell ||
+      library.seed != inputs.seed || library.cell != inputs.cell ||
       library.population != inputs.genetic.population ||
       library.generations != inputs.genetic.generations ||
       library.polish_evaluations != inputs.polish) {
@@ -81,10 +82,11 @@ Outcome work(const Inputs& inputs, Console& console) {
   LibraryBuildOptions options;
   options.cell = inputs.cell;
   options.search.genetic = inputs.genetic;
-  options.search.genetic.threads = static_cast<unsigned>(inputs.threads);
+  options.search.seed = inputs.seed;
+  options.search.threads = static_cast<unsigned>(inputs.threads);
   options.search.polish_evaluations = inputs.polish;
   options.done = earlier_entries(inputs, machine, soil);
-  options.search.genetic.progress = [&](const SearchProgress&) {
+  options.search.progress = [&](const SearchProgress&) {
     return !console.stop_requested();
   };
   options.progress = [&](std::size_t done, std::size_t wanted, const PathLibraryEntry& entry) {

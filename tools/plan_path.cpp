@@ -32,7 +32,8 @@ struct Inputs {
   std::string soil = "loam";
   std::string machine = "zx120";
   double cell = 0.05;
-  GeneticOptions genetic;
+  GeneticAlgorithm genetic;
+  std::uint64_t seed = DigSearchOptions{}.seed;
   std::uint64_t threads = 0;
   std::optional<std::string> trajectory;
   std::optional<std::string> plot;
@@ -54,7 +55,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
   arguments.option("population", inputs.genetic.population, "individuals of a generation");
   arguments.option("generations", inputs.genetic.generations, "generations of the search");
-  arguments.option("seed", inputs.genetic.seed, "seed of the search");
+  arguments.option("seed", inputs.seed, "seed of the search");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
   arguments.file("trajectory", inputs.trajectory,
                  "write the joint trajectory, CSV, or JSON as .json");
@@ -166,10 +167,11 @@ Plan search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& s
                  const Site& site, Console& console) {
   DigSearchOptions options;
   options.genetic = inputs.genetic;
-  options.genetic.threads = static_cast<unsigned>(inputs.threads);
+  options.seed = inputs.seed;
+  options.threads = static_cast<unsigned>(inputs.threads);
   options.known_good = known_good(inputs, machine, soil, density);
-  options.genetic.progress = [&](const SearchProgress& p) {
-    console.progress(static_cast<double>(p.generation) / p.generations,
+  options.progress = [&](const SearchProgress& p) {
+    console.progress(static_cast<double>(p.evaluations) / p.planned,
                      "generation " + std::to_string(p.generation) + ": best " +
                          readable(1000.0 * p.best) + ", mean " + readable(1000.0 * p.mean) +
                          " kg/kJ, " + std::to_string(p.evaluations) + " digs");

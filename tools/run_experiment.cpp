@@ -87,8 +87,8 @@ PlannedDig dig_or_fail(const Setting& setting, const HeightMapSimulator& simulat
 PlannedDig planned_dig(const Inputs& inputs, const Setting& setting, double estimated_density) {
   if (setting.library) return look_up(*setting.library, estimated_density);
   DigSearchOptions search;
-  search.genetic.seed = inputs.seed;
-  search.genetic.threads = static_cast<unsigned>(inputs.threads);
+  search.seed = inputs.seed;
+  search.threads = static_cast<unsigned>(inputs.threads);
   const HeightMapSimulator simulator(setting.machine, setting.soil, estimated_density);
   const auto found = search_dig(setting.machine, simulator, setting.ground, search);
   if (!found) throw Error(ErrorKind::bad_input, "no dig is feasible");

@@ -76,6 +76,18 @@ GroundProfile profile_of(const HeightMap& map, const Eigen::ArrayXXd& rows, Inde
   return [strip](double x) { return height_at(strip, x, 0.0); };
 }
 
+SearchOptions polish_only(const DigSearchOptions& options, const Eigen::VectorXd& start) {
+  MemeticSearch method;
+  method.first_generation = 0;
+  method.generations = 0;
+  method.polish_evaluations = options.polish_evaluations;
+  SearchOptions polish;
+  polish.method = method;
+  polish.start = {start};
+  polish.stop.evaluations = options.polish_evaluations;
+  return polish;
+}
+
 struct DigChoice {
   DigParameters parameters;
   std::optional<double> start_x;
@@ -147,34 +159,36 @@ std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
 
 std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
                                           const Terrain& terrain, const DigSearchOptions& options) {
-  const SearchBox box = search_box();
   const GroundProfile ground = boom_plane_profile(terrain);
   const auto evaluate = [&](const Eigen::VectorXd& genes) {
     return evaluate_on(ground, machine, simulator, terrain, {parameters_of(genes), {}});
   };
-  const Objective efficiency = [&](const Eigen::VectorXd& genes) -> std::optional<double> {
-    const auto outcome = evaluate(genes);
-    const auto* dig = std::get_if<PlannedDig>(&outcome);
-    return dig ? std::optional(dig->efficiency()) : std::nullopt;
-  };
-  GeneticOptions genetic = options.genetic;
-  if (options.known_good) genetic.start.push_back(genes_of(*options.known_good));
-  const auto found = search_genetic(box, efficiency, genetic);
-  if (!found) return std::nullopt;
+  SearchProblem problem{search_box(), [&](const Eigen::VectorXd& genes) -> Evaluation {
+                          const auto outcome = evaluate(genes);
+                          if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
+                            return dig->efficiency();
+                          }
+                          return Evaluation::infeasible(0.0,
+                                                        describe(std::get<DigFailure>(outcome)));
+                        }};
+  SearchOptions genetic;
+  genetic.method = options.genetic;
+  genetic.seed = options.seed;
+  genetic.threads = options.threads;
+  genetic.progress = options.progress;
+  if (options.known_good) genetic.start = {genes_of(*options.known_good)};
+  SearchResult found = search(problem, genetic);
+  if (!found.feasible()) return std::nullopt;
 
-  DigSearchResult result;
-  result.evaluations = found->evaluations;
-  result.infeasible = found->infeasible;
-  result.stopped = found->stopped;
-  result.history = found->history;
-  Eigen::VectorXd best = found->best;
-  if (options.polish_evaluations > 0 && !found->stopped) {
-    const SearchResult polished = polish(box, efficiency, best, options.polish_evaluations);
-    best = polished.best;
+  DigSearchResult result{{}, found.evaluations, found.infeasible, false};
+  result.stopped = found.stopped_by == StopReason::cancelled;
+  if (options.polish_evaluations > 0 && !result.stopped) {
+    const SearchResult polished = search(problem, polish_only(options, found.best));
+    found.best = polished.best;
     result.evaluations += polished.evaluations;
     result.infeasible += polished.infeasible;
   }
-  result.dig = std::get<PlannedDig>(evaluate(best));
+  result.dig = std::get<PlannedDig>(evaluate(found.best));
   return result;
 }
 

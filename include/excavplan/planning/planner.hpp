@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -55,7 +57,10 @@ std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
                                                   std::optional<double> start_x = {});
 
 struct DigSearchOptions {
-  GeneticOptions genetic;
+  GeneticAlgorithm genetic;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;  ///< 0: one per core. The result does not depend on it.
+  std::function<bool(const SearchProgress&)> progress;  ///< after every dig; false stops
   int polish_evaluations = 60;  ///< Nelder-Mead after the last generation; 0: none, as in the paper
   std::optional<DigParameters> known_good;  ///< takes part in the first generation
 };
@@ -65,7 +70,6 @@ struct DigSearchResult {
   int evaluations = 0;
   int infeasible = 0;
   bool stopped = false;
-  std::vector<SearchProgress> history;
 };
 
 /// Searches the three numbers of a dig for the highest efficiency, inside dig_parameter_table().

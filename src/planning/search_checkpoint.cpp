@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "search_checkpoint.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+
+#include <excavplan/error.hpp>
+
+#include "../json_file.hpp"
+
+namespace excavplan {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* format = "excavplan-search";
+
+std::string text_of(const Eigen::VectorXd& numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : " ") + number_text(number);
+  return text;
+}
+
+std::string describe(const MemeticSearch& method) {
+  return "memetic, first generation " + std::to_string(method.first_generation) + ", generations " +
+         std::to_string(method.generations) + " of " + std::to_string(method.generation_size) +
+         ", immigrants " + number_text(method.immigrants) + ", basins " +
+         std::to_string(method.basins) + " of radius " + number_text(method.basin_radius) +
+         ", polish " + std::to_string(method.polish_evaluations);
+}
+
+std::string describe(const GeneticAlgorithm& method) {
+  return "genetic, population " + std::to_string(method.population) + ", generations " +
+         std::to_string(method.generations) + ", tournament " + std::to_string(method.tournament) +
+         ", crossover " + number_text(method.crossover) + ", mutation " +
+         number_text(method.mutation);
+}
+
+/// All that decides the course of a search, stop rules apart.
+std::string describe(const SearchOptions& options) {
+  std::string text =
+      std::visit([](const auto& method) { return describe(method); }, options.method);
+  text += ", seed " + std::to_string(options.seed);
+  for (const Eigen::VectorXd& start : options.start) text += ", start " + text_of(start);
+  return text;
+}
+
+std::string describe(const SearchProblem& problem) {
+  std::string text = problem.fingerprint + ", box " + text_of(problem.box.lower) + " to " +
+                     text_of(problem.box.upper);
+  if (problem.step.size() > 0) text += ", step " + text_of(problem.step);
+  return text;
+}
+
+/// FNV-1a, 64 bit, in hexadecimal digits: against damage, not against intent.
+std::string checksum(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  std::string digits(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
+  return digits;
+}
+
+std::string sealed(const std::string& content) {
+  return content + ",\n\"checksum\": \"" + checksum(content) + "\"\n}\n";
+}
+
+ordered_json to_json(const std::vector<double>& point, const Evaluation& outcome) {
+  ordered_json entry = {{"point", point}, {"status", name(outcome.status)}};
+  if (outcome.ok()) entry["fitness"] = outcome.fitness;
+  if (outcome.violation > 0.0) entry["violation"] = outcome.violation;
+  if (!outcome.reason.empty()) entry["reason"] = outcome.reason;
+  return entry;
+}
+
+Evaluation read_outcome(JsonObject& entry) {
+  using Status = Evaluation::Status;
+  const std::string status = entry.text("status");
+  if (status == name(Status::ok)) return {entry.number("fitness")};
+  const std::string reason = entry.text_or("reason", "");
+  if (status == name(Status::infeasible)) {
+    return Evaluation::infeasible(entry.number_or("violation", 0.0, 0.0), reason);
+  }
+  if (status == name(Status::failed)) return Evaluation::failed(reason);
+  if (status == name(Status::timed_out)) return Evaluation::timed_out(reason);
+  entry.fail("status", "is '" + status + "', expected ok, infeasible, failed or timed out");
+}
+
+}  // namespace
+
+Evaluation sound(Evaluation outcome) {
+  if (outcome.ok() && !std::isfinite(outcome.fitness)) return {outcome.fitness};
+  constexpr std::size_t longest = 500;
+  if (outcome.reason.size() > longest) outcome.reason = outcome.reason.substr(0, longest) + " ...";
+  // Invalid UTF-8 has no place in JSON; what the file cannot hold, the search must not see.
+  outcome.reason =
+      ordered_json::parse(
+          ordered_json(outcome.reason).dump(-1, ' ', false, ordered_json::error_handler_t::replace))
+          .get<std::string>();
+  return outcome;
+}
+
+SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOptions& options)
+    : file_(options.checkpoint), problem_(describe(problem)), search_(describe(options)) {
+  if (file_.empty()) return;
+  if (problem.fingerprint.empty()) {
+    throw Error(ErrorKind::bad_input,
+                "search: a checkpoint needs the fingerprint of the problem, it is empty");
+  }
+  require_folder_of(file_);
+  if (options.resume && std::filesystem::exists(file_)) {
+    load(static_cast<std::size_t>(problem.box.lower.size()));
+  }
+}
+
+const Evaluation* SearchCheckpoint::find(const Eigen::VectorXd& point) const {
+  if (earlier_.empty()) return nullptr;
+  const auto found = earlier_.find({point.data(), point.data() + point.size()});
+  return found == earlier_.end() ? nullptr : &found->second;
+}
+
+void SearchCheckpoint::add(const Eigen::VectorXd& point, const Evaluation& outcome) {
+  if (file_.empty()) return;
+  fresh_.insert_or_assign({point.data(), point.data() + point.size()}, outcome);
+  changed_ = true;
+}
+
+void SearchCheckpoint::save() {
+  if (!changed_) return;
+  write_file(file_, text());
+  changed_ = false;
+}
+
+std::string SearchCheckpoint::text() const {
+  const ordered_json head = {
+      {"format", format}, {"version", 1}, {"problem", problem_}, {"search", search_}};
+  std::string text = head.dump(0);
+  text.resize(text.size() - 2);  // reopen the object
+  text += ",\n\"evaluations\": [";
+  Outcomes all = earlier_;
+  all.insert(fresh_.begin(), fresh_.end());
+  bool first = true;
+  for (const auto& [point, outcome] : all) {
+    text += (first ? "\n" : ",\n") + to_json(point, outcome).dump();
+    first = false;
+  }
+  return sealed(text + "\n]");
+}
+
+void SearchCheckpoint::load(std::size_t dimensions) {
+  JsonObject file = JsonObject::open(file_, format);
+  const std::string content = read_file(file_);
+  const std::size_t seal = sealed("").size();
+  if (content.size() < seal || sealed(content.substr(0, content.size() - seal)) != content) {
+    file.fail("checksum", "does not fit the content: the file was altered");
+  }
+  file.ignore("checksum");
+  for (const auto& [key, own] : {std::pair{"problem", problem_}, std::pair{"search", search_}}) {
+    if (const std::string text = file.text(key); text != own) {
+      file.fail(key, "is '" + text + "', which is another one than '" + own + "'");
+    }
+  }
+  for (JsonObject& entry : file.objects("evaluations")) {
+    const std::vector<double> point = entry.numbers("point", dimensions);
+    earlier_.emplace(point, read_outcome(entry));
+    entry.done();
+  }
+  file.done();
+}
+
+}  // namespace excavplan
