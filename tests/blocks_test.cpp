@@ -285,6 +285,17 @@ TEST(Blocks, GroundThatDidNotChangeHasNoScore) {
   EXPECT_TRUE(report.reasons.empty());
 }
 
+TEST(Blocks, AreNotLookedForWithCellsLargerThanTheyAre) {
+  Survey survey = survey_of(test::block_heap({}, 6), 0.05, 0.005, 1);
+  ASSERT_TRUE(assess(survey).blocks);
+  for (HeightMap& map : survey.after) map.cell = 0.25;
+  for (AreaChange& area : survey.change.areas) area.difference.cell = 0.25;
+  const BlockReport report = assess(survey);
+  EXPECT_EQ(report.score, 0.0);
+  EXPECT_EQ(report.reasons, std::vector<std::string>{
+                                "cells of 0.25 m are too large to tell blocks, at most 0.2 m"});
+}
+
 TEST(Blocks, RefusesWhatBreaksARule) {
   Survey survey = survey_of(test::loose_heap({}, 1), 0.05, 0.005, 1);
   const auto error = [&](const BlockOptions& options) {

@@ -27,6 +27,9 @@ constexpr Eigen::Index least_coarse_radius = 2;  // 5 x 5 cells
 constexpr double least_window_share = 0.6;       // of a window's cells, known and in the patch
 constexpr double steepness_margin = 10.0 * degree;
 constexpr int fewest_cells = 30;
+/// Ours: with larger cells the window is wider than a metre, and relief of the ground looks rough
+/// [m].
+constexpr double largest_cell = 0.2;
 constexpr double loose_roughness = 0.020;  // loose soil has less about a window of 0.3 m [m]
 constexpr double block_roughness = 0.040;  // blocks have more
 constexpr double heap_level = 0.5;         // quantile of the windows that stands for a heap
@@ -362,6 +365,13 @@ void estimate_voids(const VolumeChange& change, double depth, const BlockOptions
 BlockReport assess_blocks(const std::vector<HeightMap>& after, const VolumeChange& change,
                           const BlockOptions& options) {
   check(after, change, options);
+  if (after.front().cell > largest_cell) {
+    BlockReport unjudged;
+    unjudged.reasons.push_back("cells of " + number_text(after.front().cell) +
+                               " m are too large to tell blocks, at most " +
+                               number_text(largest_cell) + " m");
+    return unjudged;
+  }
   std::vector<AreaMasks> masks;
   for (const AreaChange& area : change.areas) masks.push_back(masks_of(area, change.zones));
   std::vector<Patch> heaps;

@@ -55,7 +55,8 @@ struct BlockReport {
 /// others of the same generator: size to 8 %, voids to 5 % of the heap's volume; to 15 % and 7 %
 /// where blocks are flat or long, which it was not set on. No heap of real blocks was measured.
 /// Nothing is estimated where the heap shows no blocks, where they are smaller
-/// than three cells, or larger than the heap is deep.
+/// than three cells, or larger than the heap is deep. Cells above 0.2 m tell nothing: score 0 and
+/// the reason.
 ///
 /// @param after the height map of each area of `change`, on the grid of its difference
 /// @throws Error (bad_input) if an option is out of range or a map is not on the grid of its area
