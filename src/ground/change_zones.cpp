@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ground/grid_cells.hpp"
+#include "ground/robust.hpp"
 
 namespace excavplan {
 namespace {
@@ -26,12 +27,6 @@ struct Spread {
   double middle = 0.0;
   double sd = 0.0;
 };
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Spread median_and_mad(std::vector<double> values) {
   Spread spread;

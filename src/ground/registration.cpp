@@ -15,6 +15,7 @@
 
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/robust.hpp"
 #include "json_file.hpp"
 
 namespace excavplan {
@@ -55,12 +56,6 @@ struct Sample {
   double bend;  ///< how far its slope changed, but for the tilt of the whole [-]
   double weight = 1.0;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double tukey_weight(double sds) {
   const double ratio = sds / tukey;
@@ -147,7 +142,7 @@ class Aligner {
     for (const double value : change.reshaped()) {
       if (!std::isnan(value)) known.push_back(value);
     }
-    return known.empty() ? 0.0 : median(std::move(known));
+    return known.empty() ? 0.0 : median(known);
   }
 
   /// Weighs by the change of height and by that of slope: the feathered edge of a hole or a heap
