@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ground/error_field.hpp"
+#include "ground/robust.hpp"
 
 namespace excavplan {
 namespace {
@@ -15,6 +16,7 @@ constexpr double steepest = 1.7320508075688772;  // ours: 60 degrees
 constexpr double least_excess = 0.5;             // ours [m]
 constexpr double least_area = 0.02;              // ours: smaller ones are single bad cells [m^2]
 constexpr double edge_excess = 0.05;             // ours: as far as an object reaches [m]
+constexpr double of_a_heap = 0.2;                // ours: ground around over top, as risen [-]
 
 /// Height above the steepest surface that could lie there, less what one cell blurs.
 Eigen::ArrayXXd excess_of(const Eigen::ArrayXXd& z, double cell) {
@@ -43,6 +45,26 @@ std::vector<Cell> widened(const std::vector<Cell>& cells, const Eigen::ArrayXXd&
   return wide;
 }
 
+/// True if the ground around rose with it, as around a block in a heap of them: by the median of
+/// the cells next to it.
+bool is_part_of_heap(const std::vector<Cell>& cells, const Eigen::ArrayXXd& rise) {
+  Eigen::ArrayXXi own = Eigen::ArrayXXi::Zero(rise.rows(), rise.cols());
+  double top = 0.0;
+  for (const Cell at : cells) {
+    own(at.row, at.col) = 1;
+    if (rise(at.row, at.col) > top) top = rise(at.row, at.col);
+  }
+  std::vector<double> around;
+  for (const Cell at : cells) {
+    for_each_neighbour(rise, at, [&](Cell n) {
+      if (own(n.row, n.col) == 0 && !std::isnan(rise(n.row, n.col))) {
+        around.push_back(rise(n.row, n.col));
+      }
+    });
+  }
+  return !around.empty() && median(around) > of_a_heap * top;
+}
+
 /// What stands in `with` but not in `without`.
 std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd& without,
                              double cell, double margin) {
@@ -63,7 +85,10 @@ std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd&
     Object object;
     object.cells = mark_connected(label, seed, 0, joins);
     object.is_blunder = static_cast<double>(object.cells.size()) * cell * cell < least_area;
-    if (!object.is_blunder) object.cells = widened(object.cells, rise, margin);
+    if (!object.is_blunder) {
+      object.cells = widened(object.cells, rise, margin);
+      if (is_part_of_heap(object.cells, rise)) return;
+    }
     for (const Cell at : object.cells) {
       const double change = with(at.row, at.col) - without(at.row, at.col);
       if (!std::isnan(change)) object.volume += cell * cell * change;

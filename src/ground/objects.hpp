@@ -21,8 +21,9 @@ struct Object {
 /// Finds objects and takes them out of their scan: their cells become unknown.
 ///
 /// An object stands higher above its surroundings than soil can: more than 0.5 m above the surface
-/// of slope 60 degrees laid against them, in its own scan and in the change. Freshly dug soil
-/// stands at 28 to 45 degrees, and in blocks of 0.2 m two or three high.
+/// of slope 60 degrees laid against them, in its own scan and in the change, on ground that rose
+/// by less than a fifth of that itself. Freshly dug soil stands at 28 to 45 degrees, and in heaps
+/// of blocks as rough as those are large.
 ///
 /// @param margin by which what is found is widened [cell]
 std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell,
