@@ -93,7 +93,7 @@ struct DigResult {
   SoilLedger soil;
   double peak_force = 0.0;  ///< largest force of the soil on the bucket [N]
   std::optional<Stall> stall;
-  bool given_up = false;              ///< ended early, as DigOptions::give_up_below says
+  bool given_up = false;             ///< ended early, as DigOptions::give_up_below says
   std::vector<ForceSample> history;  ///< empty unless asked for
 
   /// The whole terrain afterwards.
