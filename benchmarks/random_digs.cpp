@@ -3,7 +3,8 @@
 
 /// @file
 /// Digs at random and says how near any of them came to the physical bound of the efficiency,
-/// f <= 1 / (g dz): the payload has to rise at least from the middle of the cut to the ground.
+/// f <= 1 / (g dz): the payload has to rise at least from the middle of the cut to the ground. Also
+/// what a dig costs, in full and as a search asks for it.
 ///
 ///     random_digs [number] [seed]
 
@@ -13,7 +14,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <mutex>
+#include <numeric>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -33,14 +36,21 @@ struct Tally {
   long infeasible = 0;
   double nearest = 0.0;       ///< largest f g dz; above 1 energy would come from nowhere
   double worst_solids = 0.0;  ///< largest relative error of the dry mass
+  std::vector<double> times;  ///< of every simulation, on the processor [s]
 };
+
+double processor_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 class RandomDigs {
  public:
   explicit RandomDigs(std::uint64_t seed) : seed_(seed) {}
 
   template <typename Simulator>
-  Tally run(long number) {
+  Tally run(long number, const DigOptions& options = {}) {
     std::vector<Simulator> simulators;
     for (int d = 0; d <= 100; d += 5) simulators.emplace_back(machine_, loam_, d);
     Tally tally;
@@ -49,7 +59,7 @@ class RandomDigs {
     const auto work = [&] {
       Tally mine;
       for (long i = next++; i < number; i = next++) {
-        dig(simulators, static_cast<std::uint64_t>(i), mine);
+        dig(simulators, static_cast<std::uint64_t>(i), options, mine);
       }
       const std::lock_guard<std::mutex> lock(mutex);
       tally.digs += mine.digs;
@@ -57,6 +67,7 @@ class RandomDigs {
       tally.infeasible += mine.infeasible;
       tally.nearest = std::max(tally.nearest, mine.nearest);
       tally.worst_solids = std::max(tally.worst_solids, mine.worst_solids);
+      tally.times.insert(tally.times.end(), mine.times.begin(), mine.times.end());
     };
     std::vector<std::thread> threads;
     for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) {
@@ -69,7 +80,8 @@ class RandomDigs {
  private:
   /// Draws until the machine can drive the path, then digs it.
   template <typename Simulator>
-  void dig(const std::vector<Simulator>& simulators, std::uint64_t index, Tally& tally) const {
+  void dig(const std::vector<Simulator>& simulators, std::uint64_t index, const DigOptions& options,
+           Tally& tally) const {
     Random random(seed_, index);
     while (true) {
       const auto which = static_cast<std::size_t>(random.uniform() * 21.0);
@@ -83,7 +95,9 @@ class RandomDigs {
         ++tally.infeasible;
         continue;
       }
-      const DigResult result = simulators[which].dig(ground_, std::get<DigPath>(path));
+      const double begin = processor_time();
+      const DigResult result = simulators[which].dig(ground_, std::get<DigPath>(path), options);
+      tally.times.push_back(processor_time() - begin);
       const SoilLedger& soil = result.soil;
       tally.worst_solids =
           std::max(tally.worst_solids, std::abs(soil.solids_after / soil.solids_before - 1.0));
@@ -104,11 +118,18 @@ class RandomDigs {
   Terrain ground_ = level_planning_ground(machine_);
 };
 
-void print(const char* name, const Tally& tally) {
+void print(const char* name, Tally tally) {
   std::printf(
       "%-20s %ld digs (%ld paths not drivable, %ld stalled): largest f g dz %.4f, "
       "dry mass within %.1e\n",
       name, tally.digs, tally.infeasible, tally.stalls, tally.nearest, tally.worst_solids);
+  if (tally.times.empty()) return;
+  std::vector<double>& times = tally.times;
+  std::sort(times.begin(), times.end());
+  const double sum = std::accumulate(times.begin(), times.end(), 0.0);
+  std::printf("    ms a dig: mean %.3f, median %.3f, 99th percentile %.3f, slowest %.3f\n",
+              1e3 * sum / static_cast<double>(times.size()), 1e3 * times[times.size() / 2],
+              1e3 * times[times.size() * 99 / 100], 1e3 * times.back());
 }
 
 }  // namespace
@@ -120,4 +141,9 @@ int main(int argc, char** argv) {
   RandomDigs digs(argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
   print("SectionSimulator", digs.run<SectionSimulator>(number));
   print("HeightMapSimulator", digs.run<HeightMapSimulator>(number));
+  DigOptions options;
+  options.settle = false;
+  print("... unsettled", digs.run<HeightMapSimulator>(number, options));
+  options.give_up_below = 0.01;
+  print("... or 0.01 kg/J", digs.run<HeightMapSimulator>(number, options));
 }

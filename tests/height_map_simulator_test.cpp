@@ -213,6 +213,30 @@ TEST_F(Simulator, AWeakMachineStallsAndSaysWhere) {
 }
 
 // Ground that says how dense it is digs like ground the simulator was told of.
+TEST_F(Simulator, EndsAHopelessDigOnceAFullBucketCouldNotPayForIt) {
+  const Terrain ground = level_planning_ground(machine_);
+  const DigResult whole = dig(40.0, overfilling_path());
+  ASSERT_GT(whole.soil.spilled, 0.01);  // so its payload is the most there can be
+  DigOptions options;
+  for (const double share : {1.01, 2.0, 4.0}) {
+    options.give_up_below = share * whole.efficiency();
+    const DigResult ended = dig_on(ground, 40.0, overfilling_path(), "loam", options);
+    EXPECT_TRUE(ended.given_up);
+    EXPECT_GT(ended.energy.total, whole.energy.total / share);
+    EXPECT_LT(ended.energy.total, (1.0 / share + 0.03) * whole.energy.total);  // a step later
+  }
+}
+
+TEST_F(Simulator, UnsettledGroundIsStillSliding) {
+  const Terrain ground = level_planning_ground(machine_);
+  DigOptions options;
+  options.settle = false;
+  const DigResult unsettled = dig_on(ground, 40.0, overfilling_path(), "loam", options);
+  const DigResult settled = dig(40.0, overfilling_path());
+  EXPECT_NE(unsettled.soil.spilled, settled.soil.spilled);
+  EXPECT_EQ(unsettled.payload_mass, settled.payload_mass);
+}
+
 TEST_F(Simulator, DensityOfTheCellsCountsLikeTheSimulatorsOwn) {
   const SoilKind loam = soil_kind("loam");
   const Terrain plain = level_planning_ground(machine_);

@@ -44,6 +44,13 @@ inline Terrain rough_ground(const Machine& machine, std::uint64_t seed) {
   return ground;
 }
 
+/// Brings more than the bucket holds.
+inline DigParameters overfilling_path() {
+  DigParameters parameters = paper_fixed_path();
+  parameters.drag_length = 2.0;
+  return parameters;
+}
+
 class SoilSimulatorContract : public testing::TestWithParam<SimulatorCase> {
  protected:
   static DigPath path_on(const Machine& machine, const Terrain& ground,
@@ -105,6 +112,46 @@ TEST_P(SoilSimulatorContract, GivesTheSameBytesAgainAndFromManyThreads) {
   }
   for (std::thread& thread : threads) thread.join();
   for (const DigResult& result : results) EXPECT_TRUE(same_bytes(first, result));
+}
+
+TEST_P(SoilSimulatorContract, UnsettledGroundChangesNeitherPayloadNorEnergy) {
+  const auto simulator = GetParam().make(machine_, 40.0);
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Terrain ground = rough_ground(machine_, seed);
+    const DigPath path = path_on(machine_, ground, overfilling_path());
+    DigOptions unsettled;
+    unsettled.settle = false;
+    const DigResult whole = simulator->dig(ground, path);
+    const DigResult dug = simulator->dig(ground, path, unsettled);
+    EXPECT_EQ(dug.payload_mass, whole.payload_mass);
+    EXPECT_EQ(dug.energy.total, whole.energy.total);
+    EXPECT_EQ(dug.soil.bank_cut, whole.soil.bank_cut);
+    EXPECT_EQ(dug.peak_force, whole.peak_force);
+    EXPECT_NEAR(dug.soil.solids_after, dug.soil.solids_before, 1e-9 * dug.soil.solids_before);
+  }
+}
+
+TEST_P(SoilSimulatorContract, GivesUpNoDigThatReachesTheFloor) {
+  const auto simulator = GetParam().make(machine_, 40.0);
+  const Terrain ground = level_planning_ground(machine_);
+  for (const DigParameters& parameters : {paper_fixed_path(), overfilling_path()}) {
+    const DigPath path = path_on(machine_, ground, parameters);
+    const DigResult whole = simulator->dig(ground, path);
+    EXPECT_FALSE(whole.given_up);
+    for (const double share : {0.5, 0.9999, 1.0001, 1.5, 20.0}) {
+      DigOptions options;
+      options.give_up_below = share * whole.efficiency();
+      const DigResult dug = simulator->dig(ground, path, options);
+      if (dug.given_up) {
+        EXPECT_GT(share, 1.0);
+        EXPECT_LT(dug.efficiency(), options.give_up_below);
+        EXPECT_LE(dug.energy.total, whole.energy.total);
+      } else {
+        EXPECT_TRUE(same_bytes(dug, whole)) << share;
+      }
+      EXPECT_NEAR(dug.soil.solids_after, dug.soil.solids_before, 1e-9 * dug.soil.solids_before);
+    }
+  }
 }
 
 TEST_P(SoilSimulatorContract, LeavesUnknownCellsUnknownAndFarGroundAlone) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -45,10 +46,13 @@ class Dig {
   DigResult run(const DigOptions& options) {
     const std::vector<DigPose>& poses = path_.poses;
     if (options.history) result_.history.reserve(poses.size());
-    for (std::size_t i = 0; i + 1 < poses.size() && !result_.stall; ++i) {
+    const double energy_worth = energy_worth_spending(poses.back(), options.give_up_below);
+    for (std::size_t i = 0; i + 1 < poses.size() && !result_.stall && !result_.given_up; ++i) {
       advance(stretch(i), options.history);
+      result_.given_up = result_.energy.total > energy_worth;
     }
     come_clear(poses.back());
+    if (options.settle) slump(ground_, moving_, {model_.slopes.heap, false}, sweeps_at_the_end);
     settle_accounts();
     if (options.dump_at) {
       pour(ground_, *options.dump_at, fill_, model_.slopes.heap);
@@ -256,16 +260,27 @@ class Dig {
 
   // ---- end -------------------------------------------------------------------------------------
 
-  /// The bucket leaves the ground: what no soil ahead supports any more falls off, all comes to
-  /// rest.
-  void come_clear(const DigPose& last) {
-    const HoldingSlopes& slopes = model_.slopes;
+  /// Turns the cavity as it leaves the ground and returns how soil stands in it there.
+  HoldingSlopes turn_clear(const DigPose& last) {
     cavity_.turn_to(last.bucket.floor_angle - pi + model_.machine.beta());
-    overflow(last.bucket.x, 0.0, {slopes.heap, slopes.heap});
+    return {model_.slopes.heap, model_.slopes.heap};
+  }
+
+  /// The most energy with which the dig can still be this efficient [J].
+  double energy_worth_spending(const DigPose& last, double efficiency) {
+    if (!(efficiency > 0.0)) return std::numeric_limits<double>::infinity();
+    const HoldingSlopes slopes = turn_clear(last);
+    return cavity_.capacity(0.0, slopes) * model_.loose.bulk_density / efficiency;
+  }
+
+  /// The bucket leaves the ground: what no soil ahead supports any more falls off, no wall is held
+  /// any more.
+  void come_clear(const DigPose& last) {
+    const HoldingSlopes slopes = turn_clear(last);
+    overflow(last.bucket.x, 0.0, slopes);
     moving_.include(passed_);
     ground_.set_wall({});
     ground_.wake(ground_.widened(moving_, 1));
-    slump(ground_, moving_, {slopes.heap, false}, sweeps_at_the_end);
     result_.payload_volume = fill_;
     result_.payload_mass = fill_ * model_.loose.bulk_density;
     result_.soil.payload = fill_;

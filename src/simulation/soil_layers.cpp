@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <excavplan/error.hpp>
@@ -19,10 +20,16 @@ double dry_density(const SoilKind& kind, double void_ratio) {
   return kind.specific_gravity * water_density / (1.0 + void_ratio);
 }
 
-/// The lower neighbour of a cell along one axis and how far it lies below, 0 if none does.
-struct Fall {
+/// A cell by its place on the map and in the layers.
+struct Place {
   Index row = 0;
   Index col = 0;
+  std::size_t cell = 0;
+};
+
+/// How far the lower neighbour of a cell along one axis lies below, 0 if none does.
+struct Fall {
+  bool onwards = false;  ///< to the next row or column, else to the last
   double height = 0.0;
 };
 
@@ -38,15 +45,19 @@ class Slump {
 
   /// One pass over the cells of the block that are awake; returns the cells that moved.
   CellBlock sweep(const CellBlock& block, int order) {
-    CellBlock moved;
+    moved_ = {};
+    const Index first = (order & 2) != 0 ? block.row_end - 1 : block.row_begin;
+    const Index along = (order & 2) != 0 ? -1 : 1;
     for (Index i = 0; i < block.cols(); ++i) {
-      const Index col = block.col_begin + ((order & 1) != 0 ? block.cols() - 1 - i : i);
+      const Index col = (order & 1) != 0 ? block.col_end - 1 - i : block.col_begin + i;
+      Place at = {first, col, ground_.at(first, col)};
       for (Index j = 0; j < block.rows(); ++j) {
-        const Index row = block.row_begin + ((order & 2) != 0 ? block.rows() - 1 - j : j);
-        if (ground_.awake(row, col)) relax(row, col, moved);
+        if (ground_.awake(at.cell)) relax(at);
+        at.row += along;
+        at.cell += static_cast<std::size_t>(along);
       }
     }
-    return moved;
+    return moved_;
   }
 
  private:
@@ -55,33 +66,32 @@ class Slump {
     double critical_height = 0.0;  ///< of a vertical wall [m]
   };
 
-  void relax(Index row, Index col, CellBlock& moved) {
-    ground_.let_sleep(row, col);
-    if (std::isnan(ground_.height(row, col))) return;
-    if (ground_.loose(row, col) > 0.0) slide_loose(row, col, moved);
-    if (!limits_.bank_stands) fail_bank(row, col, moved);
+  void relax(const Place& at) {
+    ground_.let_sleep(at.cell);
+    if (std::isnan(ground_.height(at.cell))) return;
+    if (ground_.loose(at.cell) > 0.0) slide_loose(at);
+    if (!limits_.bank_stands) fail_bank(at);
   }
 
-  /// From height `top` in a cell to the lower neighbour on an axis. On a flank, where the other
-  /// neighbour is higher, the fall is the mean over both sides: the lower side alone looks too
-  /// steep where contours are curved (by 0.35 cells / radius on a cone's diagonal). But never much
-  /// less than that side, or stairs could stand.
-  Fall fall(double top, Index row, Index col, Index row_step, Index col_step) const {
+  /// From height `top` in a cell to the lower neighbour on an axis, `step` away. On a flank, where
+  /// the other neighbour is higher, the fall is the mean over both sides: the lower side alone
+  /// looks too steep where contours are curved (by 0.35 cells / radius on a cone's diagonal). But
+  /// never much less than that side, or stairs could stand.
+  Fall fall(double top, std::size_t cell, std::size_t step) const {
     constexpr double least = 0.85;  // of the fall on the lower side; ours
-    const double before = drop(top, row - row_step, col - col_step);
-    const double after = drop(top, row + row_step, col + col_step);
-    const bool down_before = before >= after;
-    const double lower = down_before ? before : after;
-    const double other = down_before ? after : before;
-    if (!(lower > 0.0)) return {row, col, 0.0};
+    const double before = drop(top, cell - step);
+    const double after = drop(top, cell + step);
+    const bool onwards = !(before >= after);
+    const double lower = onwards ? after : before;
+    const double other = onwards ? before : after;
+    if (!(lower > 0.0)) return {};
     const double height = other < 0.0 ? std::max(0.5 * (lower - other), least * lower) : lower;
-    return {down_before ? row - row_step : row + row_step,
-            down_before ? col - col_step : col + col_step, std::min(height, lower)};
+    return {onwards, std::min(height, lower)};
   }
 
   /// From height `top` down to a cell; 0 to cells that are unknown, walled or off the map.
-  double drop(double top, Index row, Index col) const {
-    const double drop = top - ground_.height(row, col);
+  double drop(double top, std::size_t cell) const {
+    const double drop = top - ground_.height(cell);
     return std::isnan(drop) ? 0.0 : drop;
   }
 
@@ -99,68 +109,62 @@ class Slump {
     return too_steep * steepness / closing;
   }
 
-  void slide_loose(Index row, Index col, CellBlock& moved) {
-    const double top = ground_.height(row, col);
-    const Fall x = fall(top, row, col, 0, 1);
-    const Fall y = fall(top, row, col, 1, 0);
-    const double swell = ground_.swollen_loose(row, col, 1.0);
+  void slide_loose(const Place& at) {
+    const double top = ground_.height(at.cell);
+    const Fall x = fall(top, at.cell, ground_.column_step());
+    const Fall y = fall(top, at.cell, 1);
+    const double swell = ground_.swollen_loose(at.cell, 1.0);
     const double leaving =
-        std::min(ground_.loose(row, col), excess(x, y, limits_.loose_slope, swell));
+        std::min(ground_.loose(at.cell), excess(x, y, limits_.loose_slope, swell));
     if (!(leaving > 0.0)) return;
-    ground_.lower_loose(row, col, leaving);
-    arrive(leaving * swell, x, y, moved);
-    moved.include(row, col);
+    ground_.lower_loose(at.cell, leaving);
+    arrive(leaving * swell, at, x, y);
   }
 
   /// Breaks undisturbed soil off a wall that is too high; it falls to the foot as loose soil.
-  void fail_bank(Index row, Index col, CellBlock& moved) {
-    const BankLimits bank = bank_limits(row, col);
-    const double top = ground_.bank(row, col) - bank.critical_height;
-    const Fall x = fall(top, row, col, 0, 1);
-    const Fall y = fall(top, row, col, 1, 0);
+  void fail_bank(const Place& at) {
+    const BankLimits bank = bank_limits(at);
+    const double top = ground_.bank(at.cell) - bank.critical_height;
+    const Fall x = fall(top, at.cell, ground_.column_step());
+    const Fall y = fall(top, at.cell, 1);
     if (x.height + y.height == 0.0) return;
-    const double swell = ground_.swollen_bank(row, col, 1.0);
+    const double swell = ground_.swollen_bank(at.row, at.col, 1.0);
     const double broken = excess(x, y, bank.slope, swell);
     if (!(broken > 0.0)) return;
-    ground_.lower_bank(row, col, broken);
-    arrive(broken * swell, x, y, moved);
-    moved.include(row, col);
+    ground_.lower_bank(at.cell, broken);
+    arrive(broken * swell, at, x, y);
   }
 
-  void arrive(double thickness, const Fall& x, const Fall& y, CellBlock& moved) {
-    for (const Fall& to : {x, y}) {
-      if (to.height == 0.0) continue;
-      ground_.raise_loose(to.row, to.col, thickness * to.height / (x.height + y.height));
-      moved.include(to.row, to.col);
+  /// What has left a cell goes down both axes.
+  void arrive(double thickness, const Place& from, const Fall& x, const Fall& y) {
+    const double sum = x.height + y.height;
+    CellBlock touched = {from.row, from.row + 1, from.col, from.col + 1};
+    if (x.height != 0.0) {
+      const std::size_t step = ground_.column_step();
+      ground_.raise_loose(x.onwards ? from.cell + step : from.cell - step,
+                          thickness * x.height / sum);
+      (x.onwards ? touched.col_end : touched.col_begin) += x.onwards ? 1 : -1;
     }
+    if (y.height != 0.0) {
+      ground_.raise_loose(y.onwards ? from.cell + 1 : from.cell - 1, thickness * y.height / sum);
+      (y.onwards ? touched.row_end : touched.row_begin) += y.onwards ? 1 : -1;
+    }
+    moved_.include(touched);
   }
 
-  BankLimits bank_limits(Index row, Index col) const {
+  BankLimits bank_limits(const Place& at) const {
     if (ground_.bank_is_even()) return bank_;
-    const SoilState state = ground_.bank_state(row, col);
+    const SoilState state = ground_.bank_state(at.row, at.col);
     return {std::tan(state.friction_angle), critical_height(state)};
   }
 
   GroundWindow& ground_;
   SlopeLimits limits_;
   BankLimits bank_;
+  CellBlock moved_;
 };
 
 }  // namespace
-
-void CellBlock::include(Index row, Index col) { include({row, row + 1, col, col + 1}); }
-
-void CellBlock::include(const CellBlock& other) {
-  if (other.empty()) return;
-  if (empty()) {
-    *this = other;
-    return;
-  }
-  row_begin = std::min(row_begin, other.row_begin);
-  row_end = std::max(row_end, other.row_end);
-  col_begin = std::min(col_begin, other.col_begin);
-  col_end = std::max(col_end, other.col_end);
-}
 
 CellBlock CellBlock::widened(Index margin, Index map_rows, Index map_cols) const {
   if (empty()) return *this;
@@ -198,7 +202,7 @@ void GroundWindow::cover(const CellBlock& cells) {
       bank_[i] = held ? old.bank(row, col) : whole_.bank.z(row, col);
       loose_[i] = held ? old.loose(row, col) : whole_.loose(row, col);
       height_[i] = bank_[i] + loose_[i];
-      if (held) awake_[i] = old.awake(row, col) ? 1 : 0;
+      if (held) awake_[i] = old.awake(old.at(row, col)) ? 1 : 0;
       if (has_void_ratio) {
         void_ratio_[i] =
             held ? old.void_ratio_[old.at(row, col)] : whole_.loose_void_ratio(row, col);
@@ -262,7 +266,7 @@ void GroundWindow::set_wall(const CellBlock& wall) {
   build_wall(wall, 1);
 }
 
-void GroundWindow::build_wall(const CellBlock& block, std::uint8_t built) {
+void GroundWindow::build_wall(const CellBlock& block, std::uint16_t built) {
   for (Index col = block.col_begin; col < block.col_end; ++col) {
     for (Index row = block.row_begin; row < block.row_end; ++row) {
       const std::size_t i = at(row, col);

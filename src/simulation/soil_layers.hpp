@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -20,8 +21,17 @@ struct CellBlock {
   Eigen::Index col_begin = 0;
   Eigen::Index col_end = 0;
 
-  void include(Eigen::Index row, Eigen::Index col);
-  void include(const CellBlock& other);
+  void include(const CellBlock& other) {
+    if (other.empty()) return;
+    if (empty()) {
+      *this = other;
+      return;
+    }
+    row_begin = std::min(row_begin, other.row_begin);
+    row_end = std::max(row_end, other.row_end);
+    col_begin = std::min(col_begin, other.col_begin);
+    col_end = std::max(col_end, other.col_end);
+  }
   bool contains(Eigen::Index row, Eigen::Index col) const {
     return row >= row_begin && row < row_end && col >= col_begin && col < col_end;
   }
@@ -65,9 +75,20 @@ class GroundWindow {
     return block.widened(margin, whole_.loose.rows(), whole_.loose.cols());
   }
 
+  /// Where the layers hold a cell of the window, until it grows: the next row is 1 away, the next
+  /// column column_step().
+  std::size_t at(Eigen::Index row, Eigen::Index col) const {
+    return static_cast<std::size_t>((col - cells_.col_begin + 1) * stride_ + row -
+                                    cells_.row_begin + 1);
+  }
+  std::size_t column_step() const { return static_cast<std::size_t>(stride_); }
+
+  double bank(std::size_t cell) const { return bank_[cell]; }
   double bank(Eigen::Index row, Eigen::Index col) const { return bank_[at(row, col)]; }
+  double loose(std::size_t cell) const { return loose_[cell]; }
   double loose(Eigen::Index row, Eigen::Index col) const { return loose_[at(row, col)]; }
   /// Of the surface; NaN where nothing moves on or off: unknown, walled, off the map.
+  double height(std::size_t cell) const { return height_[cell]; }
   double height(Eigen::Index row, Eigen::Index col) const { return height_[at(row, col)]; }
 
   /// Void ratios of a cell [-].
@@ -87,29 +108,38 @@ class GroundWindow {
   double swollen_bank(Eigen::Index row, Eigen::Index col, double thickness) const {
     return thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + bank_void_ratio(row, col));
   }
-  double swollen_loose(Eigen::Index row, Eigen::Index col, double thickness) const {
+  double swollen_loose(std::size_t cell, double thickness) const {
     return void_ratio_.empty()
                ? thickness
-               : thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + void_ratio_[at(row, col)]);
+               : thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + void_ratio_[cell]);
+  }
+  double swollen_loose(Eigen::Index row, Eigen::Index col, double thickness) const {
+    return swollen_loose(at(row, col), thickness);
   }
 
+  void lower_bank(std::size_t cell, double thickness) {
+    bank_[cell] -= thickness;
+    changed(cell);
+  }
   void lower_bank(Eigen::Index row, Eigen::Index col, double thickness) {
-    const std::size_t i = at(row, col);
-    bank_[i] -= thickness;
-    changed(i);
+    lower_bank(at(row, col), thickness);
   }
   /// Never below 0.
+  void lower_loose(std::size_t cell, double thickness) {
+    loose_[cell] = loose_[cell] > thickness ? loose_[cell] - thickness : 0.0;
+    changed(cell);
+  }
   void lower_loose(Eigen::Index row, Eigen::Index col, double thickness) {
-    const std::size_t i = at(row, col);
-    loose_[i] = loose_[i] > thickness ? loose_[i] - thickness : 0.0;
-    changed(i);
+    lower_loose(at(row, col), thickness);
   }
   /// Adds soil that has moved.
+  void raise_loose(std::size_t cell, double thickness) {
+    if (!void_ratio_.empty()) mix(cell, thickness);
+    loose_[cell] += thickness;
+    changed(cell);
+  }
   void raise_loose(Eigen::Index row, Eigen::Index col, double thickness) {
-    const std::size_t i = at(row, col);
-    if (!void_ratio_.empty()) mix(i, thickness);
-    loose_[i] += thickness;
-    changed(i);
+    raise_loose(at(row, col), thickness);
   }
 
   /// Cells that let nothing on or off, until the next call.
@@ -117,8 +147,8 @@ class GroundWindow {
 
   /// Whether a cell or one of its four neighbours has changed since let_sleep(): a cell that is
   /// asleep is at rest.
-  bool awake(Eigen::Index row, Eigen::Index col) const { return awake_[at(row, col)] != 0; }
-  void let_sleep(Eigen::Index row, Eigen::Index col) { awake_[at(row, col)] = 0; }
+  bool awake(std::size_t cell) const { return awake_[cell] != 0; }
+  void let_sleep(std::size_t cell) { awake_[cell] = 0; }
   void wake(const CellBlock& block);
 
   /// Dry mass of the window above a level, now and before; unknown cells weigh nothing [kg].
@@ -130,18 +160,13 @@ class GroundWindow {
   TerrainPatch patch() const;
 
  private:
-  /// The layers are stored with a frame of one cell around them, which is unknown ground.
-  std::size_t at(Eigen::Index row, Eigen::Index col) const {
-    return static_cast<std::size_t>((col - cells_.col_begin + 1) * stride_ + row -
-                                    cells_.row_begin + 1);
-  }
   void changed(std::size_t i) {
     height_[i] = walled_[i] != 0 ? walled_height : bank_[i] + loose_[i];
     const auto column = static_cast<std::size_t>(stride_);
     awake_[i] = awake_[i - 1] = awake_[i + 1] = 1;
     awake_[i - column] = awake_[i + column] = 1;
   }
-  void build_wall(const CellBlock& block, std::uint8_t built);
+  void build_wall(const CellBlock& block, std::uint16_t built);
   void mix(std::size_t cell, double thickness);
   void check(const CellBlock& cells) const;
   double bank_density(Eigen::Index row, Eigen::Index col) const;
@@ -155,12 +180,14 @@ class GroundWindow {
   CellBlock cells_;
   CellBlock wall_;
   Eigen::Index stride_ = 0;
+  // The layers have a frame of one cell of unknown ground around them. Flags are no bytes: after
+  // writing one the compiler would have to read all members anew.
   std::vector<double> bank_;
   std::vector<double> loose_;
   std::vector<double> height_;
   std::vector<double> void_ratio_;  ///< of the loose layer; empty if all of it is as dug soil is
-  std::vector<std::uint8_t> awake_;
-  std::vector<std::uint8_t> walled_;
+  std::vector<std::uint16_t> awake_;
+  std::vector<std::uint16_t> walled_;
 };
 
 /// How steep the two layers may stand.

@@ -93,6 +93,7 @@ struct DigResult {
   SoilLedger soil;
   double peak_force = 0.0;  ///< largest force of the soil on the bucket [N]
   std::optional<Stall> stall;
+  bool given_up = false;             ///< ended early, as DigOptions::give_up_below says
   std::vector<ForceSample> history;  ///< empty unless asked for
 
   /// The whole terrain afterwards.
@@ -105,6 +106,16 @@ struct DigResult {
 struct DigOptions {
   bool history = false;
   std::optional<Eigen::Vector2d> dump_at;  ///< heap the payload here; else it stays in the bucket
+
+  // For searches, which care for the efficiency of many digs. A simulator may ignore both.
+
+  /// Let the ground come to rest once the bucket is out. If not, only the patch and the account of
+  /// spilled and fallen_back are those of ground still sliding; payload and energy are the same.
+  bool settle = true;
+  /// End the dig as soon as its efficiency cannot reach this any more [kg/J]: the energy spent
+  /// never falls, and the payload is at most what the bucket holds in its last attitude. Such a dig
+  /// is `given_up`; its efficiency() is below this, but else it is no guide to the whole dig.
+  double give_up_below = 0.0;
 };
 
 /// A simulation of one dig on one terrain, ours or yours.
