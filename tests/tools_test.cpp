@@ -796,8 +796,57 @@ TEST_F(Tools, SearchIsAtLeastAsGoodAsTheLibrary) {
             << search.at("efficiency_kg_per_kj") << " kg/kJ after " << search.at("evaluations")
             << " digs\n";
   EXPECT_EQ(search["source"], "search");
-  EXPECT_GT(search["evaluations"].get<int>(), 100);
+  EXPECT_LE(search["evaluations"].get<int>(), 150);
   EXPECT_GE(number(search, "/efficiency_kg_per_kj"), number(library, "/efficiency_kg_per_kj"));
+  EXPECT_EQ(number(search, "/worth"), number(search, "/efficiency_kg_per_kj"));
+  EXPECT_EQ(search.at("start_rule"), "least work of the links' own weight");
+  const json range = search.at("/ranges_98_percent/drag_length_m"_json_pointer);
+  EXPECT_LE(range.at(0), search.at("/path/drag_length_m"_json_pointer));
+  EXPECT_GE(range.at(1), search.at("/path/drag_length_m"_json_pointer));
+}
+
+TEST_F(Tools, SearchTakesGoalRangesStartAndMethod) {
+  const Words few = {"--density", "40", "--search", "--evaluations", "20"};
+  const json by_time =
+      answer("plan-path", few + Words{"--goal", "time", "--rest-of-cycle", "12s", "--drag-range",
+                                      "1m,1.5m", "--start", "6.1"});
+  EXPECT_EQ(by_time.at("worth_unit"), "kg/s");
+  EXPECT_NEAR(number(by_time, "/worth"),
+              number(by_time, "/payload_mass_kg") / (number(by_time, "/duration_s") + 12.0), 1e-9);
+  EXPECT_LE(number(by_time, "/path/drag_length_m"), 1.5);
+  EXPECT_EQ(number(by_time, "/path/start_x_m"), 6.1);
+  const json priced = answer("plan-path", few + Words{"--goal", "priced:3000"});
+  EXPECT_NEAR(number(priced, "/worth"),
+              number(priced, "/payload_mass_kg") /
+                  (number(priced, "/energy_kj") + 3.0 * number(priced, "/duration_s")),
+              1e-9);
+  const json paper = answer("plan-path", {"--density", "40", "--search", "--method", "paper",
+                                          "--population", "6", "--generations", "2"});
+  EXPECT_LE(paper.at("evaluations").get<int>(), 12);
+  EXPECT_EQ(paper.at("stopped_by"), "generations");
+}
+
+TEST_F(Tools, PlanForAnUncertainDensitySaysWhatKnowingItIsWorth) {
+  const Words few = {"--search", "--evaluations", "30"};
+  const json plan = answer("plan-path", few + Words{"--density", "40", "--density-sd", "8"});
+  EXPECT_EQ(plan.at("expected_efficiency_kg_per_kj"), plan.at("worth"));
+  EXPECT_GE(number(plan, "/value_of_knowing_percent"), 0.0);
+  EXPECT_LT(number(plan, "/value_of_knowing_percent"), 5.0);
+  const std::string file = folder.write(
+      "result.json", R"({"density_percent": 40, "density_sd_percent": 8, "trustworthy": true})");
+  const json from = answer("plan-path", few + Words{"--density-from", file});
+  EXPECT_EQ(from.at("path"), plan.at("path"));
+  refused(2, "--density-sd needs --search", "plan-path", {"--density", "40", "--density-sd", "8"});
+}
+
+TEST_F(Tools, SearchOptionsAreRefusedByName) {
+  const Words search = {"--density", "40", "--search"};
+  refused(2, "--goal: 'speed'", "plan-path", search + Words{"--goal", "speed"});
+  refused(2, "--drag-range: '2' is not FROM,TO", "plan-path", search + Words{"--drag-range", "2"});
+  refused(2, "drag_length_m", "plan-path", search + Words{"--drag-range", "2,1"});
+  refused(2, "--resume needs --checkpoint", "plan-path", search + Words{"--resume"});
+  refused(2, "--start search needs --search", "plan-path",
+          {"--density", "40", "--start", "search", "--terrain", "none.pcd"});
 }
 
 TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
@@ -940,12 +989,18 @@ TEST_F(Tools, InterruptedLibraryIsResumedToTheSameBytes) {
   EXPECT_EQ(content_of(folder.file("resumed")), content_of(folder.file("at once")));
 }
 
-TEST_F(Tools, InterruptedSearchSaysSo) {
+TEST_F(Tools, InterruptedSearchSaysSoAndGoesOn) {
   const std::string plot = folder.file("best_so_far.svg");
+  const Words words = {"--density",     "40", "--search",     "--evaluations",         "500",
+                       "--generations", "20", "--checkpoint", folder.file("digs.json")};
   const ProgramResult stopped =
-      interrupted("plan-path", {"--density", "40", "--search", "--plot", plot}, "generation 1:");
+      interrupted("plan-path", words + Words{"--plot", plot}, "generation 0:");
   EXPECT_EQ(stopped.code, 75) << stopped.err;
   EXPECT_TRUE(fs::exists(plot));
+  const json resumed = answer("plan-path", words + Words{"--resume"});
+  json at_once = answer("plan-path", Words(words.begin(), words.end() - 2));
+  at_once["wall_time_s"] = resumed.at("wall_time_s");
+  EXPECT_EQ(resumed, at_once);
 }
 
 TEST_F(Tools, ResumeRefusesALibraryOfAnotherRun) {

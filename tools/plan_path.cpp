@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <utility>
+#include <variant>
+
 #include <excavplan/planning/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
@@ -19,30 +23,73 @@ const About about = {
     {{"plan-path --density 40", "look the path up in the shipped library"},
      {"plan-path --density-from result.json --trajectory dig.csv",
       "go on from estimate-density --json, write joint angles over time"},
-     {"plan-path --density 40 --search --terrain after.pcd", "search on the ground as scanned"}},
+     {"plan-path --density 40 --search --terrain after.pcd", "search on the ground as scanned"},
+     {"plan-path --density 40 --density-sd 8 --search",
+      "the path best on average, and what knowing the density would be worth"}},
     true,
     true};
+
+/// Enough for 99 % of the optimum from any seed (docs/methods.md#planning).
+constexpr int default_evaluations = 150;
 
 struct Inputs {
   std::optional<double> density;
   std::optional<std::string> density_from;
   std::optional<std::string> library;
   bool search = false;
+  std::optional<double> density_sd;
   TerrainInput terrain;
   std::string soil = "loam";
   std::string machine = "zx120";
   double cell = 0.05;
-  GeneticAlgorithm genetic;
+  std::string goal = "energy";
+  double rest_of_cycle = 0.0;
+  std::string start = "work";
+  std::array<std::optional<std::string>, 3> ranges;
+  std::string method = "default";
+  int population = GeneticAlgorithm{}.population;
+  int generations = 0;
+  int evaluations = 0;
+  std::optional<std::string> checkpoint;
+  bool resume = false;
   std::uint64_t seed = DigSearchOptions{}.seed;
   std::uint64_t threads = 0;
   std::optional<std::string> trajectory;
   std::optional<std::string> plot;
 };
 
+void declare_search(Arguments& arguments, Inputs& inputs) {
+  arguments.text("goal", "GOAL", inputs.goal,
+                 "energy: mass per energy; time: mass per time; priced:WATT: mass per energy, a "
+                 "second costing so much");
+  arguments.option("rest-of-cycle", inputs.rest_of_cycle, Quantity::time,
+                   "swing, dump and return, added to the time of the dig");
+  arguments.text("start", "RULE|LENGTH", inputs.start,
+                 "where the dig begins: work (least work of the links), margin (farthest from the "
+                 "joint limits), search (with the path), or x");
+  arguments.text("angle-range", "FROM,TO", inputs.ranges[0], "penetration angles searched");
+  arguments.text("penetration-range", "FROM,TO", inputs.ranges[1], "penetration lengths searched");
+  arguments.text("drag-range", "FROM,TO", inputs.ranges[2], "drag lengths searched");
+  arguments.choice("method", inputs.method, {"default", "paper"},
+                   "of the search; paper: the paper's genetic algorithm");
+  arguments.option("population", inputs.population, "individuals, --method paper");
+  arguments.option("generations", inputs.generations, "of the search, 0 for the method's own");
+  arguments.option(
+      "evaluations", inputs.evaluations,
+      "digs simulated at most, 0 for the method's own: 150, or all the paper's generations");
+  arguments.file("checkpoint", inputs.checkpoint, "keep the digs simulated in this file");
+  arguments.flag("resume", inputs.resume, "go on from the checkpoint if it exists");
+  arguments.option("seed", inputs.seed, "seed of the search");
+  arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
+}
+
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("density", inputs.density, Quantity::percent, "relative density of the ground");
+  arguments.option("density-sd", inputs.density_sd, Quantity::percent,
+                   "standard deviation of the density: search the path that is best on average");
   arguments.file("density-from", inputs.density_from,
-                 "take the density from this result of estimate-density --json");
+                 "take the density, and for a search its uncertainty, from this result of "
+                 "estimate-density --json");
   arguments.file("library", inputs.library,
                  "path library (default: the shipped one of the machine and the soil)");
   arguments.flag("search", inputs.search, "search the path instead of looking it up");
@@ -53,10 +100,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
-  arguments.option("population", inputs.genetic.population, "individuals of a generation");
-  arguments.option("generations", inputs.genetic.generations, "generations of the search");
-  arguments.option("seed", inputs.seed, "seed of the search");
-  arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
+  declare_search(arguments, inputs);
   arguments.file("trajectory", inputs.trajectory,
                  "write the joint trajectory, CSV, or JSON as .json");
   arguments.plot(inputs.plot, "the section of the dig");
@@ -65,8 +109,22 @@ void declare(Arguments& arguments, Inputs& inputs) {
 /// The density asked for, and whether its source trusts it.
 struct Density {
   double percent = 0.0;
+  double sd = 0.0;  ///< [points]; 0: taken as known
   bool trustworthy = true;
 };
+
+[[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
+
+/// Of the result of an estimate; 0 if it states none.
+double sd_in(const nlohmann::json& result, const std::string& file) {
+  const auto field = result.find("density_sd_percent");
+  if (field == result.end() || field->is_null()) return 0.0;
+  if (field->is_number() && field->get<double>() >= 0.0) return field->get<double>();
+  throw Error(ErrorKind::bad_file, file +
+                                       ": density_sd_percent must be a number of at least 0, it "
+                                       "is " +
+                                       field->dump());
+}
 
 Density density_of(const Inputs& inputs) {
   if (inputs.density.has_value() == inputs.density_from.has_value()) {
@@ -77,7 +135,7 @@ Density density_of(const Inputs& inputs) {
       throw Error(ErrorKind::bad_input,
                   "--density: " + number_text(*inputs.density) + " % is outside 0 .. 100");
     }
-    return {*inputs.density, true};
+    return {*inputs.density, inputs.density_sd.value_or(0.0), true};
   }
   const std::string& file = *inputs.density_from;
   const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
@@ -91,7 +149,8 @@ Density density_of(const Inputs& inputs) {
                     "; expected a result of estimate-density --json");
   }
   const auto trustworthy = json.find("trustworthy");
-  return {field->get<double>(), trustworthy == json.end() || *trustworthy == true};
+  return {field->get<double>(), inputs.density_sd ? *inputs.density_sd : sd_in(json, file),
+          trustworthy == json.end() || *trustworthy == true};
 }
 
 PathLibrary library_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {
@@ -107,13 +166,19 @@ PathLibrary library_of(const Inputs& inputs, const Machine& machine, const SoilK
 }
 
 /// A path of the library if one fits, to start the search from.
-std::optional<DigParameters> known_good(const Inputs& inputs, const Machine& machine,
-                                        const SoilKind& soil, double density) {
+std::vector<DigParameters> known_good(const Inputs& inputs, const Machine& machine,
+                                      const SoilKind& soil, double density,
+                                      std::vector<Warning>& warnings) {
   try {
-    return look_up(library_of(inputs, machine, soil), density).parameters;
-  } catch (const Error&) {
+    return {look_up(library_of(inputs, machine, soil), density).parameters};
+  } catch (const Error& error) {
     if (inputs.library) throw;
-    return std::nullopt;  // none is shipped for this machine and soil: search from nothing
+    if (error.kind() == ErrorKind::bad_file) {
+      warnings.push_back({"library_unreadable", std::string("the search starts from nothing, not "
+                                                            "from the shipped library: ") +
+                                                    error.what()});
+    }
+    return {};  // none is shipped that fits
   }
 }
 
@@ -121,8 +186,11 @@ struct Plan {
   PlannedDig dig;
   DigPath path;
   std::string source;
+  std::string start_rule;
   int evaluations = 0;
   bool stopped = false;
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< of a search
+  std::vector<std::string> lines;
 };
 
 /// The path of a dig on its ground; the start point moves if the planned one does not work.
@@ -140,18 +208,29 @@ DigPath lay_out(const Machine& machine, const PlannedDig& dig, const GroundProfi
   return std::get<DigPath>(std::move(path));
 }
 
+StartRule start_rule_of(const Inputs& inputs) {
+  if (inputs.start == "work") return StartRule::Kind::least_work;
+  if (inputs.start == "margin") return StartRule::Kind::largest_margin;
+  if (inputs.start == "search" && inputs.search) return StartRule::Kind::searched;
+  if (inputs.start == "search") refuse("--start search needs --search");
+  return parse_quantity("--start", inputs.start, Quantity::length);
+}
+
 Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                   double density, const Site& site) {
   Plan plan;
   plan.source = "library";
   plan.dig = look_up(library_of(inputs, machine, soil), density);
+  plan.start_rule = "of the library";
   if (!inputs.terrain.cloud) {
     plan.path = lay_out(machine, plan.dig, [](double) { return 0.0; });
     plan.dig.start_x = plan.path.start_x;
     return plan;
   }
   const HeightMapSimulator simulator(machine, soil, density);
-  const auto outcome = evaluate_dig(machine, simulator, site.ground, plan.dig.parameters);
+  const StartRule start = start_rule_of(inputs);
+  plan.start_rule = describe(start);
+  const auto outcome = evaluate_dig(machine, simulator, site.ground, plan.dig.parameters, start);
   plan.evaluations = 1;
   if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
     throw Error(
@@ -163,36 +242,163 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
   return plan;
 }
 
-Plan search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil, double density,
-                 const Site& site, Console& console) {
+DigObjective objective_of(const Inputs& inputs) {
+  DigObjective objective;
+  objective.rest_of_cycle = inputs.rest_of_cycle;
+  const std::string priced = "priced:";
+  if (inputs.goal == "time") {
+    objective.goal = DigObjective::Goal::mass_per_time;
+  } else if (inputs.goal.compare(0, priced.size(), priced) == 0) {
+    objective.goal = DigObjective::Goal::priced;
+    objective.time_price =
+        parse_quantity("--goal priced", inputs.goal.substr(priced.size()), Quantity::ratio);
+  } else if (inputs.goal != "energy") {
+    refuse("--goal: '" + inputs.goal + "' is none of energy, time, priced:WATT");
+  }
+  return objective;
+}
+
+DigBounds bounds_of(const Inputs& inputs) {
+  DigBounds bounds;
+  const std::array<std::pair<const char*, Quantity>, 3> options = {
+      {{"--angle-range", Quantity::angle},
+       {"--penetration-range", Quantity::length},
+       {"--drag-range", Quantity::length}}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!inputs.ranges[i]) continue;
+    const auto& [option, quantity] = options[i];
+    const std::string& text = *inputs.ranges[i];
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos) {
+      refuse(std::string(option) + ": '" + text + "' is not FROM,TO");
+    }
+    const auto field = dig_parameter_table()[i].field;
+    bounds.lower.*field = parse_quantity(option, text.substr(0, comma), quantity);
+    bounds.upper.*field = parse_quantity(option, text.substr(comma + 1), quantity);
+  }
+  return bounds;
+}
+
+std::variant<MemeticSearch, GeneticAlgorithm> method_of(const Inputs& inputs) {
+  if (inputs.method == "default") {
+    MemeticSearch memetic;
+    if (inputs.generations != 0) memetic.generations = inputs.generations;
+    return memetic;
+  }
+  GeneticAlgorithm paper;
+  paper.population = inputs.population;
+  if (inputs.generations != 0) paper.generations = inputs.generations;
+  return paper;
+}
+
+DigSearchOptions search_options(const Inputs& inputs, Console& console) {
+  if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
+  if (inputs.evaluations < 0) {
+    refuse("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
+  }
   DigSearchOptions options;
-  options.genetic = inputs.genetic;
+  options.method = method_of(inputs);
+  options.stop.evaluations = inputs.evaluations;
+  if (inputs.evaluations == 0 && inputs.method == "default") {
+    options.stop.evaluations = default_evaluations;
+  }
   options.seed = inputs.seed;
   options.threads = static_cast<unsigned>(inputs.threads);
-  options.known_good = known_good(inputs, machine, soil, density);
-  options.progress = [&](const SearchProgress& p) {
+  options.objective = objective_of(inputs);
+  options.bounds = bounds_of(inputs);
+  options.start_rule = start_rule_of(inputs);
+  options.checkpoint = inputs.checkpoint.value_or("");
+  options.resume = inputs.resume;
+  const bool per_time = options.objective.goal == DigObjective::Goal::mass_per_time;
+  options.progress = [&console, per_time](const SearchProgress& p) {
+    const double scale = per_time ? 1.0 : 1000.0;
     console.progress(static_cast<double>(p.evaluations) / p.planned,
                      "generation " + std::to_string(p.generation) + ": best " +
-                         readable(1000.0 * p.best) + ", mean " + readable(1000.0 * p.mean) +
-                         " kg/kJ, " + std::to_string(p.evaluations) + " digs");
+                         readable(scale * p.best) + ", mean " + readable(scale * p.mean) +
+                         (per_time ? " kg/s, " : " kg/kJ, ") + std::to_string(p.evaluations) +
+                         " digs, " + readable(p.seconds_left) + " s left");
     return !console.stop_requested();
   };
-  const HeightMapSimulator simulator(machine, soil, density);
-  const auto found = search_dig(machine, simulator, site.ground, options);
-  if (!found) {
-    throw Error(ErrorKind::bad_input,
-                "no dig inside the search ranges can be driven on this ground");
+  return options;
+}
+
+/// What the search says beyond the dig.
+void add_search(const DigSearchResult& found, const DigObjective& objective, Plan& plan) {
+  const bool per_time = objective.goal == DigObjective::Goal::mass_per_time;
+  plan.dig = found.dig;
+  plan.source = "search";
+  plan.evaluations = found.evaluations;
+  plan.stopped = found.stopped;
+  plan.details["stopped_by"] = name(found.stopped_by);
+  plan.details["refused"] = found.refused;
+  plan.details["worth"] = (per_time ? 1.0 : 1000.0) * found.worth;
+  plan.details["worth_unit"] = per_time ? "kg/s" : "kg/kJ";
+  for (std::size_t i = 0; i < 3 && i < found.insight.seen.size(); ++i) {
+    const ParameterRange& range = found.insight.seen[i];
+    plan.details["ranges_98_percent"][dig_parameter_table()[i].name] = {range.low, range.high};
   }
-  const GroundProfile ground = boom_plane_profile(site.ground);
-  return {found->dig, lay_out(machine, found->dig, ground), "search", found->evaluations,
-          found->stopped};
+  if (objective.goal != DigObjective::Goal::mass_per_energy) {
+    plan.lines.push_back("worth        " + readable((per_time ? 1.0 : 1000.0) * found.worth) +
+                         (per_time ? " kg/s" : " kg/kJ, energy and time"));
+  }
+}
+
+void add_uncertainty(const UncertainDigSearchResult& found, double sd, Plan& plan) {
+  plan.evaluations = found.evaluations;
+  plan.details["density_sd_percent"] = sd;
+  const nlohmann::ordered_json worth = plan.details["worth"];
+  if (plan.details["worth_unit"] == "kg/kJ") plan.details["expected_efficiency_kg_per_kj"] = worth;
+  std::string line = "expected     " + readable(worth.get<double>()) + " " +
+                     plan.details["worth_unit"].get<std::string>() + " on average over " +
+                     readable(sd) + " points of standard deviation";
+  if (!plan.stopped) {
+    const double value = 100.0 * found.value_of_knowing();
+    plan.details["value_of_knowing_percent"] = value;
+    line += "; knowing the density would add " + readable(value, 2) + " %";
+  }
+  plan.lines.push_back(line);
+}
+
+[[noreturn]] void no_dig() {
+  refuse("no dig inside the search ranges can be driven on this ground");
+}
+
+Plan search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
+                 const Density& density, Site& site, Console& console) {
+  DigSearchOptions options = search_options(inputs, console);
+  options.start = known_good(inputs, machine, soil, density.percent, site.warnings);
+  Plan plan;
+  plan.start_rule = describe(options.start_rule);
+  if (density.sd > 0.0) {
+    std::vector<HeightMapSimulator> simulators;
+    const std::vector<PossibleDensity> densities = possible_densities(density.percent, density.sd);
+    for (const PossibleDensity& one : densities)
+      simulators.emplace_back(machine, soil, one.percent);
+    std::vector<PossibleSoil> soils;
+    for (std::size_t i = 0; i < densities.size(); ++i) {
+      soils.push_back({&simulators[i], densities[i].probability});
+    }
+    const auto found = search_dig(machine, soils, site.ground, options);
+    if (!found) no_dig();
+    add_search(found->expected, options.objective, plan);
+    add_uncertainty(*found, density.sd, plan);
+  } else {
+    const HeightMapSimulator simulator(machine, soil, density.percent);
+    const auto found = search_dig(machine, simulator, site.ground, options);
+    if (!found) no_dig();
+    add_search(*found, options.objective, plan);
+  }
+  plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
+  return plan;
 }
 
 nlohmann::ordered_json plan_json(const Plan& plan, double density, double seconds) {
   nlohmann::ordered_json json = {{"density_percent", density}};
   json.update(dig_json(plan.dig));
   json["source"] = plan.source;
+  json["start_rule"] = plan.start_rule;
   json["evaluations"] = plan.evaluations;
+  json.update(plan.details);
   json["wall_time_s"] = seconds;
   return json;
 }
@@ -218,10 +424,10 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Density density = density_of(inputs);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
-  const Plan plan = inputs.search
-                        ? search_plan(inputs, machine, soil, density.percent, site, console)
-                        : look_up_plan(inputs, machine, soil, density.percent, site);
+  if (inputs.density_sd && !inputs.search) refuse("--density-sd needs --search");
+  Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
+  const Plan plan = inputs.search ? search_plan(inputs, machine, soil, density, site, console)
+                                  : look_up_plan(inputs, machine, soil, density.percent, site);
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = density.trustworthy;
@@ -233,9 +439,11 @@ Outcome work(const Inputs& inputs, Console& console) {
   }
   outcome.lines = {"density      " + readable(density.percent) + " % in " + soil.name};
   for (const std::string& line : dig_lines(plan.dig)) outcome.lines.push_back(line);
+  for (const std::string& line : plan.lines) outcome.lines.push_back(line);
   outcome.lines.push_back(
       "source       " + plan.source +
-      (plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : ""));
+      (plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : "") +
+      "; start: " + plan.start_rule);
   if (inputs.trajectory) {
     write_trajectory(*inputs.trajectory, machine, plan.path, boom_plane_profile(site.ground),
                      outcome.warnings);

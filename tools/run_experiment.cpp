@@ -95,6 +95,19 @@ PlannedDig planned_dig(const Inputs& inputs, const Setting& setting, double esti
   return found->dig;
 }
 
+/// From its own start; from that of the rule for all if another soil forbids it.
+PlannedDig dig_as_planned(const Setting& setting, const HeightMapSimulator& simulator,
+                          const PlannedDig& chosen) {
+  const auto outcome = evaluate_dig(setting.machine, simulator, setting.ground, chosen.parameters,
+                                    StartRule(chosen.start_x));
+  if (const auto* dig = std::get_if<PlannedDig>(&outcome)) return *dig;
+  return dig_or_fail(setting, simulator, chosen.parameters);
+}
+
+double gain_percent(const PlannedDig& of, const PlannedDig& over) {
+  return 100.0 * (of.efficiency() / over.efficiency() - 1.0);
+}
+
 struct Row {
   nlohmann::ordered_json json;
   std::string line;
@@ -115,9 +128,12 @@ Row run(const Inputs& inputs, const Setting& setting, const Condition& condition
   // 3: choose the path for the density estimated from it.
   const DensityEstimate estimate = estimate_density(setting.law, {volumes.bulking_factor, 0.0});
   const PlannedDig chosen = planned_dig(inputs, setting, estimate.percent);
-  // 4: dig again in the true soil.
-  const PlannedDig planned = dig_or_fail(setting, simulator, chosen.parameters);
-  const double gain = 100.0 * (planned.efficiency() / fixed.efficiency() - 1.0);
+  // 4: dig again in the true soil; then once more from where the fixed path's rule starts it.
+  const PlannedDig planned = dig_as_planned(setting, simulator, chosen);
+  const PlannedDig same_rule = dig_or_fail(setting, simulator, chosen.parameters);
+  const double gain = gain_percent(planned, fixed);
+  const double path_gain = gain_percent(same_rule, fixed);
+  const double start_gain = gain_percent(planned, same_rule);
 
   const nlohmann::ordered_json volume = {{"excavated_m3", volumes.excavated},
                                          {"spilled_m3", volumes.spilled},
@@ -130,12 +146,15 @@ Row run(const Inputs& inputs, const Setting& setting, const Condition& condition
               {"density_estimated_percent", estimate.percent},
               {"fixed", dig_json(fixed)},
               {"planned", dig_json(planned)},
-              {"gain_percent", gain}};
+              {"gain_percent", gain},
+              {"gain_path_percent", path_gain},
+              {"gain_start_percent", start_gain}};
   row.line = condition.name + ": density " + readable(condition.density) + " %, k " +
              readable(volumes.bulking_factor, 4) + ", estimated " + readable(estimate.percent) +
              " %; fixed " + readable(1000.0 * fixed.efficiency()) + " kg/kJ, planned " +
              readable(1000.0 * planned.efficiency()) + " kg/kJ (" + path_text(planned) +
-             "), gain " + readable(gain) + " %";
+             "), gain " + readable(gain) + " % (path " + readable(path_gain) + " %, start " +
+             readable(start_gain) + " %)";
   return row;
 }
 
@@ -167,7 +186,11 @@ Outcome work(const Inputs& inputs, Console& console) {
     outcome.lines.push_back(std::move(row.line));
   }
   outcome.json["law"] = setting.law.name;
-  outcome.json["start_rule"] = "largest margin to joint limits and heel contact, for both paths";
+  const StartRule same;
+  outcome.json["start_rule"] =
+      describe(same) +
+      ", for the fixed path and in gain_path_percent for both; the planned path: " +
+      (inputs.search ? describe(DigSearchOptions{}.start_rule) : "of the library");
   return outcome;
 }
 

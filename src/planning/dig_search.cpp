@@ -89,6 +89,13 @@ class DigProblem {
     return result;
   }
 
+  /// 0 if the machine stalls.
+  double worth_in(const PossibleSoil& soil, const VectorXd& point) const {
+    const auto outcome = dig_along(layout_.machine(), *soil.simulator, terrain_, path_of(point));
+    const auto* dig = std::get_if<PlannedDig>(&outcome);
+    return dig ? options_.objective.worth(*dig) : 0.0;
+  }
+
  private:
   bool start_is_searched() const { return options_.start_rule.kind == StartRule::Kind::searched; }
 
@@ -249,16 +256,17 @@ class DigProblem {
   std::map<std::vector<double>, double> starts_;  ///< of the drivable paths looked at
 };
 
-/// Of the second searches: only the best dig for one soil, from a good one.
-DigSearchOptions for_one_soil(const DigSearchOptions& options, const DigParameters& start) {
-  DigSearchOptions one = options;
-  MemeticSearch method;
-  method.first_generation = 0;
-  method.generations = 0;
-  one.method = method;
-  one.start = {start};
-  one.checkpoint = {};
-  return one;
+/// Only a polish of the digs given.
+DigSearchOptions from_known(const DigSearchOptions& options, std::vector<DigParameters> start) {
+  DigSearchOptions polish = options;
+  if (const auto* memetic = std::get_if<MemeticSearch>(&options.method)) {
+    MemeticSearch method = *memetic;
+    method.first_generation = 0;
+    method.generations = 0;
+    polish.method = method;
+  }
+  polish.start = std::move(start);
+  return polish;
 }
 
 }  // namespace
@@ -291,20 +299,30 @@ std::optional<UncertainDigSearchResult> search_dig(const Machine& machine,
                                                    const std::vector<PossibleSoil>& soils,
                                                    const Terrain& terrain,
                                                    const DigSearchOptions& options) {
-  DigProblem problem(machine, soils, terrain, options);
+  UncertainDigSearchResult result;
+  DigSearchOptions one = options;
+  one.checkpoint = {};
+  std::vector<DigParameters> best_for_each;
+  std::vector<double> known;
+  for (const PossibleSoil& soil : soils) {
+    const auto found = search_dig(machine, *soil.simulator, terrain, one);
+    known.push_back(found ? found->worth : 0.0);
+    if (!found) continue;
+    result.evaluations += found->evaluations;
+    best_for_each.push_back(found->dig.parameters);
+    if (found->stopped) break;
+    one = from_known(one, {found->dig.parameters});
+  }
+  if (best_for_each.empty()) return std::nullopt;
+  const DigSearchOptions all = from_known(options, best_for_each);
+  DigProblem problem(machine, soils, terrain, all);
   const SearchResult found = problem.run();
   if (!found.feasible()) return std::nullopt;
-  UncertainDigSearchResult result;
   result.expected = problem.result_of(found);
-  result.evaluations = found.evaluations * static_cast<int>(soils.size());
-  const DigSearchOptions second = for_one_soil(options, result.expected.dig.parameters);
-  for (const PossibleSoil& soil : soils) {
-    if (result.expected.stopped) break;
-    const auto known = search_dig(machine, *soil.simulator, terrain, second);
-    if (!known) continue;
-    result.worth_if_known += soil.probability * known->worth;
-    result.evaluations += known->evaluations;
-    result.expected.stopped = known->stopped;
+  result.evaluations += found.evaluations * static_cast<int>(soils.size());
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto same = problem.worth_in(soils[i], found.best);
+    result.worth_if_known += soils[i].probability * std::max(known[i], same);
   }
   return result;
 }

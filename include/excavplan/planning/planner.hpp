@@ -150,8 +150,12 @@ struct UncertainDigSearchResult {
   double value_of_knowing() const { return worth_if_known / expected.worth - 1.0; }
 };
 
-/// Searches the dig of the highest expected worth, then the best one for each soil, from there.
-/// `stop.evaluations` counts digs in all soils as one; a checkpoint covers the first search.
+/// Searches the best dig for each soil, every one from that of the soil before, and from all of
+/// them the dig of the highest expected worth. The stop rules are those of each search; an
+/// evaluation of the last is one dig in every soil. A checkpoint covers the last search.
+///
+/// @return nothing if no dig was feasible
+/// @throws Error as above, and (bad_input) unless the probabilities are positive and add up to 1
 std::optional<UncertainDigSearchResult> search_dig(const Machine& machine,
                                                    const std::vector<PossibleSoil>& soils,
                                                    const Terrain& terrain,
