@@ -836,17 +836,6 @@ TEST_F(Tools, PlanForAnUncertainDensitySaysWhatKnowingItIsWorth) {
       "result.json", R"({"density_percent": 40, "density_sd_percent": 8, "trustworthy": true})");
   const json from = answer("plan-path", few + Words{"--density-from", file});
   EXPECT_EQ(from.at("path"), plan.at("path"));
-  refused(2, "--density-sd needs --search", "plan-path", {"--density", "40", "--density-sd", "8"});
-}
-
-TEST_F(Tools, SearchOptionsAreRefusedByName) {
-  const Words search = {"--density", "40", "--search"};
-  refused(2, "--goal: 'speed'", "plan-path", search + Words{"--goal", "speed"});
-  refused(2, "--drag-range: '2' is not FROM,TO", "plan-path", search + Words{"--drag-range", "2"});
-  refused(2, "drag_length_m", "plan-path", search + Words{"--drag-range", "2,1"});
-  refused(2, "--resume needs --checkpoint", "plan-path", search + Words{"--resume"});
-  refused(2, "--start search needs --search", "plan-path",
-          {"--density", "40", "--start", "search", "--terrain", "none.pcd"});
 }
 
 TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
@@ -919,8 +908,8 @@ TEST_F(Tools, LibraryIsTheSameForAnyNumberOfThreads) {
 
 TEST_F(Tools, SearchIsTheSameForAnyNumberOfThreads) {
   const auto plan = [](const char* threads) {
-    json result = answer("plan-path",
-                         Words{"--density", "30", "--search", "--threads", threads} + small_search);
+    json result = answer(
+        "plan-path", {"--density", "30", "--search", "--evaluations", "40", "--threads", threads});
     result.erase("wall_time_s");
     return result.dump();
   };
@@ -1189,6 +1178,17 @@ TEST_F(BadInput, APlanDoesNotTrustAResultWhoseTrustIsNoTruthValue) {
   const std::string file =
       folder.write("result.json", R"({"density_percent": 40, "trustworthy": "yes"})");
   answer("plan-path", {"--density-from", file, "--strict"}, 4);
+}
+
+TEST_F(BadInput, SearchOptionsAreRefusedByName) {
+  const Words search = {"--density", "40", "--search"};
+  refused(2, "--goal: 'speed'", "plan-path", search + Words{"--goal", "speed"});
+  refused(2, "--drag-range: '2' is not FROM,TO", "plan-path", search + Words{"--drag-range", "2"});
+  refused(2, "drag_length_m", "plan-path", search + Words{"--drag-range", "2,1"});
+  refused(2, "--resume needs --checkpoint", "plan-path", search + Words{"--resume"});
+  refused(2, "--start search needs --search", "plan-path",
+          {"--density", "40", "--start", "search"});
+  refused(2, "--density-sd needs --search", "plan-path", {"--density", "40", "--density-sd", "8"});
 }
 
 TEST_F(BadInput, TablesThatHoldNoSamplesAreRefused) {

@@ -292,7 +292,6 @@ std::variant<MemeticSearch, GeneticAlgorithm> method_of(const Inputs& inputs) {
 }
 
 DigSearchOptions search_options(const Inputs& inputs, Console& console) {
-  if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
   if (inputs.evaluations < 0) {
     refuse("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
   }
@@ -419,12 +418,18 @@ void write_trajectory(const std::string& file, const Machine& machine, DigPath p
   write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
 }
 
+void check(const Inputs& inputs) {
+  if (inputs.density_sd && !inputs.search) refuse("--density-sd needs --search");
+  if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
+  start_rule_of(inputs);
+}
+
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
+  check(inputs);
   const Density density = density_of(inputs);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  if (inputs.density_sd && !inputs.search) refuse("--density-sd needs --search");
   Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
   const Plan plan = inputs.search ? search_plan(inputs, machine, soil, density, site, console)
                                   : look_up_plan(inputs, machine, soil, density.percent, site);
