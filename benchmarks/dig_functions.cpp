@@ -21,12 +21,12 @@ using Eigen::VectorXd;
 
 struct Site {
   Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  Terrain ground = level_planning_ground(machine);
+  Terrain ground;
   HeightMapSimulator simulator;
   DigLayout layout;
 
   explicit Site(const DigCondition& condition)
-      : ground(sloped(ground, condition.rise)),
+      : ground(sloped(level_planning_ground(machine), condition.rise)),
         simulator(machine, load_soil(find_data_file("soils/loam.json")), condition.density),
         layout(machine, ground) {}
 
@@ -86,10 +86,10 @@ void find_maximum(DigCondition& condition, int grid) {
   const Site site(condition);
   std::vector<Found> best = scan(site, VectorXd::Constant(3, 0.5), 0.5, grid);
   condition.scanned = static_cast<long>(best.size());
-  best.resize(std::min<std::size_t>(10, best.size()));
+  best.resize(std::min<std::size_t>(5, best.size()));
   for (Found& one : best) {
     double half = 1.0 / (grid - 1);
-    for (int i = 0; i < 5; ++i, half *= 0.5) {
+    for (int i = 0; i < 4; ++i, half *= 0.5) {
       const Found better = scan(site, one.u, half, 9).front();
       condition.scanned += 9 * 9 * 9;
       if (better.efficiency > one.efficiency) one = better;

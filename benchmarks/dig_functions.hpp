@@ -27,7 +27,7 @@ struct DigCondition {
 
 /// d = 10, 40 and 80 % on level ground and on a slope of 15 degrees with their maxima, from the
 /// file if it exists, or else scanned and written to it: a grid of `grid`^3 digs, then, around the
-/// ten best in turn, five grids of 9^3 digs, each half as wide as the one before.
+/// five best in turn, four grids of 9^3 digs, each half as wide as the one before.
 std::vector<DigCondition> dig_conditions(const std::string& file, int grid);
 
 }  // namespace excavplan

@@ -32,7 +32,7 @@
 /// ERT: all evaluations of all runs over the number of successes.
 ///
 /// With a file DIGS the functions are digs in the built-in simulator instead of closed forms. Their
-/// maxima are read from it, or scanned on a grid of GRID^3 digs (41) and written to it, if it does
+/// maxima are read from it, or scanned on a grid of GRID^3 digs (45) and written to it, if it does
 /// not exist. Digs that cannot be driven are no evaluations, for no optimiser.
 
 namespace excavplan {
@@ -357,7 +357,7 @@ void print_table(const std::vector<Family>& all, int seeds, int budget) {
 int main(int argc, char** argv) {
   const int seeds = argc > 1 ? std::atoi(argv[1]) : 50;
   const int budget = argc > 2 ? std::atoi(argv[2]) : 4000;
-  const int grid = argc > 4 ? std::atoi(argv[4]) : 41;
+  const int grid = argc > 4 ? std::atoi(argv[4]) : 45;
   if (argc > 5 || seeds < 1 || budget < 1 || grid < 2) {
     std::fprintf(stderr, "usage: optimiser_benchmark [SEEDS [BUDGET [DIGS [GRID]]]]\n");
     return 2;

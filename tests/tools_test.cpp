@@ -214,8 +214,7 @@ const std::vector<Contract>& contracts() {
        "--thread",
        "--threads",
        [](const TemporaryFolder& folder) {
-         return Words{"--densities", "40", "--polish", "0", "--out", folder.file("library.json")} +
-                small_search;
+         return Words{"--densities", "40", "--out", folder.file("library.json")} + small_search;
        }},
       {"run-experiment",
        {"--path", "--soil", "--machine", "--seed"},
@@ -398,9 +397,9 @@ TEST_F(Tools, CalibrateDensitySaysHowFarTrueAndMeasuredFactorsPartAndWhy) {
 }
 
 TEST_F(Tools, BuildPathLibraryGivesTheKeysOfTheContract) {
-  const json result = answer("build-path-library", Words{"--densities", "20,60", "--polish", "0",
-                                                         "--out", folder.file("l.json")} +
-                                                       small_search);
+  const json result =
+      answer("build-path-library",
+             Words{"--densities", "20,60", "--out", folder.file("l.json")} + small_search);
   expect_keys(result, "number", {"wall_time_s"});
   EXPECT_GT(result.at("evaluations").get<int>(), 0);
   ASSERT_EQ(result.at("entries").size(), 2U);
@@ -840,9 +839,9 @@ TEST_F(Tools, PlanForAnUncertainDensitySaysWhatKnowingItIsWorth) {
 
 TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
   const std::string file = folder.file("library.json");
-  const json library = answer("build-path-library", Words{"--soil", "sand", "--densities", "30,50",
-                                                          "--polish", "0", "--out", file} +
-                                                        small_search);
+  const json library =
+      answer("build-path-library",
+             Words{"--soil", "sand", "--densities", "30,50", "--out", file} + small_search);
   const json plan = answer("plan-path", {"--soil", "sand", "--density", "50", "--library", file});
   EXPECT_EQ(plan.at("path"), library.at("entries").at(1).at("path"));
   EXPECT_EQ(plan.at("energy_kj"), library["entries"][1].at("energy_kj"));
@@ -891,8 +890,8 @@ TEST_F(Tools, PlannedPathBeatsTheFixedOneInEverySoil) {
 TEST_F(Tools, LibraryIsTheSameForAnyNumberOfThreads) {
   const std::string file = folder.file("library.json");
   const auto library = [&](const char* threads, const char* seed) {
-    return answer("build-path-library", Words{"--densities", "20,60", "--polish", "10", "--threads",
-                                              threads, "--seed", seed, "--out", file} +
+    return answer("build-path-library", Words{"--densities", "20,60", "--threads", threads,
+                                              "--seed", seed, "--out", file} +
                                             small_search)
         .at("entries");
   };
@@ -962,8 +961,7 @@ ProgramResult interrupted(const std::string& name, Words words, const std::strin
 
 TEST_F(Tools, InterruptedLibraryIsResumedToTheSameBytes) {
   const auto words = [&](const std::string& file) {
-    return Words{"--densities", "0:5:100", "--polish", "10", "--out", folder.file(file)} +
-           small_search;
+    return Words{"--densities", "0:5:100", "--out", folder.file(file)} + small_search;
   };
   const ProgramResult stopped = interrupted("build-path-library", words("resumed"), "%  density ");
   EXPECT_EQ(stopped.code, 75) << stopped.err;
@@ -993,8 +991,7 @@ TEST_F(Tools, InterruptedSearchSaysSoAndGoesOn) {
 }
 
 TEST_F(Tools, ResumeRefusesALibraryOfAnotherRun) {
-  const Words words =
-      Words{"--densities", "20", "--polish", "0", "--out", folder.file("l.json")} + small_search;
+  const Words words = Words{"--densities", "20", "--out", folder.file("l.json")} + small_search;
   answer("build-path-library", words);
   const ProgramResult other =
       run_program("build-path-library", words + Words{"--resume", "--seed", "9"});
