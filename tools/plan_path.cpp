@@ -358,34 +358,47 @@ void add_uncertainty(const UncertainDigSearchResult& found, double sd, Plan& pla
   plan.lines.push_back(line);
 }
 
-[[noreturn]] void no_dig() {
-  refuse("no dig inside the search ranges can be driven on this ground");
+/// Why not even the paper's fixed path can be dug, empty if it can.
+std::string trouble_with_fixed_path(const Inputs& inputs, const Machine& machine,
+                                    const SoilSimulator& simulator, const Site& site) {
+  StartRule start = start_rule_of(inputs);
+  if (start.kind == StartRule::Kind::searched) start = StartRule::Kind::least_work;
+  const auto outcome = evaluate_dig(machine, simulator, site.ground, paper_fixed_path(), start);
+  const auto* failure = std::get_if<DigFailure>(&outcome);
+  return failure ? "; the paper's fixed path: " + describe(*failure) : "";
 }
 
-Plan search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
-                 const Density& density, Site& site, Console& console) {
+/// @return nothing if the search was interrupted before it found a dig
+std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
+                                const Density& density, Site& site, Console& console) {
   DigSearchOptions options = search_options(inputs, console);
   options.start = known_good(inputs, machine, soil, density.percent, site.warnings);
   Plan plan;
   plan.start_rule = describe(options.start_rule);
+  const HeightMapSimulator simulator(machine, soil, density.percent);
+  bool found = false;
   if (density.sd > 0.0) {
     std::vector<HeightMapSimulator> simulators;
-    const std::vector<PossibleDensity> densities = possible_densities(density.percent, density.sd);
-    for (const PossibleDensity& one : densities)
-      simulators.emplace_back(machine, soil, one.percent);
     std::vector<PossibleSoil> soils;
-    for (std::size_t i = 0; i < densities.size(); ++i) {
-      soils.push_back({&simulators[i], densities[i].probability});
+    const auto densities = possible_densities(density.percent, density.sd);
+    for (const auto& [percent, probability] : densities) {
+      simulators.emplace_back(machine, soil, percent);
+      soils.push_back({nullptr, probability});
     }
-    const auto found = search_dig(machine, soils, site.ground, options);
-    if (!found) no_dig();
-    add_search(found->expected, options.objective, plan);
-    add_uncertainty(*found, density.sd, plan);
-  } else {
-    const HeightMapSimulator simulator(machine, soil, density.percent);
-    const auto found = search_dig(machine, simulator, site.ground, options);
-    if (!found) no_dig();
-    add_search(*found, options.objective, plan);
+    for (std::size_t i = 0; i < soils.size(); ++i) soils[i].simulator = &simulators[i];
+    if (const auto uncertain = search_dig(machine, soils, site.ground, options)) {
+      add_search(uncertain->expected, options.objective, plan);
+      add_uncertainty(*uncertain, density.sd, plan);
+      found = true;
+    }
+  } else if (const auto known = search_dig(machine, simulator, site.ground, options)) {
+    add_search(*known, options.objective, plan);
+    found = true;
+  }
+  if (!found && console.stop_requested()) return std::nullopt;
+  if (!found) {
+    refuse("no dig inside the search ranges can be driven on this ground" +
+           trouble_with_fixed_path(inputs, machine, simulator, site));
   }
   plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
   return plan;
@@ -418,6 +431,27 @@ void write_trajectory(const std::string& file, const Machine& machine, DigPath p
   write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
 }
 
+std::vector<std::string> lines_of(const Plan& plan, const Density& density, const SoilKind& soil) {
+  std::vector<std::string> lines = {"density      " + readable(density.percent) + " % in " +
+                                    soil.name};
+  for (const std::string& line : dig_lines(plan.dig)) lines.push_back(line);
+  for (const std::string& line : plan.lines) lines.push_back(line);
+  lines.push_back(
+      "source       " + plan.source +
+      (plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : "") +
+      "; start: " + plan.start_rule);
+  return lines;
+}
+
+Outcome nothing_found(const Density& density) {
+  Outcome outcome;
+  outcome.stopped_early = true;
+  outcome.trustworthy = density.trustworthy;
+  outcome.json = {{"density_percent", density.percent}, {"source", "search"}, {"path", nullptr}};
+  outcome.lines = {"stopped before any dig was found"};
+  return outcome;
+}
+
 void check(const Inputs& inputs) {
   if (inputs.density_sd && !inputs.search) refuse("--density-sd needs --search");
   if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
@@ -431,8 +465,11 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
-  const Plan plan = inputs.search ? search_plan(inputs, machine, soil, density, site, console)
-                                  : look_up_plan(inputs, machine, soil, density.percent, site);
+  const std::optional<Plan> found =
+      inputs.search ? search_plan(inputs, machine, soil, density, site, console)
+                    : look_up_plan(inputs, machine, soil, density.percent, site);
+  if (!found) return nothing_found(density);
+  const Plan& plan = *found;
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = density.trustworthy;
@@ -442,13 +479,7 @@ Outcome work(const Inputs& inputs, Console& console) {
                                 *inputs.density_from + ": its density is not trustworthy, so the "
                                                        "path may not suit the soil"});
   }
-  outcome.lines = {"density      " + readable(density.percent) + " % in " + soil.name};
-  for (const std::string& line : dig_lines(plan.dig)) outcome.lines.push_back(line);
-  for (const std::string& line : plan.lines) outcome.lines.push_back(line);
-  outcome.lines.push_back(
-      "source       " + plan.source +
-      (plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : "") +
-      "; start: " + plan.start_rule);
+  outcome.lines = lines_of(plan, density, soil);
   if (inputs.trajectory) {
     write_trajectory(*inputs.trajectory, machine, plan.path, boom_plane_profile(site.ground),
                      outcome.warnings);

@@ -18,9 +18,11 @@ using Eigen::Index;
 constexpr double looked_ahead = 0.25;   // of the lip, by the simulator [m]
 constexpr double start_grid = 0.2;      // of the first look for a start [m]; ours
 constexpr double start_within = 0.002;  // [m]; ours
-constexpr double coarse_step = 0.2;     // tip travel between poses while starts are compared [m]
+// Of the joints from their limits, for a machine that does not track exactly [rad]; ours.
+constexpr double joint_clearance = 0.035;
+constexpr double coarse_step = 0.2;  // tip travel between poses while starts are compared [m]
 
-/// Positive work of the joints against the weight of the links [J].
+/// Positive work of the joints against the weight of the links while they dig [J].
 double link_work(const Machine& machine, const DigPath& path) {
   double work = 0.0;
   for (std::size_t i = 1; i < path.poses.size(); ++i) {
@@ -32,6 +34,14 @@ double link_work(const Machine& machine, const DigPath& path) {
     work += (torque.array() * (to - from).array()).max(0.0).sum();
   }
   return work;
+}
+
+/// True if the joints keep off their limits while they dig.
+bool keeps_off_limits(const Machine& machine, const DigPath& path) {
+  return std::all_of(path.poses.begin(), path.poses.end(), [&](const DigPose& pose) {
+    return pose.phase == DigPhase::lift ||
+           limit_margin(machine, pose.joints).margin >= joint_clearance;
+  });
 }
 
 /// Remaining share of one phase, 0 .. 1.
@@ -138,8 +148,9 @@ std::variant<DigPath, Infeasible> DigLayout::known(DigPath path) const {
 std::optional<double> DigLayout::work_from(const DigParameters& parameters, double start_x,
                                            const DigPathOptions& options) const {
   const auto path = path_from(parameters, start_x, options);
-  if (std::holds_alternative<Infeasible>(path)) return std::nullopt;
-  return link_work(machine_, std::get<DigPath>(path));
+  const auto* drivable = std::get_if<DigPath>(&path);
+  if (!drivable || !keeps_off_limits(machine_, *drivable)) return std::nullopt;
+  return link_work(machine_, *drivable);
 }
 
 /// By halving steps around the best point of a grid: the work has one valley where the machine

@@ -52,7 +52,9 @@ GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
 struct StartRule {
   enum class Kind {
     largest_margin,  ///< make_dig_path_anywhere()
-    least_work,      ///< least positive work of the links' own weight on known ground
+    /// least positive work of the links' own weight, on known ground and with all joints 2 degrees
+    /// off their limits; the largest margin where there is no such start
+    least_work,
     given,
     searched,  ///< one more number of the search; for search_dig() only
   };
