@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <utility>
 #include <variant>
 
 #include <excavplan/planning/path_library.hpp>
@@ -10,6 +8,7 @@
 #include "figures.hpp"
 #include "json_file.hpp"
 #include "results.hpp"
+#include "search_inputs.hpp"
 #include "site.hpp"
 #include "tool.hpp"
 
@@ -29,9 +28,6 @@ const About about = {
     true,
     true};
 
-/// Enough for 99 % of the optimum from any seed (docs/methods.md#planning).
-constexpr int default_evaluations = 150;
-
 struct Inputs {
   std::optional<double> density;
   std::optional<std::string> density_from;
@@ -42,46 +38,10 @@ struct Inputs {
   std::string soil = "loam";
   std::string machine = "zx120";
   double cell = 0.05;
-  std::string goal = "energy";
-  double rest_of_cycle = 0.0;
-  std::string start = "work";
-  std::array<std::optional<std::string>, 3> ranges;
-  std::string method = "default";
-  int population = GeneticAlgorithm{}.population;
-  int generations = 0;
-  int evaluations = 0;
-  std::optional<std::string> checkpoint;
-  bool resume = false;
-  std::uint64_t seed = DigSearchOptions{}.seed;
-  std::uint64_t threads = 0;
+  SearchInputs dig_search;
   std::optional<std::string> trajectory;
   std::optional<std::string> plot;
 };
-
-void declare_search(Arguments& arguments, Inputs& inputs) {
-  arguments.text("goal", "GOAL", inputs.goal,
-                 "energy: mass per energy; time: mass per time; priced:WATT: mass per energy, a "
-                 "second costing so much");
-  arguments.option("rest-of-cycle", inputs.rest_of_cycle, Quantity::time,
-                   "swing, dump and return, added to the time of the dig");
-  arguments.text("start", "RULE|LENGTH", inputs.start,
-                 "where the dig begins: work (least work of the links), margin (farthest from the "
-                 "joint limits), search (with the path), or x");
-  arguments.text("angle-range", "FROM,TO", inputs.ranges[0], "penetration angles searched");
-  arguments.text("penetration-range", "FROM,TO", inputs.ranges[1], "penetration lengths searched");
-  arguments.text("drag-range", "FROM,TO", inputs.ranges[2], "drag lengths searched");
-  arguments.choice("method", inputs.method, {"default", "paper"},
-                   "of the search; paper: the paper's genetic algorithm");
-  arguments.option("population", inputs.population, "individuals, --method paper");
-  arguments.option("generations", inputs.generations, "of the search, 0 for the method's own");
-  arguments.option(
-      "evaluations", inputs.evaluations,
-      "digs simulated at most, 0 for the method's own: 150, or all the paper's generations");
-  arguments.file("checkpoint", inputs.checkpoint, "keep the digs simulated in this file");
-  arguments.flag("resume", inputs.resume, "go on from the checkpoint if it exists");
-  arguments.option("seed", inputs.seed, "seed of the search");
-  arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
-}
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("density", inputs.density, Quantity::percent, "relative density of the ground");
@@ -100,7 +60,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
-  declare_search(arguments, inputs);
+  declare_search(arguments, inputs.dig_search);
   arguments.file("trajectory", inputs.trajectory,
                  "write the joint trajectory, CSV, or JSON as .json");
   arguments.plot(inputs.plot, "the section of the dig");
@@ -208,14 +168,6 @@ DigPath lay_out(const Machine& machine, const PlannedDig& dig, const GroundProfi
   return std::get<DigPath>(std::move(path));
 }
 
-StartRule start_rule_of(const Inputs& inputs) {
-  if (inputs.start == "work") return StartRule::Kind::least_work;
-  if (inputs.start == "margin") return StartRule::Kind::largest_margin;
-  if (inputs.start == "search" && inputs.search) return StartRule::Kind::searched;
-  if (inputs.start == "search") refuse("--start search needs --search");
-  return parse_quantity("--start", inputs.start, Quantity::length);
-}
-
 Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                   double density, const Site& site) {
   Plan plan;
@@ -228,7 +180,7 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
     return plan;
   }
   const HeightMapSimulator simulator(machine, soil, density);
-  const StartRule start = start_rule_of(inputs);
+  const StartRule start = start_rule_of(inputs.dig_search);
   plan.start_rule = describe(start);
   const auto outcome = evaluate_dig(machine, simulator, site.ground, plan.dig.parameters, start);
   plan.evaluations = 1;
@@ -240,85 +192,6 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
   plan.dig = std::get<PlannedDig>(outcome);
   plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
   return plan;
-}
-
-DigObjective objective_of(const Inputs& inputs) {
-  DigObjective objective;
-  objective.rest_of_cycle = inputs.rest_of_cycle;
-  const std::string priced = "priced:";
-  if (inputs.goal == "time") {
-    objective.goal = DigObjective::Goal::mass_per_time;
-  } else if (inputs.goal.compare(0, priced.size(), priced) == 0) {
-    objective.goal = DigObjective::Goal::priced;
-    objective.time_price =
-        parse_quantity("--goal priced", inputs.goal.substr(priced.size()), Quantity::ratio);
-  } else if (inputs.goal != "energy") {
-    refuse("--goal: '" + inputs.goal + "' is none of energy, time, priced:WATT");
-  }
-  return objective;
-}
-
-DigBounds bounds_of(const Inputs& inputs) {
-  DigBounds bounds;
-  const std::array<std::pair<const char*, Quantity>, 3> options = {
-      {{"--angle-range", Quantity::angle},
-       {"--penetration-range", Quantity::length},
-       {"--drag-range", Quantity::length}}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!inputs.ranges[i]) continue;
-    const auto& [option, quantity] = options[i];
-    const std::string& text = *inputs.ranges[i];
-    const std::size_t comma = text.find(',');
-    if (comma == std::string::npos) {
-      refuse(std::string(option) + ": '" + text + "' is not FROM,TO");
-    }
-    const auto field = dig_parameter_table()[i].field;
-    bounds.lower.*field = parse_quantity(option, text.substr(0, comma), quantity);
-    bounds.upper.*field = parse_quantity(option, text.substr(comma + 1), quantity);
-  }
-  return bounds;
-}
-
-std::variant<MemeticSearch, GeneticAlgorithm> method_of(const Inputs& inputs) {
-  if (inputs.method == "default") {
-    MemeticSearch memetic;
-    if (inputs.generations != 0) memetic.generations = inputs.generations;
-    return memetic;
-  }
-  GeneticAlgorithm paper;
-  paper.population = inputs.population;
-  if (inputs.generations != 0) paper.generations = inputs.generations;
-  return paper;
-}
-
-DigSearchOptions search_options(const Inputs& inputs, Console& console) {
-  if (inputs.evaluations < 0) {
-    refuse("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
-  }
-  DigSearchOptions options;
-  options.method = method_of(inputs);
-  options.stop.evaluations = inputs.evaluations;
-  if (inputs.evaluations == 0 && inputs.method == "default") {
-    options.stop.evaluations = default_evaluations;
-  }
-  options.seed = inputs.seed;
-  options.threads = static_cast<unsigned>(inputs.threads);
-  options.objective = objective_of(inputs);
-  options.bounds = bounds_of(inputs);
-  options.start_rule = start_rule_of(inputs);
-  options.checkpoint = inputs.checkpoint.value_or("");
-  options.resume = inputs.resume;
-  const bool per_time = options.objective.goal == DigObjective::Goal::mass_per_time;
-  options.progress = [&console, per_time](const SearchProgress& p) {
-    const double scale = per_time ? 1.0 : 1000.0;
-    console.progress(static_cast<double>(p.evaluations) / p.planned,
-                     "generation " + std::to_string(p.generation) + ": best " +
-                         readable(scale * p.best) + ", mean " + readable(scale * p.mean) +
-                         (per_time ? " kg/s, " : " kg/kJ, ") + std::to_string(p.evaluations) +
-                         " digs, " + readable(p.seconds_left) + " s left");
-    return !console.stop_requested();
-  };
-  return options;
 }
 
 /// What the search says beyond the dig.
@@ -361,7 +234,7 @@ void add_uncertainty(const UncertainDigSearchResult& found, double sd, Plan& pla
 /// Why not even the paper's fixed path can be dug, empty if it can.
 std::string trouble_with_fixed_path(const Inputs& inputs, const Machine& machine,
                                     const SoilSimulator& simulator, const Site& site) {
-  StartRule start = start_rule_of(inputs);
+  StartRule start = start_rule_of(inputs.dig_search);
   if (start.kind == StartRule::Kind::searched) start = StartRule::Kind::least_work;
   const auto outcome = evaluate_dig(machine, simulator, site.ground, paper_fixed_path(), start);
   const auto* failure = std::get_if<DigFailure>(&outcome);
@@ -371,7 +244,7 @@ std::string trouble_with_fixed_path(const Inputs& inputs, const Machine& machine
 /// @return nothing if the search was interrupted before it found a dig
 std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                                 const Density& density, Site& site, Console& console) {
-  DigSearchOptions options = search_options(inputs, console);
+  DigSearchOptions options = search_options(inputs.dig_search, console);
   options.start = known_good(inputs, machine, soil, density.percent, site.warnings);
   Plan plan;
   plan.start_rule = describe(options.start_rule);
@@ -454,8 +327,10 @@ Outcome nothing_found(const Density& density) {
 
 void check(const Inputs& inputs) {
   if (inputs.density_sd && !inputs.search) refuse("--density-sd needs --search");
-  if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
-  start_rule_of(inputs);
+  if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {
+    refuse("--start search needs --search");
+  }
+  check(inputs.dig_search);
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
