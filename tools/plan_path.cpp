@@ -28,6 +28,9 @@ const About about = {
     true,
     true};
 
+/// For each of the soils that an uncertain density may mean, and for all together.
+constexpr int evaluations_each = 100;
+
 struct Inputs {
   std::optional<double> density;
   std::optional<std::string> density_from;
@@ -251,6 +254,8 @@ std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, co
   const HeightMapSimulator simulator(machine, soil, density.percent);
   bool found = false;
   if (density.sd > 0.0) {
+    if (inputs.dig_search.evaluations == 0 && inputs.dig_search.method == "default")
+      options.stop.evaluations = evaluations_each;
     std::vector<HeightMapSimulator> simulators;
     std::vector<PossibleSoil> soils;
     const auto densities = possible_densities(density.percent, density.sd);

@@ -84,9 +84,9 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
                    "of the search; paper: the paper's genetic algorithm");
   arguments.option("population", inputs.population, "individuals, --method paper");
   arguments.option("generations", inputs.generations, "of the search, 0 for the method's own");
-  arguments.option(
-      "evaluations", inputs.evaluations,
-      "digs simulated at most, 0 for the method's own: 150, or all the paper's generations");
+  arguments.option("evaluations", inputs.evaluations,
+                   "digs simulated at most in one search, 0 for the method's own: 150 (100 for "
+                   "each of several densities), or all the paper's generations");
   arguments.file("checkpoint", inputs.checkpoint, "keep the digs simulated in this file");
   arguments.flag("resume", inputs.resume, "go on from the checkpoint if it exists");
   arguments.option("seed", inputs.seed, "seed of the search");

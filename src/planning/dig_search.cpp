@@ -13,6 +13,7 @@
 #include <excavplan/planning/planner.hpp>
 
 #include "../json_file.hpp"
+#include "../parallel.hpp"
 #include "dig_layout.hpp"
 
 namespace excavplan {
@@ -32,6 +33,16 @@ DigParameters parameters_of(const VectorXd& point) {
     parameters.*dig_parameter_table()[static_cast<std::size_t>(i)].field = point(i);
   }
   return parameters;
+}
+
+void check(const std::vector<PossibleSoil>& soils) {
+  double sum = 0.0;
+  for (const PossibleSoil& soil : soils) {
+    require(soil.simulator && soil.probability > 0.0, "the probability of a soil", soil.probability,
+            "above 0, with a simulator");
+    sum += soil.probability;
+  }
+  require(std::abs(sum - 1.0) < 1e-9, "the probability of all soils", sum, "1");
 }
 
 /// FNV-1a over the bytes of numbers (Fowler, Noll and Vo).
@@ -113,13 +124,6 @@ class DigProblem {
             objective.time_price, "at least 0 W and finite");
     require(objective.rest_of_cycle >= 0.0 && std::isfinite(objective.rest_of_cycle),
             "the rest of the cycle", objective.rest_of_cycle, "at least 0 s and finite");
-    double sum = 0.0;
-    for (const PossibleSoil& soil : soils_) {
-      require(soil.simulator && soil.probability > 0.0, "the probability of a soil",
-              soil.probability, "above 0, with a simulator");
-      sum += soil.probability;
-    }
-    require(std::abs(sum - 1.0) < 1e-9, "the probability of all soils", sum, "1");
   }
 
   SearchBox box() const {
@@ -256,14 +260,34 @@ class DigProblem {
   std::map<std::vector<double>, double> starts_;  ///< of the drivable paths looked at
 };
 
-/// Only a polish of the digs given.
+/// Side by side, each from nothing: the best dig for one soil need not be near that for another.
+std::vector<std::optional<DigSearchResult>> best_for_each(const Machine& machine,
+                                                          const std::vector<PossibleSoil>& soils,
+                                                          const Terrain& terrain,
+                                                          const DigSearchOptions& options) {
+  DigSearchOptions one = options;
+  one.checkpoint = {};
+  one.threads = 1;
+  std::mutex mutex;
+  if (options.progress) {
+    one.progress = [&](const SearchProgress& progress) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      return options.progress(progress);
+    };
+  }
+  std::vector<std::optional<DigSearchResult>> each(soils.size());
+  parallel_for(soils.size(), options.threads, [&](std::size_t i) {
+    each[i] = search_dig(machine, *soils[i].simulator, terrain, one);
+  });
+  return each;
+}
+
+/// Nothing but a polish of the digs given, by the default method.
 DigSearchOptions from_known(const DigSearchOptions& options, std::vector<DigParameters> start) {
   DigSearchOptions polish = options;
-  if (const auto* memetic = std::get_if<MemeticSearch>(&options.method)) {
-    MemeticSearch method = *memetic;
-    method.first_generation = 0;
-    method.generations = 0;
-    polish.method = method;
+  if (auto* memetic = std::get_if<MemeticSearch>(&polish.method)) {
+    memetic->generations = 0;
+    memetic->first_generation = 0;
   }
   polish.start = std::move(start);
   return polish;
@@ -299,30 +323,26 @@ std::optional<UncertainDigSearchResult> search_dig(const Machine& machine,
                                                    const std::vector<PossibleSoil>& soils,
                                                    const Terrain& terrain,
                                                    const DigSearchOptions& options) {
+  check(soils);
+  const auto each = best_for_each(machine, soils, terrain, options);
   UncertainDigSearchResult result;
-  DigSearchOptions one = options;
-  one.checkpoint = {};
-  std::vector<DigParameters> best_for_each;
-  std::vector<double> known;
-  for (const PossibleSoil& soil : soils) {
-    const auto found = search_dig(machine, *soil.simulator, terrain, one);
-    known.push_back(found ? found->worth : 0.0);
+  std::vector<DigParameters> bests;
+  for (const auto& found : each) {
     if (!found) continue;
     result.evaluations += found->evaluations;
-    best_for_each.push_back(found->dig.parameters);
-    if (found->stopped) break;
-    one = from_known(one, {found->dig.parameters});
+    bests.push_back(found->dig.parameters);
   }
-  if (best_for_each.empty()) return std::nullopt;
-  const DigSearchOptions all = from_known(options, best_for_each);
-  DigProblem problem(machine, soils, terrain, all);
+  if (bests.empty()) return std::nullopt;
+  const DigSearchOptions from_bests = from_known(options, bests);
+  DigProblem problem(machine, soils, terrain, from_bests);
   const SearchResult found = problem.run();
   if (!found.feasible()) return std::nullopt;
   result.expected = problem.result_of(found);
   result.evaluations += found.evaluations * static_cast<int>(soils.size());
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    const auto same = problem.worth_in(soils[i], found.best);
-    result.worth_if_known += soils[i].probability * std::max(known[i], same);
+  for (std::size_t i = 0; i < soils.size(); ++i) {
+    const double same = problem.worth_in(soils[i], found.best);
+    result.worth_if_known +=
+        soils[i].probability * (each[i] ? std::max(each[i]->worth, same) : same);
   }
   return result;
 }

@@ -152,9 +152,9 @@ struct UncertainDigSearchResult {
   double value_of_knowing() const { return worth_if_known / expected.worth - 1.0; }
 };
 
-/// Searches the best dig for each soil, every one from that of the soil before, and from all of
-/// them the dig of the highest expected worth. The stop rules are those of each search; an
-/// evaluation of the last is one dig in every soil. A checkpoint covers the last search.
+/// Searches the best dig for each soil, and from all of them the dig of the highest expected worth.
+/// The stop rules are those of each search; an evaluation of the last is one dig in every soil. A
+/// checkpoint covers the last search.
 ///
 /// @return nothing if no dig was feasible
 /// @throws Error as above, and (bad_input) unless the probabilities are positive and add up to 1
@@ -170,7 +170,8 @@ struct PossibleDensity {
 };
 
 /// Nodes of the Gauss quadrature for a normal distribution cut off at 0 and 100 %: means over them
-/// are exact for polynomials of the density up to degree 2 count - 1 (docs/methods.md#uncertain-density).
+/// are exact for polynomials of the density up to degree 2 count - 1
+/// (docs/methods.md#uncertain-density).
 ///
 /// @throws Error (bad_input) unless 0 <= mean <= 100, 0 < sd <= 1000, 1 <= count <= 20
 std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent,
