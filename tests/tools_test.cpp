@@ -863,6 +863,30 @@ TEST_F(Tools, PlanWarnsOfAnEstimateThatShouldNotBeTrusted) {
   answer("plan-path", {"--density-from", file, "--strict"}, 4);
 }
 
+TEST_F(Tools, ExperimentSplitsItsGainIntoPathAndStart) {
+  const json result = answer("run-experiment", {"--search", "--densities", "10"});
+  const json condition = result.at("conditions").at(0);
+  EXPECT_EQ(condition.at("start_rule"), "least work of the links' own weight");
+  EXPECT_NEAR((1.0 + number(condition, "/gain_path_percent") / 100.0) *
+                  (1.0 + number(condition, "/gain_start_percent") / 100.0),
+              1.0 + number(condition, "/gain_percent") / 100.0, 1e-9);
+  EXPECT_GT(number(condition, "/gain_path_percent"), 10.0);
+  EXPECT_GT(number(condition, "/gain_start_percent"), 5.0);
+}
+
+TEST_F(Tools, SearchWarnsOfADamagedShippedLibraryAndGoesOn) {
+  const std::string data = folder.file("data");
+  fs::copy(EXCAVPLAN_DATA_SOURCE, data, fs::copy_options::recursive);
+  folder.write("data/libraries/zx120-loam.json", R"({"format": "excavplan-path-library")");
+  ::setenv("EXCAVPLAN_DATA", data.c_str(), 1);
+  const Words few = {"--density", "40", "--search", "--evaluations", "10"};
+  const json loam = answer("plan-path", few);
+  const json sand = answer("plan-path", few + Words{"--soil", "sand"});  // none is shipped
+  ::unsetenv("EXCAVPLAN_DATA");
+  EXPECT_TRUE(warns(loam, "library_unreadable"));
+  EXPECT_EQ(sand.at("warnings"), json::array());
+}
+
 TEST_F(Tools, PlannedPathBeatsTheFixedOneInEverySoil) {
   const json result = answer("run-experiment", {});
   ASSERT_EQ(result.at("conditions").size(), 3U);
