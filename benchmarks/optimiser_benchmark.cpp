@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,11 +24,16 @@
 #include <excavplan/random.hpp>
 
 #include "../tests/search_functions.hpp"
+#include "dig_functions.hpp"
 
 /// @file
-/// optimiser_benchmark [SEEDS [BUDGET]]: how many evaluations each optimiser needs to find a point
-/// whose true value is >= 99 % of the maximum; a table in Markdown on standard output. ERT: all
-/// evaluations of all runs over the number of successes.
+/// optimiser_benchmark [SEEDS [BUDGET [DIGS [GRID]]]]: how many evaluations each optimiser needs to
+/// find a point whose true value is >= 99 % of the maximum; a table in Markdown on standard output.
+/// ERT: all evaluations of all runs over the number of successes.
+///
+/// With a file DIGS the functions are digs in the built-in simulator instead of closed forms. Their
+/// maxima are read from it, or scanned on a grid of GRID^3 digs (45) and written to it, if it does
+/// not exist. Digs that cannot be driven are no evaluations, for no optimiser.
 
 namespace excavplan {
 namespace {
@@ -58,9 +64,18 @@ class Trial {
     return shares_[std::min(shares_.size(), static_cast<std::size_t>(evaluations)) - 1];
   }
 
+  /// How far from feasible a point is that costs nothing; nothing for all others.
+  std::optional<double> refused(const VectorXd& x) const {
+    return function_.refused ? function_.refused(x) : std::nullopt;
+  }
+
   /// @throws Over if nothing is left to find or to spend
   double operator()(const VectorXd& x) {
     if (over()) throw Over();
+    if (refused(x)) {
+      if (++refused_ > most_refused) throw Over();
+      return 0.0;
+    }
     ++evaluations_;
     const double value = function_.value(x);
     const double share = value / function_.maximum;
@@ -70,9 +85,12 @@ class Trial {
   }
 
  private:
+  static constexpr int most_refused = 100000;
+
   const Function& function_;
   int budget_;
   int evaluations_ = 0;
+  int refused_ = 0;
   int hit_ = 0;
   std::vector<double> shares_;  // best so far, of the maximum
 };
@@ -96,6 +114,10 @@ void run_search(Trial& trial, std::uint64_t seed,
           [&](const VectorXd& x) -> Evaluation {
             const double value = trial(x);
             return value == 0.0 ? Evaluation::infeasible(0.0) : Evaluation(value);
+          },
+          [&](const VectorXd& x) -> std::variant<VectorXd, Evaluation> {
+            if (const auto violation = trial.refused(x)) return Evaluation::infeasible(*violation);
+            return x;
           }},
          options);
 }
@@ -304,8 +326,16 @@ void print_row(const Optimiser& optimiser, const std::vector<Family>& all, int s
   std::fflush(stdout);
 }
 
-void print_table(int seeds, int budget) {
-  const std::vector<Family> all = families();
+std::vector<Family> dig_families(const std::string& file, int grid) {
+  std::vector<Family> all;
+  for (const DigCondition& condition : dig_conditions(file, grid)) {
+    all.push_back(
+        {condition.name(), [=](std::uint64_t seed) { return condition.function(seed); }, true});
+  }
+  return all;
+}
+
+void print_table(const std::vector<Family>& all, int seeds, int budget) {
   std::string head = "| optimiser |";
   std::string rule = "|---|";
   for (const Family& family : all) {
@@ -314,7 +344,8 @@ void print_table(int seeds, int budget) {
   }
   std::printf(
       "Evaluations to 99 %% of the maximum: median of %d seeds, budget %d. Then over the "
-      "excavation-like functions: geometric mean of ERT; %% of the maximum after 100 and "
+      "excavation-like functions, or all digs: geometric mean of ERT; %% of the maximum after 100 "
+      "and "
       "200 evaluations, mean / worst tenth.\n\n%s ERT | at 100 | at 200 |\n%s---|---|---|\n",
       seeds, budget, head.c_str(), rule.c_str());
   for (const Optimiser& optimiser : optimisers()) print_row(optimiser, all, seeds, budget);
@@ -326,9 +357,11 @@ void print_table(int seeds, int budget) {
 int main(int argc, char** argv) {
   const int seeds = argc > 1 ? std::atoi(argv[1]) : 50;
   const int budget = argc > 2 ? std::atoi(argv[2]) : 4000;
-  if (argc > 3 || seeds < 1 || budget < 1) {
-    std::fprintf(stderr, "usage: optimiser_benchmark [SEEDS [BUDGET]]\n");
+  const int grid = argc > 4 ? std::atoi(argv[4]) : 45;
+  if (argc > 5 || seeds < 1 || budget < 1 || grid < 2) {
+    std::fprintf(stderr, "usage: optimiser_benchmark [SEEDS [BUDGET [DIGS [GRID]]]]\n");
     return 2;
   }
-  excavplan::print_table(seeds, budget);
+  excavplan::print_table(argc > 3 ? excavplan::dig_families(argv[3], grid) : excavplan::families(),
+                         seeds, budget);
 }

@@ -176,9 +176,7 @@ TEST(OwnSimulator, IsTakenByThePlanner) {
   EXPECT_NEAR(planned.energy, 50e3 * planned.payload_volume, 1e-6);
 
   DigSearchOptions options;
-  options.genetic.population = 8;
-  options.genetic.generations = 2;
-  options.polish_evaluations = 0;
+  options.stop.evaluations = 30;
   const auto found = search_dig(machine, simulator, ground, options);
   ASSERT_TRUE(found);
   EXPECT_GT(found->dig.payload_mass, 0.0);

@@ -120,9 +120,10 @@ class LibraryBuild : public testing::Test {
  protected:
   static LibraryBuildOptions quick() {
     LibraryBuildOptions options;
-    options.search.genetic.population = 12;
-    options.search.genetic.generations = 3;
-    options.search.polish_evaluations = 10;
+    GeneticAlgorithm genetic;
+    genetic.population = 12;
+    genetic.generations = 3;
+    options.search.method = genetic;
     return options;
   }
   const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));

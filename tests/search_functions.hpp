@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,8 @@ struct Function {
   int dimensions = 3;
   /// What the optimiser sees, if that is not the value: its noise.
   std::function<double(const Eigen::VectorXd&)> seen = nullptr;
+  /// How far from feasible a point is that costs no evaluation; nothing for all others.
+  std::function<std::optional<double>(const Eigen::VectorXd&)> refused = nullptr;
 };
 
 /// Hartmann's function in three dimensions; maximum 3.86278 at (0.114614, 0.555649, 0.852547)

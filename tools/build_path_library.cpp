@@ -27,7 +27,6 @@ struct Inputs {
   std::string machine = "zx120";
   GeneticAlgorithm genetic;
   std::uint64_t seed = DigSearchOptions{}.seed;
-  int polish = DigSearchOptions{}.polish_evaluations;
   double cell = 0.05;
   std::uint64_t threads = 0;
   bool resume = false;
@@ -41,8 +40,6 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.machine(inputs.machine);
   arguments.option("population", inputs.genetic.population, "individuals of a generation");
   arguments.option("generations", inputs.genetic.generations, "generations of a search");
-  arguments.option("polish", inputs.polish,
-                   "digs of the Nelder-Mead search after the last generation, 0 for none");
   arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
   arguments.option("seed", inputs.seed, "seed; the same seed gives the same file");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core; same file for any");
@@ -56,18 +53,15 @@ std::vector<PathLibraryEntry> earlier_entries(const Inputs& inputs, const Machin
                                               const SoilKind& soil) {
   if (!inputs.resume || !std::filesystem::exists(inputs.out)) return {};
   PathLibrary library = load_path_library(inputs.out);
-  if (library.machine != machine.name || library.soil != soil.name ||
-      library.seed != inputs.seed || library.cell != inputs.cell ||
-      library.population != inputs.genetic.population ||
-      library.generations != inputs.genetic.generations ||
-      library.polish_evaluations != inputs.polish) {
-    throw Error(
-        ErrorKind::bad_input,
-        "--resume: " + inputs.out + " is of machine " + library.machine + ", soil " + library.soil +
-            ", cell " + number_text(library.cell) + " m, seed " + std::to_string(library.seed) +
-            ", population " + std::to_string(library.population) + ", generations " +
-            std::to_string(library.generations) + ", polish " +
-            std::to_string(library.polish_evaluations) + ", which is another run than this one");
+  if (library.machine != machine.name || library.soil != soil.name || library.seed != inputs.seed ||
+      library.cell != inputs.cell || library.population != inputs.genetic.population ||
+      library.generations != inputs.genetic.generations) {
+    throw Error(ErrorKind::bad_input,
+                "--resume: " + inputs.out + " is of machine " + library.machine + ", soil " +
+                    library.soil + ", cell " + number_text(library.cell) + " m, seed " +
+                    std::to_string(library.seed) + ", population " +
+                    std::to_string(library.population) + ", generations " +
+                    std::to_string(library.generations) + ", which is another run than this one");
   }
   return library.entries;
 }
@@ -81,14 +75,11 @@ Outcome work(const Inputs& inputs, Console& console) {
   require_folder_of(inputs.out);  // now, not after the search
   LibraryBuildOptions options;
   options.cell = inputs.cell;
-  options.search.genetic = inputs.genetic;
+  options.search.method = inputs.genetic;
   options.search.seed = inputs.seed;
   options.search.threads = static_cast<unsigned>(inputs.threads);
-  options.search.polish_evaluations = inputs.polish;
   options.done = earlier_entries(inputs, machine, soil);
-  options.search.progress = [&](const SearchProgress&) {
-    return !console.stop_requested();
-  };
+  options.search.progress = [&](const SearchProgress&) { return !console.stop_requested(); };
   options.progress = [&](std::size_t done, std::size_t wanted, const PathLibraryEntry& entry) {
     console.progress(static_cast<double>(done) / static_cast<double>(wanted),
                      "density " + readable(entry.density_percent) +

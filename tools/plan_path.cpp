@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <variant>
+
 #include <excavplan/planning/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "figures.hpp"
 #include "json_file.hpp"
 #include "results.hpp"
+#include "search_inputs.hpp"
 #include "site.hpp"
 #include "tool.hpp"
 
@@ -19,30 +22,37 @@ const About about = {
     {{"plan-path --density 40", "look the path up in the shipped library"},
      {"plan-path --density-from result.json --trajectory dig.csv",
       "go on from estimate-density --json, write joint angles over time"},
-     {"plan-path --density 40 --search --terrain after.pcd", "search on the ground as scanned"}},
+     {"plan-path --density 40 --search --terrain after.pcd", "search on the ground as scanned"},
+     {"plan-path --density 40 --density-sd 8 --search",
+      "the path best on average, and what knowing the density would be worth"}},
     true,
     true};
+
+/// For each of the soils that an uncertain density may mean, and for all together.
+constexpr int evaluations_each = 100;
 
 struct Inputs {
   std::optional<double> density;
   std::optional<std::string> density_from;
   std::optional<std::string> library;
   bool search = false;
+  std::optional<double> density_sd;
   TerrainInput terrain;
   std::string soil = "loam";
   std::string machine = "zx120";
   double cell = 0.05;
-  GeneticAlgorithm genetic;
-  std::uint64_t seed = DigSearchOptions{}.seed;
-  std::uint64_t threads = 0;
+  SearchInputs dig_search;
   std::optional<std::string> trajectory;
   std::optional<std::string> plot;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("density", inputs.density, Quantity::percent, "relative density of the ground");
+  arguments.option("density-sd", inputs.density_sd, Quantity::percent,
+                   "standard deviation of the density: search the path that is best on average");
   arguments.file("density-from", inputs.density_from,
-                 "take the density from this result of estimate-density --json");
+                 "take the density, and for a search its uncertainty, from this result of "
+                 "estimate-density --json");
   arguments.file("library", inputs.library,
                  "path library (default: the shipped one of the machine and the soil)");
   arguments.flag("search", inputs.search, "search the path instead of looking it up");
@@ -53,10 +63,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
-  arguments.option("population", inputs.genetic.population, "individuals of a generation");
-  arguments.option("generations", inputs.genetic.generations, "generations of the search");
-  arguments.option("seed", inputs.seed, "seed of the search");
-  arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
+  declare_search(arguments, inputs.dig_search);
   arguments.file("trajectory", inputs.trajectory,
                  "write the joint trajectory, CSV, or JSON as .json");
   arguments.plot(inputs.plot, "the section of the dig");
@@ -65,8 +72,22 @@ void declare(Arguments& arguments, Inputs& inputs) {
 /// The density asked for, and whether its source trusts it.
 struct Density {
   double percent = 0.0;
+  double sd = 0.0;  ///< [points]; 0: taken as known
   bool trustworthy = true;
 };
+
+[[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
+
+/// Of the result of an estimate; 0 if it states none.
+double sd_in(const nlohmann::json& result, const std::string& file) {
+  const auto field = result.find("density_sd_percent");
+  if (field == result.end() || field->is_null()) return 0.0;
+  if (field->is_number() && field->get<double>() >= 0.0) return field->get<double>();
+  throw Error(ErrorKind::bad_file, file +
+                                       ": density_sd_percent must be a number of at least 0, it "
+                                       "is " +
+                                       field->dump());
+}
 
 Density density_of(const Inputs& inputs) {
   if (inputs.density.has_value() == inputs.density_from.has_value()) {
@@ -77,7 +98,7 @@ Density density_of(const Inputs& inputs) {
       throw Error(ErrorKind::bad_input,
                   "--density: " + number_text(*inputs.density) + " % is outside 0 .. 100");
     }
-    return {*inputs.density, true};
+    return {*inputs.density, inputs.density_sd.value_or(0.0), true};
   }
   const std::string& file = *inputs.density_from;
   const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
@@ -91,7 +112,8 @@ Density density_of(const Inputs& inputs) {
                     "; expected a result of estimate-density --json");
   }
   const auto trustworthy = json.find("trustworthy");
-  return {field->get<double>(), trustworthy == json.end() || *trustworthy == true};
+  return {field->get<double>(), inputs.density_sd ? *inputs.density_sd : sd_in(json, file),
+          trustworthy == json.end() || *trustworthy == true};
 }
 
 PathLibrary library_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {
@@ -107,13 +129,19 @@ PathLibrary library_of(const Inputs& inputs, const Machine& machine, const SoilK
 }
 
 /// A path of the library if one fits, to start the search from.
-std::optional<DigParameters> known_good(const Inputs& inputs, const Machine& machine,
-                                        const SoilKind& soil, double density) {
+std::vector<DigParameters> known_good(const Inputs& inputs, const Machine& machine,
+                                      const SoilKind& soil, double density,
+                                      std::vector<Warning>& warnings) {
   try {
-    return look_up(library_of(inputs, machine, soil), density).parameters;
-  } catch (const Error&) {
+    return {look_up(library_of(inputs, machine, soil), density).parameters};
+  } catch (const Error& error) {
     if (inputs.library) throw;
-    return std::nullopt;  // none is shipped for this machine and soil: search from nothing
+    if (error.kind() == ErrorKind::bad_file) {
+      warnings.push_back({"library_unreadable", std::string("the search starts from nothing, not "
+                                                            "from the shipped library: ") +
+                                                    error.what()});
+    }
+    return {};  // none is shipped that fits
   }
 }
 
@@ -121,8 +149,11 @@ struct Plan {
   PlannedDig dig;
   DigPath path;
   std::string source;
+  std::string start_rule;
   int evaluations = 0;
   bool stopped = false;
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< of a search
+  std::vector<std::string> lines;
 };
 
 /// The path of a dig on its ground; the start point moves if the planned one does not work.
@@ -145,13 +176,16 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
   Plan plan;
   plan.source = "library";
   plan.dig = look_up(library_of(inputs, machine, soil), density);
+  plan.start_rule = "of the library";
   if (!inputs.terrain.cloud) {
     plan.path = lay_out(machine, plan.dig, [](double) { return 0.0; });
     plan.dig.start_x = plan.path.start_x;
     return plan;
   }
   const HeightMapSimulator simulator(machine, soil, density);
-  const auto outcome = evaluate_dig(machine, simulator, site.ground, plan.dig.parameters);
+  const StartRule start = start_rule_of(inputs.dig_search);
+  plan.start_rule = describe(start);
+  const auto outcome = evaluate_dig(machine, simulator, site.ground, plan.dig.parameters, start);
   plan.evaluations = 1;
   if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
     throw Error(
@@ -163,36 +197,98 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
   return plan;
 }
 
-Plan search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil, double density,
-                 const Site& site, Console& console) {
-  DigSearchOptions options;
-  options.genetic = inputs.genetic;
-  options.seed = inputs.seed;
-  options.threads = static_cast<unsigned>(inputs.threads);
-  options.known_good = known_good(inputs, machine, soil, density);
-  options.progress = [&](const SearchProgress& p) {
-    console.progress(static_cast<double>(p.evaluations) / p.planned,
-                     "generation " + std::to_string(p.generation) + ": best " +
-                         readable(1000.0 * p.best) + ", mean " + readable(1000.0 * p.mean) +
-                         " kg/kJ, " + std::to_string(p.evaluations) + " digs");
-    return !console.stop_requested();
-  };
-  const HeightMapSimulator simulator(machine, soil, density);
-  const auto found = search_dig(machine, simulator, site.ground, options);
-  if (!found) {
-    throw Error(ErrorKind::bad_input,
-                "no dig inside the search ranges can be driven on this ground");
+/// What the search says beyond the dig.
+void add_search(const DigSearchResult& found, const DigObjective& objective, Plan& plan) {
+  const bool per_time = objective.goal == DigObjective::Goal::mass_per_time;
+  plan.dig = found.dig;
+  plan.source = "search";
+  plan.evaluations = found.evaluations;
+  plan.stopped = found.stopped;
+  plan.details["stopped_by"] = name(found.stopped_by);
+  plan.details["refused"] = found.refused;
+  plan.details["worth"] = (per_time ? 1.0 : 1000.0) * found.worth;
+  plan.details["worth_unit"] = per_time ? "kg/s" : "kg/kJ";
+  for (std::size_t i = 0; i < 3 && i < found.insight.seen.size(); ++i) {
+    const ParameterRange& range = found.insight.seen[i];
+    plan.details["ranges_98_percent"][dig_parameter_table()[i].name] = {range.low, range.high};
   }
-  const GroundProfile ground = boom_plane_profile(site.ground);
-  return {found->dig, lay_out(machine, found->dig, ground), "search", found->evaluations,
-          found->stopped};
+  if (objective.goal != DigObjective::Goal::mass_per_energy) {
+    plan.lines.push_back("worth        " + readable((per_time ? 1.0 : 1000.0) * found.worth) +
+                         (per_time ? " kg/s" : " kg/kJ, energy and time"));
+  }
+}
+
+void add_uncertainty(const UncertainDigSearchResult& found, double sd, Plan& plan) {
+  plan.evaluations = found.evaluations;
+  plan.details["density_sd_percent"] = sd;
+  const nlohmann::ordered_json worth = plan.details["worth"];
+  if (plan.details["worth_unit"] == "kg/kJ") plan.details["expected_efficiency_kg_per_kj"] = worth;
+  std::string line = "expected     " + readable(worth.get<double>()) + " " +
+                     plan.details["worth_unit"].get<std::string>() + " on average over " +
+                     readable(sd) + " points of standard deviation";
+  if (!plan.stopped) {
+    const double value = 100.0 * found.value_of_knowing();
+    plan.details["value_of_knowing_percent"] = value;
+    line += "; knowing the density would add " + readable(value, 2) + " %";
+  }
+  plan.lines.push_back(line);
+}
+
+/// Why not even the paper's fixed path can be dug, empty if it can.
+std::string trouble_with_fixed_path(const Inputs& inputs, const Machine& machine,
+                                    const SoilSimulator& simulator, const Site& site) {
+  StartRule start = start_rule_of(inputs.dig_search);
+  if (start.kind == StartRule::Kind::searched) start = StartRule::Kind::least_work;
+  const auto outcome = evaluate_dig(machine, simulator, site.ground, paper_fixed_path(), start);
+  const auto* failure = std::get_if<DigFailure>(&outcome);
+  return failure ? "; the paper's fixed path: " + describe(*failure) : "";
+}
+
+/// @return nothing if the search was interrupted before it found a dig
+std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
+                                const Density& density, Site& site, Console& console) {
+  DigSearchOptions options = search_options(inputs.dig_search, console);
+  options.start = known_good(inputs, machine, soil, density.percent, site.warnings);
+  Plan plan;
+  plan.start_rule = describe(options.start_rule);
+  const HeightMapSimulator simulator(machine, soil, density.percent);
+  bool found = false;
+  if (density.sd > 0.0) {
+    if (inputs.dig_search.evaluations == 0 && inputs.dig_search.method == "default")
+      options.stop.evaluations = evaluations_each;
+    std::vector<HeightMapSimulator> simulators;
+    std::vector<PossibleSoil> soils;
+    const auto densities = possible_densities(density.percent, density.sd);
+    for (const auto& [percent, probability] : densities) {
+      simulators.emplace_back(machine, soil, percent);
+      soils.push_back({nullptr, probability});
+    }
+    for (std::size_t i = 0; i < soils.size(); ++i) soils[i].simulator = &simulators[i];
+    if (const auto uncertain = search_dig(machine, soils, site.ground, options)) {
+      add_search(uncertain->expected, options.objective, plan);
+      add_uncertainty(*uncertain, density.sd, plan);
+      found = true;
+    }
+  } else if (const auto known = search_dig(machine, simulator, site.ground, options)) {
+    add_search(*known, options.objective, plan);
+    found = true;
+  }
+  if (!found && console.stop_requested()) return std::nullopt;
+  if (!found) {
+    refuse("no dig inside the search ranges can be driven on this ground" +
+           trouble_with_fixed_path(inputs, machine, simulator, site));
+  }
+  plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
+  return plan;
 }
 
 nlohmann::ordered_json plan_json(const Plan& plan, double density, double seconds) {
   nlohmann::ordered_json json = {{"density_percent", density}};
   json.update(dig_json(plan.dig));
   json["source"] = plan.source;
+  json["start_rule"] = plan.start_rule;
   json["evaluations"] = plan.evaluations;
+  json.update(plan.details);
   json["wall_time_s"] = seconds;
   return json;
 }
@@ -213,15 +309,47 @@ void write_trajectory(const std::string& file, const Machine& machine, DigPath p
   write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
 }
 
+std::vector<std::string> lines_of(const Plan& plan, const Density& density, const SoilKind& soil) {
+  std::vector<std::string> lines = {"density      " + readable(density.percent) + " % in " +
+                                    soil.name};
+  for (const std::string& line : dig_lines(plan.dig)) lines.push_back(line);
+  for (const std::string& line : plan.lines) lines.push_back(line);
+  lines.push_back(
+      "source       " + plan.source +
+      (plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : "") +
+      "; start: " + plan.start_rule);
+  return lines;
+}
+
+Outcome nothing_found(const Density& density) {
+  Outcome outcome;
+  outcome.stopped_early = true;
+  outcome.trustworthy = density.trustworthy;
+  outcome.json = {{"density_percent", density.percent}, {"source", "search"}, {"path", nullptr}};
+  outcome.lines = {"stopped before any dig was found"};
+  return outcome;
+}
+
+void check(const Inputs& inputs) {
+  if (inputs.density_sd && !inputs.search) refuse("--density-sd needs --search");
+  if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {
+    refuse("--start search needs --search");
+  }
+  check(inputs.dig_search);
+}
+
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
+  check(inputs);
   const Density density = density_of(inputs);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
-  const Plan plan = inputs.search
-                        ? search_plan(inputs, machine, soil, density.percent, site, console)
-                        : look_up_plan(inputs, machine, soil, density.percent, site);
+  Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
+  const std::optional<Plan> found =
+      inputs.search ? search_plan(inputs, machine, soil, density, site, console)
+                    : look_up_plan(inputs, machine, soil, density.percent, site);
+  if (!found) return nothing_found(density);
+  const Plan& plan = *found;
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = density.trustworthy;
@@ -231,11 +359,7 @@ Outcome work(const Inputs& inputs, Console& console) {
                                 *inputs.density_from + ": its density is not trustworthy, so the "
                                                        "path may not suit the soil"});
   }
-  outcome.lines = {"density      " + readable(density.percent) + " % in " + soil.name};
-  for (const std::string& line : dig_lines(plan.dig)) outcome.lines.push_back(line);
-  outcome.lines.push_back(
-      "source       " + plan.source +
-      (plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : ""));
+  outcome.lines = lines_of(plan, density, soil);
   if (inputs.trajectory) {
     write_trajectory(*inputs.trajectory, machine, plan.path, boom_plane_profile(site.ground),
                      outcome.warnings);

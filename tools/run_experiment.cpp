@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include <excavplan/planning/calibration.hpp>
 #include <excavplan/planning/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -76,8 +78,8 @@ struct Setting {
 };
 
 PlannedDig dig_or_fail(const Setting& setting, const HeightMapSimulator& simulator,
-                       const DigParameters& parameters) {
-  const auto outcome = evaluate_dig(setting.machine, simulator, setting.ground, parameters);
+                       const DigParameters& parameters, const StartRule& start = {}) {
+  const auto outcome = evaluate_dig(setting.machine, simulator, setting.ground, parameters, start);
   if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
     throw Error(ErrorKind::bad_input, describe(*failure));
   }
@@ -93,6 +95,31 @@ PlannedDig planned_dig(const Inputs& inputs, const Setting& setting, double esti
   const auto found = search_dig(setting.machine, simulator, setting.ground, search);
   if (!found) throw Error(ErrorKind::bad_input, "no dig is feasible");
   return found->dig;
+}
+
+/// From its own start; from that of the rule for all if another soil forbids it.
+PlannedDig dig_as_planned(const Setting& setting, const HeightMapSimulator& simulator,
+                          const PlannedDig& chosen) {
+  const auto outcome = evaluate_dig(setting.machine, simulator, setting.ground, chosen.parameters,
+                                    StartRule(chosen.start_x));
+  if (const auto* dig = std::get_if<PlannedDig>(&outcome)) return *dig;
+  return dig_or_fail(setting, simulator, chosen.parameters);
+}
+
+/// The rule that puts the start of a planned dig nearest to where it is.
+StartRule rule_behind(const Setting& setting, const HeightMapSimulator& simulator,
+                      const PlannedDig& planned) {
+  const auto distance = [&](const StartRule& rule) {
+    return std::abs(dig_or_fail(setting, simulator, planned.parameters, rule).start_x -
+                    planned.start_x);
+  };
+  const StartRule work = StartRule::Kind::least_work;
+  const StartRule margin = StartRule::Kind::largest_margin;
+  return distance(work) < distance(margin) ? work : margin;
+}
+
+double gain_percent(const PlannedDig& of, const PlannedDig& over) {
+  return 100.0 * (of.efficiency() / over.efficiency() - 1.0);
 }
 
 struct Row {
@@ -115,9 +142,13 @@ Row run(const Inputs& inputs, const Setting& setting, const Condition& condition
   // 3: choose the path for the density estimated from it.
   const DensityEstimate estimate = estimate_density(setting.law, {volumes.bulking_factor, 0.0});
   const PlannedDig chosen = planned_dig(inputs, setting, estimate.percent);
-  // 4: dig again in the true soil.
-  const PlannedDig planned = dig_or_fail(setting, simulator, chosen.parameters);
-  const double gain = 100.0 * (planned.efficiency() / fixed.efficiency() - 1.0);
+  // 4: dig again in the true soil; the fixed path, too, from where the planned one's rule puts it.
+  const PlannedDig planned = dig_as_planned(setting, simulator, chosen);
+  const StartRule rule = rule_behind(setting, simulator, planned);
+  const PlannedDig moved = dig_or_fail(setting, simulator, setting.fixed, rule);
+  const double gain = gain_percent(planned, fixed);
+  const double start_gain = gain_percent(moved, fixed);
+  const double path_gain = gain_percent(planned, moved);
 
   const nlohmann::ordered_json volume = {{"excavated_m3", volumes.excavated},
                                          {"spilled_m3", volumes.spilled},
@@ -130,12 +161,16 @@ Row run(const Inputs& inputs, const Setting& setting, const Condition& condition
               {"density_estimated_percent", estimate.percent},
               {"fixed", dig_json(fixed)},
               {"planned", dig_json(planned)},
-              {"gain_percent", gain}};
+              {"gain_percent", gain},
+              {"gain_path_percent", path_gain},
+              {"gain_start_percent", start_gain},
+              {"start_rule", describe(rule)}};
   row.line = condition.name + ": density " + readable(condition.density) + " %, k " +
              readable(volumes.bulking_factor, 4) + ", estimated " + readable(estimate.percent) +
              " %; fixed " + readable(1000.0 * fixed.efficiency()) + " kg/kJ, planned " +
              readable(1000.0 * planned.efficiency()) + " kg/kJ (" + path_text(planned) +
-             "), gain " + readable(gain) + " %";
+             "), gain " + readable(gain) + " % (path " + readable(path_gain) + " %, start " +
+             readable(start_gain) + " %)";
   return row;
 }
 
@@ -167,7 +202,8 @@ Outcome work(const Inputs& inputs, Console& console) {
     outcome.lines.push_back(std::move(row.line));
   }
   outcome.json["law"] = setting.law.name;
-  outcome.json["start_rule"] = "largest margin to joint limits and heel contact, for both paths";
+  outcome.json["start_rule"] =
+      "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
   return outcome;
 }
 

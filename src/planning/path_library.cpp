@@ -161,14 +161,11 @@ PathLibrary build_path_library(const Machine& machine, const SoilKind& soil,
                                const std::vector<double>& densities_percent,
                                const LibraryBuildOptions& options) {
   check(densities_percent);
-  PathLibrary library{machine.name,
-                      soil.name,
-                      options.cell,
-                      options.search.seed,
-                      options.search.genetic.population,
-                      options.search.genetic.generations,
-                      options.search.polish_evaluations,
-                      {}};
+  PathLibrary library{machine.name, soil.name, options.cell, options.search.seed, 0, 0, 0, {}};
+  if (const auto* genetic = std::get_if<GeneticAlgorithm>(&options.search.method)) {
+    library.population = genetic->population;
+    library.generations = genetic->generations;
+  }
   const Terrain ground = level_planning_ground(machine, options.cell);
   for (const double density : densities_percent) {
     const auto done = std::find_if(
@@ -179,7 +176,7 @@ PathLibrary build_path_library(const Machine& machine, const SoilKind& soil,
       continue;
     }
     DigSearchOptions search = options.search;
-    if (!library.entries.empty()) search.known_good = library.entries.back().dig.parameters;
+    if (!library.entries.empty()) search.start = {library.entries.back().dig.parameters};
     const HeightMapSimulator simulator(machine, soil, density);
     const auto found = search_dig(machine, simulator, ground, search);
     if (!found) {

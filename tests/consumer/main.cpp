@@ -23,8 +23,8 @@ int main() {
     const Terrain ground = level_planning_ground(machine);
     const HeightMapSimulator simulator(machine, loam, density_percent);
     DigSearchOptions options;
-    options.known_good = dig.parameters;
-    options.genetic.generations = 5;  // the default, 20, takes about a second
+    options.start = {dig.parameters};
+    options.stop.evaluations = 60;  // enough from a good start; some 100 from nothing
     if (const auto found = search_dig(machine, simulator, ground, options)) dig = found->dig;
 
     // What the joints have to do.

@@ -7,10 +7,11 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/trajectory.hpp>
-#include <excavplan/planning/genetic.hpp>
+#include <excavplan/planning/search_analysis.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 
 /// @file
@@ -46,38 +47,134 @@ Terrain level_planning_ground(const Machine& machine, double cell = 0.05);
 GroundProfile boom_plane_profile(const HeightMap& surface);
 GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
 
+/// Where along the boom plane a dig begins. It decides the work of the links, and with it up to a
+/// third of the efficiency: paths are compared under one rule (docs/methods.md#start).
+struct StartRule {
+  enum class Kind {
+    largest_margin,  ///< make_dig_path_anywhere()
+    /// least positive work of the links' own weight, on known ground and with all joints 2 degrees
+    /// off their limits; the largest margin where there is no such start
+    least_work,
+    given,
+    searched,  ///< one more number of the search; for search_dig() only
+  };
+  Kind kind = Kind::largest_margin;
+  double x = 0.0;  ///< if given [m]
+
+  StartRule(Kind rule = Kind::largest_margin) : kind(rule) {}   // NOLINT: is a rule
+  StartRule(double start_x) : kind(Kind::given), x(start_x) {}  // NOLINT: so is a place
+};
+std::string describe(const StartRule& rule);
+
 /// Lays out a dig, simulates it, times it.
 ///
-/// `start_x` is chosen by make_dig_path_anywhere() if absent. Ground of unknown height under the
-/// bucket makes the path infeasible (unknown_ground).
+/// Ground of unknown height under the bucket makes the path infeasible (unknown_ground).
+///
+/// @throws Error (bad_input) if the start is to be searched
 std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
                                                   const SoilSimulator& simulator,
                                                   const Terrain& terrain,
                                                   const DigParameters& parameters,
-                                                  std::optional<double> start_x = {});
+                                                  const StartRule& start = {});
+
+/// What makes one dig better than another.
+struct DigObjective {
+  enum class Goal {
+    mass_per_energy,  ///< the paper's f [kg/J]
+    mass_per_time,    ///< [kg/s]
+    priced,           ///< mass / (energy + time_price * time) [kg/J]
+  };
+  Goal goal = Goal::mass_per_energy;
+  double time_price = 0.0;     ///< what a second is worth, if priced [W], >= 0
+  double rest_of_cycle = 0.0;  ///< time of swing, dump and return, added to the dig's [s], >= 0
+
+  double worth(const PlannedDig& dig) const;  ///< larger is better; 0 for a dig that costs nothing
+};
+
+/// Between which digs a search looks: by default those of dig_parameter_table().
+struct DigBounds {
+  DigParameters lower;
+  DigParameters upper;
+  DigBounds();
+};
 
 struct DigSearchOptions {
-  GeneticAlgorithm genetic;
+  std::variant<MemeticSearch, GeneticAlgorithm> method = MemeticSearch{};
+  StopRules stop = {};  ///< the target is a worth
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: one per core. The result does not depend on it.
   std::function<bool(const SearchProgress&)> progress;  ///< after every dig; false stops
-  int polish_evaluations = 60;  ///< Nelder-Mead after the last generation; 0: none, as in the paper
-  std::optional<DigParameters> known_good;  ///< takes part in the first generation
+  std::vector<DigParameters> start = {};                ///< known good digs to begin with
+  DigObjective objective = {};
+  DigBounds bounds = {};
+  StartRule start_rule = StartRule::Kind::least_work;
+  std::string checkpoint = {};  ///< file of the digs made, to go on from; empty: none
+  bool resume = false;          ///< go on from the checkpoint if the file exists
 };
 
 struct DigSearchResult {
   PlannedDig dig;
+  double worth = 0.0;  ///< of the dig, by the objective
   int evaluations = 0;
-  int infeasible = 0;
-  bool stopped = false;
+  int refused = 0;       ///< digs that cannot be driven, not simulated
+  int infeasible = 0;    ///< of the evaluations: the machine stalled
+  bool stopped = false;  ///< by `progress`
+  StopReason stopped_by = StopReason::generations;
+  SearchInsight insight;  ///< in the order of dig_parameter_table(), the start last if searched
 };
 
-/// Searches the three numbers of a dig for the highest efficiency, inside dig_parameter_table().
+/// Searches the three numbers of a dig for the highest worth. All checks of the path come before
+/// the simulation: what cannot be driven costs no evaluation, and its violation is what is left of
+/// the path where it fails, so that the search finds its way out.
 ///
 /// @return nothing if no dig was feasible
 /// @throws Error (bad_input) if an option is out of range
+/// @throws Error (bad_file) if a checkpoint is of another search, truncated or altered
 std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
                                           const Terrain& terrain,
                                           const DigSearchOptions& options = {});
+
+/// One of the soils that the ground may be.
+struct PossibleSoil {
+  const SoilSimulator* simulator = nullptr;
+  double probability = 0.0;  ///< > 0; all of them add up to 1
+};
+
+/// The dig that is best on average, and what it would be worth to know the soil.
+struct UncertainDigSearchResult {
+  /// Its dig has the means of mass, volume, energy and duration, its worth is the mean of the
+  /// worths. A soil in which the machine stalls counts as worth 0.
+  DigSearchResult expected;
+  double worth_if_known = 0.0;  ///< mean of the worths of the best dig for each soil
+  int evaluations = 0;          ///< simulated digs, all soils and searches together
+
+  /// Expected value of perfect information, as a share of the expected worth, >= 0.
+  double value_of_knowing() const { return worth_if_known / expected.worth - 1.0; }
+};
+
+/// Searches the best dig for each soil, and from all of them the dig of the highest expected worth.
+/// The stop rules are those of each search; an evaluation of the last is one dig in every soil. A
+/// checkpoint covers the last search.
+///
+/// @return nothing if no dig was feasible
+/// @throws Error as above, and (bad_input) unless the probabilities are positive and add up to 1
+std::optional<UncertainDigSearchResult> search_dig(const Machine& machine,
+                                                   const std::vector<PossibleSoil>& soils,
+                                                   const Terrain& terrain,
+                                                   const DigSearchOptions& options = {});
+
+/// A density the ground may have.
+struct PossibleDensity {
+  double percent = 0.0;
+  double probability = 0.0;
+};
+
+/// Nodes of the Gauss quadrature for a normal distribution cut off at 0 and 100 %: means over them
+/// are exact for polynomials of the density up to degree 2 count - 1
+/// (docs/methods.md#uncertain-density).
+///
+/// @throws Error (bad_input) unless 0 <= mean <= 100, 0 < sd <= 1000, 1 <= count <= 20
+std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent,
+                                                int count = 3);
 
 }  // namespace excavplan

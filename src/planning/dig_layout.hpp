@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include <excavplan/planning/planner.hpp>
+
+namespace excavplan {
+
+/// Which columns of a terrain are known over the whole width of the bucket.
+class KnownStrip {
+ public:
+  KnownStrip(const Terrain& terrain, const Machine& machine);
+
+  bool is_known(double x_min, double x_max) const;
+  double cell() const { return cell_; }
+
+ private:
+  double origin_;
+  double cell_;
+  std::vector<int> unknown_before_;  ///< per column: how many of those before it are unknown
+};
+
+/// Lays out digs on one ground, with all checks that need no simulation.
+class DigLayout {
+ public:
+  DigLayout(const Machine& machine, const Terrain& terrain);
+
+  /// @throws Error (bad_input) if the start is to be searched
+  std::variant<DigPath, Infeasible> path(const DigParameters& parameters,
+                                         const StartRule& start) const;
+
+  const Machine& machine() const { return machine_; }
+
+ private:
+  std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
+                                              const DigPathOptions& options = {}) const;
+  std::variant<DigPath, Infeasible> known(DigPath path) const;
+  std::optional<double> work_from(const DigParameters& parameters, double start_x,
+                                  const DigPathOptions& options) const;
+  std::optional<double> least_work_start(const DigParameters& parameters,
+                                         const DigPathOptions& options) const;
+
+  const Machine& machine_;
+  GroundProfile ground_;
+  KnownStrip strip_;
+};
+
+/// How far a dig is from feasible, >= 0: the share of the path that a stall leaves; more than 1 for
+/// a path that cannot be driven, more the earlier it fails.
+double violation(const DigFailure& failure, const DigParameters& parameters);
+
+/// Digs a path that was laid out.
+std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
+                                               const SoilSimulator& simulator,
+                                               const Terrain& terrain, const DigPath& path);
+
+}  // namespace excavplan

@@ -1,0 +1,386 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include <excavplan/error.hpp>
+#include <excavplan/planning/planner.hpp>
+
+#include "../json_file.hpp"
+#include "../parallel.hpp"
+#include "dig_layout.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+void require(bool holds, const std::string& what, double value, const char* rule) {
+  if (holds) return;
+  throw Error(ErrorKind::bad_input, what + " is " + number_text(value) + ", must be " + rule);
+}
+
+DigParameters parameters_of(const VectorXd& point) {
+  DigParameters parameters;
+  for (Index i = 0; i < 3; ++i) {
+    parameters.*dig_parameter_table()[static_cast<std::size_t>(i)].field = point(i);
+  }
+  return parameters;
+}
+
+void check(const std::vector<PossibleSoil>& soils) {
+  double sum = 0.0;
+  for (const PossibleSoil& soil : soils) {
+    require(soil.simulator && soil.probability > 0.0, "the probability of a soil", soil.probability,
+            "above 0, with a simulator");
+    sum += soil.probability;
+  }
+  require(std::abs(sum - 1.0) < 1e-9, "the probability of all soils", sum, "1");
+}
+
+/// FNV-1a over the bytes of numbers (Fowler, Noll and Vo).
+class Fingerprint {
+ public:
+  void add(double value) {
+    unsigned char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 1099511628211U;
+  }
+  void add(const Eigen::ArrayXXd& values) {
+    for (Index i = 0; i < values.size(); ++i) add(values(i));
+  }
+  std::string text() const { return std::to_string(hash_); }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037U;
+};
+
+/// The search for a dig as a search of a box.
+class DigProblem {
+ public:
+  DigProblem(const Machine& machine, const std::vector<PossibleSoil>& soils, const Terrain& terrain,
+             const DigSearchOptions& options)
+      : soils_(soils), terrain_(terrain), options_(options), layout_(machine, terrain) {
+    check();
+  }
+
+  SearchResult run() {
+    SearchOptions search_options;
+    search_options.method = options_.method;
+    search_options.seed = options_.seed;
+    search_options.stop = options_.stop;
+    search_options.threads = options_.threads;
+    search_options.progress = options_.progress;
+    search_options.checkpoint = options_.checkpoint;
+    search_options.resume = options_.resume;
+    for (const DigParameters& dig : options_.start) search_options.start.push_back(point_of(dig));
+    SearchProblem problem{box(), [this](const VectorXd& point) { return simulate(point); },
+                          [this](const VectorXd& point) { return lay_out(point); }};
+    if (!options_.checkpoint.empty()) problem.fingerprint = fingerprint();
+    return search(problem, search_options);
+  }
+
+  DigSearchResult result_of(const SearchResult& found) const {
+    DigSearchResult result;
+    result.dig = *mean_dig(path_of(found.best));
+    result.worth = found.outcome.fitness;
+    result.evaluations = found.evaluations;
+    result.refused = found.repair;
+    result.infeasible = found.infeasible;
+    result.stopped = found.stopped_by == StopReason::cancelled;
+    result.stopped_by = found.stopped_by;
+    result.insight = explain(box(), found);
+    return result;
+  }
+
+  /// 0 if the machine stalls.
+  double worth_in(const PossibleSoil& soil, const VectorXd& point) const {
+    const auto outcome = dig_along(layout_.machine(), *soil.simulator, terrain_, path_of(point));
+    const auto* dig = std::get_if<PlannedDig>(&outcome);
+    return dig ? options_.objective.worth(*dig) : 0.0;
+  }
+
+ private:
+  bool start_is_searched() const { return options_.start_rule.kind == StartRule::Kind::searched; }
+
+  void check() const {
+    for (const DigParameterInfo& info : dig_parameter_table()) {
+      const double lower = options_.bounds.lower.*info.field;
+      const double upper = options_.bounds.upper.*info.field;
+      const std::string what = std::string("the search range of ") + info.name;
+      require(lower >= 0.0 && std::isfinite(lower), what + " from", lower, "finite and at least 0");
+      require(upper >= lower && std::isfinite(upper), what + " to", upper,
+              "finite and not below its lower end");
+    }
+    const DigObjective& objective = options_.objective;
+    require(objective.time_price >= 0.0 && std::isfinite(objective.time_price), "the price of time",
+            objective.time_price, "at least 0 W and finite");
+    require(objective.rest_of_cycle >= 0.0 && std::isfinite(objective.rest_of_cycle),
+            "the rest of the cycle", objective.rest_of_cycle, "at least 0 s and finite");
+  }
+
+  SearchBox box() const {
+    const Machine& machine = layout_.machine();
+    const Index size = start_is_searched() ? 4 : 3;
+    SearchBox box{VectorXd(size), VectorXd(size)};
+    for (Index i = 0; i < 3; ++i) {
+      const auto field = dig_parameter_table()[static_cast<std::size_t>(i)].field;
+      box.lower(i) = options_.bounds.lower.*field;
+      box.upper(i) = options_.bounds.upper.*field;
+    }
+    if (start_is_searched()) {
+      box.lower(3) = machine.track_front;
+      box.upper(3) = machine.boom_pin.x() + machine.full_length();
+    }
+    return box;
+  }
+
+  VectorXd point_of(const DigParameters& dig) const {
+    VectorXd point(start_is_searched() ? 4 : 3);
+    for (Index i = 0; i < 3; ++i) {
+      point(i) = dig.*dig_parameter_table()[static_cast<std::size_t>(i)].field;
+    }
+    if (start_is_searched()) {
+      const auto path = layout_.path(dig, StartRule::Kind::least_work);
+      const auto* drivable = std::get_if<DigPath>(&path);
+      point(3) = drivable ? drivable->start_x : 0.5 * (box().lower(3) + box().upper(3));
+    }
+    return point;
+  }
+
+  /// The repair: an undrivable path is refused, the start of a drivable one is kept for later.
+  std::variant<VectorXd, Evaluation> lay_out(const VectorXd& point) {
+    const DigParameters parameters = parameters_of(point);
+    const auto path =
+        layout_.path(parameters, start_is_searched() ? StartRule(point(3)) : options_.start_rule);
+    if (const auto* stop = std::get_if<Infeasible>(&path)) {
+      return Evaluation::infeasible(violation(*stop, parameters), stop->message);
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    starts_[key(point)] = std::get<DigPath>(path).start_x;
+    return point;
+  }
+
+  Evaluation simulate(const VectorXd& point) const {
+    const DigPath path = path_of(point);
+    double worth = 0.0;
+    std::optional<DigFailure> failure;
+    bool any = false;
+    for (const PossibleSoil& soil : soils_) {
+      auto outcome = dig_along(layout_.machine(), *soil.simulator, terrain_, path);
+      if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
+        worth += soil.probability * options_.objective.worth(*dig);
+        any = true;
+      } else if (!failure) {
+        failure = std::get<DigFailure>(outcome);
+      }
+    }
+    if (any) return worth;
+    return Evaluation::infeasible(violation(*failure, path.parameters), describe(*failure));
+  }
+
+  /// Means over the soils in which the machine does not stall.
+  std::optional<PlannedDig> mean_dig(const DigPath& path) const {
+    std::optional<PlannedDig> mean;
+    double probability = 0.0;
+    for (const PossibleSoil& soil : soils_) {
+      const auto outcome = dig_along(layout_.machine(), *soil.simulator, terrain_, path);
+      const auto* dig = std::get_if<PlannedDig>(&outcome);
+      if (!dig) continue;
+      probability += soil.probability;
+      const double share = soil.probability / probability;
+      if (!mean) mean = *dig;
+      mean->payload_mass += share * (dig->payload_mass - mean->payload_mass);
+      mean->payload_volume += share * (dig->payload_volume - mean->payload_volume);
+      mean->energy += share * (dig->energy - mean->energy);
+    }
+    return mean;
+  }
+
+  DigPath path_of(const VectorXd& point) const {
+    std::optional<double> start_x;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const auto known = starts_.find(key(point));
+      if (known != starts_.end()) start_x = known->second;
+    }
+    const auto path =
+        layout_.path(parameters_of(point), start_x ? StartRule(*start_x) : options_.start_rule);
+    return std::get<DigPath>(path);
+  }
+
+  /// All that decides the worth of a dig; the simulators by what they say of one dig.
+  std::string fingerprint() const {
+    Fingerprint hash;
+    hash.add(terrain_.bank.origin.x());
+    hash.add(terrain_.bank.origin.y());
+    hash.add(terrain_.bank.cell);
+    for (const Eigen::ArrayXXd* layer : {&terrain_.bank.z, &terrain_.loose,
+                                         &terrain_.bank_void_ratio, &terrain_.loose_void_ratio}) {
+      hash.add(*layer);
+    }
+    hash.add(static_cast<double>(options_.objective.goal));
+    hash.add(options_.objective.time_price);
+    hash.add(options_.objective.rest_of_cycle);
+    hash.add(static_cast<double>(options_.start_rule.kind));
+    hash.add(options_.start_rule.x);
+    const Machine& machine = layout_.machine();
+    for (std::size_t j = 0; j < 3; ++j) {
+      hash.add(machine.limits[j].lower);
+      hash.add(machine.limits[j].upper);
+      hash.add(machine.limits[j].torque);
+    }
+    const Terrain level = level_planning_ground(machine, 0.1);
+    for (const PossibleSoil& soil : soils_) {
+      hash.add(soil.probability);
+      const auto outcome = evaluate_dig(machine, *soil.simulator, level, paper_fixed_path());
+      if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
+        for (const double value : {dig->payload_mass, dig->energy, dig->duration}) hash.add(value);
+      }
+    }
+    return "dig on " + machine.name + " " + hash.text();
+  }
+
+  static std::vector<double> key(const VectorXd& point) {
+    return {point.data(), point.data() + point.size()};
+  }
+
+  const std::vector<PossibleSoil>& soils_;
+  const Terrain& terrain_;
+  const DigSearchOptions& options_;
+  DigLayout layout_;
+  mutable std::mutex mutex_;
+  std::map<std::vector<double>, double> starts_;  ///< of the drivable paths looked at
+};
+
+/// Side by side, each from nothing: the best dig for one soil need not be near that for another.
+std::vector<std::optional<DigSearchResult>> best_for_each(const Machine& machine,
+                                                          const std::vector<PossibleSoil>& soils,
+                                                          const Terrain& terrain,
+                                                          const DigSearchOptions& options) {
+  DigSearchOptions one = options;
+  one.checkpoint = {};
+  one.threads = 1;
+  std::mutex mutex;
+  if (options.progress) {
+    one.progress = [&](const SearchProgress& progress) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      return options.progress(progress);
+    };
+  }
+  std::vector<std::optional<DigSearchResult>> each(soils.size());
+  parallel_for(soils.size(), options.threads, [&](std::size_t i) {
+    each[i] = search_dig(machine, *soils[i].simulator, terrain, one);
+  });
+  return each;
+}
+
+/// Nothing but a polish of the digs given, by the default method.
+DigSearchOptions from_known(const DigSearchOptions& options, std::vector<DigParameters> start) {
+  DigSearchOptions polish = options;
+  if (auto* memetic = std::get_if<MemeticSearch>(&polish.method)) {
+    memetic->generations = 0;
+    memetic->first_generation = 0;
+  }
+  polish.start = std::move(start);
+  return polish;
+}
+
+}  // namespace
+
+double DigObjective::worth(const PlannedDig& dig) const {
+  const double time = dig.duration + rest_of_cycle;
+  const double cost = goal == Goal::mass_per_energy ? dig.energy
+                      : goal == Goal::mass_per_time ? time
+                                                    : dig.energy + time_price * time;
+  return cost > 0.0 ? dig.payload_mass / cost : 0.0;
+}
+
+DigBounds::DigBounds() {
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    lower.*info.field = info.lower;
+    upper.*info.field = info.upper;
+  }
+}
+
+std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
+                                          const Terrain& terrain, const DigSearchOptions& options) {
+  const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
+  DigProblem problem(machine, soils, terrain, options);
+  const SearchResult found = problem.run();
+  if (!found.feasible()) return std::nullopt;
+  return problem.result_of(found);
+}
+
+std::optional<UncertainDigSearchResult> search_dig(const Machine& machine,
+                                                   const std::vector<PossibleSoil>& soils,
+                                                   const Terrain& terrain,
+                                                   const DigSearchOptions& options) {
+  check(soils);
+  const auto each = best_for_each(machine, soils, terrain, options);
+  UncertainDigSearchResult result;
+  std::vector<DigParameters> bests;
+  for (const auto& found : each) {
+    if (!found) continue;
+    result.evaluations += found->evaluations;
+    bests.push_back(found->dig.parameters);
+  }
+  if (bests.empty()) return std::nullopt;
+  const DigSearchOptions from_bests = from_known(options, bests);
+  DigProblem problem(machine, soils, terrain, from_bests);
+  const SearchResult found = problem.run();
+  if (!found.feasible()) return std::nullopt;
+  result.expected = problem.result_of(found);
+  result.evaluations += found.evaluations * static_cast<int>(soils.size());
+  for (std::size_t i = 0; i < soils.size(); ++i) {
+    const double same = problem.worth_in(soils[i], found.best);
+    result.worth_if_known +=
+        soils[i].probability * (each[i] ? std::max(each[i]->worth, same) : same);
+  }
+  return result;
+}
+
+std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent, int count) {
+  require(mean_percent >= 0.0 && mean_percent <= 100.0, "the mean density", mean_percent,
+          "in 0 .. 100 %");
+  require(sd_percent > 0.0 && sd_percent <= 1000.0, "the standard deviation of the density",
+          sd_percent, "above 0 and at most 1000 points");
+  require(count >= 1 && count <= 20, "the number of possible densities", count, "in 1 .. 20");
+  // Three-term recurrence of the polynomials orthogonal under the density on a fine grid
+  // (Stieltjes), then the eigenvalues of its matrix (Golub and Welsch 1969).
+  constexpr Index fine = 4000;
+  const double low = std::max(0.0, mean_percent - 10.0 * sd_percent);
+  const double high = std::min(100.0, mean_percent + 10.0 * sd_percent);
+  const Eigen::ArrayXd x = (Eigen::ArrayXd::LinSpaced(fine, 0.5, fine - 0.5) / fine - 0.5) * 2.0;
+  const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  Eigen::ArrayXd weight = (-0.5 * ((middle + half * x - mean_percent) / sd_percent).square()).exp();
+  weight /= weight.sum();
+  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(count, count);
+  Eigen::ArrayXd before = Eigen::ArrayXd::Zero(fine);
+  Eigen::ArrayXd now = Eigen::ArrayXd::Ones(fine);  // orthonormal
+  double link = 0.0;
+  for (int i = 0; i < count; ++i) {
+    jacobi(i, i) = (weight * x * now.square()).sum();
+    if (i + 1 == count) break;
+    Eigen::ArrayXd next = (x - jacobi(i, i)) * now - link * before;
+    link = std::sqrt((weight * next.square()).sum());
+    jacobi(i, i + 1) = jacobi(i + 1, i) = link;
+    before = std::exchange(now, next / link);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(jacobi);
+  std::vector<PossibleDensity> densities;
+  for (int i = 0; i < count; ++i) {
+    densities.push_back(
+        {middle + half * solved.eigenvalues()(i), std::pow(solved.eigenvectors()(0, i), 2)});
+  }
+  return densities;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <excavplan/planning/planner.hpp>
+
+#include "tool.hpp"
+
+namespace excavplan::tools {
+
+/// How a dig is searched, as said on the command line.
+struct SearchInputs {
+  std::string goal = "energy";
+  double rest_of_cycle = 0.0;
+  std::string start = "work";
+  std::array<std::optional<std::string>, 3> ranges;
+  std::string method = "default";
+  int population = GeneticAlgorithm{}.population;
+  int generations = 0;
+  int evaluations = 0;
+  std::optional<std::string> checkpoint;
+  bool resume = false;
+  std::uint64_t seed = DigSearchOptions{}.seed;
+  std::uint64_t threads = 0;
+};
+
+void declare_search(Arguments& arguments, SearchInputs& inputs);
+
+/// What can be told to be wrong before anything is read. @throws Error (bad_input)
+void check(const SearchInputs& inputs);
+
+StartRule start_rule_of(const SearchInputs& inputs);
+
+/// With progress on the console, which also stops the search.
+DigSearchOptions search_options(const SearchInputs& inputs, Console& console);
+
+}  // namespace excavplan::tools
