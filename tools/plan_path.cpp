@@ -166,10 +166,10 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
 Plan search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil, double density,
                  const Site& site, Console& console) {
   DigSearchOptions options;
-  options.genetic = inputs.genetic;
+  options.method = inputs.genetic;
   options.seed = inputs.seed;
   options.threads = static_cast<unsigned>(inputs.threads);
-  options.known_good = known_good(inputs, machine, soil, density);
+  if (const auto good = known_good(inputs, machine, soil, density)) options.start = {*good};
   options.progress = [&](const SearchProgress& p) {
     console.progress(static_cast<double>(p.evaluations) / p.planned,
                      "generation " + std::to_string(p.generation) + ": best " +

@@ -76,18 +76,6 @@ GroundProfile profile_of(const HeightMap& map, const Eigen::ArrayXXd& rows, Inde
   return [strip](double x) { return height_at(strip, x, 0.0); };
 }
 
-SearchOptions polish_only(const DigSearchOptions& options, const Eigen::VectorXd& start) {
-  MemeticSearch method;
-  method.first_generation = 0;
-  method.generations = 0;
-  method.polish_evaluations = options.polish_evaluations;
-  SearchOptions polish;
-  polish.method = method;
-  polish.start = {start};
-  polish.stop.evaluations = options.polish_evaluations;
-  return polish;
-}
-
 struct DigChoice {
   DigParameters parameters;
   std::optional<double> start_x;
@@ -171,23 +159,18 @@ std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimu
                           return Evaluation::infeasible(0.0,
                                                         describe(std::get<DigFailure>(outcome)));
                         }};
-  SearchOptions genetic;
-  genetic.method = options.genetic;
-  genetic.seed = options.seed;
-  genetic.threads = options.threads;
-  genetic.progress = options.progress;
-  if (options.known_good) genetic.start = {genes_of(*options.known_good)};
-  SearchResult found = search(problem, genetic);
+  SearchOptions asked;
+  asked.method = options.method;
+  asked.stop = options.stop;
+  asked.seed = options.seed;
+  asked.threads = options.threads;
+  asked.progress = options.progress;
+  for (const DigParameters& start : options.start) asked.start.push_back(genes_of(start));
+  const SearchResult found = search(problem, asked);
   if (!found.feasible()) return std::nullopt;
 
   DigSearchResult result{{}, found.evaluations, found.infeasible, false};
   result.stopped = found.stopped_by == StopReason::cancelled;
-  if (options.polish_evaluations > 0 && !result.stopped) {
-    const SearchResult polished = search(problem, polish_only(options, found.best));
-    found.best = polished.best;
-    result.evaluations += polished.evaluations;
-    result.infeasible += polished.infeasible;
-  }
   result.dig = std::get<PlannedDig>(evaluate(found.best));
   return result;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/trajectory.hpp>
@@ -57,12 +58,12 @@ std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
                                                   std::optional<double> start_x = {});
 
 struct DigSearchOptions {
-  GeneticAlgorithm genetic;
+  std::variant<MemeticSearch, GeneticAlgorithm> method = MemeticSearch{};
+  StopRules stop;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: one per core. The result does not depend on it.
   std::function<bool(const SearchProgress&)> progress;  ///< after every dig; false stops
-  int polish_evaluations = 60;  ///< Nelder-Mead after the last generation; 0: none, as in the paper
-  std::optional<DigParameters> known_good;  ///< takes part in the first generation
+  std::vector<DigParameters> start;                     ///< digs to begin with
 };
 
 struct DigSearchResult {
