@@ -22,7 +22,10 @@
 namespace excavplan {
 namespace {
 
-constexpr double finest = 1.0;  // between two densities that are refined [%]; ours
+// Distances between two densities [%]; ours. Where entries are farther apart, what is best amid
+// them cannot be told from them.
+constexpr double coarsest = 10.0;
+constexpr double finest = 1.0;
 
 void require(bool holds, const std::string& text) {
   if (!holds) throw Error(ErrorKind::bad_input, "library: " + text);
@@ -398,13 +401,18 @@ class Build {
       const Pair& pair = pairs[i];
       const auto numbers = nlohmann::json::parse(text).get<std::vector<double>>();
       rows_[pair.row].midways[{pair.below, pair.above}] = {numbers[0], numbers[1]};
-      const bool wide = pair.above - pair.below >= 2.0 * finest;
-      if (options_.refine > 0.0 && numbers[0] > options_.refine && wide) {
+      if (worth_refining(pair, numbers[0])) {
         rows_[pair.row].densities.insert(pair.middle());
         refined = true;
       }
     }
     return refined;
+  }
+
+  bool worth_refining(const Pair& pair, double loss) const {
+    const double distance = pair.above - pair.below;
+    if (options_.refine == 0.0 || distance < 2.0 * finest) return false;
+    return distance > coarsest || loss > options_.refine;
   }
 
   PathLibrary library_of(std::size_t first) const {

@@ -50,14 +50,15 @@ std::string plain(const std::string& name) {
 }
 
 /// From nothing.
-DigSearchOptions cold_search(const LibrarySearch& search) {
+/// @param effort  number of times as many points as usual
+DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
   DigSearchOptions options;
   if (const auto* genetic = std::get_if<GeneticAlgorithm>(&search.method)) {
     options.method = *genetic;
   } else {
     const auto& anchored = std::get<AnchoredSearch>(search.method);
     MemeticSearch method;
-    method.first_generation = anchored.points;
+    method.first_generation = effort * anchored.points;
     method.basins = anchored.basins;
     method.polish_evaluations = anchored.polish_evaluations;
     method.generations = 0;
@@ -66,41 +67,64 @@ DigSearchOptions cold_search(const LibrarySearch& search) {
   return options;
 }
 
-/// The nearest parent's dig, and where the line through two of them leads.
-std::vector<DigParameters> starts_of(double density, const std::vector<CellOutcome>& parents) {
-  std::vector<DigParameters> starts;
+/// What the parents of a density let expect of it.
+struct Expectation {
+  std::vector<DigParameters> starts;  ///< where the line through two parents leads, the nearest one
+  double efficiency = 0.0;  ///< the least to be satisfied with [kg/J]; 0 with less than two parents
+};
+
+Expectation expected_of(double density, const std::vector<CellOutcome>& parents) {
   std::vector<const PathLibraryEntry*> digs;
   for (const CellOutcome& parent : parents) {
     if (parent.entry) digs.push_back(&*parent.entry);
   }
-  if (digs.empty()) return {};
-  const DigParameters& near = digs[0]->dig.parameters;
+  Expectation expected;
+  if (digs.empty()) return expected;
+  const PlannedDig& near = digs[0]->dig;
   if (digs.size() == 2) {
+    const PlannedDig& far = digs[1]->dig;
     const double share = (density - digs[0]->density_percent) /
                          (digs[1]->density_percent - digs[0]->density_percent);
-    starts.emplace_back();
+    const auto line = [share](double a, double b) { return a + share * (b - a); };
+    DigParameters there;
     for (const DigParameterInfo& info : dig_parameter_table()) {
-      const double line =
-          near.*info.field + share * (digs[1]->dig.parameters.*info.field - near.*info.field);
-      starts.back().*info.field = std::clamp(line, info.lower, info.upper);
+      there.*info.field = std::clamp(line(near.parameters.*info.field, far.parameters.*info.field),
+                                     info.lower, info.upper);
     }
+    expected.starts.push_back(there);
+    // The logarithm of the efficiency bends little: less than this between and beyond two; ours.
+    const double slack = share > 0.0 ? 0.006 : 0.025;
+    expected.efficiency =
+        (1.0 - slack) * std::exp(line(std::log(near.efficiency()), std::log(far.efficiency())));
   }
-  starts.push_back(near);
-  return starts;
+  expected.starts.push_back(near.parameters);
+  return expected;
 }
 
-DigSearchOptions warm_search(const LibrarySearch& search, std::vector<DigParameters> starts) {
+/// A polish, and one more from its best with the simplex spread again.
+DigSearchOptions warm_search(const LibrarySearch& search,
+                             const std::vector<DigParameters>& starts) {
   const auto& anchored = std::get<AnchoredSearch>(search.method);
   MemeticSearch method;
   method.first_generation = 0;
   method.generations = 0;
   method.basins = 1;
-  method.polish_evaluations = anchored.polish_evaluations;
+  method.polish_evaluations = anchored.inherited_evaluations / 2;
   DigSearchOptions options;
   options.method = method;
-  options.start = std::move(starts);
+  options.start = starts;
   options.stop.evaluations = anchored.inherited_evaluations;
   return options;
+}
+
+/// Starts that ask less of the machine.
+std::vector<DigParameters> shallower(const DigParameters& start) {
+  std::vector<DigParameters> starts;
+  for (const double share : {0.85, 0.7}) {
+    starts.push_back(start);
+    starts.back().penetration_length *= share;
+  }
+  return starts;
 }
 
 /// True if the two digs are of different kinds: a blend of them would be neither.
@@ -175,14 +199,11 @@ std::optional<CellOutcome> compute_cell(
     const std::function<bool(const SearchProgress&)>& progress) {
   const HeightMapSimulator simulator(*cell.machine, *cell.soil, cell.density_percent);
   const Terrain ground = sloped_planning_ground(*cell.machine, cell.slope, search.cell);
-  std::vector<DigSearchOptions> attempts;
-  auto starts = starts_of(cell.density_percent, parents);
-  if (!starts.empty()) attempts.push_back(warm_search(search, std::move(starts)));
-  attempts.push_back(cold_search(search));
   CellOutcome outcome;
-  for (DigSearchOptions& options : attempts) {
-    bool stopped = false;
+  /// @return false if stopped
+  const auto attempt = [&](DigSearchOptions options) {
     int evaluations = 0;
+    bool stopped = false;
     options.seed = checksum(identity(cell, search));
     options.threads = 1;
     options.progress = [&](const SearchProgress& now) {
@@ -191,13 +212,24 @@ std::optional<CellOutcome> compute_cell(
       return !stopped;
     };
     const auto found = search_dig(*cell.machine, simulator, ground, options);
-    if (stopped) return std::nullopt;
     outcome.evaluations += evaluations;
-    if (found) {
-      outcome.entry = {cell.density_percent, found->dig, outcome.evaluations, cell.slope, {}};
-      break;
+    if (found && (!outcome.entry || found->dig.efficiency() > outcome.entry->dig.efficiency())) {
+      outcome.entry = {cell.density_percent, found->dig, 0, cell.slope, {}};
     }
+    return !stopped;
+  };
+  const Expectation expected = expected_of(cell.density_percent, parents);
+  if (!expected.starts.empty() && !attempt(warm_search(search, expected.starts))) {
+    return std::nullopt;
   }
+  if (!outcome.entry && !expected.starts.empty() &&
+      !attempt(warm_search(search, shallower(expected.starts.back())))) {
+    return std::nullopt;
+  }
+  const bool good = outcome.entry && outcome.entry->dig.efficiency() >= expected.efficiency;
+  if (!good && !attempt(cold_search(search, 1))) return std::nullopt;
+  if (!outcome.entry && !attempt(cold_search(search, 8))) return std::nullopt;
+  if (outcome.entry) outcome.entry->evaluations = outcome.evaluations;
   return outcome;
 }
 

@@ -31,12 +31,13 @@ struct LibraryGrid {
 };
 
 /// Two densities are searched from nothing; all others are polished from the dig of a neighbour,
-/// and searched from nothing too if that does not lead to a dig.
+/// and searched from nothing too if that leads to no dig, or one worse than its neighbours let
+/// expect.
 struct AnchoredSearch {
-  int points = 20;                 ///< of a first generation from nothing
-  int basins = 3;                  ///< polished of it
-  int polish_evaluations = 30;     ///< of one polish; the best is polished once more
-  int inherited_evaluations = 48;  ///< of a density that starts from a neighbour
+  int points = 16;                 ///< of a first generation from nothing
+  int basins = 2;                  ///< polished of it
+  int polish_evaluations = 60;     ///< of one polish; the best is polished once more
+  int inherited_evaluations = 45;  ///< of a density that starts from a neighbour
 };
 
 /// All that decides a cell besides its place in the grid.
@@ -70,7 +71,8 @@ class WorkSharing {
 struct LibraryBuildOptions {
   LibrarySearch search;
   /// Densities are added midway wherever the look-up there gives away more than this share of the
-  /// efficiency, down to 1 % of density between two; 0: none are.
+  /// efficiency, down to 1 % of density between two, and wherever two are more than 10 % apart; 0:
+  /// none are.
   double refine = 0.0;
   unsigned threads = 0;  ///< 0: one per core. The result does not depend on it.
   /// Of the cells' files, one each, written whole or not at all; those found here are kept. Empty:
