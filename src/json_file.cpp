@@ -183,7 +183,9 @@ std::string number_text(double value) {
 }
 
 void write_file(const std::string& path, const std::string& content) {
-  const std::string beside = path + ".part" + std::to_string(::getpid());
+  char host[65] = {};  // a folder may be shared by machines
+  ::gethostname(host, sizeof host - 1);
+  const std::string beside = path + ".part-" + host + "-" + std::to_string(::getpid());
   std::ofstream out(beside, std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
