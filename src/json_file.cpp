@@ -46,18 +46,52 @@ json parse(const std::string& path, const std::string& content) {
 JsonObject::JsonObject(std::string file, std::string where, json object)
     : file_(std::move(file)), where_(std::move(where)), json_(std::move(object)) {}
 
-JsonObject JsonObject::open(const std::string& path, const std::string& format) {
-  JsonObject top(path, "", parse(path, read_file(path)));
+JsonObject JsonObject::of_text(const std::string& name, const std::string& content,
+                               const std::string& format, int version) {
+  JsonObject top(name, "", parse(name, content));
   if (!top.json_.is_object()) {
-    throw Error(ErrorKind::bad_file, path + ": expected a JSON object");
+    throw Error(ErrorKind::bad_file, name + ": expected a JSON object");
   }
   if (top.text("format") != format) {
     top.fail("format", "is '" + top.text("format") + "', expected '" + format + "'");
   }
-  if (const double version = top.number("version"); version != 1.0) {
-    top.fail("version", "is " + number_text(version) + ", this program reads version 1");
+  if (const double found = top.number("version"); found != version) {
+    top.fail("version", "is " + number_text(found) + ", this program reads version " +
+                            std::to_string(version));
   }
   return top;
+}
+
+JsonObject JsonObject::open(const std::string& path, const std::string& format, int version) {
+  return of_text(path, read_file(path), format, version);
+}
+
+JsonObject JsonObject::open_sealed(const std::string& name, const std::string& content,
+                                   const std::string& format, int version) {
+  JsonObject top = of_text(name, content, format, version);
+  const std::size_t seal = sealed("").size();
+  if (content.size() < seal || sealed(content.substr(0, content.size() - seal)) != content) {
+    top.fail("checksum", "does not fit the content: the file was altered");
+  }
+  top.ignore("checksum");
+  return top;
+}
+
+std::uint64_t checksum(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash;
+}
+
+std::string checksum_text(const std::string& text) {
+  std::uint64_t hash = checksum(text);
+  std::string digits(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
+  return digits;
+}
+
+std::string sealed(const std::string& content) {
+  return content + ",\n\"checksum\": \"" + checksum_text(content) + "\"\n}\n";
 }
 
 void JsonObject::fail(const std::string& key, const std::string& message) const {
@@ -149,7 +183,9 @@ std::string number_text(double value) {
 }
 
 void write_file(const std::string& path, const std::string& content) {
-  const std::string beside = path + ".part" + std::to_string(::getpid());
+  char host[65] = {};  // a folder may be shared by machines
+  ::gethostname(host, sizeof host - 1);
+  const std::string beside = path + ".part-" + host + "-" + std::to_string(::getpid());
   std::ofstream out(beside, std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();

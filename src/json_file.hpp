@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <set>
 #include <string>
@@ -18,9 +19,12 @@ namespace excavplan {
 /// An object of a JSON file with the way that leads to it ("links.boom").
 class JsonObject {
  public:
-  /// Opens a file whose top object has "format": `format` and "version": 1.
+  /// Opens a file whose top object has "format": `format` and "version": `version`.
   /// @throws Error (bad_file)
-  static JsonObject open(const std::string& path, const std::string& format);
+  static JsonObject open(const std::string& path, const std::string& format, int version = 1);
+  /// The same of a text that ends in its checksum, as sealed() writes it. `name` is for messages.
+  static JsonObject open_sealed(const std::string& name, const std::string& content,
+                                const std::string& format, int version = 1);
 
   bool has(const std::string& key) const;
   double number(const std::string& key, double lowest = -std::numeric_limits<double>::max(),
@@ -45,6 +49,8 @@ class JsonObject {
 
  private:
   JsonObject(std::string file, std::string where, nlohmann::json json);
+  static JsonObject of_text(const std::string& name, const std::string& content,
+                            const std::string& format, int version);
   const nlohmann::json& at(const std::string& key);
 
   std::string file_;
@@ -55,6 +61,13 @@ class JsonObject {
 
 /// Shortest text of a number that reads back the same, for messages and files.
 std::string number_text(double value);
+
+/// FNV-1a, 64 bit: against damage, not against intent. The text has 16 hexadecimal digits.
+std::uint64_t checksum(const std::string& text);
+std::string checksum_text(const std::string& text);
+
+/// A JSON object without its closing brace, with its own checksum as the last key.
+std::string sealed(const std::string& content);
 
 /// Writes a file whole or not at all: beside it first, then renamed over it.
 /// @throws Error (bad_file) if that fails; the old file then still stands

@@ -1,108 +1,328 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 
-#include <excavplan/planning/path_library.hpp>
+#include <excavplan/planning/library_build.hpp>
 
 #include "json_file.hpp"
+#include "ranks.hpp"
 #include "results.hpp"
 #include "tool.hpp"
 
 namespace excavplan::tools {
 namespace {
 
+namespace fs = std::filesystem;
+
 const About about = {
     "build-path-library",
     "searches the dig of the highest efficiency for each density of a soil by digging the "
-    "simulator, and writes them to a library that plan-path looks up.",
+    "simulator, and writes them to a library that plan-path looks up. Several machines, soils and "
+    "slopes make a library for each machine and soil. It works in parallel by threads, under "
+    "mpirun, and in shards that need not know of each other, with the same result.",
     {{"build-path-library --out loam.json", "the default: 0, 5 .. 100 % in loam with the ZX120"},
      {"build-path-library --soil sand --densities 20:10:80 --out sand.json", "a coarser one"},
-     {"build-path-library --out loam.json --resume", "go on after an interrupt"}},
+     {"build-path-library --out loam.json --resume", "go on after an interrupt"},
+     {"build-path-library --soil loam,sand,clay --slopes=-10deg,0,10deg --out libraries",
+      "three libraries of three slopes each in the folder libraries"},
+     {"build-path-library --cells cells --shard 3/20", "one of twenty jobs of a cluster"},
+     {"build-path-library --merge cells --out loam.json", "what those jobs computed"},
+     {"mpirun -n 4 build-path-library --out loam.json", "in four processes"}},
     false,
     true};
 
 struct Inputs {
   std::string densities = "0:5:100";
-  std::string soil = "loam";
-  std::string machine = "zx120";
+  std::string slopes = "0";
+  std::string soils = "loam";
+  std::string machines = "zx120";
+  std::string method = "memetic";
+  AnchoredSearch anchored;
   GeneticAlgorithm genetic;
-  std::uint64_t seed = DigSearchOptions{}.seed;
-  double cell = 0.05;
+  double cell = LibrarySearch{}.cell;
+  std::uint64_t seed = LibrarySearch{}.seed;
+  double refine = 0.0;
   std::uint64_t threads = 0;
   bool resume = false;
-  std::string out;
+  std::optional<std::string> cells;
+  std::optional<std::string> shard;
+  std::optional<std::string> merge;
+  std::optional<std::string> out;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities [%], or a list a,b,c");
-  arguments.soil(inputs.soil);
-  arguments.machine(inputs.machine);
-  arguments.option("population", inputs.genetic.population, "individuals of a generation");
-  arguments.option("generations", inputs.genetic.generations, "generations of a search");
+  arguments.text("slopes", "A,B,C", inputs.slopes,
+                 "slopes of the ground [rad], rising away from the machine");
+  arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
+  arguments.text("machine", "NAME,..", inputs.machines, "zx120 or machine files");
+  arguments.choice("method", inputs.method, {"memetic", "paper"},
+                   "memetic: two densities searched from nothing, the others from neighbours; "
+                   "paper: a genetic algorithm for each");
+  arguments.option("points", inputs.anchored.points,
+                   "memetic: digs that the search from nothing begins with");
+  arguments.option("polish", inputs.anchored.polish_evaluations,
+                   "memetic: digs of one Nelder-Mead search");
+  arguments.option("inherited", inputs.anchored.inherited_evaluations,
+                   "memetic: digs of a density that starts from its neighbours");
+  arguments.option("population", inputs.genetic.population, "paper: individuals of a generation");
+  arguments.option("generations", inputs.genetic.generations, "paper: generations of a search");
   arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
   arguments.option("seed", inputs.seed, "seed; the same seed gives the same file");
+  arguments.option("refine", inputs.refine, Quantity::percent,
+                   "add densities midway, down to 1 % apart, wherever the look-up there gives away "
+                   "more of the efficiency than this; 0 for none");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core; same file for any");
-  arguments.flag("resume", inputs.resume, "keep the densities that --out already holds");
-  arguments.file("out", inputs.out, "library file to write");
-  arguments.require("out");
+  arguments.file("cells", inputs.cells,
+                 "folder for the file of each density, kept; what it holds is not computed again "
+                 "(default: beside --out, removed at the end)");
+  arguments.text("shard", "I/N", inputs.shard, "compute only the I-th of N parts into --cells");
+  arguments.file("merge", inputs.merge,
+                 "make the library of the cells that shards put into this folder; the grid and the "
+                 "search are theirs");
+  arguments.flag("resume", inputs.resume, "keep what an interrupted run with this --out computed");
+  arguments.file("out", inputs.out,
+                 "library to write; with several machines or soils a folder for "
+                 "MACHINE-SOIL.json of each");
 }
 
-/// Entries of an earlier run, if it was the same run.
-std::vector<PathLibraryEntry> earlier_entries(const Inputs& inputs, const Machine& machine,
-                                              const SoilKind& soil) {
-  if (!inputs.resume || !std::filesystem::exists(inputs.out)) return {};
-  PathLibrary library = load_path_library(inputs.out);
-  if (library.machine != machine.name || library.soil != soil.name || library.seed != inputs.seed ||
-      library.cell != inputs.cell || library.population != inputs.genetic.population ||
-      library.generations != inputs.genetic.generations) {
-    throw Error(ErrorKind::bad_input,
-                "--resume: " + inputs.out + " is of machine " + library.machine + ", soil " +
-                    library.soil + ", cell " + number_text(library.cell) + " m, seed " +
-                    std::to_string(library.seed) + ", population " +
-                    std::to_string(library.population) + ", generations " +
-                    std::to_string(library.generations) + ", which is another run than this one");
+std::vector<std::string> words_of(const std::string& list) {
+  std::vector<std::string> words;
+  std::size_t from = 0;
+  for (std::size_t to = 0; to != std::string::npos; from = to + 1) {
+    to = list.find(',', from);
+    words.push_back(list.substr(from, to - from));
   }
-  return library.entries;
+  return words;
 }
 
-Outcome work(const Inputs& inputs, Console& console) {
-  const Stopwatch watch;
-  const Machine machine = machine_named(inputs.machine);
-  const SoilKind soil = soil_named(inputs.soil);
-  const auto densities = parse_densities("--densities", inputs.densities);
+LibraryGrid grid_of(const Inputs& inputs) {
+  LibraryGrid grid;
+  for (const std::string& name : words_of(inputs.machines)) {
+    grid.machines.push_back(machine_named(name));
+  }
+  for (const std::string& name : words_of(inputs.soils)) grid.soils.push_back(soil_named(name));
+  grid.slopes.clear();
+  for (const std::string& slope : words_of(inputs.slopes)) {
+    grid.slopes.push_back(parse_quantity("--slopes", slope, Quantity::angle));
+  }
+  grid.densities_percent = parse_densities("--densities", inputs.densities);
+  return grid;
+}
 
-  require_folder_of(inputs.out);  // now, not after the search
+LibraryShard shard_of(const std::string& text) {
+  LibraryShard shard{0, 0};
+  const char* const end = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), end, shard.index);
+  if (error == std::errc{} && slash != end && *slash == '/') {
+    const auto [stop, wrong] = std::from_chars(slash + 1, end, shard.count);
+    if (wrong == std::errc{} && stop == end && shard.index >= 1 && shard.index <= shard.count) {
+      return shard;
+    }
+  }
+  throw Error(ErrorKind::bad_input, "--shard: '" + text + "' is not one of 1/N .. N/N");
+}
+
+// ---- What the shards of one build have in common ----------------------------------------------
+
+constexpr const char* job_format = "excavplan-library-job";
+
+std::string job_file(const std::string& folder) { return folder + "/job.json"; }
+
+/// The options that decide the libraries.
+std::string job_text(const Inputs& inputs) {
+  const nlohmann::ordered_json json = {{"format", job_format},
+                                       {"version", 1},
+                                       {"densities", inputs.densities},
+                                       {"slopes", inputs.slopes},
+                                       {"soil", inputs.soils},
+                                       {"machine", inputs.machines},
+                                       {"method", inputs.method},
+                                       {"points", inputs.anchored.points},
+                                       {"polish", inputs.anchored.polish_evaluations},
+                                       {"inherited", inputs.anchored.inherited_evaluations},
+                                       {"population", inputs.genetic.population},
+                                       {"generations", inputs.genetic.generations},
+                                       {"cell_m", inputs.cell},
+                                       {"seed", inputs.seed},
+                                       {"refine_percent", inputs.refine}};
+  std::string text = json.dump(1);
+  text.resize(text.size() - 2);  // reopen the object
+  return sealed(text);
+}
+
+/// The same inputs with the options of a folder's job.
+Inputs with_job(Inputs inputs, const std::string& folder) {
+  const std::string name = job_file(folder);
+  JsonObject job = JsonObject::open_sealed(name, read_file(name), job_format);
+  const auto whole = [&](const char* key) { return static_cast<int>(job.number(key, 0.0, 1e9)); };
+  inputs.densities = job.text("densities");
+  inputs.slopes = job.text("slopes");
+  inputs.soils = job.text("soil");
+  inputs.machines = job.text("machine");
+  inputs.method = job.text("method");
+  inputs.anchored.points = whole("points");
+  inputs.anchored.polish_evaluations = whole("polish");
+  inputs.anchored.inherited_evaluations = whole("inherited");
+  inputs.genetic.population = whole("population");
+  inputs.genetic.generations = whole("generations");
+  inputs.cell = job.number("cell_m");
+  inputs.seed = static_cast<std::uint64_t>(job.number("seed", 0.0, 9007199254740992.0));
+  inputs.refine = job.number("refine_percent");
+  job.done();
+  return inputs;
+}
+
+/// Makes the folder and notes the job in it, or checks that it is of the same job.
+void begin_job(const Inputs& inputs, const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const std::string name = job_file(folder);
+  if (!fs::exists(name)) return write_file(name, job_text(inputs));
+  if (job_text(with_job(inputs, folder)) != job_text(inputs)) {
+    throw Error(ErrorKind::bad_input, name +
+                                          ": is of another run: give the options it names, or "
+                                          "another folder");
+  }
+}
+
+// ---- The work ---------------------------------------------------------------------------------
+
+void check(const Inputs& inputs) {
+  const auto refuse = [](const std::string& text) { throw Error(ErrorKind::bad_input, text); };
+  if (!inputs.shard && !inputs.out) refuse("--out is missing: library to write");
+  if (inputs.shard && (!inputs.cells || inputs.merge || inputs.out)) {
+    refuse("--shard goes with --cells, and without --merge and --out");
+  }
+  if (inputs.merge && (inputs.cells || inputs.resume)) {
+    refuse("--merge goes without --cells and --resume");
+  }
+}
+
+std::string folder_of(const Inputs& inputs) {
+  if (inputs.merge) return *inputs.merge;
+  return inputs.cells ? *inputs.cells : *inputs.out + ".cells";
+}
+
+/// Whether the cells' folder is of this run alone.
+bool folder_is_ours(const Inputs& inputs) { return !inputs.cells && !inputs.merge; }
+
+LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   LibraryBuildOptions options;
-  options.cell = inputs.cell;
-  options.search.method = inputs.genetic;
+  if (inputs.method == "paper") {
+    options.search.method = inputs.genetic;
+  } else {
+    options.search.method = inputs.anchored;
+  }
+  options.search.cell = inputs.cell;
   options.search.seed = inputs.seed;
-  options.search.threads = static_cast<unsigned>(inputs.threads);
-  options.done = earlier_entries(inputs, machine, soil);
-  options.search.progress = [&](const SearchProgress&) { return !console.stop_requested(); };
-  options.progress = [&](std::size_t done, std::size_t wanted, const PathLibraryEntry& entry) {
-    console.progress(static_cast<double>(done) / static_cast<double>(wanted),
-                     "density " + readable(entry.density_percent) +
-                         " %: " + readable(1000.0 * entry.dig.efficiency()) + " kg/kJ");
+  options.refine = inputs.refine / 100.0;
+  options.threads = static_cast<unsigned>(inputs.threads);
+  options.folder = folder_of(inputs);
+  options.only_merge = inputs.merge.has_value();
+  options.note = [&console](const std::string& line) { console.note(line); };
+  options.progress = [&console](const LibraryProgress& now) {
+    const std::string left =
+        std::isnan(now.seconds_left) ? "" : ", " + readable(now.seconds_left, 2) + " s left";
+    console.progress(static_cast<double>(now.cells_done) / static_cast<double>(now.cells),
+                     std::to_string(now.cells_done) + " of " + std::to_string(now.cells) +
+                         " densities, " + std::to_string(now.evaluations) + " digs, now " +
+                         readable(1000.0 * now.best) + " kg/kJ" + left);
     return !console.stop_requested();
   };
-  const PathLibrary library = build_path_library(machine, soil, densities, options);
+  return options;
+}
 
-  Outcome outcome;
-  outcome.stopped_early = library.entries.size() < densities.size();
-  if (!library.entries.empty()) write_file(inputs.out, to_json(library));
-  outcome.json = nlohmann::ordered_json::parse(to_json(library));
-  outcome.json.erase("format");
-  outcome.json.erase("version");
-  outcome.json["wall_time_s"] = watch.seconds();
-  outcome.lines.push_back(inputs.out + ": " + std::to_string(library.entries.size()) + " of " +
-                          std::to_string(densities.size()) + " densities, " +
-                          std::to_string(library.evaluations()) + " digs simulated, " +
-                          readable(watch.seconds()) + " s");
+nlohmann::ordered_json library_json(const PathLibrary& library) {
+  auto json = nlohmann::ordered_json::parse(to_json(library));
+  for (const char* key : {"format", "version", "checksum"}) json.erase(key);
+  return json;
+}
+
+void add_lines(const PathLibrary& library, const std::string& file, Outcome& outcome) {
+  outcome.lines.push_back(file + ": " + std::to_string(library.entries.size()) + " digs of " +
+                          library.machine + " in " + library.soil + ", " +
+                          std::to_string(library.evaluations()) + " digs simulated");
+  const bool sloped = library.entries.front().slope != library.entries.back().slope;
   for (const PathLibraryEntry& entry : library.entries) {
-    outcome.lines.push_back(readable(entry.density_percent) + " %: " + path_text(entry.dig) + ", " +
+    outcome.lines.push_back(readable(entry.density_percent) + " %" +
+                            (sloped ? " on " + readable(entry.slope) + " rad" : "") + ": " +
+                            path_text(entry.dig) + ", " +
                             readable(1000.0 * entry.dig.efficiency()) + " kg/kJ");
   }
+}
+
+Outcome report_libraries(const Inputs& inputs, const LibraryBuild& build) {
+  Outcome outcome;
+  if (build.libraries.size() == 1) {
+    const PathLibrary& library = build.libraries.front();
+    write_file(*inputs.out, to_json(library));
+    outcome.json = library_json(library);
+    add_lines(library, *inputs.out, outcome);
+    return outcome;
+  }
+  fs::create_directories(*inputs.out);
+  int evaluations = 0;
+  for (const PathLibrary& library : build.libraries) {
+    const std::string file = *inputs.out + "/" + library.machine + "-" + library.soil + ".json";
+    write_file(file, to_json(library));
+    outcome.json["libraries"].push_back({{"file", file}});
+    outcome.json["libraries"].back().update(library_json(library));
+    evaluations += library.evaluations();
+    add_lines(library, file, outcome);
+  }
+  outcome.json["evaluations"] = evaluations;
+  return outcome;
+}
+
+Outcome report_cells(const Inputs& inputs, const LibraryBuild& build) {
+  Outcome outcome;
+  outcome.stopped_early = build.stopped;
+  outcome.json = {{"cells", build.cells}, {"cells_done", build.cells_done}};
+  outcome.lines.push_back(folder_of(inputs) + ": " + std::to_string(build.cells_done) + " of " +
+                          std::to_string(build.cells) + " densities");
+  if (build.stopped) {
+    outcome.lines.push_back(inputs.shard || inputs.cells ? "the same command goes on from there"
+                                                         : "--resume goes on from there");
+  }
+  return outcome;
+}
+
+/// What one process does before all, so that the others find it done.
+void prepare(const Inputs& inputs) {
+  if (inputs.out) require_folder_of(*inputs.out);  // now, not after the search
+  if (folder_is_ours(inputs) && !inputs.resume) fs::remove_all(folder_of(inputs));
+  if (!inputs.merge) begin_job(inputs, folder_of(inputs));
+}
+
+Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
+  const Stopwatch watch;
+  check(inputs);
+  if (inputs.merge) inputs = with_job(inputs, *inputs.merge);
+  const LibraryGrid grid = grid_of(inputs);
+  const bool leads = ranks == nullptr || ranks->rank() == 0;
+  if (leads) prepare(inputs);
+  if (ranks != nullptr) {
+    ranks->exchange({});
+    if (inputs.threads == 0) inputs.threads = 1;
+  }
+  LibraryBuildOptions options = options_of(inputs, console);
+  options.sharing = ranks;
+  const LibraryBuild build = inputs.shard
+                                 ? build_library_shard(grid, shard_of(*inputs.shard), options)
+                                 : build_path_libraries(grid, options);
+  Outcome outcome;
+  if (build.stopped || inputs.shard) {
+    outcome = report_cells(inputs, build);
+  } else if (leads) {
+    outcome = report_libraries(inputs, build);
+    if (folder_is_ours(inputs)) fs::remove_all(folder_of(inputs));
+  }
+  outcome.json["wall_time_s"] = watch.seconds();
   return outcome;
 }
 
@@ -111,5 +331,15 @@ Outcome work(const Inputs& inputs, Console& console) {
 
 int main(int argc, char** argv) {
   using namespace excavplan::tools;
-  return tool_main(argc, argv, about, declare, work);
+  const auto ranks = Ranks::started();
+  if (ranks && ranks->rank() != 0) {  // the first speaks for all
+    for (std::FILE* stream : {stdout, stderr}) {
+      if (std::freopen("/dev/null", "w", stream) == nullptr) return 1;
+    }
+  }
+  const int code = tool_main(
+      argc, argv, about, declare,
+      [&](const Inputs& inputs, Console& console) { return work(inputs, console, ranks.get()); });
+  if (ranks) ranks->end(code);
+  return code;
 }

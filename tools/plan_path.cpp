@@ -121,10 +121,7 @@ PathLibrary library_of(const Inputs& inputs, const Machine& machine, const SoilK
                                ? *inputs.library
                                : shipped_or_file("libraries", machine.name + "-" + soil.name);
   PathLibrary library = load_path_library(file);
-  if (library.machine != machine.name || library.soil != soil.name) {
-    throw Error(ErrorKind::bad_input, file + ": is for " + library.machine + " in " + library.soil +
-                                          ", not for " + machine.name + " in " + soil.name);
-  }
+  require_fit(library, machine, soil, file);
   return library;
 }
 

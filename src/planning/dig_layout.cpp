@@ -188,7 +188,9 @@ double violation(const DigFailure& failure, const DigParameters& parameters) {
 std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
                                                const SoilSimulator& simulator,
                                                const Terrain& terrain, const DigPath& path) {
-  const DigResult result = simulator.dig(terrain, path);
+  DigOptions unsettled;  // what slides after the bucket is out changes neither load nor energy
+  unsettled.settle = false;
+  const DigResult result = simulator.dig(terrain, path, unsettled);
   if (result.stall) return DigFailure(*result.stall);
   return PlannedDig{path.parameters,     path.start_x,
                     result.payload_mass, result.payload_volume,

@@ -7,68 +7,119 @@
 #include <string>
 
 #include <excavplan/error.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "../json_file.hpp"
+#include "fingerprint.hpp"
+#include "library_cells.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr const char* format = "excavplan-path-library";
+constexpr int version = 2;
 
-PathLibraryEntry read_entry(JsonObject object) {
-  PathLibraryEntry entry;
-  entry.density_percent = object.number("density_percent", 0.0, 100.0);
-  JsonObject path = object.object("path");
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    entry.dig.parameters.*info.field = path.number(info.name, info.lower, info.upper);
-  }
-  entry.dig.start_x = path.number("start_x_m");
-  path.done();
-  entry.dig.payload_mass = object.number("payload_mass_kg", 0.0);
-  entry.dig.payload_volume = object.number("payload_volume_m3", 0.0);
-  entry.dig.energy = 1000.0 * object.number("energy_kj", 0.0);
-  entry.dig.duration = object.number("duration_s", 0.0);
-  entry.evaluations = static_cast<int>(object.number("evaluations", 0.0, 1e9));
-  object.ignore("efficiency_kg_per_kj");
-  object.done();
-  return entry;
+using Entries = std::vector<PathLibraryEntry>;
+
+/// The entries of one slope.
+struct Row {
+  Entries::const_iterator begin;
+  Entries::const_iterator end;
+};
+
+Row row_of(const PathLibrary& library, double slope) {
+  const auto before = [](const PathLibraryEntry& entry, double value) {
+    return entry.slope < value;
+  };
+  const auto after = [](double value, const PathLibraryEntry& entry) {
+    return value < entry.slope;
+  };
+  const Entries& entries = library.entries;
+  return {std::lower_bound(entries.begin(), entries.end(), slope, before),
+          std::upper_bound(entries.begin(), entries.end(), slope, after)};
 }
 
-/// True if the two digs are of different kinds: a blend of them would be neither.
-bool far_apart(const PlannedDig& a, const PlannedDig& b) {
-  constexpr double near = 0.2;  // of a number's search range; ours
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
-    if (step > near * (info.upper - info.lower)) return true;
-  }
-  return false;
+/// Two places in the library and how far a value is from the first to the second.
+template <typename Place>
+struct Between {
+  Place below;
+  Place above;
+  double share = 0.0;
+};
+
+[[noreturn]] void refuse(const std::string& what, double value, double lower, double upper) {
+  throw Error(ErrorKind::bad_input, "library: " + what + " " + number_text(value) +
+                                        " is outside its range " + number_text(lower) + " .. " +
+                                        number_text(upper));
 }
 
-PlannedDig blend(const PlannedDig& a, const PlannedDig& b, double share) {
-  const auto mix = [share](double from, double to) { return from + share * (to - from); };
-  PlannedDig dig;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    dig.parameters.*info.field = mix(a.parameters.*info.field, b.parameters.*info.field);
-  }
-  dig.start_x = mix(a.start_x, b.start_x);
-  dig.payload_mass = mix(a.payload_mass, b.payload_mass);
-  dig.payload_volume = mix(a.payload_volume, b.payload_volume);
-  dig.energy = mix(a.energy, b.energy);
-  dig.duration = mix(a.duration, b.duration);
-  return dig;
+Between<Row> slopes_around(const PathLibrary& library, double slope) {
+  const Entries& entries = library.entries;
+  if (entries.empty()) throw Error(ErrorKind::bad_input, "library: it holds no entry");
+  const double lowest = entries.front().slope;
+  const double highest = entries.back().slope;
+  if (!(slope >= lowest && slope <= highest)) refuse("slope [rad]", slope, lowest, highest);
+  const Row exact = row_of(library, slope);
+  if (exact.begin != exact.end) return {exact, exact, 0.0};
+  const Row below = row_of(library, std::prev(exact.begin)->slope);
+  const Row above = row_of(library, exact.begin->slope);
+  const double from = below.begin->slope;
+  return {below, above, (slope - from) / (above.begin->slope - from)};
 }
 
-void check(const std::vector<double>& densities) {
-  if (densities.empty()) throw Error(ErrorKind::bad_input, "library: no density is asked for");
-  for (std::size_t i = 0; i < densities.size(); ++i) {
-    const bool rising = i == 0 || densities[i] > densities[i - 1];
-    if (!(densities[i] >= 0.0 && densities[i] <= 100.0 && rising)) {
-      throw Error(ErrorKind::bad_input, "library: densities must rise inside 0 .. 100 %, got " +
-                                            number_text(densities[i]) + " at place " +
-                                            std::to_string(i + 1));
+void refuse_gap(const PathLibrary& library, const Row& row, double from, double to) {
+  for (const PathLibraryGap& gap : library.gaps) {
+    if (gap.slope == row.begin->slope && gap.density_percent > from && gap.density_percent < to) {
+      throw Error(ErrorKind::bad_input, "library: no dig is feasible at a density of " +
+                                            number_text(gap.density_percent) + " % on a slope of " +
+                                            number_text(gap.slope) + " rad");
     }
   }
+}
+
+Between<Entries::const_iterator> densities_around(const PathLibrary& library, const Row& row,
+                                                  double density) {
+  const double lowest = row.begin->density_percent;
+  const double highest = std::prev(row.end)->density_percent;
+  if (!(density >= lowest && density <= highest)) refuse("density [%]", density, lowest, highest);
+  const auto above = std::lower_bound(
+      row.begin, row.end, density,
+      [](const PathLibraryEntry& entry, double value) { return entry.density_percent < value; });
+  if (above->density_percent == density) return {above, above, 0.0};
+  const auto below = std::prev(above);
+  refuse_gap(library, row, below->density_percent, above->density_percent);
+  return {below, above,
+          (density - below->density_percent) / (above->density_percent - below->density_percent)};
+}
+
+PlannedDig look_up(const PathLibrary& library, const Row& row, double density) {
+  const auto around = densities_around(library, row, density);
+  return blend_digs(around.below->dig, around.above->dig, around.share);
+}
+
+MidwayError look_up_error(const PathLibrary& library, const Row& row, double density) {
+  const auto around = densities_around(library, row, density);
+  const double size = 4.0 * around.share * (1.0 - around.share);
+  return {size * around.below->midway.loss, size * around.below->midway.expectation};
+}
+
+/// Rises with slope and density, in this order.
+template <typename Item>
+bool before(const Item& a, const Item& b) {
+  return a.slope != b.slope ? a.slope < b.slope : a.density_percent < b.density_percent;
+}
+
+template <typename Item>
+void require_order(const JsonObject& file, const std::string& key, const std::vector<Item>& items) {
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    if (!before(items[i - 1], items[i])) {
+      file.fail(key, "slopes, and densities of a slope, must rise, entry " + std::to_string(i + 1) +
+                         " does not");
+    }
+  }
+}
+
+std::string difference(const std::string& what, const std::string& own, const std::string& asked) {
+  return own == asked ? "" : "; " + what + " is " + own + ", not " + asked;
 }
 
 }  // namespace
@@ -80,25 +131,33 @@ int PathLibrary::evaluations() const {
 }
 
 PathLibrary load_path_library(const std::string& path) {
-  JsonObject file = JsonObject::open(path, format);
+  const std::string content = read_file(path);
+  if (content.find("\"version\": 1,") < 100) {
+    throw Error(ErrorKind::bad_file, path +
+                                         ": version: is 1, this program reads version 2; build "
+                                         "the library again: build-path-library --out FILE");
+  }
+  JsonObject file = JsonObject::open_sealed(path, content, format, version);
   PathLibrary library;
   library.machine = file.text("machine");
   library.soil = file.text("soil");
+  library.machine_fingerprint = file.text("machine_fingerprint");
+  library.soil_fingerprint = file.text("soil_fingerprint");
+  library.simulator = file.text("simulator");
   library.cell = file.number("cell_m", 0.0, 1.0);
   library.seed = static_cast<std::uint64_t>(file.number("seed", 0.0, 9007199254740992.0));
-  JsonObject search = file.object("search");
-  library.population = static_cast<int>(search.number("population", 2.0, 1e9));
-  library.generations = static_cast<int>(search.number("generations", 1.0, 1e9));
-  library.polish_evaluations = static_cast<int>(search.number("polish_evaluations", 0.0, 1e9));
-  search.done();
+  library.search = file.text("search");
   for (JsonObject& object : file.objects("entries")) {
-    library.entries.push_back(read_entry(std::move(object)));
-    const std::size_t n = library.entries.size();
-    if (n > 1 && library.entries[n - 1].density_percent <= library.entries[n - 2].density_percent) {
-      file.fail("entries", "densities must rise, entry " + std::to_string(n) + " does not");
-    }
+    library.entries.push_back(read_library_entry(std::move(object)));
   }
+  require_order(file, "entries", library.entries);
   if (library.entries.empty()) file.fail("entries", "holds no entry");
+  for (JsonObject& object : file.objects("gaps")) {
+    library.gaps.push_back(
+        {object.number("density_percent", 0.0, 100.0), object.number("slope_rad", -1.0, 1.0)});
+    object.done();
+  }
+  require_order(file, "gaps", library.gaps);
   file.ignore("evaluations");
   file.ignore("note");
   file.done();
@@ -107,90 +166,60 @@ PathLibrary load_path_library(const std::string& path) {
 
 std::string to_json(const PathLibrary& library) {
   nlohmann::ordered_json file = {{"format", format},
-                                 {"version", 1},
+                                 {"version", version},
                                  {"machine", library.machine},
                                  {"soil", library.soil},
+                                 {"machine_fingerprint", library.machine_fingerprint},
+                                 {"soil_fingerprint", library.soil_fingerprint},
+                                 {"simulator", library.simulator},
                                  {"cell_m", library.cell},
                                  {"seed", library.seed},
-                                 {"search",
-                                  {{"population", library.population},
-                                   {"generations", library.generations},
-                                   {"polish_evaluations", library.polish_evaluations}}},
+                                 {"search", library.search},
                                  {"evaluations", library.evaluations()}};
+  file["entries"] = nlohmann::ordered_json::array();
   for (const PathLibraryEntry& entry : library.entries) {
-    nlohmann::ordered_json path;
-    for (const DigParameterInfo& info : dig_parameter_table()) {
-      path[info.name] = entry.dig.parameters.*info.field;
-    }
-    path["start_x_m"] = entry.dig.start_x;
-    file["entries"].push_back({{"density_percent", entry.density_percent},
-                               {"path", path},
-                               {"payload_mass_kg", entry.dig.payload_mass},
-                               {"payload_volume_m3", entry.dig.payload_volume},
-                               {"energy_kj", entry.dig.energy / 1000.0},
-                               {"efficiency_kg_per_kj", 1000.0 * entry.dig.efficiency()},
-                               {"duration_s", entry.dig.duration},
-                               {"evaluations", entry.evaluations}});
+    file["entries"].push_back(library_entry_json(entry));
   }
-  return file.dump(1) + "\n";
+  file["gaps"] = nlohmann::ordered_json::array();
+  for (const PathLibraryGap& gap : library.gaps) {
+    file["gaps"].push_back({{"density_percent", gap.density_percent}, {"slope_rad", gap.slope}});
+  }
+  std::string text = file.dump(1);
+  text.resize(text.size() - 2);  // reopen the object
+  return sealed(text);
 }
 
-PlannedDig look_up(const PathLibrary& library, double density_percent) {
-  const std::vector<PathLibraryEntry>& entries = library.entries;
-  if (entries.empty() || !(density_percent >= entries.front().density_percent &&
-                           density_percent <= entries.back().density_percent)) {
+void require_fit(const PathLibrary& library, const Machine& machine, const SoilKind& soil,
+                 const std::string& name) {
+  std::string text = difference("its machine", library.machine, machine.name) +
+                     difference("its soil", library.soil, soil.name) +
+                     difference("its simulator", library.simulator, simulator_fingerprint());
+  if (library.machine == machine.name && library.machine_fingerprint != fingerprint(machine)) {
+    text += "; the numbers of machine " + machine.name + " have changed since it was computed";
+  }
+  if (library.soil == soil.name && library.soil_fingerprint != fingerprint(soil)) {
+    text += "; the numbers of soil " + soil.name + " have changed since it was computed";
+  }
+  if (!text.empty()) {
     throw Error(ErrorKind::bad_input,
-                "library: density " + number_text(density_percent) + " % is outside its range" +
-                    (entries.empty() ? std::string(" (it is empty)")
-                                     : " " + number_text(entries.front().density_percent) + " .. " +
-                                           number_text(entries.back().density_percent) + " %"));
+                name + ": does not fit" + text + "; build-path-library makes one that does");
   }
-  const auto above = std::lower_bound(entries.begin(), entries.end(), density_percent,
-                                      [](const PathLibraryEntry& entry, double density) {
-                                        return entry.density_percent < density;
-                                      });
-  if (above->density_percent == density_percent) return above->dig;
-  const auto below = above - 1;
-  const double share = (density_percent - below->density_percent) /
-                       (above->density_percent - below->density_percent);
-  if (far_apart(below->dig, above->dig)) return share < 0.5 ? below->dig : above->dig;
-  return blend(below->dig, above->dig, share);
 }
 
-PathLibrary build_path_library(const Machine& machine, const SoilKind& soil,
-                               const std::vector<double>& densities_percent,
-                               const LibraryBuildOptions& options) {
-  check(densities_percent);
-  PathLibrary library{machine.name, soil.name, options.cell, options.search.seed, 0, 0, 0, {}};
-  if (const auto* genetic = std::get_if<GeneticAlgorithm>(&options.search.method)) {
-    library.population = genetic->population;
-    library.generations = genetic->generations;
-  }
-  const Terrain ground = level_planning_ground(machine, options.cell);
-  for (const double density : densities_percent) {
-    const auto done = std::find_if(
-        options.done.begin(), options.done.end(),
-        [density](const PathLibraryEntry& entry) { return entry.density_percent == density; });
-    if (done != options.done.end()) {
-      library.entries.push_back(*done);
-      continue;
-    }
-    DigSearchOptions search = options.search;
-    if (!library.entries.empty()) search.start = {library.entries.back().dig.parameters};
-    const HeightMapSimulator simulator(machine, soil, density);
-    const auto found = search_dig(machine, simulator, ground, search);
-    if (!found) {
-      throw Error(ErrorKind::bad_input,
-                  "library: no dig is feasible at a density of " + number_text(density) + " %");
-    }
-    if (found->stopped) break;
-    library.entries.push_back({density, found->dig, found->evaluations});
-    if (options.progress && !options.progress(library.entries.size(), densities_percent.size(),
-                                              library.entries.back())) {
-      break;
-    }
-  }
-  return library;
+PlannedDig look_up(const PathLibrary& library, double density_percent, double slope) {
+  const Between<Row> rows = slopes_around(library, slope);
+  const PlannedDig below = look_up(library, rows.below, density_percent);
+  if (rows.share == 0.0) return below;
+  return blend_digs(below, look_up(library, rows.above, density_percent), rows.share);
+}
+
+MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope) {
+  const Between<Row> rows = slopes_around(library, slope);
+  const MidwayError below = look_up_error(library, rows.below, density_percent);
+  const MidwayError above = look_up_error(library, rows.above, density_percent);
+  return {std::max(below.loss, above.loss),
+          std::abs(below.expectation) > std::abs(above.expectation) ? below.expectation
+                                                                    : above.expectation};
 }
 
 }  // namespace excavplan

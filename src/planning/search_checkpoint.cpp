@@ -3,7 +3,6 @@
 #include "search_checkpoint.hpp"
 
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 
 #include <excavplan/error.hpp>
@@ -52,19 +51,6 @@ std::string describe(const SearchProblem& problem) {
                      text_of(problem.box.upper);
   if (problem.step.size() > 0) text += ", step " + text_of(problem.step);
   return text;
-}
-
-/// FNV-1a, 64 bit, in hexadecimal digits: against damage, not against intent.
-std::string checksum(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  std::string digits(16, '0');
-  for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
-  return digits;
-}
-
-std::string sealed(const std::string& content) {
-  return content + ",\n\"checksum\": \"" + checksum(content) + "\"\n}\n";
 }
 
 ordered_json to_json(const std::vector<double>& point, const Evaluation& outcome) {
@@ -150,13 +136,7 @@ std::string SearchCheckpoint::text() const {
 }
 
 void SearchCheckpoint::load(std::size_t dimensions) {
-  JsonObject file = JsonObject::open(file_, format);
-  const std::string content = read_file(file_);
-  const std::size_t seal = sealed("").size();
-  if (content.size() < seal || sealed(content.substr(0, content.size() - seal)) != content) {
-    file.fail("checksum", "does not fit the content: the file was altered");
-  }
-  file.ignore("checksum");
+  JsonObject file = JsonObject::open_sealed(file_, read_file(file_), format);
   for (const auto& [key, own] : {std::pair{"problem", problem_}, std::pair{"search", search_}}) {
     if (const std::string text = file.text(key); text != own) {
       file.fail(key, "is '" + text + "', which is another one than '" + own + "'");

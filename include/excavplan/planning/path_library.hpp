@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -10,60 +10,77 @@
 #include <excavplan/planning/planner.hpp>
 #include <excavplan/soil/soil.hpp>
 
+/// @file
+/// Best digs computed beforehand, and the one for a density and a slope looked up among them
+/// (docs/methods.md#library). How libraries are made: library_build.hpp.
+
 namespace excavplan {
 
-/// The best dig for one density.
+/// How far a path looked up midway between an entry and the next is off, found by digging it.
+struct MidwayError {
+  /// Share of the best efficiency there that it gives away [0, 1]; 1 if it cannot be dug. The best
+  /// is estimated from the entries around.
+  double loss = 0.0;
+  /// The efficiency that look_up() expects, against the one simulated: their ratio less 1.
+  double expectation = 0.0;
+};
+
+/// The best dig for one density on one slope.
 struct PathLibraryEntry {
   double density_percent = 0.0;
   PlannedDig dig;
-  int evaluations = 0;
+  int evaluations = 0;  ///< digs simulated for it
+  double slope = 0.0;   ///< of the ground in the boom direction, rising away from the machine [rad]
+  MidwayError midway;   ///< towards the next density of the same slope; zero for the last
 };
 
-/// Best digs on level ground, computed beforehand for one machine and one soil.
+/// A density at which no dig is feasible on its slope.
+struct PathLibraryGap {
+  double density_percent = 0.0;
+  double slope = 0.0;  ///< [rad]
+};
+
+/// Best digs of one machine in one soil.
 struct PathLibrary {
   std::string machine;  ///< name of the machine
   std::string soil;     ///< name of the soil
-  double cell = 0.0;    ///< of the ground it was computed on [m]
+  std::string machine_fingerprint;
+  std::string soil_fingerprint;
+  std::string simulator;  ///< name and version
+  double cell = 0.0;      ///< of the ground it was computed on [m]
   std::uint64_t seed = 0;
-  int population = 0;  ///< of the search
-  int generations = 0;
-  int polish_evaluations = 0;
-  std::vector<PathLibraryEntry> entries;  ///< density rising, at least one
+  std::string search;                     ///< how the digs were searched, for people
+  std::vector<PathLibraryEntry> entries;  ///< slope rising, then density; at least one
+  std::vector<PathLibraryGap> gaps;       ///< in the same order
 
   int evaluations() const;
 };
 
-/// Reads a library file (docs/formats.md).
+/// Reads a library file (docs/formats.md#path-library).
 /// @throws Error (bad_file) naming file, key, value and rule
 PathLibrary load_path_library(const std::string& path);
 
 /// The text of a library file; the same library gives the same bytes.
 std::string to_json(const PathLibrary& library);
 
-/// The dig for a density: parameters and expectations linear between the two entries around it; the
-/// nearer of the two where they differ by more than a fifth of a search range, because the optimum
-/// has jumped between them.
-///
-/// @throws Error (bad_input) if the density is outside the densities of the library
-PlannedDig look_up(const PathLibrary& library, double density_percent);
+/// Refuses a library that was computed for another machine, soil or simulator.
+/// @param name  of the library, for the message
+/// @throws Error (bad_input) naming all that differs
+void require_fit(const PathLibrary& library, const Machine& machine, const SoilKind& soil,
+                 const std::string& name);
 
-struct LibraryBuildOptions {
-  DigSearchOptions search;
-  double cell = 0.05;  ///< [m]
-  /// After each density: entries done and wanted, and the entry; false stops.
-  std::function<bool(std::size_t, std::size_t, const PathLibraryEntry&)> progress;
-  std::vector<PathLibraryEntry>
-      done;  ///< from an earlier run: these densities are not searched again
-};
-
-/// Searches the best dig for every density with the built-in simulator on level ground. The first
-/// density is searched from nothing; every later one also starts from the dig of the one before.
+/// The dig for a density and a slope: parameters and expectations linear between the entries
+/// around; the nearer of two where they differ by more than a fifth of a search range, because the
+/// optimum has jumped between them.
 ///
-/// @return the library so far if `progress` stopped it
-/// @throws Error (bad_input) if the densities are empty, not rising or outside 0 .. 100, or no dig
-///         is feasible for one of them
-PathLibrary build_path_library(const Machine& machine, const SoilKind& soil,
-                               const std::vector<double>& densities_percent,
-                               const LibraryBuildOptions& options = {});
+/// @throws Error (bad_input) if density or slope are outside the library, or in a gap of it
+PlannedDig look_up(const PathLibrary& library, double density_percent, double slope = 0.0);
+
+/// How far what look_up() returns may be off: the error found midway between the two densities,
+/// less near an entry (by the square of the distance, as the error of a line between two points);
+/// the larger of the two slopes around.
+///
+/// @throws Error as look_up()
+MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope = 0.0);
 
 }  // namespace excavplan

@@ -26,6 +26,10 @@ double bucket_capacity(const Machine& machine, double phi3, double support,
 /// (Culmann 1875: height = 4 c / gamma * sin(angle) cos(phi) / (1 - cos(angle - phi))).
 double stable_slope(const SoilState& soil, double height, double least);
 
+/// Rises with every change of the simulator that changes the result of a dig: what was computed
+/// with an older one, such as a path library, is then refused.
+inline constexpr int height_map_simulator_version = 1;
+
 struct HeightMapModel;
 
 /// The built-in soil simulation: a bank and a loose layer per cell of a height map, quasi-static.

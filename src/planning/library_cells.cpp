@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "library_cells.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <excavplan/error.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+
+#include "fingerprint.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr const char* format = "excavplan-library-cell";
+
+// Searched from nothing, and how far apart densities are that start from one another [%]; ours,
+// after docs/methods.md#library.
+constexpr double anchors[] = {20.0, 70.0};
+constexpr double stride = 10.0;
+
+double nearest_anchor(double density) {
+  const double half_way = 0.5 * (anchors[0] + anchors[1]);
+  return density < half_way ? anchors[0] : anchors[1];
+}
+
+std::string describe(const AnchoredSearch& method) {
+  return "anchors: " + std::to_string(method.points) + " points, " + std::to_string(method.basins) +
+         " basins, polish of " + std::to_string(method.polish_evaluations) +
+         "; others: " + std::to_string(method.inherited_evaluations) + " from neighbours";
+}
+
+std::string describe(const GeneticAlgorithm& method) {
+  return "genetic algorithm: population " + std::to_string(method.population) + ", generations " +
+         std::to_string(method.generations) + ", tournament " + std::to_string(method.tournament) +
+         ", crossover " + number_text(method.crossover) + ", mutation " +
+         number_text(method.mutation);
+}
+
+/// A name that every file system takes.
+std::string plain(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
+    text += good ? c : '_';
+  }
+  return text.substr(0, 60);
+}
+
+/// From nothing.
+/// @param effort  number of times as many points as usual
+DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
+  DigSearchOptions options;
+  if (const auto* genetic = std::get_if<GeneticAlgorithm>(&search.method)) {
+    options.method = *genetic;
+  } else {
+    const auto& anchored = std::get<AnchoredSearch>(search.method);
+    MemeticSearch method;
+    method.first_generation = effort * anchored.points;
+    method.basins = anchored.basins;
+    method.polish_evaluations = anchored.polish_evaluations;
+    method.generations = 0;
+    options.method = method;
+  }
+  return options;
+}
+
+/// What the parents of a density let expect of it.
+struct Expectation {
+  std::vector<DigParameters> starts;  ///< where the line through two parents leads, the nearest one
+  double efficiency = 0.0;  ///< the least to be satisfied with [kg/J]; 0 with less than two parents
+};
+
+Expectation expected_of(double density, const std::vector<CellOutcome>& parents) {
+  std::vector<const PathLibraryEntry*> digs;
+  for (const CellOutcome& parent : parents) {
+    if (parent.entry) digs.push_back(&*parent.entry);
+  }
+  Expectation expected;
+  if (digs.empty()) return expected;
+  const PlannedDig& near = digs[0]->dig;
+  if (digs.size() == 2) {
+    const PlannedDig& far = digs[1]->dig;
+    const double share = (density - digs[0]->density_percent) /
+                         (digs[1]->density_percent - digs[0]->density_percent);
+    const auto line = [share](double a, double b) { return a + share * (b - a); };
+    DigParameters there;
+    for (const DigParameterInfo& info : dig_parameter_table()) {
+      there.*info.field = std::clamp(line(near.parameters.*info.field, far.parameters.*info.field),
+                                     info.lower, info.upper);
+    }
+    expected.starts.push_back(there);
+    // The logarithm of the efficiency bends little: less than this between and beyond two; ours.
+    const double slack = share > 0.0 ? 0.006 : 0.025;
+    expected.efficiency =
+        (1.0 - slack) * std::exp(line(std::log(near.efficiency()), std::log(far.efficiency())));
+  }
+  expected.starts.push_back(near.parameters);
+  return expected;
+}
+
+/// A polish, and one more from its best with the simplex spread again.
+DigSearchOptions warm_search(const LibrarySearch& search,
+                             const std::vector<DigParameters>& starts) {
+  const auto& anchored = std::get<AnchoredSearch>(search.method);
+  MemeticSearch method;
+  method.first_generation = 0;
+  method.generations = 0;
+  method.basins = 1;
+  method.polish_evaluations = anchored.inherited_evaluations / 2;
+  DigSearchOptions options;
+  options.method = method;
+  options.start = starts;
+  options.stop.evaluations = anchored.inherited_evaluations;
+  return options;
+}
+
+/// Starts that ask less of the machine.
+std::vector<DigParameters> shallower(const DigParameters& start) {
+  std::vector<DigParameters> starts;
+  for (const double share : {0.85, 0.7}) {
+    starts.push_back(start);
+    starts.back().penetration_length *= share;
+  }
+  return starts;
+}
+
+/// True if the two digs are of different kinds: a blend of them would be neither.
+bool far_apart(const PlannedDig& a, const PlannedDig& b) {
+  constexpr double near = 0.2;  // of a number's search range; ours
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
+    if (step > near * (info.upper - info.lower)) return true;
+  }
+  return false;
+}
+
+/// The dig as it is driven there; nothing if it cannot be.
+std::optional<PlannedDig> drive(const LibraryCell& cell, double cell_size, const PlannedDig& dig) {
+  const Terrain ground = sloped_planning_ground(*cell.machine, cell.slope, cell_size);
+  const HeightMapSimulator simulator(*cell.machine, *cell.soil, cell.density_percent);
+  auto outcome = evaluate_dig(*cell.machine, simulator, ground, dig.parameters, dig.start_x);
+  if (const auto* failure = std::get_if<DigFailure>(&outcome);
+      failure != nullptr && std::holds_alternative<Infeasible>(*failure)) {
+    outcome = evaluate_dig(*cell.machine, simulator, ground, dig.parameters,
+                           DigSearchOptions{}.start_rule);
+  }
+  if (const auto* driven = std::get_if<PlannedDig>(&outcome)) return *driven;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Terrain sloped_planning_ground(const Machine& machine, double slope, double cell) {
+  HeightMap ground = flat_ground(planning_extent(machine), cell);
+  for (Eigen::Index col = 0; col < ground.z.cols(); ++col) {
+    const double x = ground.origin.x() + cell * (static_cast<double>(col) + 0.5);
+    ground.z.col(col) += std::tan(slope) * std::max(0.0, x - machine.track_front);
+  }
+  return undisturbed(ground);
+}
+
+std::vector<double> parent_densities(double density_percent, const LibrarySearch& search) {
+  if (std::holds_alternative<GeneticAlgorithm>(search.method)) return {};
+  const double below = stride * std::floor(density_percent / stride);
+  if (below < density_percent) {
+    const double above = below + stride;
+    if (density_percent - below < above - density_percent) return {below, above};
+    return {above, below};
+  }
+  const double anchor = nearest_anchor(density_percent);
+  if (density_percent == anchor) return {};
+  const double towards = density_percent < anchor ? stride : -stride;
+  if (density_percent + towards == anchor) return {anchor};
+  return {density_percent + towards, density_percent + 2.0 * towards};
+}
+
+std::string describe(const LibrarySearch& search) {
+  return std::visit([](const auto& method) { return describe(method); }, search.method);
+}
+
+std::string identity(const LibraryCell& cell, const LibrarySearch& search) {
+  return "machine " + fingerprint(*cell.machine) + ", soil " + fingerprint(*cell.soil) +
+         ", simulator " + simulator_fingerprint() + " on cells of " + number_text(search.cell) +
+         " m, slope " + number_text(cell.slope) + " rad, density " +
+         number_text(cell.density_percent) + " %, seed " + std::to_string(search.seed) + ", " +
+         describe(search) + ", start " + describe(DigSearchOptions{}.start_rule);
+}
+
+std::string cell_file_name(const LibraryCell& cell, const LibrarySearch& search) {
+  return plain(cell.machine->name) + "-" + plain(cell.soil->name) + "-slope" +
+         number_text(cell.slope) + "-density" + number_text(cell.density_percent) + "-" +
+         checksum_text(identity(cell, search)) + ".json";
+}
+
+std::optional<CellOutcome> compute_cell(
+    const LibraryCell& cell, const LibrarySearch& search, const std::vector<CellOutcome>& parents,
+    const std::function<bool(const SearchProgress&)>& progress) {
+  const HeightMapSimulator simulator(*cell.machine, *cell.soil, cell.density_percent);
+  const Terrain ground = sloped_planning_ground(*cell.machine, cell.slope, search.cell);
+  CellOutcome outcome;
+  /// @return false if stopped
+  const auto attempt = [&](DigSearchOptions options) {
+    int evaluations = 0;
+    bool stopped = false;
+    options.seed = checksum(identity(cell, search));
+    options.threads = 1;
+    options.progress = [&](const SearchProgress& now) {
+      evaluations = now.evaluations;
+      stopped = progress && !progress(now);
+      return !stopped;
+    };
+    const auto found = search_dig(*cell.machine, simulator, ground, options);
+    outcome.evaluations += evaluations;
+    if (found && (!outcome.entry || found->dig.efficiency() > outcome.entry->dig.efficiency())) {
+      outcome.entry = {cell.density_percent, found->dig, 0, cell.slope, {}};
+    }
+    return !stopped;
+  };
+  const Expectation expected = expected_of(cell.density_percent, parents);
+  if (!expected.starts.empty() && !attempt(warm_search(search, expected.starts))) {
+    return std::nullopt;
+  }
+  if (!outcome.entry && !expected.starts.empty() &&
+      !attempt(warm_search(search, shallower(expected.starts.back())))) {
+    return std::nullopt;
+  }
+  const bool good = outcome.entry && outcome.entry->dig.efficiency() >= expected.efficiency;
+  if (!good && !attempt(cold_search(search, 1))) return std::nullopt;
+  if (!outcome.entry && !attempt(cold_search(search, 8))) return std::nullopt;
+  if (outcome.entry) outcome.entry->evaluations = outcome.evaluations;
+  return outcome;
+}
+
+std::string cell_text(const LibraryCell& cell, const LibrarySearch& search,
+                      const CellOutcome& outcome) {
+  nlohmann::ordered_json json = {{"format", format},
+                                 {"version", 1},
+                                 {"identity", identity(cell, search)},
+                                 {"evaluations", outcome.evaluations},
+                                 {"feasible", outcome.entry.has_value()}};
+  if (outcome.entry) json["entry"] = library_entry_json(*outcome.entry);
+  std::string text = json.dump(1);
+  text.resize(text.size() - 2);  // reopen the object
+  return sealed(text);
+}
+
+CellOutcome read_cell(const std::string& name, const std::string& text, const LibraryCell& cell,
+                      const LibrarySearch& search) {
+  JsonObject file = JsonObject::open_sealed(name, text, format);
+  if (const std::string own = file.text("identity"); own != identity(cell, search)) {
+    file.fail("identity",
+              "is '" + own + "', which is another cell than '" + identity(cell, search) + "'");
+  }
+  CellOutcome outcome;
+  outcome.evaluations = static_cast<int>(file.number("evaluations", 0.0, 1e9));
+  if (file.flag("feasible")) outcome.entry = read_library_entry(file.object("entry"));
+  file.done();
+  return outcome;
+}
+
+MidwayError measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
+                           const PlannedDig& above, double best) {
+  MidwayError error;
+  // Where the digs are of different kinds, either may be looked up, just below or above midway.
+  for (const double share : {0.499, 0.5}) {
+    const PlannedDig looked_up = blend_digs(below, above, share);
+    const auto driven = drive(midway, cell_size, looked_up);
+    const double efficiency = driven ? driven->efficiency() : 0.0;
+    const double loss = std::clamp(1.0 - efficiency / best, 0.0, 1.0);
+    if (loss >= error.loss) {
+      error = {loss, efficiency > 0.0 ? looked_up.efficiency() / efficiency - 1.0 : 0.0};
+    }
+    if (!far_apart(below, above)) break;
+  }
+  return error;
+}
+
+PlannedDig blend_digs(const PlannedDig& a, const PlannedDig& b, double share) {
+  if (share == 0.0) return a;
+  if (far_apart(a, b)) return share < 0.5 ? a : b;
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  PlannedDig dig = a;
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    dig.parameters.*info.field = mix(a.parameters.*info.field, b.parameters.*info.field);
+  }
+  dig.start_x = mix(a.start_x, b.start_x);
+  dig.payload_mass = mix(a.payload_mass, b.payload_mass);
+  dig.payload_volume = mix(a.payload_volume, b.payload_volume);
+  dig.energy = mix(a.energy, b.energy);
+  dig.duration = mix(a.duration, b.duration);
+  return dig;
+}
+
+nlohmann::ordered_json library_entry_json(const PathLibraryEntry& entry) {
+  nlohmann::ordered_json path;
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    path[info.name] = entry.dig.parameters.*info.field;
+  }
+  path["start_x_m"] = entry.dig.start_x;
+  return {{"density_percent", entry.density_percent},
+          {"slope_rad", entry.slope},
+          {"path", path},
+          {"payload_mass_kg", entry.dig.payload_mass},
+          {"payload_volume_m3", entry.dig.payload_volume},
+          {"energy_kj", entry.dig.energy / 1000.0},
+          {"efficiency_kg_per_kj", 1000.0 * entry.dig.efficiency()},
+          {"duration_s", entry.dig.duration},
+          {"midway_loss", entry.midway.loss},
+          {"midway_expectation_error", entry.midway.expectation},
+          {"evaluations", entry.evaluations}};
+}
+
+PathLibraryEntry read_library_entry(JsonObject object) {
+  PathLibraryEntry entry;
+  entry.density_percent = object.number("density_percent", 0.0, 100.0);
+  entry.slope = object.number("slope_rad", -1.0, 1.0);
+  JsonObject path = object.object("path");
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    entry.dig.parameters.*info.field = path.number(info.name, info.lower, info.upper);
+  }
+  entry.dig.start_x = path.number("start_x_m");
+  path.done();
+  entry.dig.payload_mass = object.number("payload_mass_kg", 0.0);
+  entry.dig.payload_volume = object.number("payload_volume_m3", 0.0);
+  entry.dig.energy = 1000.0 * object.number("energy_kj", 0.0);
+  entry.dig.duration = object.number("duration_s", 0.0);
+  entry.midway.loss = object.number("midway_loss", 0.0, 1.0);
+  entry.midway.expectation = object.number("midway_expectation_error", -1.0);
+  entry.evaluations = static_cast<int>(object.number("evaluations", 0.0, 1e9));
+  object.ignore("efficiency_kg_per_kj");
+  object.done();
+  return entry;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include <excavplan/random.hpp>
+
+#include "run_program.hpp"
+
+/// @file
+/// build-path-library as jobs of a cluster use it: in shards, killed, resumed, under mpirun.
+
+namespace excavplan::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+Words operator+(Words first, const Words& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+const Words grid = {"--densities", "10,20,35,70", "--cell", "0.1",         "--points",
+                    "8",           "--polish",    "8",      "--inherited", "8"};
+
+ProgramResult build(const Words& words) { return run_program("build-path-library", words); }
+
+/// A run that a signal ends after a while. @return its exit code, 128 + signal if killed
+int interrupted(Words words, int signal, std::chrono::microseconds after) {
+  const std::string program = std::string(EXCAVPLAN_BIN) + "/build-path-library";
+  words.insert(words.begin(), program);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execv(program.c_str(), arguments.data());
+    ::_exit(127);
+  }
+  std::this_thread::sleep_for(after);
+  ::kill(child, signal);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+class LibraryTool : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(build(grid + Words{"--out", folder_.file("whole.json")}).code, 0);
+    whole_ = content_of(folder_.file("whole.json"));
+  }
+  const TemporaryFolder folder_;
+  const std::string out_ = folder_.file("library.json");
+  std::string whole_;
+};
+
+TEST_F(LibraryTool, LeavesNothingButTheLibrary) {
+  for (const auto& file : fs::directory_iterator(fs::path(out_).parent_path())) {
+    EXPECT_EQ(file.path().filename(), "whole.json");
+  }
+}
+
+TEST_F(LibraryTool, ShardsMergeToTheSameBytes) {
+  const std::string cells = folder_.file("cells");
+  for (const char* shard : {"2/3", "1/3", "3/3"}) {
+    const ProgramResult result = build(grid + Words{"--cells", cells, "--shard", shard});
+    EXPECT_EQ(result.code, 0) << result.err;
+  }
+  const ProgramResult result = build({"--merge", cells, "--out", out_});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(content_of(out_), whole_);
+}
+
+TEST_F(LibraryTool, ShardsOfAnotherRunAreRefused) {
+  const std::string cells = folder_.file("cells");
+  build(grid + Words{"--cells", cells, "--shard", "1/3"});
+  const ProgramResult other =
+      build(grid + Words{"--cells", cells, "--shard", "2/3", "--seed", "2"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.err.find("is of another run"), std::string::npos) << other.err;
+  const ProgramResult early = build({"--merge", cells, "--out", out_});
+  EXPECT_EQ(early.code, 3);
+  EXPECT_NE(early.err.find("is missing or damaged"), std::string::npos) << early.err;
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+TEST_F(LibraryTool, KilledAtRandomMomentsItGoesOnToTheSameBytes) {
+  Random random(5);
+  for (int i = 0; i < 8; ++i) {
+    const auto after = std::chrono::microseconds(random.index(80000));
+    interrupted(grid + Words{"--out", out_, "--resume", "--quiet"}, SIGKILL, after);
+  }
+  const ProgramResult result = build(grid + Words{"--out", out_, "--resume"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_FALSE(fs::exists(out_ + ".cells"));
+}
+
+TEST_F(LibraryTool, AnInterruptLeavesWhatResumes) {
+  const Words large = {"--densities", "0:2:100", "--out", out_, "--quiet"};
+  EXPECT_EQ(interrupted(large, SIGINT, std::chrono::milliseconds(400)), 75);
+  EXPECT_TRUE(fs::exists(out_ + ".cells/job.json"));
+  EXPECT_FALSE(fs::exists(out_));
+  const ProgramResult other = build(grid + Words{"--out", out_, "--resume"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.err.find("is of another run"), std::string::npos) << other.err;
+  EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);  // begins anew
+  EXPECT_EQ(content_of(out_), whole_);
+}
+
+TEST_F(LibraryTool, SeveralSoilsMakeAFolderOfLibraries) {
+  const std::string libraries = folder_.file("libraries");
+  const ProgramResult result =
+      build(Words{"--densities", "20", "--soil", "loam,sand", "--slopes=-5deg,0", "--cell", "0.1",
+                  "--points", "8", "--polish", "8", "--out", libraries, "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  ASSERT_EQ(json.at("libraries").size(), 2U);
+  EXPECT_EQ(json["libraries"][1].at("file"), libraries + "/zx120-sand.json");
+  const ProgramResult plan = run_program(
+      "plan-path",
+      {"--density", "20", "--soil", "sand", "--library", libraries + "/zx120-sand.json"});
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  const ProgramResult wrong =
+      run_program("plan-path", {"--density", "20", "--library", libraries + "/zx120-sand.json"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("its soil is sand, not loam"), std::string::npos) << wrong.err;
+}
+
+TEST_F(LibraryTool, OptionsThatDoNotGoTogetherAreRefused) {
+  const auto refusal = [](const Words& words) {
+    const ProgramResult result = build(words);
+    EXPECT_EQ(result.code, 2);
+    return result.err;
+  };
+  EXPECT_NE(refusal({}).find("--out is missing"), std::string::npos);
+  EXPECT_NE(refusal({"--shard", "1/2"}).find("--shard goes with --cells"), std::string::npos);
+  const std::string cells = folder_.file("cells");
+  EXPECT_NE(refusal({"--shard", "3/2", "--cells", cells}).find("is not one of 1/N .. N/N"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--merge", cells, "--cells", cells, "--out", out_}).find("--merge goes"),
+            std::string::npos);
+}
+
+TEST_F(LibraryTool, SameBytesForOneToFourRanks) {
+#ifndef EXCAVPLAN_MPIRUN
+  GTEST_SKIP() << "no mpirun";
+#else
+  ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  ::setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
+  for (const int ranks : {1, 2, 4}) {
+    std::string command = std::string(EXCAVPLAN_MPIRUN) + " -n " + std::to_string(ranks) + " " +
+                          EXCAVPLAN_BIN + "/build-path-library --out " + out_;
+    for (const std::string& word : grid) command += " " + word;
+    ASSERT_EQ(std::system((command + " > " + folder_.file("said") + " 2>&1").c_str()), 0)
+        << content_of(folder_.file("said"));
+    EXPECT_EQ(content_of(out_), whole_) << ranks;
+    const std::string said = content_of(folder_.file("said"));
+    EXPECT_EQ(said.find(out_), said.rfind(out_)) << said;  // one rank speaks
+    fs::remove(out_);
+  }
+#endif
+}
+
+}  // namespace
+}  // namespace excavplan::test
