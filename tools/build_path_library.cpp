@@ -304,13 +304,14 @@ Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
   check(inputs);
   if (inputs.merge) inputs = with_job(inputs, *inputs.merge);
   const LibraryGrid grid = grid_of(inputs);
+  LibraryBuildOptions options = options_of(inputs, console);
+  require_buildable(grid, options);
   const bool leads = ranks == nullptr || ranks->rank() == 0;
   if (leads) prepare(inputs);
   if (ranks != nullptr) {
     ranks->exchange({});
-    if (inputs.threads == 0) inputs.threads = 1;
+    if (inputs.threads == 0) options.threads = 1;
   }
-  LibraryBuildOptions options = options_of(inputs, console);
   options.sharing = ranks;
   const LibraryBuild build = inputs.shard
                                  ? build_library_shard(grid, shard_of(*inputs.shard), options)

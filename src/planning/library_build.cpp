@@ -42,18 +42,6 @@ void require_rising(const std::string& what, const std::vector<double>& values, 
   }
 }
 
-void check(const LibraryGrid& grid, const LibraryBuildOptions& options) {
-  require(!grid.machines.empty(), "no machine is asked for");
-  require(!grid.soils.empty(), "no soil is asked for");
-  require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
-  require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
-  require(options.refine >= 0.0 && options.refine < 1.0,
-          "refine must be in 0 .. 1, got " + number_text(options.refine));
-  require(options.search.cell > 0.0 && options.search.cell <= 1.0,
-          "the cell of the ground must be in 0 .. 1 m, got " + number_text(options.search.cell));
-  require(!options.only_merge || !options.folder.empty(), "a merge needs a folder of cells");
-}
-
 /// The only process there is.
 class Alone : public WorkSharing {
  public:
@@ -140,7 +128,7 @@ class Build {
         options_(options),
         sharing_(options.sharing != nullptr ? *options.sharing : alone_),
         watch_(options) {
-    check(grid, options);
+    require_buildable(grid, options);
     if (!options.folder.empty()) make_folder();
     for (const Machine& machine : grid.machines) {
       for (const SoilKind& soil : grid.soils) {
@@ -466,6 +454,18 @@ class Build {
 };
 
 }  // namespace
+
+void require_buildable(const LibraryGrid& grid, const LibraryBuildOptions& options) {
+  require(!grid.machines.empty(), "no machine is asked for");
+  require(!grid.soils.empty(), "no soil is asked for");
+  require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
+  require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
+  require(options.refine >= 0.0 && options.refine < 1.0,
+          "refine must be in 0 .. 1, got " + number_text(options.refine));
+  require(options.search.cell > 0.0 && options.search.cell <= 1.0,
+          "the cell of the ground must be in 0 .. 1 m, got " + number_text(options.search.cell));
+  require(!options.only_merge || !options.folder.empty(), "a merge needs a folder of cells");
+}
 
 LibraryBuild build_path_libraries(const LibraryGrid& grid, const LibraryBuildOptions& options) {
   return Build(grid, options).whole();

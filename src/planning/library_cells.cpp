@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -18,12 +19,13 @@ constexpr const char* format = "excavplan-library-cell";
 
 // Searched from nothing, and how far apart densities are that start from one another [%]; ours,
 // after docs/methods.md#library.
-constexpr double anchors[] = {20.0, 70.0};
+constexpr double anchors[] = {0.0, 50.0, 100.0};
 constexpr double stride = 10.0;
 
 double nearest_anchor(double density) {
-  const double half_way = 0.5 * (anchors[0] + anchors[1]);
-  return density < half_way ? anchors[0] : anchors[1];
+  return *std::min_element(std::begin(anchors), std::end(anchors), [density](double a, double b) {
+    return std::abs(a - density) < std::abs(b - density);
+  });
 }
 
 std::string describe(const AnchoredSearch& method) {
@@ -67,9 +69,21 @@ DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
   return options;
 }
 
+/// True if the two digs are of different kinds: a blend of them would be neither.
+bool far_apart(const PlannedDig& a, const PlannedDig& b) {
+  constexpr double near = 0.2;  // of a number's search range; ours
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
+    if (step > near * (info.upper - info.lower)) return true;
+  }
+  return false;
+}
+
 /// What the parents of a density let expect of it.
 struct Expectation {
-  std::vector<DigParameters> starts;  ///< where the line through two parents leads, the nearest one
+  /// Where the line through two parents leads, or the farther one if they are of different kinds;
+  /// the nearest one last.
+  std::vector<DigParameters> starts;
   double efficiency = 0.0;  ///< the least to be satisfied with [kg/J]; 0 with less than two parents
 };
 
@@ -81,7 +95,9 @@ Expectation expected_of(double density, const std::vector<CellOutcome>& parents)
   Expectation expected;
   if (digs.empty()) return expected;
   const PlannedDig& near = digs[0]->dig;
-  if (digs.size() == 2) {
+  if (digs.size() == 2 && far_apart(near, digs[1]->dig)) {
+    expected.starts.push_back(digs[1]->dig.parameters);
+  } else if (digs.size() == 2) {
     const PlannedDig& far = digs[1]->dig;
     const double share = (density - digs[0]->density_percent) /
                          (digs[1]->density_percent - digs[0]->density_percent);
@@ -125,16 +141,6 @@ std::vector<DigParameters> shallower(const DigParameters& start) {
     starts.back().penetration_length *= share;
   }
   return starts;
-}
-
-/// True if the two digs are of different kinds: a blend of them would be neither.
-bool far_apart(const PlannedDig& a, const PlannedDig& b) {
-  constexpr double near = 0.2;  // of a number's search range; ours
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
-    if (step > near * (info.upper - info.lower)) return true;
-  }
-  return false;
 }
 
 /// The dig as it is driven there; nothing if it cannot be.

@@ -30,14 +30,14 @@ struct LibraryGrid {
   std::vector<double> densities_percent;  ///< rising
 };
 
-/// Two densities are searched from nothing; all others are polished from the dig of a neighbour,
-/// and searched from nothing too if that leads to no dig, or one worse than its neighbours let
-/// expect.
+/// Densities of 0, 50 and 100 % are searched from nothing; all others are polished from the dig of
+/// a neighbour, and searched from nothing too if that leads to no dig, or one worse than its
+/// neighbours let expect.
 struct AnchoredSearch {
-  int points = 16;                 ///< of a first generation from nothing
+  int points = 32;                 ///< of a first generation from nothing
   int basins = 2;                  ///< polished of it
-  int polish_evaluations = 60;     ///< of one polish; the best is polished once more
-  int inherited_evaluations = 45;  ///< of a density that starts from a neighbour
+  int polish_evaluations = 45;     ///< of one polish; the best is polished once more
+  int inherited_evaluations = 40;  ///< of a density that starts from a neighbour
 };
 
 /// All that decides a cell besides its place in the grid.
@@ -92,6 +92,10 @@ struct LibraryBuild {
   std::size_t cells_done = 0;
   std::size_t cells = 0;
 };
+
+/// What build_path_libraries() asks first: for callers that prepare its folder.
+/// @throws Error (bad_input) if the grid or an option is out of range
+void require_buildable(const LibraryGrid& grid, const LibraryBuildOptions& options);
 
 /// Searches the best dig of every cell with the built-in simulator.
 ///
