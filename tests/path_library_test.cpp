@@ -246,12 +246,12 @@ TEST_F(LibraryBuilding, MergingNamesACellThatIsMissing) {
   const TemporaryFolder folder;
   LibraryBuildOptions options = quick();
   options.folder = folder.file("cells");
-  build_library_shard(grid({20, 70}), {1, 2}, options);
+  build_library_shard(grid({0, 100}), {1, 2}, options);
   options.only_merge = true;
   const std::string text = message_of(ErrorKind::bad_file, [&] {
-    build_path_libraries(grid({20, 70}), options);
+    build_path_libraries(grid({0, 100}), options);
   });
-  EXPECT_NE(text.find("zx120-loam-slope0-density70-"), std::string::npos) << text;
+  EXPECT_NE(text.find("zx120-loam-slope0-density100-"), std::string::npos) << text;
   EXPECT_NE(text.find("is missing or damaged"), std::string::npos) << text;
 }
 
@@ -281,7 +281,7 @@ TEST_F(LibraryBuilding, GoesOnFromWhatIsDone) {
 }
 
 TEST_F(LibraryBuilding, DamagedCellsAreNamedAndComputedAnew) {
-  const LibraryGrid cells = grid({20, 30});
+  const LibraryGrid cells = grid({0, 10});
   const TemporaryFolder folder;
   LibraryBuildOptions options = quick();
   options.folder = folder.file("cells");
