@@ -797,7 +797,7 @@ TEST_F(Tools, SearchIsAtLeastAsGoodAsTheLibrary) {
             << search.at("efficiency_kg_per_kj") << " kg/kJ after " << search.at("evaluations")
             << " digs\n";
   EXPECT_EQ(search["source"], "search");
-  EXPECT_LE(search["evaluations"].get<int>(), 150);
+  EXPECT_LE(search["evaluations"].get<int>(), 400);
   EXPECT_GE(number(search, "/efficiency_kg_per_kj"), number(library, "/efficiency_kg_per_kj"));
   EXPECT_EQ(number(search, "/worth"), number(search, "/efficiency_kg_per_kj"));
   EXPECT_EQ(search.at("start_rule"), "least work of the links' own weight");

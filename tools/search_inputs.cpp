@@ -13,7 +13,7 @@ namespace excavplan::tools {
 namespace {
 
 /// Enough for 99 % of the optimum from any seed (docs/methods.md#planning).
-constexpr int default_evaluations = 150;
+constexpr int default_evaluations = 400;
 
 [[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
 
@@ -85,7 +85,7 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.option("population", inputs.population, "individuals, --method paper");
   arguments.option("generations", inputs.generations, "of the search, 0 for the method's own");
   arguments.option("evaluations", inputs.evaluations,
-                   "digs simulated at most in one search, 0 for the method's own: 150 (100 for "
+                   "digs simulated at most in one search, 0 for the method's own: 400 (100 for "
                    "each of several densities), or all the paper's generations");
   arguments.file("checkpoint", inputs.checkpoint, "keep the digs simulated in this file");
   arguments.flag("resume", inputs.resume, "go on from the checkpoint if it exists");
