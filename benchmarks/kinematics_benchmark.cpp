@@ -95,7 +95,9 @@ void solve_poses(benchmark::State& state, const Solver& solve) {
 }
 
 void inverse_kinematics_closed_form(benchmark::State& state) { solve_poses(state, closed_form); }
-BENCHMARK(inverse_kinematics_closed_form)->Unit(benchmark::kMicrosecond);
+BENCHMARK(inverse_kinematics_closed_form)
+    ->Name("inverse_kinematics_closed_form/poses:4096")
+    ->Unit(benchmark::kMicrosecond);
 
 #ifdef EXCAVPLAN_KDL
 
@@ -140,7 +142,9 @@ void inverse_kinematics_kdl_lma(benchmark::State& state) {
   KDL::ChainIkSolverPos_LMA solver(machine.chain(), Eigen::Matrix<double, 6, 1>::Ones());
   solve_poses(state, [&](const BucketPose& pose) { return machine.solve(solver, pose); });
 }
-BENCHMARK(inverse_kinematics_kdl_lma)->Unit(benchmark::kMicrosecond);
+BENCHMARK(inverse_kinematics_kdl_lma)
+    ->Name("inverse_kinematics_kdl_lma/poses:4096")
+    ->Unit(benchmark::kMicrosecond);
 
 /// Newton and Raphson within the limits.
 void inverse_kinematics_kdl_nr_jl(benchmark::State& state) {
@@ -151,7 +155,9 @@ void inverse_kinematics_kdl_nr_jl(benchmark::State& state) {
                                      velocity);
   solve_poses(state, [&](const BucketPose& pose) { return machine.solve(solver, pose); });
 }
-BENCHMARK(inverse_kinematics_kdl_nr_jl)->Unit(benchmark::kMicrosecond);
+BENCHMARK(inverse_kinematics_kdl_nr_jl)
+    ->Name("inverse_kinematics_kdl_nr_jl/poses:4096")
+    ->Unit(benchmark::kMicrosecond);
 
 #endif
 
