@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -115,6 +116,21 @@ TEST(Align, WhatTheSceneDoesNotShowStaysAtZero) {
     EXPECT_FALSE(found.supported[static_cast<std::size_t>(i)]);
   }
   EXPECT_GT(std::sqrt(found.covariance(0, 0)), 0.015) << "about its prior, 20 mm";
+}
+
+TEST(Align, EdgesOfAHoleOnLevelGroundDoNotPassForAShift) {
+  const auto level = [](double, double) { return 0.0; };
+  const auto hole = [](double x, double y) {
+    const double inside = std::min({x + 1.1, 1.0 - x, y + 0.5, 0.45 - y});
+    return -std::clamp(1.2 * inside, 0.0, 0.3);
+  };
+  const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Alignment found = align(surface_of(level, still, 0.008, 2 * seed),
+                                  surface_of(hole, still, 0.008, 2 * seed + 1));
+    EXPECT_FALSE(found.lateral_is_significant) << found.found.transpose();
+    EXPECT_LT(found.found.head<2>().norm(), 0.01) << found.found.transpose();
+  }
 }
 
 TEST(Align, ScansThatDidNotMoveAreLeftAlone) {

@@ -181,6 +181,54 @@ INSTANTIATE_TEST_SUITE_P(
                     Visit{"BucketAtTheRim", {0.9, -0.4, 1.4, 0.2}, 0.9, true}),
     [](const auto& visit) { return std::string(visit.param.what); });
 
+TEST(VolumesOfSurfaces, BlocksOfAHeapAreNoObjects) {
+  Surface after = exact(true);
+  const VolumeChange smooth = measure_change({exact(false), after, {}});
+  put(after, {5.4, 0.3, 5.6, 0.5}, 1.35);
+  const VolumeChange rough = measure_change({exact(false), after, {}});
+  EXPECT_EQ(count_of(rough, "object_taken_out"), 0);
+  EXPECT_GT(rough.dumped.value, smooth.dumped.value + 0.02);
+}
+
+TEST(VolumesOfSurfaces, RowsOfPointsPlaceSteepFacesWorseThanPointsByChance) {
+  const auto faces = [](bool by_chance) {
+    SurveyedPair pair{exact(false), exact(true), {}};
+    Random random(1);
+    for (Surface* surface : {&pair.before, &pair.after}) {
+      surface->points = Eigen::ArrayXXi::Zero(surface->height.z.rows(), surface->height.z.cols());
+      // By chance: of 400 points near a cell each is in it with a probability of 3 %.
+      for (int& count : surface->points.reshaped()) {
+        for (int i = 0; i < 400; ++i) count += random.uniform() < 0.03 ? 1 : 0;
+        if (!by_chance) count = 12;
+      }
+    }
+    const VolumeChange change = measure_change(pair);
+    return std::sqrt(change.errors.faces(0, 0)) / change.excavated.value;
+  };
+  EXPECT_GT(faces(false), 0.001);
+  EXPECT_LT(faces(true), 0.3 * faces(false));
+}
+
+TEST(VolumesOfSurfaces, WhatMayLieBeyondTheEdgeOfAScanWidensTheInterval) {
+  SurveyedPair pair{exact(false), exact(true), {}};
+  const VolumeChange whole = measure_change(pair);
+  for (Surface* surface : {&pair.before, &pair.after}) put(*surface, {-9.0, -9.0, -0.95, 9.0}, nan);
+  const VolumeChange cut = measure_change(pair);
+  EXPECT_EQ(count_of(cut, "zone_at_border") > 0, true);
+  const double missing = whole.excavated.value - cut.excavated.value;
+  EXPECT_GT(missing, 0.005);
+  EXPECT_GT(cut.excavated.sd, 0.3 * missing);
+  EXPECT_GT(cut.excavated.sd, 5.0 * whole.excavated.sd);
+}
+
+TEST(VolumesOfSurfaces, GroundInAShadowIsNoPartOfAZoneThatLiesFarOff) {
+  Surface after = exact(true);
+  put(after, {-2.6, -0.6, -1.25, 1.0}, nan);  // beside the hole, larger than it is near
+  const VolumeChange seen = measure_change({exact(false), exact(true), {}});
+  const VolumeChange shaded = measure_change({exact(false), after, {}});
+  EXPECT_NEAR(shaded.excavated.value, seen.excavated.value, 0.02 * seen.excavated.value);
+}
+
 TEST(VolumesOfSurfaces, MostlyUnseenZonesAreRefused) {
   Surface after = exact(true);
   put(after, {-1.0, -0.55, 1.0, 0.15}, nan);

@@ -45,21 +45,21 @@ void check(const std::vector<PossibleSoil>& soils) {
   require(std::abs(sum - 1.0) < 1e-9, "the probability of all soils", sum, "1");
 }
 
-/// FNV-1a over the bytes of numbers (Fowler, Noll and Vo).
+/// The checksum of numbers, byte by byte.
 class Fingerprint {
  public:
   void add(double value) {
-    unsigned char bytes[sizeof value];
+    char bytes[sizeof value];
     std::memcpy(bytes, &value, sizeof value);
-    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 1099511628211U;
+    bytes_.append(bytes, sizeof value);
   }
   void add(const Eigen::ArrayXXd& values) {
     for (Index i = 0; i < values.size(); ++i) add(values(i));
   }
-  std::string text() const { return std::to_string(hash_); }
+  std::string text() const { return std::to_string(checksum(bytes_)); }
 
  private:
-  std::uint64_t hash_ = 14695981039346656037U;
+  std::string bytes_;
 };
 
 /// The search for a dig as a search of a box.
