@@ -3,29 +3,24 @@
 #include <excavplan/planning/library_build.hpp>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <limits>
+#include <iterator>
 #include <map>
-#include <mutex>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include <excavplan/error.hpp>
 
 #include "../json_file.hpp"
-#include "../parallel.hpp"
 #include "fingerprint.hpp"
 #include "library_cells.hpp"
+#include "library_midway.hpp"
+#include "library_row.hpp"
+#include "shared_tasks.hpp"
 
 namespace excavplan {
 namespace {
-
-// Distances between two densities [%]; ours. Where entries are farther apart, what is best amid
-// them cannot be told from them.
-constexpr double coarsest = 10.0;
-constexpr double finest = 1.0;
 
 void require(bool holds, const std::string& text) {
   if (!holds) throw Error(ErrorKind::bad_input, "library: " + text);
@@ -42,117 +37,34 @@ void require_rising(const std::string& what, const std::vector<double>& values, 
   }
 }
 
-/// The only process there is.
-class Alone : public WorkSharing {
- public:
-  std::size_t next() override { return next_++; }
-  std::vector<std::string> exchange(const std::string& mine) override {
-    next_ = 0;
-    return {mine};
-  }
-
- private:
-  std::atomic<std::size_t> next_{0};
-};
-
-/// What the user sees of a build, and whether he stopped it.
-class Watch {
- public:
-  explicit Watch(const LibraryBuildOptions& options) : callback_(options.progress) {}
-
-  bool stopped() const { return stopped_; }
-  void expect(std::size_t cells) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    now_.cells = cells;
-  }
-  void cell_done(bool computed) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++now_.cells_done;
-    computed_ += computed ? 1 : 0;
-    tell();
-  }
-  bool dig_done(const std::string& cell, double best) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++now_.evaluations;
-    now_.cell = cell;
-    now_.best = best;
-    tell();
-    return !stopped_;
-  }
-
- private:
-  void tell() {
-    if (!callback_ || stopped_) return;
-    now_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const auto left = static_cast<double>(now_.cells - std::min(now_.cells, now_.cells_done));
-    now_.seconds_left = computed_ > 0 ? now_.seconds * left / static_cast<double>(computed_)
-                                      : std::numeric_limits<double>::quiet_NaN();
-    if (!callback_(now_)) stopped_ = true;
-  }
-
-  const std::function<bool(const LibraryProgress&)>& callback_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::mutex mutex_;
-  LibraryProgress now_;
-  std::size_t computed_ = 0;
-  std::atomic<bool> stopped_{false};
-};
-
-/// Results by task of one process, on their way to the others.
-struct Parcel {
-  std::map<std::size_t, std::string> results;
-  std::string error;
-  bool bad_file = false;
-  bool stopped = false;
-
-  std::string text() const {
-    return nlohmann::json{
-        {"results", results}, {"error", error}, {"bad_file", bad_file}, {"stopped", stopped}}
-        .dump();
-  }
-  void add(const std::string& text) {
-    const auto json = nlohmann::json::parse(text);
-    results.merge(json.at("results").get<std::map<std::size_t, std::string>>());
-    stopped = stopped || json.at("stopped").get<bool>();
-    if (error.empty()) {
-      error = json.at("error").get<std::string>();
-      bad_file = json.at("bad_file").get<bool>();
-    }
-  }
-};
-
 class Build {
  public:
   Build(const LibraryGrid& grid, const LibraryBuildOptions& options)
-      : grid_(grid),
-        options_(options),
-        sharing_(options.sharing != nullptr ? *options.sharing : alone_),
-        watch_(options) {
+      : grid_(grid), options_(options), tasks_(options) {
     require_buildable(grid, options);
     if (!options.folder.empty()) make_folder();
     for (const Machine& machine : grid.machines) {
       for (const SoilKind& soil : grid.soils) {
         for (const double slope : grid.slopes) {
-          rows_.push_back({&machine, &soil, slope, {}, {}});
-          rows_.back().densities.insert(grid.densities_percent.begin(),
-                                        grid.densities_percent.end());
+          rows_.emplace_back(LibraryCell{&machine, &soil, slope, 0.0}, grid.densities_percent);
         }
       }
     }
   }
 
   LibraryBuild whole() {
-    bool refined = true;
-    while (refined && !stopped_) {
+    do {
       compute(all_keys());
-      refined = !stopped_ && measure_and_refine();
+      if (!tasks_.stopped()) settle_rows();
+    } while (!tasks_.stopped() && refine());
+    std::vector<PathLibrary> libraries;
+    for (std::size_t first = 0; first < rows_.size() && !tasks_.stopped();
+         first += grid_.slopes.size()) {
+      libraries.push_back(library_of(first));
+      measure_slopes(libraries.back(), first);
     }
     LibraryBuild build = summary(all_keys());
-    if (!stopped_) {
-      for (std::size_t first = 0; first < rows_.size(); first += grid_.slopes.size()) {
-        build.libraries.push_back(library_of(first));
-      }
-    }
+    if (!build.stopped) build.libraries = std::move(libraries);
     return build;
   }
 
@@ -173,13 +85,6 @@ class Build {
   }
 
  private:
-  struct Row {
-    const Machine* machine;
-    const SoilKind* soil;
-    double slope;
-    std::set<double> densities;
-    std::map<std::pair<double, double>, MidwayError> midways;  ///< by the two densities
-  };
   /// Row and density of a cell.
   using Key = std::pair<std::size_t, double>;
 
@@ -191,27 +96,26 @@ class Build {
     }
   }
 
-  LibraryCell cell_of(const Key& key) const {
-    const Row& row = rows_[key.first];
-    return {row.machine, row.soil, row.slope, key.second};
-  }
+  LibraryCell cell_of(const Key& key) const { return rows_[key.first].cell(key.second); }
 
   std::vector<Key> all_keys() const {
     std::vector<Key> keys;
     for (std::size_t row = 0; row < rows_.size(); ++row) {
-      for (const double density : rows_[row].densities) keys.push_back({row, density});
+      for (const double density : rows_[row].densities()) keys.push_back({row, density});
     }
     return keys;
   }
 
   LibraryBuild summary(const std::vector<Key>& wanted) const {
     LibraryBuild build;
-    build.stopped = stopped_;
+    build.stopped = tasks_.stopped();
     build.cells = wanted.size();
     build.cells_done = static_cast<std::size_t>(std::count_if(
         wanted.begin(), wanted.end(), [&](const Key& key) { return outcomes_.count(key) == 1; }));
     return build;
   }
+
+  // ---- The cells, each for itself ---------------------------------------------------------------
 
   /// Computes the cells, and before each those that it starts from.
   void compute(const std::vector<Key>& wanted) {
@@ -219,7 +123,7 @@ class Build {
     for (const Key& key : wanted) add_with_parents(key, generations);
     std::size_t cells = outcomes_.size();
     for (const std::set<Key>& generation : generations) cells += missing(generation).size();
-    watch_.expect(cells);
+    tasks_.watch().expect(cells);
     for (const std::set<Key>& generation : generations) compute_at_once(missing(generation));
   }
 
@@ -243,7 +147,7 @@ class Build {
 
   /// Computes cells that do not depend on each other.
   void compute_at_once(const std::vector<Key>& keys) {
-    const auto texts = share_out(keys.size(), [&](std::size_t i) { return text_of(keys[i]); });
+    const auto texts = tasks_.run(keys.size(), [&](std::size_t i) { return text_of(keys[i]); });
     for (const auto& [i, text] : texts) {
       outcomes_[keys[i]] = read_cell("cell", text, cell_of(keys[i]), options_.search);
     }
@@ -254,7 +158,7 @@ class Build {
     const LibraryCell cell = cell_of(key);
     const std::string name = cell_file_name(cell, options_.search);
     if (const std::string kept = kept_text(cell, name); !kept.empty()) {
-      watch_.cell_done(false);
+      tasks_.watch().cell_done(false);
       return kept;
     }
     if (options_.only_merge) {
@@ -266,13 +170,11 @@ class Build {
     for (const double parent : parent_densities(key.second, options_.search)) {
       parents.push_back(outcomes_.at({key.first, parent}));
     }
-    const auto outcome =
-        compute_cell(cell, options_.search, parents,
-                     [&](const SearchProgress& now) { return watch_.dig_done(name, now.best); });
+    const auto outcome = compute_cell(cell, options_.search, parents, watched(cell));
     if (!outcome) return {};
     const std::string text = cell_text(cell, options_.search, *outcome);
     if (!options_.folder.empty()) write_file(options_.folder + "/" + name, text);
-    watch_.cell_done(true);
+    tasks_.watch().cell_done(true);
     return text;
   }
 
@@ -289,133 +191,90 @@ class Build {
     }
   }
 
-  /// Does task(0) .. task(count - 1), each in one process; all of them get all results. A task that
-  /// was stopped gives an empty text.
-  std::map<std::size_t, std::string> share_out(
-      std::size_t count, const std::function<std::string(std::size_t)>& task) {
-    if (count == 0 || stopped_) return {};
-    Parcel mine;
-    std::mutex mutex;
-    const auto work = [&] {
-      for (std::size_t i = sharing_.next(); i < count && !watch_.stopped(); i = sharing_.next()) {
-        std::string text = task(i);
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (!text.empty()) mine.results[i] = std::move(text);
-      }
+  std::function<bool(const SearchProgress&)> watched(const LibraryCell& cell) {
+    return [this, name = cell_file_name(cell, options_.search)](const SearchProgress& now) {
+      return tasks_.watch().dig_done(name, now.best);
     };
-    const std::size_t threads =
-        options_.threads > 0 ? options_.threads : std::max(1u, std::thread::hardware_concurrency());
-    try {
-      parallel_for(std::min(threads, count), options_.threads, [&](std::size_t) { work(); });
-    } catch (const Error& e) {
-      mine.error = e.what();
-      mine.bad_file = e.kind() == ErrorKind::bad_file;
+  }
+
+  // ---- The rows, side by side -------------------------------------------------------------------
+
+  /// Measures between all densities, and looks again at those whose neighbours know better, until
+  /// there is nothing left to do.
+  void settle_rows() {
+    for (const Key& key : all_keys()) rows_[key.first].take(key.second, outcomes_.at(key));
+    do {
+      measure_midways();
+    } while (!tasks_.stopped() && look_again());
+  }
+
+  void measure_midways() {
+    std::vector<std::pair<LibraryRow*, LibraryRow::Pair>> all;
+    for (LibraryRow& row : rows_) {
+      for (const LibraryRow::Pair& pair : row.unmeasured()) all.push_back({&row, pair});
     }
-    mine.stopped = watch_.stopped();
-    return exchange(mine);
+    const auto texts = tasks_.run(all.size(), [&](std::size_t i) {
+      return text_of(all[i].first->measure(all[i].second, options_.search.cell));
+    });
+    for (const auto& [i, text] : texts) all[i].first->take(all[i].second, midway_in(text));
   }
 
-  std::map<std::size_t, std::string> exchange(const Parcel& mine) {
-    Parcel all;
-    for (const std::string& text : sharing_.exchange(mine.text())) all.add(text);
-    if (!all.error.empty()) {
-      throw Error(all.bad_file ? ErrorKind::bad_file : ErrorKind::bad_input, all.error);
+  /// @return false if there was nothing to look at
+  bool look_again() {
+    std::vector<std::pair<LibraryRow*, LibraryRow::Look>> all;
+    if (std::holds_alternative<GeneticAlgorithm>(options_.search.method)) return false;
+    for (LibraryRow& row : rows_) {
+      for (const LibraryRow::Look& look : row.looks_due()) all.push_back({&row, look});
     }
-    stopped_ = stopped_ || all.stopped;
-    return all.results;
-  }
-
-  const PathLibraryEntry* entry_at(std::size_t row, double density) const {
-    const auto& entry = outcomes_.at({row, density}).entry;
-    return entry ? &*entry : nullptr;
-  }
-
-  /// Two neighbouring densities of a row whose look-up is not measured yet.
-  struct Pair {
-    std::size_t row;
-    double below;
-    double above;
-    double middle() const { return 0.5 * (below + above); }
-  };
-
-  std::vector<Pair> unmeasured() const {
-    std::vector<Pair> pairs;
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const std::set<double>& densities = rows_[r].densities;
-      for (auto above = std::next(densities.begin()); above != densities.end(); ++above) {
-        const double below = *std::prev(above);
-        const bool measured = rows_[r].midways.count({below, *above}) == 1;
-        if (!measured && entry_at(r, below) && entry_at(r, *above)) {
-          pairs.push_back({r, below, *above});
-        }
-      }
+    const auto texts = tasks_.run(all.size(), [&](std::size_t i) {
+      const auto& [row, look] = all[i];
+      const LibraryCell cell = row->cell(look.density);
+      const auto outcome =
+          excavplan::look_again(cell, options_.search, row->starts_of(look), watched(cell));
+      return outcome ? cell_text(cell, options_.search, *outcome) : std::string();
+    });
+    for (const auto& [i, text] : texts) {
+      const auto& [row, look] = all[i];
+      row->take(look, read_cell("second look", text, row->cell(look.density), options_.search));
     }
-    return pairs;
+    return !all.empty();
   }
 
-  /// Of the best dig midway, by the polynomial of the logarithm through up to four entries around.
-  double expected_best(const Pair& pair) const {
-    const std::set<double>& densities = rows_[pair.row].densities;
-    auto from = densities.find(pair.below);
-    auto to = densities.find(pair.above);
-    if (from != densities.begin() && entry_at(pair.row, *std::prev(from))) --from;
-    if (std::next(to) != densities.end() && entry_at(pair.row, *std::next(to))) ++to;
-    double sum = 0.0;
-    for (auto i = from; i != std::next(to); ++i) {
-      double weight = std::log(entry_at(pair.row, *i)->dig.efficiency());
-      for (auto j = from; j != std::next(to); ++j) {
-        if (i != j) weight *= (pair.middle() - *j) / (*i - *j);
-      }
-      sum += weight;
-    }
-    return std::exp(sum);
+  static std::string text_of(const MidwayDensity& midway) {
+    return nlohmann::json{midway.error.loss, midway.error.expectation, midway.evaluations,
+                          midway.better}
+        .dump();
   }
-
-  std::string midway_text(const Pair& pair) const {
-    const MidwayError error =
-        measure_midway(cell_of({pair.row, pair.middle()}), options_.search.cell,
-                       entry_at(pair.row, pair.below)->dig, entry_at(pair.row, pair.above)->dig,
-                       expected_best(pair));
-    return nlohmann::json{error.loss, error.expectation}.dump();
+  static MidwayDensity midway_in(const std::string& text) {
+    const auto json = nlohmann::json::parse(text);
+    return {{json[0].get<double>(), json[1].get<double>()},
+            json[2].get<int>(),
+            json[3].get<MidwayDensity::Better>()};
   }
 
   /// @return true if densities were added
-  bool measure_and_refine() {
-    const std::vector<Pair> pairs = unmeasured();
-    const auto texts =
-        share_out(pairs.size(), [&](std::size_t i) { return midway_text(pairs[i]); });
-    bool refined = false;
-    for (const auto& [i, text] : texts) {
-      const Pair& pair = pairs[i];
-      const auto numbers = nlohmann::json::parse(text).get<std::vector<double>>();
-      rows_[pair.row].midways[{pair.below, pair.above}] = {numbers[0], numbers[1]};
-      if (worth_refining(pair, numbers[0])) {
-        rows_[pair.row].densities.insert(pair.middle());
-        refined = true;
-      }
-    }
-    return refined;
+  bool refine() {
+    if (options_.refine == 0.0) return false;
+    bool any = false;
+    for (LibraryRow& row : rows_) any = row.refine(options_.refine) || any;
+    return any;
   }
 
-  bool worth_refining(const Pair& pair, double loss) const {
-    const double distance = pair.above - pair.below;
-    if (options_.refine == 0.0 || distance < 2.0 * finest) return false;
-    return distance > coarsest || loss > options_.refine;
-  }
+  // ---- The libraries ----------------------------------------------------------------------------
 
   PathLibrary library_of(std::size_t first) const {
-    const Row& row = rows_[first];
-    PathLibrary library{row.machine->name,
-                        row.soil->name,
-                        fingerprint(*row.machine),
-                        fingerprint(*row.soil),
+    const LibraryCell any = rows_[first].cell(0.0);
+    PathLibrary library{any.machine->name,
+                        any.soil->name,
+                        fingerprint(*any.machine),
+                        fingerprint(*any.soil),
                         simulator_fingerprint(),
                         options_.search.cell,
                         options_.search.seed,
                         describe(options_.search),
                         {},
                         {}};
-    for (std::size_t r = first; r < first + grid_.slopes.size(); ++r) add_row(r, library);
+    for (std::size_t r = first; r < first + grid_.slopes.size(); ++r) rows_[r].add_to(library);
     if (library.entries.empty()) {
       throw Error(ErrorKind::bad_input, "library: no dig is feasible for " + library.machine +
                                             " in " + library.soil + " at any density");
@@ -423,34 +282,68 @@ class Build {
     return library;
   }
 
-  void add_row(std::size_t r, PathLibrary& library) const {
-    const std::set<double>& densities = rows_[r].densities;
-    for (auto density = densities.begin(); density != densities.end(); ++density) {
-      const PathLibraryEntry* found = entry_at(r, *density);
-      if (found == nullptr) {
-        library.gaps.push_back({*density, rows_[r].slope});
-        continue;
-      }
-      PathLibraryEntry entry = *found;
-      if (std::next(density) != densities.end()) {
-        const auto midway = rows_[r].midways.find({*density, *std::next(density)});
-        if (midway != rows_[r].midways.end()) {
-          entry.midway = midway->second;
-          ++entry.evaluations;
-        }
-      }
-      library.entries.push_back(entry);
+  /// Digs what is looked up midway between two slopes.
+  void measure_slopes(PathLibrary& library, std::size_t first) {
+    std::vector<SlopeGap> gaps;
+    for (std::size_t i = 0; i < library.entries.size(); ++i) {
+      if (auto gap = slope_gap(library, first, i)) gaps.push_back(std::move(*gap));
+    }
+    const auto texts = tasks_.run(gaps.size(), [&](std::size_t i) {
+      const SlopeGap& gap = gaps[i];
+      const MidwayDig dug =
+          dig_midway(gap.midway, options_.search.cell, gap.looked_up, gap.best_expected);
+      return text_of(MidwayDensity{dug.error, dug.evaluations});
+    });
+    for (const auto& [i, text] : texts) {
+      PathLibraryEntry& entry = library.entries[gaps[i].entry];
+      const MidwayDensity midway = midway_in(text);
+      entry.midway_slope = midway.error;
+      entry.evaluations += midway.evaluations;
+    }
+  }
+
+  /// Midway between the slope of an entry and the next.
+  struct SlopeGap {
+    std::size_t entry;
+    LibraryCell midway;
+    PlannedDig looked_up;
+    double best_expected;
+  };
+
+  /// Nothing for the last slope, and where there is no dig on the next.
+  std::optional<SlopeGap> slope_gap(const PathLibrary& library, std::size_t first,
+                                    std::size_t i) const {
+    const std::vector<double>& slopes = grid_.slopes;
+    const PathLibraryEntry& entry = library.entries[i];
+    const auto own = static_cast<std::size_t>(
+        std::lower_bound(slopes.begin(), slopes.end(), entry.slope) - slopes.begin());
+    if (own + 1 == slopes.size()) return std::nullopt;
+    std::vector<std::pair<double, double>> around;  // slope and efficiency
+    for (std::size_t j = own > 0 ? own - 1 : 0; j < std::min(own + 3, slopes.size()); ++j) {
+      const auto dig = dig_in(library, entry.density_percent, slopes[j]);
+      if (dig) around.push_back({slopes[j], dig->efficiency()});
+      if (!dig && j == own + 1) return std::nullopt;
+    }
+    LibraryCell midway = rows_[first + own].cell(entry.density_percent);
+    midway.slope = 0.5 * (slopes[own] + slopes[own + 1]);
+    return SlopeGap{i, midway, look_up(library, entry.density_percent, midway.slope),
+                    expected_between(around, midway.slope)};
+  }
+
+  static std::optional<PlannedDig> dig_in(const PathLibrary& library, double density,
+                                          double slope) {
+    try {
+      return look_up(library, density, slope);
+    } catch (const Error&) {
+      return std::nullopt;  // beside a gap
     }
   }
 
   const LibraryGrid& grid_;
   const LibraryBuildOptions& options_;
-  Alone alone_;
-  WorkSharing& sharing_;
-  Watch watch_;
-  std::vector<Row> rows_;  // slopes of a machine and soil stand together
+  SharedTasks tasks_;
+  std::vector<LibraryRow> rows_;  // slopes of a machine and soil stand together
   std::map<Key, CellOutcome> outcomes_;
-  bool stopped_ = false;
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "fingerprint.hpp"
+#include "library_midway.hpp"
 
 namespace excavplan {
 namespace {
@@ -67,16 +68,6 @@ DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
     options.method = method;
   }
   return options;
-}
-
-/// True if the two digs are of different kinds: a blend of them would be neither.
-bool far_apart(const PlannedDig& a, const PlannedDig& b) {
-  constexpr double near = 0.2;  // of a number's search range; ours
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
-    if (step > near * (info.upper - info.lower)) return true;
-  }
-  return false;
 }
 
 /// What the parents of a density let expect of it.
@@ -143,19 +134,55 @@ std::vector<DigParameters> shallower(const DigParameters& start) {
   return starts;
 }
 
-/// The dig as it is driven there; nothing if it cannot be.
-std::optional<PlannedDig> drive(const LibraryCell& cell, double cell_size, const PlannedDig& dig) {
-  const Terrain ground = sloped_planning_ground(*cell.machine, cell.slope, cell_size);
-  const HeightMapSimulator simulator(*cell.machine, *cell.soil, cell.density_percent);
-  auto outcome = evaluate_dig(*cell.machine, simulator, ground, dig.parameters, dig.start_x);
-  if (const auto* failure = std::get_if<DigFailure>(&outcome);
-      failure != nullptr && std::holds_alternative<Infeasible>(*failure)) {
-    outcome = evaluate_dig(*cell.machine, simulator, ground, dig.parameters,
-                           DigSearchOptions{}.start_rule);
+/// The searches for one cell, the best of them kept.
+class CellSearch {
+ public:
+  CellSearch(const LibraryCell& cell, const LibrarySearch& search,
+             const std::function<bool(const SearchProgress&)>& progress)
+      : cell_(cell),
+        search_(search),
+        progress_(progress),
+        simulator_(*cell.machine, *cell.soil, cell.density_percent),
+        ground_(sloped_planning_ground(*cell.machine, cell.slope, search.cell)) {}
+
+  /// Does nothing once stopped.
+  void attempt(DigSearchOptions options) {
+    if (stopped_) return;
+    int evaluations = 0;
+    options.seed = checksum(identity(cell_, search_));
+    options.threads = 1;
+    options.progress = [&](const SearchProgress& now) {
+      evaluations = now.evaluations;
+      stopped_ = progress_ && !progress_(now);
+      return !stopped_;
+    };
+    const auto found = search_dig(*cell_.machine, simulator_, ground_, options);
+    outcome_.evaluations += evaluations;
+    auto& best = outcome_.entry;
+    if (found && (!best || found->dig.efficiency() > best->dig.efficiency())) {
+      best = {cell_.density_percent, found->dig, 0, cell_.slope, {}, {}};
+    }
   }
-  if (const auto* driven = std::get_if<PlannedDig>(&outcome)) return *driven;
-  return std::nullopt;
-}
+
+  const std::optional<PathLibraryEntry>& found() const { return outcome_.entry; }
+
+  /// Nothing if stopped.
+  std::optional<CellOutcome> outcome() const {
+    if (stopped_) return std::nullopt;
+    CellOutcome whole = outcome_;
+    if (whole.entry) whole.entry->evaluations = whole.evaluations;
+    return whole;
+  }
+
+ private:
+  const LibraryCell& cell_;
+  const LibrarySearch& search_;
+  const std::function<bool(const SearchProgress&)>& progress_;
+  const HeightMapSimulator simulator_;
+  const Terrain ground_;
+  CellOutcome outcome_;
+  bool stopped_ = false;
+};
 
 }  // namespace
 
@@ -204,40 +231,25 @@ std::string cell_file_name(const LibraryCell& cell, const LibrarySearch& search)
 std::optional<CellOutcome> compute_cell(
     const LibraryCell& cell, const LibrarySearch& search, const std::vector<CellOutcome>& parents,
     const std::function<bool(const SearchProgress&)>& progress) {
-  const HeightMapSimulator simulator(*cell.machine, *cell.soil, cell.density_percent);
-  const Terrain ground = sloped_planning_ground(*cell.machine, cell.slope, search.cell);
-  CellOutcome outcome;
-  /// @return false if stopped
-  const auto attempt = [&](DigSearchOptions options) {
-    int evaluations = 0;
-    bool stopped = false;
-    options.seed = checksum(identity(cell, search));
-    options.threads = 1;
-    options.progress = [&](const SearchProgress& now) {
-      evaluations = now.evaluations;
-      stopped = progress && !progress(now);
-      return !stopped;
-    };
-    const auto found = search_dig(*cell.machine, simulator, ground, options);
-    outcome.evaluations += evaluations;
-    if (found && (!outcome.entry || found->dig.efficiency() > outcome.entry->dig.efficiency())) {
-      outcome.entry = {cell.density_percent, found->dig, 0, cell.slope, {}};
-    }
-    return !stopped;
-  };
+  CellSearch work(cell, search, progress);
   const Expectation expected = expected_of(cell.density_percent, parents);
-  if (!expected.starts.empty() && !attempt(warm_search(search, expected.starts))) {
-    return std::nullopt;
+  if (!expected.starts.empty()) work.attempt(warm_search(search, expected.starts));
+  if (!work.found() && !expected.starts.empty()) {
+    work.attempt(warm_search(search, shallower(expected.starts.back())));
   }
-  if (!outcome.entry && !expected.starts.empty() &&
-      !attempt(warm_search(search, shallower(expected.starts.back())))) {
-    return std::nullopt;
+  if (!work.found() || work.found()->dig.efficiency() < expected.efficiency) {
+    work.attempt(cold_search(search, 1));
   }
-  const bool good = outcome.entry && outcome.entry->dig.efficiency() >= expected.efficiency;
-  if (!good && !attempt(cold_search(search, 1))) return std::nullopt;
-  if (!outcome.entry && !attempt(cold_search(search, 8))) return std::nullopt;
-  if (outcome.entry) outcome.entry->evaluations = outcome.evaluations;
-  return outcome;
+  if (!work.found()) work.attempt(cold_search(search, 8));
+  return work.outcome();
+}
+
+std::optional<CellOutcome> look_again(const LibraryCell& cell, const LibrarySearch& search,
+                                      const std::vector<CellOutcome>& neighbours,
+                                      const std::function<bool(const SearchProgress&)>& progress) {
+  CellSearch work(cell, search, progress);
+  work.attempt(warm_search(search, expected_of(cell.density_percent, neighbours).starts));
+  return work.outcome();
 }
 
 std::string cell_text(const LibraryCell& cell, const LibrarySearch& search,
@@ -267,39 +279,6 @@ CellOutcome read_cell(const std::string& name, const std::string& text, const Li
   return outcome;
 }
 
-MidwayError measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
-                           const PlannedDig& above, double best) {
-  MidwayError error;
-  // Where the digs are of different kinds, either may be looked up, just below or above midway.
-  for (const double share : {0.499, 0.5}) {
-    const PlannedDig looked_up = blend_digs(below, above, share);
-    const auto driven = drive(midway, cell_size, looked_up);
-    const double efficiency = driven ? driven->efficiency() : 0.0;
-    const double loss = std::clamp(1.0 - efficiency / best, 0.0, 1.0);
-    if (loss >= error.loss) {
-      error = {loss, efficiency > 0.0 ? looked_up.efficiency() / efficiency - 1.0 : 0.0};
-    }
-    if (!far_apart(below, above)) break;
-  }
-  return error;
-}
-
-PlannedDig blend_digs(const PlannedDig& a, const PlannedDig& b, double share) {
-  if (share == 0.0) return a;
-  if (far_apart(a, b)) return share < 0.5 ? a : b;
-  const auto mix = [share](double from, double to) { return from + share * (to - from); };
-  PlannedDig dig = a;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    dig.parameters.*info.field = mix(a.parameters.*info.field, b.parameters.*info.field);
-  }
-  dig.start_x = mix(a.start_x, b.start_x);
-  dig.payload_mass = mix(a.payload_mass, b.payload_mass);
-  dig.payload_volume = mix(a.payload_volume, b.payload_volume);
-  dig.energy = mix(a.energy, b.energy);
-  dig.duration = mix(a.duration, b.duration);
-  return dig;
-}
-
 nlohmann::ordered_json library_entry_json(const PathLibraryEntry& entry) {
   nlohmann::ordered_json path;
   for (const DigParameterInfo& info : dig_parameter_table()) {
@@ -316,6 +295,8 @@ nlohmann::ordered_json library_entry_json(const PathLibraryEntry& entry) {
           {"duration_s", entry.dig.duration},
           {"midway_loss", entry.midway.loss},
           {"midway_expectation_error", entry.midway.expectation},
+          {"midway_slope_loss", entry.midway_slope.loss},
+          {"midway_slope_expectation_error", entry.midway_slope.expectation},
           {"evaluations", entry.evaluations}};
 }
 
@@ -335,6 +316,8 @@ PathLibraryEntry read_library_entry(JsonObject object) {
   entry.dig.duration = object.number("duration_s", 0.0);
   entry.midway.loss = object.number("midway_loss", 0.0, 1.0);
   entry.midway.expectation = object.number("midway_expectation_error", -1.0);
+  entry.midway_slope.loss = object.number("midway_slope_loss", 0.0, 1.0);
+  entry.midway_slope.expectation = object.number("midway_slope_expectation_error", -1.0);
   entry.evaluations = static_cast<int>(object.number("evaluations", 0.0, 1e9));
   object.ignore("efficiency_kg_per_kj");
   object.done();

@@ -52,6 +52,13 @@ std::optional<CellOutcome> compute_cell(const LibraryCell& cell, const LibrarySe
                                         const std::vector<CellOutcome>& parents,
                                         const std::function<bool(const SearchProgress&)>& progress);
 
+/// The cell searched once more, from the digs of neighbours alone, nearest first.
+///
+/// @return nothing if `progress` stopped it
+std::optional<CellOutcome> look_again(const LibraryCell& cell, const LibrarySearch& search,
+                                      const std::vector<CellOutcome>& neighbours,
+                                      const std::function<bool(const SearchProgress&)>& progress);
+
 /// The text of a cell's file.
 std::string cell_text(const LibraryCell& cell, const LibrarySearch& search,
                       const CellOutcome& outcome);
@@ -59,14 +66,6 @@ std::string cell_text(const LibraryCell& cell, const LibrarySearch& search,
 /// @throws Error (bad_file) if the text is damaged or of another cell
 CellOutcome read_cell(const std::string& name, const std::string& text, const LibraryCell& cell,
                       const LibrarySearch& search);
-
-/// Digs the path that is looked up midway between two entries.
-/// @param best  efficiency of the best dig there
-MidwayError measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
-                           const PlannedDig& above, double best);
-
-/// Linear between two digs; the nearer one where they are of different kinds.
-PlannedDig blend_digs(const PlannedDig& a, const PlannedDig& b, double share);
 
 nlohmann::ordered_json library_entry_json(const PathLibraryEntry& entry);
 PathLibraryEntry read_library_entry(JsonObject object);

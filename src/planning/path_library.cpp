@@ -11,12 +11,13 @@
 #include "../json_file.hpp"
 #include "fingerprint.hpp"
 #include "library_cells.hpp"
+#include "library_midway.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr const char* format = "excavplan-path-library";
-constexpr int version = 2;
+constexpr int version = 3;
 
 using Entries = std::vector<PathLibraryEntry>;
 
@@ -96,10 +97,27 @@ PlannedDig look_up(const PathLibrary& library, const Row& row, double density) {
   return blend_digs(around.below->dig, around.above->dig, around.share);
 }
 
-MidwayError look_up_error(const PathLibrary& library, const Row& row, double density) {
+/// Of the error midway, at a share of the way from one entry to the next.
+double size_at(double share) { return 4.0 * share * (1.0 - share); }
+
+MidwayError scaled(const MidwayError& error, double size) {
+  return {size * error.loss, size * error.expectation};
+}
+
+MidwayError larger(const MidwayError& a, const MidwayError& b) {
+  return {std::max(a.loss, b.loss),
+          std::abs(a.expectation) > std::abs(b.expectation) ? a.expectation : b.expectation};
+}
+
+MidwayError error_between_densities(const PathLibrary& library, const Row& row, double density) {
   const auto around = densities_around(library, row, density);
-  const double size = 4.0 * around.share * (1.0 - around.share);
-  return {size * around.below->midway.loss, size * around.below->midway.expectation};
+  return scaled(around.below->midway, size_at(around.share));
+}
+
+/// @param row  the lower one of the slopes
+MidwayError error_between_slopes(const PathLibrary& library, const Row& row, double density) {
+  const auto around = densities_around(library, row, density);
+  return larger(around.below->midway_slope, around.above->midway_slope);
 }
 
 /// Rises with slope and density, in this order.
@@ -132,10 +150,14 @@ int PathLibrary::evaluations() const {
 
 PathLibrary load_path_library(const std::string& path) {
   const std::string content = read_file(path);
-  if (content.find("\"version\": 1,") < 100) {
-    throw Error(ErrorKind::bad_file, path +
-                                         ": version: is 1, this program reads version 2; build "
-                                         "the library again: build-path-library --out FILE");
+  for (const int old : {1, 2}) {
+    if (content.find("\"version\": " + std::to_string(old) + ",") < 100) {
+      throw Error(ErrorKind::bad_file, path + ": version: is " + std::to_string(old) +
+                                           ", this program reads version " +
+                                           std::to_string(version) +
+                                           "; build the library again: build-path-library --out "
+                                           "FILE");
+    }
   }
   JsonObject file = JsonObject::open_sealed(path, content, format, version);
   PathLibrary library;
@@ -215,11 +237,14 @@ PlannedDig look_up(const PathLibrary& library, double density_percent, double sl
 
 MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope) {
   const Between<Row> rows = slopes_around(library, slope);
-  const MidwayError below = look_up_error(library, rows.below, density_percent);
-  const MidwayError above = look_up_error(library, rows.above, density_percent);
-  return {std::max(below.loss, above.loss),
-          std::abs(below.expectation) > std::abs(above.expectation) ? below.expectation
-                                                                    : above.expectation};
+  const MidwayError of_density =
+      larger(error_between_densities(library, rows.below, density_percent),
+             error_between_densities(library, rows.above, density_percent));
+  if (rows.share == 0.0) return of_density;
+  const MidwayError of_slope =
+      scaled(error_between_slopes(library, rows.below, density_percent), size_at(rows.share));
+  return {std::min(1.0, of_density.loss + of_slope.loss),
+          of_density.expectation + of_slope.expectation};
 }
 
 }  // namespace excavplan

@@ -16,9 +16,11 @@
 /// Makes path libraries: on one core, on several, on several machines (docs/methods.md#library).
 ///
 /// A library is made of cells, one for each density on each slope for each machine in each soil. A
-/// cell has its own seed, and starts from the dig of another density at most, which depends on its
-/// density alone. So the outcome of a cell depends on nothing but itself, and a library has the
-/// same bytes however its cells are shared out, interrupted and resumed.
+/// cell has its own seed, and starts from the digs of two other densities at most, which depend on
+/// its density alone. So the outcome of a cell depends on nothing but itself. When all cells of a
+/// slope are known, those that their neighbours show to be worse than need be are looked at again
+/// (docs/methods.md#a-second-look). A library has the same bytes however its cells are shared out,
+/// interrupted and resumed.
 
 namespace excavplan {
 

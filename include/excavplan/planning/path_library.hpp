@@ -16,7 +16,7 @@
 
 namespace excavplan {
 
-/// How far a path looked up midway between an entry and the next is off, found by digging it.
+/// How far a path looked up midway between two entries is off, found by digging it.
 struct MidwayError {
   /// Share of the best efficiency there that it gives away [0, 1]; 1 if it cannot be dug. The best
   /// is estimated from the entries around.
@@ -32,6 +32,7 @@ struct PathLibraryEntry {
   int evaluations = 0;  ///< digs simulated for it
   double slope = 0.0;   ///< of the ground in the boom direction, rising away from the machine [rad]
   MidwayError midway;   ///< towards the next density of the same slope; zero for the last
+  MidwayError midway_slope;  ///< towards the next slope at the same density; zero on the last
 };
 
 /// A density at which no dig is feasible on its slope.
@@ -77,8 +78,9 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
 PlannedDig look_up(const PathLibrary& library, double density_percent, double slope = 0.0);
 
 /// How far what look_up() returns may be off: the error found midway between the two densities,
-/// less near an entry (by the square of the distance, as the error of a line between two points);
-/// the larger of the two slopes around.
+/// less near an entry (by the square of the distance, as the error of a line between two points),
+/// the larger of the two slopes around; and likewise that midway between the two slopes, the larger
+/// of the two densities around. The two add up.
 ///
 /// @throws Error as look_up()
 MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope = 0.0);

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "library_midway.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <excavplan/simulation/height_map_simulator.hpp>
+
+namespace excavplan {
+namespace {
+
+constexpr double near = 0.2;            // of a number's search range; ours
+constexpr double clearly_more = 0.005;  // of an efficiency; ours
+
+}  // namespace
+
+bool far_apart(const PlannedDig& a, const PlannedDig& b) {
+  const auto& table = dig_parameter_table();
+  return std::any_of(table.begin(), table.end(), [&](const DigParameterInfo& info) {
+    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
+    return step > near * (info.upper - info.lower);
+  });
+}
+
+PlannedDig blend_digs(const PlannedDig& a, const PlannedDig& b, double share) {
+  if (share == 0.0) return a;
+  if (far_apart(a, b)) return share < 0.5 ? a : b;
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  PlannedDig dig = a;
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    dig.parameters.*info.field = mix(a.parameters.*info.field, b.parameters.*info.field);
+  }
+  dig.start_x = mix(a.start_x, b.start_x);
+  dig.payload_mass = mix(a.payload_mass, b.payload_mass);
+  dig.payload_volume = mix(a.payload_volume, b.payload_volume);
+  dig.energy = mix(a.energy, b.energy);
+  dig.duration = mix(a.duration, b.duration);
+  return dig;
+}
+
+double expected_between(const std::vector<std::pair<double, double>>& known, double place) {
+  double sum = 0.0;
+  for (const auto& [own, value] : known) {
+    double weight = std::log(value);
+    for (const auto& [other, unused] : known) {
+      if (other != own) weight *= (place - other) / (own - other);
+    }
+    sum += weight;
+  }
+  return std::exp(sum);
+}
+
+MidwayDig dig_midway(const LibraryCell& midway, double cell_size, const PlannedDig& looked_up,
+                     double best) {
+  const Terrain ground = sloped_planning_ground(*midway.machine, midway.slope, cell_size);
+  const HeightMapSimulator simulator(*midway.machine, *midway.soil, midway.density_percent);
+  auto outcome = evaluate_dig(*midway.machine, simulator, ground, looked_up.parameters,
+                              StartRule(looked_up.start_x));
+  MidwayDig dug;
+  dug.evaluations = 1;
+  if (const auto* failure = std::get_if<DigFailure>(&outcome);
+      failure != nullptr && std::holds_alternative<Infeasible>(*failure)) {
+    outcome = evaluate_dig(*midway.machine, simulator, ground, looked_up.parameters,
+                           DigSearchOptions{}.start_rule);
+  }
+  const auto* driven = std::get_if<PlannedDig>(&outcome);
+  dug.efficiency = driven ? driven->efficiency() : 0.0;
+  dug.error = {std::clamp(1.0 - dug.efficiency / best, 0.0, 1.0),
+               driven ? looked_up.efficiency() / dug.efficiency - 1.0 : 0.0};
+  return dug;
+}
+
+MidwayDensity measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
+                             const PlannedDig& above, double best) {
+  using Better = MidwayDensity::Better;
+  const auto at = [&](double share) {
+    return dig_midway(midway, cell_size, blend_digs(below, above, share), best);
+  };
+  const MidwayDig upper = at(0.5);
+  if (!far_apart(below, above)) return {upper.error, upper.evaluations, Better::neither};
+  // Either may be looked up, just below or above midway.
+  const MidwayDig lower = at(0.499);
+  MidwayDensity both{upper.error.loss > lower.error.loss ? upper.error : lower.error,
+                     upper.evaluations + lower.evaluations, Better::neither};
+  const double least = (1.0 - clearly_more) * std::max(upper.efficiency, lower.efficiency);
+  if (upper.efficiency < least) both.better = Better::below;
+  if (lower.efficiency < least) both.better = Better::above;
+  return both;
+}
+
+}  // namespace excavplan

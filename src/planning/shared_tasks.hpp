@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include <excavplan/planning/library_build.hpp>
+
+/// @file
+/// How the tasks of a build are shared out among threads and processes, and what the user sees of
+/// it.
+
+namespace excavplan {
+
+/// What the user sees of a build, and whether he stopped it.
+class LibraryWatch {
+ public:
+  explicit LibraryWatch(const LibraryBuildOptions& options) : callback_(options.progress) {}
+
+  bool stopped() const { return stopped_; }
+  void expect(std::size_t cells) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    now_.cells = cells;
+  }
+  void cell_done(bool computed) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++now_.cells_done;
+    computed_ += computed ? 1 : 0;
+    tell();
+  }
+  bool dig_done(const std::string& cell, double best) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++now_.evaluations;
+    now_.cell = cell;
+    now_.best = best;
+    tell();
+    return !stopped_;
+  }
+
+ private:
+  void tell();
+
+  const std::function<bool(const LibraryProgress&)>& callback_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::mutex mutex_;
+  LibraryProgress now_;
+  std::size_t computed_ = 0;
+  std::atomic<bool> stopped_{false};
+};
+
+/// The tasks of a build: each done once, by one thread of one process.
+class SharedTasks {
+ public:
+  explicit SharedTasks(const LibraryBuildOptions& options);
+
+  LibraryWatch& watch() { return watch_; }
+  bool stopped() const { return stopped_; }  ///< by the user, in any of the processes
+
+  /// Does task(0) .. task(count - 1); all processes get all results, by number. A task that was
+  /// stopped gives an empty text, which is left out.
+  std::map<std::size_t, std::string> run(std::size_t count,
+                                         const std::function<std::string(std::size_t)>& task);
+
+ private:
+  /// The only process there is.
+  class Alone : public WorkSharing {
+   public:
+    std::size_t next() override { return next_++; }
+    std::vector<std::string> exchange(const std::string& mine) override {
+      next_ = 0;
+      return {mine};
+    }
+
+   private:
+    std::atomic<std::size_t> next_{0};
+  };
+
+  Alone alone_;
+  WorkSharing& sharing_;
+  unsigned threads_;
+  LibraryWatch watch_;
+  bool stopped_ = false;
+};
+
+}  // namespace excavplan
