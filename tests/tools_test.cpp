@@ -1013,6 +1013,28 @@ TEST_F(Tools, InterruptedSearchSaysSoAndGoesOn) {
   EXPECT_EQ(resumed, at_once);
 }
 
+TEST_F(Tools, InterruptedSearchForAnUncertainDensityGoesOn) {
+  const Words words = {"--density",
+                       "40",
+                       "--density-sd",
+                       "8",
+                       "--search",
+                       "--evaluations",
+                       "150",
+                       "--generations",
+                       "20",
+                       "--checkpoint",
+                       folder.file("digs.json")};
+  const ProgramResult stopped = interrupted("plan-path", words, "generation 0:");
+  EXPECT_EQ(stopped.code, 75) << stopped.err;
+  EXPECT_FALSE(fs::exists(folder.file("digs.json")));
+  EXPECT_TRUE(fs::exists(folder.file("digs.json.soil1")));
+  const json resumed = answer("plan-path", words + Words{"--resume"});
+  json at_once = answer("plan-path", Words(words.begin(), words.end() - 2));
+  at_once["wall_time_s"] = resumed.at("wall_time_s");
+  EXPECT_EQ(resumed, at_once);
+}
+
 // ---- Bad input --------------------------------------------------------------------------------
 
 class BadInput : public Tools {

@@ -153,8 +153,11 @@ struct UncertainDigSearchResult {
 };
 
 /// Searches the best dig for each soil, and from all of them the dig of the highest expected worth.
-/// The stop rules are those of each search; an evaluation of the last is one dig in every soil. A
-/// checkpoint covers the last search.
+/// The stop rules are those of each search; an evaluation of the last is one dig in every soil.
+///
+/// Of a checkpoint FILE the search for the first soil keeps FILE.soil1, that for the second
+/// FILE.soil2 and so on, the last search FILE itself; without `resume` all of them begin anew. What
+/// is stopped before the last search gives the best on average of the digs found so far.
 ///
 /// @return nothing if no dig was feasible
 /// @throws Error as above, and (bad_input) unless the probabilities are positive and add up to 1
