@@ -827,6 +827,21 @@ TEST_F(Tools, SearchTakesGoalRangesStartAndMethod) {
   EXPECT_EQ(paper.at("stopped_by"), "generations");
 }
 
+TEST_F(Tools, PopulationWithoutThePapersMethodIsWarnedOf) {
+  const Words few = {"--density", "40", "--population", "6", "--evaluations", "6"};
+  const json looked_up = answer("plan-path", few);
+  ASSERT_TRUE(warns(looked_up, "population_ignored"));
+  EXPECT_EQ(looked_up["warnings"][0]["message"],
+            "--population has no effect without --search and --method paper: nothing is searched");
+  const json searched = answer("plan-path", few + Words{"--search"});
+  ASSERT_TRUE(warns(searched, "population_ignored"));
+  EXPECT_EQ(searched["warnings"][0]["message"],
+            "--population has no effect without --method paper: the default method has none");
+  const json paper = answer("plan-path", few + Words{"--search", "--method", "paper"});
+  EXPECT_FALSE(warns(paper, "population_ignored"));
+  EXPECT_FALSE(warns(answer("plan-path", {"--density", "40"}), "population_ignored"));
+}
+
 TEST_F(Tools, PlanForAnUncertainDensitySaysWhatKnowingItIsWorth) {
   const Words few = {"--search", "--evaluations", "30"};
   const json plan = answer("plan-path", few + Words{"--density", "40", "--density-sd", "8"});

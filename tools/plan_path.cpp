@@ -318,8 +318,9 @@ std::vector<std::string> lines_of(const Plan& plan, const Density& density, cons
   return lines;
 }
 
-Outcome nothing_found(const Density& density) {
+Outcome nothing_found(const Density& density, const std::vector<Warning>& warnings) {
   Outcome outcome;
+  outcome.warnings = warnings;
   outcome.stopped_early = true;
   outcome.trustworthy = density.trustworthy;
   outcome.json = {{"density_percent", density.percent}, {"source", "search"}, {"path", nullptr}};
@@ -342,20 +343,23 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
+  for (Warning& warning : warnings_of(inputs.dig_search, inputs.search)) {
+    site.warnings.push_back(std::move(warning));
+  }
+  if (!density.trustworthy) {
+    site.warnings.push_back({"density_not_trustworthy",
+                             *inputs.density_from + ": its density is not trustworthy, so the "
+                                                    "path may not suit the soil"});
+  }
   const std::optional<Plan> found =
       inputs.search ? search_plan(inputs, machine, soil, density, site, console)
                     : look_up_plan(inputs, machine, soil, density.percent, site);
-  if (!found) return nothing_found(density);
+  if (!found) return nothing_found(density, site.warnings);
   const Plan& plan = *found;
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = density.trustworthy;
   outcome.warnings = site.warnings;
-  if (!density.trustworthy) {
-    outcome.warnings.push_back({"density_not_trustworthy",
-                                *inputs.density_from + ": its density is not trustworthy, so the "
-                                                       "path may not suit the soil"});
-  }
   outcome.lines = lines_of(plan, density, soil);
   if (inputs.trajectory) {
     write_trajectory(*inputs.trajectory, machine, plan.path, boom_plane_profile(site.ground),
