@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/planning/planner.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -60,6 +61,12 @@ class Planner : public testing::Test {
       slope.bank.z.col(col) += rise * (slope.bank.x(col) - 5.0);
     }
     return slope;
+  }
+
+  Machine weakened(double torque) const {
+    Machine weak = machine_;
+    for (JointLimits& limits : weak.limits) limits.torque = torque;
+    return weak;
   }
 
   /// Efficiency of a dig, 0 if it cannot be done.
@@ -513,12 +520,44 @@ TEST_F(Planner, UnknownGroundUnderTheBucketIsAReason) {
 TEST_F(Planner, NoGroundAtAllIsNoPlan) {
   Terrain unknown = level_;
   unknown.bank.z.setConstant(std::nan(""));
-  EXPECT_FALSE(search_dig(machine_, simulator(40.0), unknown, small_search()));
+  const auto found = search_dig(machine_, simulator(40.0), unknown, small_search());
+  EXPECT_FALSE(found);
+  ASSERT_TRUE(found.nearest);
+  EXPECT_GT(found.nearest->violation, 1.0);
+  EXPECT_FALSE(found.nearest->start_x);
+  const auto outcome = evaluate_dig(machine_, simulator(40.0), unknown, found.nearest->parameters,
+                                    StartRule::Kind::least_work);
+  EXPECT_EQ(found.nearest->reason, describe(std::get<DigFailure>(outcome)));
+}
+
+TEST_F(Planner, WhereTheMachineAlwaysStallsTheNearestDigIsTheOneThatGoesOnLongest) {
+  const Machine weak = weakened(15e3);
+  const HeightMapSimulator hard(weak, soil_, 100.0), medium(weak, soil_, 60.0);
+  const auto found = search_dig(weak, hard, level_, small_search());
+  ASSERT_FALSE(found);
+  ASSERT_TRUE(found.nearest && found.nearest->start_x);
+  const auto share_left = [&](const DigParameters& dig, const StartRule& start) {
+    const auto outcome = evaluate_dig(weak, hard, level_, dig, start);
+    const Stall& stall = std::get<Stall>(std::get<DigFailure>(outcome));
+    return 1.0 - stall.travelled / (dig.penetration_length + dig.drag_length);
+  };
+  const DigParameters& nearest = found.nearest->parameters;
+  EXPECT_NEAR(found.nearest->violation, share_left(nearest, *found.nearest->start_x), 1e-12);
+  EXPECT_EQ(found.nearest->reason, describe(std::get<DigFailure>(evaluate_dig(
+                                       weak, hard, level_, nearest, *found.nearest->start_x))));
+  EXPECT_LT(found.nearest->violation, share_left(paper_fixed_path(), StartRule::Kind::least_work));
+
+  const auto softer = search_dig(weak, medium, level_, small_search());
+  ASSERT_FALSE(softer);
+  const auto uncertain = search_dig(weak, {{&hard, 0.5}, {&medium, 0.5}}, level_, small_search());
+  ASSERT_FALSE(uncertain);
+  ASSERT_TRUE(uncertain.nearest);
+  EXPECT_EQ(uncertain.nearest->violation,
+            std::min(found.nearest->violation, softer.nearest->violation));
 }
 
 TEST_F(Planner, AStallIsAReason) {
-  Machine weak = machine_;
-  for (JointLimits& limits : weak.limits) limits.torque = 15e3;
+  const Machine weak = weakened(15e3);
   const HeightMapSimulator hard(weak, soil_, 100.0);
   const auto outcome = evaluate_dig(weak, hard, level_, paper_fixed_path());
   const std::string text = describe(std::get<DigFailure>(outcome));

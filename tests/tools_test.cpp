@@ -1239,6 +1239,17 @@ TEST_F(BadInput, SearchOptionsAreRefusedByName) {
   refused(2, "--density-sd needs --search", "plan-path", {"--density", "40", "--density-sd", "8"});
 }
 
+TEST_F(BadInput, SearchWithoutADigSaysWhichCameNearestAndWhatStoodInItsWay) {
+  const Words steep = {"--search",      "--evaluations", "5",
+                       "--angle-range", "1.4,1.4",       "--penetration-range",
+                       "0.9,0.9",       "--drag-range",  "3,3"};
+  const std::string nearest =
+      "no dig inside the search ranges can be done on this ground; the nearest, 80.2 deg, 0.900 m, "
+      "3.00 m from x = 6.54 m: the arm stalls in the phase drag after 0.9";
+  refused(2, nearest, "plan-path", steep + Words{"--density", "40"});
+  refused(2, nearest, "plan-path", steep + Words{"--density", "40", "--density-sd", "8"});
+}
+
 TEST_F(BadInput, TablesThatHoldNoSamplesAreRefused) {
   refused(3, "letter.txt: ", "calibrate-density", {"--samples", letter});
   const std::string one = folder.write("one.csv", "bulking_factor,density_percent\n1.1,20\n");

@@ -104,6 +104,13 @@ class DigProblem {
     return search(problem, search_options);
   }
 
+  /// @return nothing if nothing was looked at
+  std::optional<NearestDig> nearest_of(const SearchResult& found) const {
+    if (found.history.empty()) return std::nullopt;
+    return NearestDig{parameters_of(found.best), start_of(found.best), found.outcome.violation,
+                      found.outcome.reason};
+  }
+
   DigSearchResult result_of(const SearchResult& found) const {
     DigSearchResult result;
     result.dig = *mean_dig(path_of(found.best));
@@ -205,13 +212,17 @@ class DigProblem {
     return mean;
   }
 
+  /// Nothing for a path that was not laid out, unless its start is no matter of the path.
+  std::optional<double> start_of(const VectorXd& point) const {
+    if (start_is_searched()) return point(3);
+    if (options_.start_rule.kind == StartRule::Kind::given) return options_.start_rule.x;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto known = starts_.find(key(point));
+    return known != starts_.end() ? std::optional(known->second) : std::nullopt;
+  }
+
   DigPath path_of(const VectorXd& point) const {
-    std::optional<double> start_x;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      const auto known = starts_.find(key(point));
-      if (known != starts_.end()) start_x = known->second;
-    }
+    const std::optional<double> start_x = start_of(point);
     const auto path =
         layout_.path(parameters_of(point), start_x ? StartRule(*start_x) : options_.start_rule);
     return std::get<DigPath>(path);
@@ -261,6 +272,13 @@ class DigProblem {
   std::map<std::vector<double>, double> starts_;  ///< of the drivable paths looked at
 };
 
+template <typename Result>
+Found<Result> nothing(std::optional<NearestDig> nearest) {
+  Found<Result> none;
+  none.nearest = std::move(nearest);
+  return none;
+}
+
 std::string checkpoint_of_soil(const std::string& checkpoint, std::size_t i) {
   return checkpoint.empty() ? checkpoint : checkpoint + ".soil" + std::to_string(i + 1);
 }
@@ -277,7 +295,7 @@ void remove_checkpoints(const std::string& checkpoint, std::size_t soils) {
 }
 
 struct BestForEach {
-  std::vector<std::optional<DigSearchResult>> soils;
+  std::vector<Found<DigSearchResult>> soils;
   bool stopped = false;  ///< by `progress`, which then is not asked again
 
   std::vector<DigParameters> digs() const {
@@ -286,6 +304,15 @@ struct BestForEach {
       if (found) all.push_back(found->dig.parameters);
     }
     return all;
+  }
+  /// In any of the soils.
+  std::optional<NearestDig> nearest() const {
+    std::optional<NearestDig> least;
+    for (const auto& found : soils) {
+      if (!found.nearest || (least && least->violation <= found.nearest->violation)) continue;
+      least = found.nearest;
+    }
+    return least;
   }
   int evaluations() const {
     int sum = 0;
@@ -358,31 +385,31 @@ DigBounds::DigBounds() {
   }
 }
 
-std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
-                                          const Terrain& terrain, const DigSearchOptions& options) {
+Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
+                                  const Terrain& terrain, const DigSearchOptions& options) {
   const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
   DigProblem problem(machine, soils, terrain, options);
   const SearchResult found = problem.run();
-  if (!found.feasible()) return std::nullopt;
+  if (!found.feasible()) return nothing<DigSearchResult>(problem.nearest_of(found));
   return problem.result_of(found);
 }
 
-std::optional<UncertainDigSearchResult> search_dig(const Machine& machine,
-                                                   const std::vector<PossibleSoil>& soils,
-                                                   const Terrain& terrain,
-                                                   const DigSearchOptions& options) {
+Found<UncertainDigSearchResult> search_dig(const Machine& machine,
+                                           const std::vector<PossibleSoil>& soils,
+                                           const Terrain& terrain,
+                                           const DigSearchOptions& options) {
   check(soils);
   check(options);
   if (!options.checkpoint.empty() && !options.resume) {
     remove_checkpoints(options.checkpoint, soils.size());
   }
   const BestForEach best = best_for_each(machine, soils, terrain, options);
-  if (best.digs().empty()) return std::nullopt;
+  if (best.digs().empty()) return nothing<UncertainDigSearchResult>(best.nearest());
   const DigSearchOptions from_bests =
       best.stopped ? only_known(options, best.digs()) : from_known(options, best.digs());
   DigProblem problem(machine, soils, terrain, from_bests);
   const SearchResult found = problem.run();
-  if (!found.feasible()) return std::nullopt;
+  if (!found.feasible()) return nothing<UncertainDigSearchResult>(problem.nearest_of(found));
   UncertainDigSearchResult result;
   result.expected = problem.result_of(found);
   if (best.stopped) {
