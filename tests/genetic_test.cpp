@@ -690,6 +690,21 @@ TEST_F(SearchCheckpointFile, AFinishedSearchIsNotSimulatedAgainAndMayGoFurther) 
   EXPECT_EQ(text_of(result), text_of(search(with_fingerprint(hartmann), further)));
 }
 
+TEST_F(SearchCheckpointFile, KnowsWhatASearchFromOtherPointsAsksAgain) {
+  search(with_fingerprint(hartmann), options());
+  SearchOptions from_there = options();
+  from_there.start = {VectorXd::Constant(3, 0.4)};
+  int calls = 0;
+  const auto counting = [&](const VectorXd& x) {
+    ++calls;
+    return hartmann(x);
+  };
+  const SearchResult resumed = search(with_fingerprint(counting), from_there);
+  EXPECT_LT(calls, resumed.evaluations);
+  from_there.checkpoint.clear();
+  EXPECT_EQ(text_of(resumed), text_of(search(with_fingerprint(hartmann), from_there)));
+}
+
 TEST_F(SearchCheckpointFile, IsRefusedForAnotherSearch) {
   cut_off(20, options(), hartmann);
   SearchProblem other = with_fingerprint(hartmann);

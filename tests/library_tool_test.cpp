@@ -150,24 +150,65 @@ TEST_F(LibraryTool, OptionsThatDoNotGoTogetherAreRefused) {
             std::string::npos);
 }
 
+#ifdef EXCAVPLAN_MPIRUN
+/// Runs mpirun with these words. @return its exit code
+int run_ranks(const std::string& words, const std::string& said) {
+  ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  ::setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
+  const std::string command = EXCAVPLAN_MPIRUN + (" " + words) + " > " + said + " 2>&1";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+#endif
+
 TEST_F(LibraryTool, SameBytesForOneToFourRanks) {
 #ifndef EXCAVPLAN_MPIRUN
   GTEST_SKIP() << "no mpirun";
 #else
-  ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-  ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-  ::setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
   for (const int ranks : {1, 2, 4}) {
-    std::string command = std::string(EXCAVPLAN_MPIRUN) + " -n " + std::to_string(ranks) + " " +
-                          EXCAVPLAN_BIN + "/build-path-library --out " + out_;
-    for (const std::string& word : grid) command += " " + word;
-    ASSERT_EQ(std::system((command + " > " + folder_.file("said") + " 2>&1").c_str()), 0)
-        << content_of(folder_.file("said"));
+    std::string words =
+        "-n " + std::to_string(ranks) + " " + EXCAVPLAN_BIN + "/build-path-library --out " + out_;
+    for (const std::string& word : grid) words += " " + word;
+    ASSERT_EQ(run_ranks(words, folder_.file("said")), 0) << content_of(folder_.file("said"));
     EXPECT_EQ(content_of(out_), whole_) << ranks;
     const std::string said = content_of(folder_.file("said"));
     EXPECT_EQ(said.find(out_), said.rfind(out_)) << said;  // one rank speaks
     fs::remove(out_);
   }
+#endif
+}
+
+TEST_F(LibraryTool, ARankThatFailsAloneSaysWhyAndOneSpeaksForSeveral) {
+#ifndef EXCAVPLAN_MPIRUN
+  GTEST_SKIP() << "no mpirun";
+#else
+  const auto ranks = [&](int count, const std::string& machine) {
+    return "-n " + std::to_string(count) + " " + EXCAVPLAN_BIN + "/build-path-library --out " +
+           out_ + " --machine " + machine;
+  };
+  const std::string reason =
+      "build-path-library: 'nowhere' is neither a file nor one of the machines";
+  const auto times = [](const std::string& text, const std::string& part) {
+    int count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+  };
+  for (const int others : {1, 3}) {
+    EXPECT_EQ(run_ranks(ranks(1, "zx120") + " : " + ranks(others, "nowhere"), folder_.file("said")),
+              2);
+    const std::string said = content_of(folder_.file("said"));
+    EXPECT_EQ(times(said, reason), 1) << said;
+    const auto rank = said.find("rank ");
+    ASSERT_NE(rank, std::string::npos) << said;
+    EXPECT_EQ(said.find(": " + reason, rank), rank + 6) << said;
+    EXPECT_GE(said[rank + 5], '1');
+    EXPECT_LE(said[rank + 5], '0' + others);
+  }
+  EXPECT_EQ(run_ranks(ranks(3, "nowhere"), folder_.file("said")), 2);
+  const std::string said = content_of(folder_.file("said"));
+  EXPECT_EQ(times(said, reason), 1) << said;
+  EXPECT_EQ(times(said, ": " + reason), 0) << said;  // the first, in its own name
 #endif
 }
 

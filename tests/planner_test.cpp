@@ -2,14 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/planning/planner.hpp>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
@@ -18,6 +24,25 @@
 
 namespace excavplan {
 namespace {
+
+/// A user's own simulator: lifts what the three numbers say, at a price of its own.
+class HandMade : public SoilSimulator {
+ public:
+  explicit HandMade(double best_drag = 1.0) : best_drag_(best_drag) {}
+  DigResult dig(const Terrain&, const DigPath& path, const DigOptions&) const override {
+    ++digs;
+    DigResult result;
+    result.payload_mass = 100.0;
+    result.energy.total = 1000.0 + std::pow(path.parameters.drag_length - best_drag_, 2) * 1e4 +
+                          std::pow(path.parameters.penetration_length - 0.4 * best_drag_, 2) * 1e3;
+    return result;
+  }
+
+  mutable std::atomic<int> digs{0};
+
+ private:
+  double best_drag_;
+};
 
 class Planner : public testing::Test {
  protected:
@@ -36,6 +61,12 @@ class Planner : public testing::Test {
       slope.bank.z.col(col) += rise * (slope.bank.x(col) - 5.0);
     }
     return slope;
+  }
+
+  Machine weakened(double torque) const {
+    Machine weak = machine_;
+    for (JointLimits& limits : weak.limits) limits.torque = torque;
+    return weak;
   }
 
   /// Efficiency of a dig, 0 if it cannot be done.
@@ -309,6 +340,161 @@ TEST_F(Planner, AnInterruptedSearchGoesOnFromItsCheckpoint) {
   std::remove(file.c_str());
 }
 
+/// The search for three soils, stopped at some call of its progress and gone on with.
+class UncertainSearch : public Planner {
+ protected:
+  void SetUp() override { TearDown(); }
+  void TearDown() override {
+    for (const std::string& file : files()) std::remove(file.c_str());
+  }
+
+  std::vector<std::string> files() const {
+    return {file_, file_ + ".soil1", file_ + ".soil2", file_ + ".soil3"};
+  }
+  bool is_there(std::size_t i) const { return std::ifstream(files()[i]).good(); }
+
+  DigSearchOptions options(unsigned threads = 1, bool resume = true) const {
+    DigSearchOptions options = small_search(threads);
+    options.stop.evaluations = 40;
+    options.start_rule = 5.5;  // no time goes into the layout
+    options.checkpoint = file_;
+    options.resume = resume;
+    return options;
+  }
+  std::optional<UncertainDigSearchResult> run(const DigSearchOptions& options) const {
+    return search_dig(machine_, soils_, level_, options);
+  }
+  /// Stops at a call of the progress, of all searches together. @return whether there was so many
+  bool stopped_at(int call, DigSearchOptions options) const {
+    int calls = 0;
+    options.progress = [&](const SearchProgress&) { return ++calls < call; };
+    const auto part = run(options);
+    if (calls < call) return false;
+    EXPECT_EQ(calls, call);  // who wants it stopped is not asked again
+    EXPECT_TRUE(!part ||
+                (part->expected.stopped && part->expected.stopped_by == StopReason::cancelled));
+    return true;
+  }
+  int digs() const { return short_.digs + middle_.digs + long_.digs; }
+
+  static std::string text_of(const std::optional<UncertainDigSearchResult>& result) {
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10);
+    const DigSearchResult& found = result.value().expected;
+    const PlannedDig& dig = found.dig;
+    for (const DigParameterInfo& info : dig_parameter_table()) {
+      text << dig.parameters.*info.field << ' ';
+    }
+    text << dig.start_x << ' ' << dig.payload_mass << ' ' << dig.payload_volume << ' ' << dig.energy
+         << ' ' << dig.duration << ' ' << found.worth << ' ' << found.evaluations << ' '
+         << found.refused << ' ' << found.infeasible << ' ' << found.stopped << ' '
+         << name(found.stopped_by) << ' ' << found.insight.second_basin.value_or(-1);
+    for (const auto* ranges : {&found.insight.seen, &found.insight.fitted}) {
+      for (const ParameterRange& range : *ranges) text << ' ' << range.low << ' ' << range.high;
+    }
+    text << ' ' << result->worth_if_known << ' ' << result->evaluations;
+    return text.str();
+  }
+
+  const HandMade short_{0.8}, middle_{1.2}, long_{2.0};
+  const std::vector<PossibleSoil> soils_ = {{&short_, 0.3}, {&middle_, 0.5}, {&long_, 0.2}};
+  const std::string file_ =
+      testing::TempDir() + "excavplan_uncertain_" + std::to_string(::getpid()) + ".json";
+};
+
+TEST_F(UncertainSearch, StoppedAtAnyMomentAndResumedItGivesTheSameBytes) {
+  DigSearchOptions at_once = options();
+  at_once.checkpoint = {};
+  const std::string expected = text_of(run(at_once));
+  int moments = 0, in_last = 0;
+  for (int call = 1;; call += 7) {
+    TearDown();
+    const auto threads = 1 + static_cast<unsigned>(moments) % 3;
+    if (!stopped_at(call, options(threads))) break;
+    ++moments;
+    in_last += is_there(0) ? 1 : 0;
+    if (moments % 3 == 0) stopped_at(call + 11, options(threads));
+    ASSERT_EQ(text_of(run(options(threads))), expected) << call;
+  }
+  EXPECT_GT(in_last, 4);
+  EXPECT_GT(moments - in_last, 12);
+}
+
+TEST_F(UncertainSearch, WhatIsKnownIsNotSimulatedAgain) {
+  const auto digs_of = [&](const auto& work) {
+    const int before = digs();
+    work();
+    return digs() - before;
+  };
+  const int whole = digs_of([&] { run(options()); });
+  const int around = digs_of([&] { run(options()); });  // nothing left to search
+  EXPECT_LT(around, whole / 4);
+  for (const int call : {1, 20, 60, 110, 135, 160}) {
+    TearDown();
+    ASSERT_TRUE(stopped_at(call, options()));
+    int known = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::ifstream file(files()[i]);
+      for (std::string line; std::getline(file, line);) {
+        if (line.find("\"point\"") != std::string::npos) known += i == 0 ? 3 : 1;
+      }
+    }
+    EXPECT_GT(known, call * 3 / 4);  // the progress is told of generations, too
+    EXPECT_EQ(digs_of([&] { run(options()); }), whole - known) << call;
+  }
+}
+
+TEST_F(UncertainSearch, StoppedBeforeTheLastSearchItKnowsTheBestSoFarAndLeavesNoFileOfThat) {
+  DigSearchOptions stopped = options();
+  int calls = 0;
+  stopped.progress = [&](const SearchProgress&) { return ++calls < 70; };
+  const auto part = run(stopped);
+  ASSERT_TRUE(part);
+  EXPECT_TRUE(part->expected.stopped);
+  EXPECT_EQ(part->expected.stopped_by, StopReason::cancelled);
+  EXPECT_FALSE(is_there(0));
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_TRUE(is_there(i)) << i;
+  EXPECT_EQ(part->expected.evaluations, 3);  // the best dig for each soil, in all of them
+  DigSearchOptions alone = options();
+  alone.checkpoint = {};
+  const auto first = search_dig(machine_, short_, level_, alone);  // done before the stop
+  double average = 0.0;
+  for (const PossibleSoil& soil : soils_) {
+    const auto outcome =
+        evaluate_dig(machine_, *soil.simulator, level_, first->dig.parameters, 5.5);
+    average += soil.probability * std::get<PlannedDig>(outcome).efficiency();
+  }
+  EXPECT_GE(part->expected.worth, average);
+}
+
+TEST_F(UncertainSearch, BegunAnewItKeepsNothingOfAnEarlierOne) {
+  run(options());
+  const std::vector<PossibleSoil> others = {{&long_, 0.5}, {&middle_, 0.3}, {&short_, 0.2}};
+  EXPECT_THROW(search_dig(machine_, others, level_, options()), Error);
+  DigSearchOptions anew = options(1, false);
+  int calls = 0;
+  anew.progress = [&](const SearchProgress&) { return ++calls < 10; };
+  search_dig(machine_, others, level_, anew);
+  EXPECT_FALSE(is_there(0));
+  DigSearchOptions plain = options();
+  plain.checkpoint = {};
+  EXPECT_EQ(text_of(search_dig(machine_, others, level_, options())),
+            text_of(search_dig(machine_, others, level_, plain)));
+  DigSearchOptions wrong = options(1, false);
+  wrong.bounds.upper.drag_length = 0.1;
+  EXPECT_THROW(search_dig(machine_, others, level_, wrong), Error);
+  EXPECT_TRUE(is_there(0));  // a slip costs no work done
+}
+
+TEST_F(UncertainSearch, FinishedItMayGoFurther) {
+  run(options());
+  DigSearchOptions further = options();
+  further.stop.evaluations = 60;
+  const std::string resumed = text_of(run(further));  // from other bests of the soils
+  further.checkpoint = {};
+  EXPECT_EQ(resumed, text_of(run(further)));
+}
+
 // ---- Ground ------------------------------------------------------------------------------------
 
 TEST_F(Planner, DigsOnASlopeAndInAPit) {
@@ -334,28 +520,49 @@ TEST_F(Planner, UnknownGroundUnderTheBucketIsAReason) {
 TEST_F(Planner, NoGroundAtAllIsNoPlan) {
   Terrain unknown = level_;
   unknown.bank.z.setConstant(std::nan(""));
-  EXPECT_FALSE(search_dig(machine_, simulator(40.0), unknown, small_search()));
+  const auto found = search_dig(machine_, simulator(40.0), unknown, small_search());
+  EXPECT_FALSE(found);
+  ASSERT_TRUE(found.nearest);
+  EXPECT_GT(found.nearest->violation, 1.0);
+  EXPECT_FALSE(found.nearest->start_x);
+  const auto outcome = evaluate_dig(machine_, simulator(40.0), unknown, found.nearest->parameters,
+                                    StartRule::Kind::least_work);
+  EXPECT_EQ(found.nearest->reason, describe(std::get<DigFailure>(outcome)));
+}
+
+TEST_F(Planner, WhereTheMachineAlwaysStallsTheNearestDigIsTheOneThatGoesOnLongest) {
+  const Machine weak = weakened(15e3);
+  const HeightMapSimulator hard(weak, soil_, 100.0), medium(weak, soil_, 60.0);
+  const auto found = search_dig(weak, hard, level_, small_search());
+  ASSERT_FALSE(found);
+  ASSERT_TRUE(found.nearest && found.nearest->start_x);
+  const auto share_left = [&](const DigParameters& dig, const StartRule& start) {
+    const auto outcome = evaluate_dig(weak, hard, level_, dig, start);
+    const Stall& stall = std::get<Stall>(std::get<DigFailure>(outcome));
+    return 1.0 - stall.travelled / (dig.penetration_length + dig.drag_length);
+  };
+  const DigParameters& nearest = found.nearest->parameters;
+  EXPECT_NEAR(found.nearest->violation, share_left(nearest, *found.nearest->start_x), 1e-12);
+  EXPECT_EQ(found.nearest->reason, describe(std::get<DigFailure>(evaluate_dig(
+                                       weak, hard, level_, nearest, *found.nearest->start_x))));
+  EXPECT_LT(found.nearest->violation, share_left(paper_fixed_path(), StartRule::Kind::least_work));
+
+  const auto softer = search_dig(weak, medium, level_, small_search());
+  ASSERT_FALSE(softer);
+  const auto uncertain = search_dig(weak, {{&hard, 0.5}, {&medium, 0.5}}, level_, small_search());
+  ASSERT_FALSE(uncertain);
+  ASSERT_TRUE(uncertain.nearest);
+  EXPECT_EQ(uncertain.nearest->violation,
+            std::min(found.nearest->violation, softer.nearest->violation));
 }
 
 TEST_F(Planner, AStallIsAReason) {
-  Machine weak = machine_;
-  for (JointLimits& limits : weak.limits) limits.torque = 15e3;
+  const Machine weak = weakened(15e3);
   const HeightMapSimulator hard(weak, soil_, 100.0);
   const auto outcome = evaluate_dig(weak, hard, level_, paper_fixed_path());
   const std::string text = describe(std::get<DigFailure>(outcome));
   EXPECT_NE(text.find("stalls in the phase"), std::string::npos) << text;
 }
-
-/// A user's own simulator: lifts what the three numbers say, at a price of its own.
-class HandMade : public SoilSimulator {
- public:
-  DigResult dig(const Terrain&, const DigPath& path, const DigOptions&) const override {
-    DigResult result;
-    result.payload_mass = 100.0;
-    result.energy.total = 1000.0 + std::pow(path.parameters.drag_length - 1.0, 2) * 1e4;
-    return result;
-  }
-};
 
 TEST_F(Planner, PlansWithAnySimulator) {
   const auto found = search_dig(machine_, HandMade(), level_, small_search());

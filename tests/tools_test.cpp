@@ -827,6 +827,21 @@ TEST_F(Tools, SearchTakesGoalRangesStartAndMethod) {
   EXPECT_EQ(paper.at("stopped_by"), "generations");
 }
 
+TEST_F(Tools, PopulationWithoutThePapersMethodIsWarnedOf) {
+  const Words few = {"--density", "40", "--population", "6", "--evaluations", "6"};
+  const json looked_up = answer("plan-path", few);
+  ASSERT_TRUE(warns(looked_up, "population_ignored"));
+  EXPECT_EQ(looked_up["warnings"][0]["message"],
+            "--population has no effect without --search and --method paper: nothing is searched");
+  const json searched = answer("plan-path", few + Words{"--search"});
+  ASSERT_TRUE(warns(searched, "population_ignored"));
+  EXPECT_EQ(searched["warnings"][0]["message"],
+            "--population has no effect without --method paper: the default method has none");
+  const json paper = answer("plan-path", few + Words{"--search", "--method", "paper"});
+  EXPECT_FALSE(warns(paper, "population_ignored"));
+  EXPECT_FALSE(warns(answer("plan-path", {"--density", "40"}), "population_ignored"));
+}
+
 TEST_F(Tools, PlanForAnUncertainDensitySaysWhatKnowingItIsWorth) {
   const Words few = {"--search", "--evaluations", "30"};
   const json plan = answer("plan-path", few + Words{"--density", "40", "--density-sd", "8"});
@@ -1007,6 +1022,28 @@ TEST_F(Tools, InterruptedSearchSaysSoAndGoesOn) {
       interrupted("plan-path", words + Words{"--plot", plot}, "generation 0:");
   EXPECT_EQ(stopped.code, 75) << stopped.err;
   EXPECT_TRUE(fs::exists(plot));
+  const json resumed = answer("plan-path", words + Words{"--resume"});
+  json at_once = answer("plan-path", Words(words.begin(), words.end() - 2));
+  at_once["wall_time_s"] = resumed.at("wall_time_s");
+  EXPECT_EQ(resumed, at_once);
+}
+
+TEST_F(Tools, InterruptedSearchForAnUncertainDensityGoesOn) {
+  const Words words = {"--density",
+                       "40",
+                       "--density-sd",
+                       "8",
+                       "--search",
+                       "--evaluations",
+                       "150",
+                       "--generations",
+                       "20",
+                       "--checkpoint",
+                       folder.file("digs.json")};
+  const ProgramResult stopped = interrupted("plan-path", words, "generation 0:");
+  EXPECT_EQ(stopped.code, 75) << stopped.err;
+  EXPECT_FALSE(fs::exists(folder.file("digs.json")));
+  EXPECT_TRUE(fs::exists(folder.file("digs.json.soil1")));
   const json resumed = answer("plan-path", words + Words{"--resume"});
   json at_once = answer("plan-path", Words(words.begin(), words.end() - 2));
   at_once["wall_time_s"] = resumed.at("wall_time_s");
@@ -1200,6 +1237,17 @@ TEST_F(BadInput, SearchOptionsAreRefusedByName) {
   refused(2, "--start search needs --search", "plan-path",
           {"--density", "40", "--start", "search"});
   refused(2, "--density-sd needs --search", "plan-path", {"--density", "40", "--density-sd", "8"});
+}
+
+TEST_F(BadInput, SearchWithoutADigSaysWhichCameNearestAndWhatStoodInItsWay) {
+  const Words steep = {"--search",      "--evaluations", "5",
+                       "--angle-range", "1.4,1.4",       "--penetration-range",
+                       "0.9,0.9",       "--drag-range",  "3,3"};
+  const std::string nearest =
+      "no dig inside the search ranges can be done on this ground; the nearest, 80.2 deg, 0.900 m, "
+      "3.00 m from x = 6.54 m: the arm stalls in the phase drag after 0.9";
+  refused(2, nearest, "plan-path", steep + Words{"--density", "40"});
+  refused(2, nearest, "plan-path", steep + Words{"--density", "40", "--density-sd", "8"});
 }
 
 TEST_F(BadInput, TablesThatHoldNoSamplesAreRefused) {

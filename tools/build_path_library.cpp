@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
+#include <iostream>
+#include <sstream>
+#include <vector>
 
 #include <excavplan/planning/library_build.hpp>
 
@@ -327,20 +329,38 @@ Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
   return outcome;
 }
 
+/// What a stream is given while this lives.
+class Captured {
+ public:
+  explicit Captured(std::ostream& stream) : stream_(stream), before_(stream.rdbuf(text_.rdbuf())) {}
+  ~Captured() { stream_.rdbuf(before_); }
+  Captured(const Captured&) = delete;
+  Captured& operator=(const Captured&) = delete;
+
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+  std::ostream& stream_;
+  std::streambuf* before_;
+};
+
 }  // namespace
 }  // namespace excavplan::tools
 
 int main(int argc, char** argv) {
   using namespace excavplan::tools;
   const auto ranks = Ranks::started();
+  std::vector<const char*> words(argv, argv + argc);
+  std::optional<Captured> answer, errors;
   if (ranks && ranks->rank() != 0) {  // the first speaks for all
-    for (std::FILE* stream : {stdout, stderr}) {
-      if (std::freopen("/dev/null", "w", stream) == nullptr) return 1;
-    }
+    words.push_back("--quiet");       // but for errors
+    answer.emplace(std::cout);
+    errors.emplace(std::cerr);
   }
   const int code = tool_main(
-      argc, argv, about, declare,
+      static_cast<int>(words.size()), words.data(), about, declare,
       [&](const Inputs& inputs, Console& console) { return work(inputs, console, ranks.get()); });
-  if (ranks) ranks->end(code);
+  if (ranks) ranks->end(code, errors ? errors->text() : "");
   return code;
 }

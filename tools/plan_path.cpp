@@ -231,14 +231,10 @@ void add_uncertainty(const UncertainDigSearchResult& found, double sd, Plan& pla
   plan.lines.push_back(line);
 }
 
-/// Why not even the paper's fixed path can be dug, empty if it can.
-std::string trouble_with_fixed_path(const Inputs& inputs, const Machine& machine,
-                                    const SoilSimulator& simulator, const Site& site) {
-  StartRule start = start_rule_of(inputs.dig_search);
-  if (start.kind == StartRule::Kind::searched) start = StartRule::Kind::least_work;
-  const auto outcome = evaluate_dig(machine, simulator, site.ground, paper_fixed_path(), start);
-  const auto* failure = std::get_if<DigFailure>(&outcome);
-  return failure ? "; the paper's fixed path: " + describe(*failure) : "";
+/// Nothing if the search was interrupted, else why there is none.
+std::nullopt_t no_plan(const std::optional<NearestDig>& nearest, const Console& console) {
+  if (console.stop_requested()) return std::nullopt;
+  refuse("no dig inside the search ranges can be done on this ground" + nearest_text(nearest));
 }
 
 /// @return nothing if the search was interrupted before it found a dig
@@ -249,7 +245,6 @@ std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, co
   Plan plan;
   plan.start_rule = describe(options.start_rule);
   const HeightMapSimulator simulator(machine, soil, density.percent);
-  bool found = false;
   if (density.sd > 0.0) {
     if (inputs.dig_search.evaluations == 0 && inputs.dig_search.method == "default")
       options.stop.evaluations = evaluations_each;
@@ -261,19 +256,14 @@ std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, co
       soils.push_back({nullptr, probability});
     }
     for (std::size_t i = 0; i < soils.size(); ++i) soils[i].simulator = &simulators[i];
-    if (const auto uncertain = search_dig(machine, soils, site.ground, options)) {
-      add_search(uncertain->expected, options.objective, plan);
-      add_uncertainty(*uncertain, density.sd, plan);
-      found = true;
-    }
-  } else if (const auto known = search_dig(machine, simulator, site.ground, options)) {
+    const auto uncertain = search_dig(machine, soils, site.ground, options);
+    if (!uncertain) return no_plan(uncertain.nearest, console);
+    add_search(uncertain->expected, options.objective, plan);
+    add_uncertainty(*uncertain, density.sd, plan);
+  } else {
+    const auto known = search_dig(machine, simulator, site.ground, options);
+    if (!known) return no_plan(known.nearest, console);
     add_search(*known, options.objective, plan);
-    found = true;
-  }
-  if (!found && console.stop_requested()) return std::nullopt;
-  if (!found) {
-    refuse("no dig inside the search ranges can be driven on this ground" +
-           trouble_with_fixed_path(inputs, machine, simulator, site));
   }
   plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
   return plan;
@@ -318,8 +308,9 @@ std::vector<std::string> lines_of(const Plan& plan, const Density& density, cons
   return lines;
 }
 
-Outcome nothing_found(const Density& density) {
+Outcome nothing_found(const Density& density, const std::vector<Warning>& warnings) {
   Outcome outcome;
+  outcome.warnings = warnings;
   outcome.stopped_early = true;
   outcome.trustworthy = density.trustworthy;
   outcome.json = {{"density_percent", density.percent}, {"source", "search"}, {"path", nullptr}};
@@ -342,20 +333,23 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
+  for (Warning& warning : warnings_of(inputs.dig_search, inputs.search)) {
+    site.warnings.push_back(std::move(warning));
+  }
+  if (!density.trustworthy) {
+    site.warnings.push_back({"density_not_trustworthy",
+                             *inputs.density_from + ": its density is not trustworthy, so the "
+                                                    "path may not suit the soil"});
+  }
   const std::optional<Plan> found =
       inputs.search ? search_plan(inputs, machine, soil, density, site, console)
                     : look_up_plan(inputs, machine, soil, density.percent, site);
-  if (!found) return nothing_found(density);
+  if (!found) return nothing_found(density, site.warnings);
   const Plan& plan = *found;
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = density.trustworthy;
   outcome.warnings = site.warnings;
-  if (!density.trustworthy) {
-    outcome.warnings.push_back({"density_not_trustworthy",
-                                *inputs.density_from + ": its density is not trustworthy, so the "
-                                                       "path may not suit the soil"});
-  }
   outcome.lines = lines_of(plan, density, soil);
   if (inputs.trajectory) {
     write_trajectory(*inputs.trajectory, machine, plan.path, boom_plane_profile(site.ground),

@@ -8,14 +8,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <sstream>
 #include <thread>
 
 namespace excavplan::tools {
 namespace {
 
-/// Takes numbers from a counter in the memory of rank 0, which need not do anything for it.
+/// Takes numbers from counters in the memory of rank 0, which need not do anything for it.
 class MpiRanks : public Ranks {
  public:
   MpiRanks() {
@@ -23,9 +25,10 @@ class MpiRanks : public Ranks {
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
-    const MPI_Aint bytes = rank_ == 0 ? sizeof(long long) : 0;
-    MPI_Win_allocate(bytes, sizeof(long long), MPI_INFO_NULL, MPI_COMM_WORLD, &counter_, &window_);
+    const MPI_Aint bytes = rank_ == 0 ? 2 * sizeof(long long) : 0;
+    MPI_Win_allocate(bytes, sizeof(long long), MPI_INFO_NULL, MPI_COMM_WORLD, &counters_, &window_);
     MPI_Win_lock_all(0, window_);
+    if (rank_ == 0) replaced(failures, 0, MPI_REPLACE);
     begin_anew();
   }
 
@@ -33,11 +36,7 @@ class MpiRanks : public Ranks {
 
   std::size_t next() override {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const long long one = 1;
-    long long taken = 0;
-    MPI_Fetch_and_op(&one, &taken, MPI_LONG_LONG, 0, 0, MPI_SUM, window_);
-    MPI_Win_flush(0, window_);
-    return static_cast<std::size_t>(taken);
+    return static_cast<std::size_t>(replaced(taken, 1, MPI_SUM));
   }
 
   std::vector<std::string> exchange(const std::string& mine) override {
@@ -59,11 +58,10 @@ class MpiRanks : public Ranks {
     return texts;
   }
 
-  void end(int code) override {
+  void end(int code, const std::string& complaint) override {
     constexpr int stopped_early = 75;
     if (code != 0 && code != stopped_early) {
-      // Where all fail alike, the first rank tells why before it is taken down.
-      if (rank_ != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+      complain(complaint);
       MPI_Abort(MPI_COMM_WORLD, code);
     }
     MPI_Win_unlock_all(window_);
@@ -72,20 +70,39 @@ class MpiRanks : public Ranks {
   }
 
  private:
+  enum Counter { taken, failures };
+
   void begin_anew() {
     MPI_Barrier(MPI_COMM_WORLD);
-    if (rank_ == 0) {
-      const long long zero = 0;
-      long long before = 0;
-      MPI_Fetch_and_op(&zero, &before, MPI_LONG_LONG, 0, 0, MPI_REPLACE, window_);
-      MPI_Win_flush(0, window_);
-    }
+    if (rank_ == 0) replaced(taken, 0, MPI_REPLACE);
     MPI_Barrier(MPI_COMM_WORLD);
+  }
+
+  /// What a counter held before.
+  long long replaced(Counter counter, long long operand, MPI_Op operation) {
+    long long before = 0;
+    MPI_Fetch_and_op(&operand, &before, MPI_LONG_LONG, 0, counter, operation, window_);
+    MPI_Win_flush(0, window_);
+    return before;
+  }
+
+  /// Where all fail alike, the first rank has said why by itself; where only others do, the first
+  /// of them to come here speaks. Then it takes down those who wait.
+  void complain(const std::string& text) {
+    if (rank_ != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+    if (replaced(failures, 1, MPI_SUM) > 0) {
+      std::this_thread::sleep_for(std::chrono::seconds(10));
+    } else if (rank_ != 0) {
+      std::istringstream lines(text);
+      for (std::string line; std::getline(lines, line);) {
+        std::fprintf(stderr, "rank %d: %s\n", rank_, line.c_str());
+      }
+    }
   }
 
   int rank_ = 0;
   int size_ = 1;
-  long long* counter_ = nullptr;
+  long long* counters_ = nullptr;
   MPI_Win window_ = MPI_WIN_NULL;
   std::mutex mutex_;
 };

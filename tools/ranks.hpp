@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <excavplan/planning/library_build.hpp>
 
@@ -16,8 +17,9 @@ class Ranks : public WorkSharing {
 
   virtual int rank() const = 0;
   /// Ends this process's part with its exit code. One that failed takes the others with it, who
-  /// would wait for it.
-  virtual void end(int code) = 0;
+  /// would wait for it. What it has to say of that is printed, "rank 3: " before each line, unless
+  /// the first rank fails as well and tells it itself; of several others one speaks.
+  virtual void end(int code, const std::string& complaint) = 0;
 };
 
 }  // namespace excavplan::tools

@@ -58,10 +58,18 @@ nlohmann::ordered_json dig_json(const PlannedDig& dig) {
           {"duration_s", dig.duration}};
 }
 
-std::string path_text(const PlannedDig& dig) {
-  return readable(degrees * dig.parameters.penetration_angle) + " deg, " +
-         readable(dig.parameters.penetration_length) + " m, " +
-         readable(dig.parameters.drag_length) + " m from x = " + readable(dig.start_x) + " m";
+std::string path_text(const DigParameters& parameters, const std::optional<double>& start_x) {
+  return readable(degrees * parameters.penetration_angle) + " deg, " +
+         readable(parameters.penetration_length) + " m, " + readable(parameters.drag_length) +
+         " m" + (start_x ? " from x = " + readable(*start_x) + " m" : "");
+}
+
+std::string path_text(const PlannedDig& dig) { return path_text(dig.parameters, dig.start_x); }
+
+std::string nearest_text(const std::optional<NearestDig>& nearest) {
+  if (!nearest) return "";
+  return "; the nearest, " + path_text(nearest->parameters, nearest->start_x) + ": " +
+         nearest->reason;
 }
 
 std::vector<std::string> dig_lines(const PlannedDig& dig) {

@@ -25,6 +25,8 @@ nlohmann::ordered_json path_json(const PlannedDig& dig);
 
 /// "45.0 deg, 0.350 m, 1.500 m from x = 6.05 m"
 std::string path_text(const PlannedDig& dig);
+/// "; the nearest, ANGLE, ...: why it cannot be done", to follow what says that none was found.
+std::string nearest_text(const std::optional<NearestDig>& nearest);
 /// What it lifts and costs.
 std::vector<std::string> dig_lines(const PlannedDig& dig);
 

@@ -93,7 +93,11 @@ PlannedDig planned_dig(const Inputs& inputs, const Setting& setting, double esti
   search.threads = static_cast<unsigned>(inputs.threads);
   const HeightMapSimulator simulator(setting.machine, setting.soil, estimated_density);
   const auto found = search_dig(setting.machine, simulator, setting.ground, search);
-  if (!found) throw Error(ErrorKind::bad_input, "no dig is feasible");
+  if (!found) {
+    throw Error(ErrorKind::bad_input, "no dig can be done at a density of " +
+                                          readable(estimated_density) + " %" +
+                                          nearest_text(found.nearest));
+  }
   return found->dig;
 }
 

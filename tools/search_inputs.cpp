@@ -61,7 +61,7 @@ std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inpu
     return memetic;
   }
   GeneticAlgorithm paper;
-  paper.population = inputs.population;
+  paper.population = inputs.population.value_or(paper.population);
   if (inputs.generations != 0) paper.generations = inputs.generations;
   return paper;
 }
@@ -82,7 +82,9 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.text("drag-range", "FROM,TO", inputs.ranges[2], "drag lengths searched");
   arguments.choice("method", inputs.method, {"default", "paper"},
                    "of the search; paper: the paper's genetic algorithm");
-  arguments.option("population", inputs.population, "individuals, --method paper");
+  arguments.option("population", inputs.population,
+                   "individuals, --method paper (default: " +
+                       std::to_string(GeneticAlgorithm{}.population) + ")");
   arguments.option("generations", inputs.generations, "of the search, 0 for the method's own");
   arguments.option("evaluations", inputs.evaluations,
                    "digs simulated at most in one search, 0 for the method's own: 400 (100 for "
@@ -134,6 +136,14 @@ void check(const SearchInputs& inputs) {
   if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
   objective_of(inputs);
   bounds_of(inputs);
+}
+
+std::vector<Warning> warnings_of(const SearchInputs& inputs, bool searches) {
+  if (!inputs.population || (searches && inputs.method == "paper")) return {};
+  return {{"population_ignored",
+           std::string("--population has no effect without ") + (searches ? "" : "--search and ") +
+               "--method paper: " +
+               (searches ? "the default method has none" : "nothing is searched")}};
 }
 
 }  // namespace excavplan::tools

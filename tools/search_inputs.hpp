@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <excavplan/planning/planner.hpp>
 
@@ -20,7 +21,7 @@ struct SearchInputs {
   std::string start = "work";
   std::array<std::optional<std::string>, 3> ranges;
   std::string method = "default";
-  int population = GeneticAlgorithm{}.population;
+  std::optional<int> population;
   int generations = 0;
   int evaluations = 0;
   std::optional<std::string> checkpoint;
@@ -33,6 +34,9 @@ void declare_search(Arguments& arguments, SearchInputs& inputs);
 
 /// What can be told to be wrong before anything is read. @throws Error (bad_input)
 void check(const SearchInputs& inputs);
+
+/// Of options that have no effect, `searches` or not.
+std::vector<Warning> warnings_of(const SearchInputs& inputs, bool searches);
 
 StartRule start_rule_of(const SearchInputs& inputs);
 

@@ -357,6 +357,12 @@ void Arguments::option(const std::string& name, int& value, const std::string& h
        [&value, name](const std::string& text) { value = parse_integer<int>("--" + name, text); }});
 }
 
+void Arguments::option(const std::string& name, std::optional<int>& value,
+                       const std::string& help) {
+  add({name, "N", help, value ? std::to_string(*value) : "", false, false,
+       [&value, name](const std::string& text) { value = parse_integer<int>("--" + name, text); }});
+}
+
 void Arguments::option(const std::string& name, std::uint64_t& value, const std::string& help) {
   add({name, "N", help, std::to_string(value), false, false,
        [&value, name](const std::string& text) {

@@ -69,6 +69,7 @@ class Arguments {
   void option(const std::string& name, std::optional<double>& value, Quantity quantity,
               const std::string& help);
   void option(const std::string& name, int& value, const std::string& help);
+  void option(const std::string& name, std::optional<int>& value, const std::string& help);
   void option(const std::string& name, std::uint64_t& value, const std::string& help);
   void option(const std::string& name, std::optional<Rectangle>& value, const std::string& help);
   void option(const std::string& name, std::optional<DigParameters>& value,

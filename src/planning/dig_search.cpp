@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -45,6 +46,22 @@ void check(const std::vector<PossibleSoil>& soils) {
   require(std::abs(sum - 1.0) < 1e-9, "the probability of all soils", sum, "1");
 }
 
+void check(const DigSearchOptions& options) {
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    const double lower = options.bounds.lower.*info.field;
+    const double upper = options.bounds.upper.*info.field;
+    const std::string what = std::string("the search range of ") + info.name;
+    require(lower >= 0.0 && std::isfinite(lower), what + " from", lower, "finite and at least 0");
+    require(upper >= lower && std::isfinite(upper), what + " to", upper,
+            "finite and not below its lower end");
+  }
+  const DigObjective& objective = options.objective;
+  require(objective.time_price >= 0.0 && std::isfinite(objective.time_price), "the price of time",
+          objective.time_price, "at least 0 W and finite");
+  require(objective.rest_of_cycle >= 0.0 && std::isfinite(objective.rest_of_cycle),
+          "the rest of the cycle", objective.rest_of_cycle, "at least 0 s and finite");
+}
+
 /// The checksum of numbers, byte by byte.
 class Fingerprint {
  public:
@@ -68,7 +85,7 @@ class DigProblem {
   DigProblem(const Machine& machine, const std::vector<PossibleSoil>& soils, const Terrain& terrain,
              const DigSearchOptions& options)
       : soils_(soils), terrain_(terrain), options_(options), layout_(machine, terrain) {
-    check();
+    check(options);
   }
 
   SearchResult run() {
@@ -85,6 +102,13 @@ class DigProblem {
                           [this](const VectorXd& point) { return lay_out(point); }};
     if (!options_.checkpoint.empty()) problem.fingerprint = fingerprint();
     return search(problem, search_options);
+  }
+
+  /// @return nothing if nothing was looked at
+  std::optional<NearestDig> nearest_of(const SearchResult& found) const {
+    if (found.history.empty()) return std::nullopt;
+    return NearestDig{parameters_of(found.best), start_of(found.best), found.outcome.violation,
+                      found.outcome.reason};
   }
 
   DigSearchResult result_of(const SearchResult& found) const {
@@ -109,22 +133,6 @@ class DigProblem {
 
  private:
   bool start_is_searched() const { return options_.start_rule.kind == StartRule::Kind::searched; }
-
-  void check() const {
-    for (const DigParameterInfo& info : dig_parameter_table()) {
-      const double lower = options_.bounds.lower.*info.field;
-      const double upper = options_.bounds.upper.*info.field;
-      const std::string what = std::string("the search range of ") + info.name;
-      require(lower >= 0.0 && std::isfinite(lower), what + " from", lower, "finite and at least 0");
-      require(upper >= lower && std::isfinite(upper), what + " to", upper,
-              "finite and not below its lower end");
-    }
-    const DigObjective& objective = options_.objective;
-    require(objective.time_price >= 0.0 && std::isfinite(objective.time_price), "the price of time",
-            objective.time_price, "at least 0 W and finite");
-    require(objective.rest_of_cycle >= 0.0 && std::isfinite(objective.rest_of_cycle),
-            "the rest of the cycle", objective.rest_of_cycle, "at least 0 s and finite");
-  }
 
   SearchBox box() const {
     const Machine& machine = layout_.machine();
@@ -204,13 +212,17 @@ class DigProblem {
     return mean;
   }
 
+  /// Nothing for a path that was not laid out, unless its start is no matter of the path.
+  std::optional<double> start_of(const VectorXd& point) const {
+    if (start_is_searched()) return point(3);
+    if (options_.start_rule.kind == StartRule::Kind::given) return options_.start_rule.x;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto known = starts_.find(key(point));
+    return known != starts_.end() ? std::optional(known->second) : std::nullopt;
+  }
+
   DigPath path_of(const VectorXd& point) const {
-    std::optional<double> start_x;
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      const auto known = starts_.find(key(point));
-      if (known != starts_.end()) start_x = known->second;
-    }
+    const std::optional<double> start_x = start_of(point);
     const auto path =
         layout_.path(parameters_of(point), start_x ? StartRule(*start_x) : options_.start_rule);
     return std::get<DigPath>(path);
@@ -260,26 +272,76 @@ class DigProblem {
   std::map<std::vector<double>, double> starts_;  ///< of the drivable paths looked at
 };
 
+template <typename Result>
+Found<Result> nothing(std::optional<NearestDig> nearest) {
+  Found<Result> none;
+  none.nearest = std::move(nearest);
+  return none;
+}
+
+std::string checkpoint_of_soil(const std::string& checkpoint, std::size_t i) {
+  return checkpoint.empty() ? checkpoint : checkpoint + ".soil" + std::to_string(i + 1);
+}
+
+/// Of an earlier search: should this one end before it has written all of its own, resuming it
+/// would meet them.
+void remove_checkpoints(const std::string& checkpoint, std::size_t soils) {
+  std::vector<std::string> files = {checkpoint};
+  for (std::size_t i = 0; i < soils; ++i) files.push_back(checkpoint_of_soil(checkpoint, i));
+  for (const std::string& file : files) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error)) std::filesystem::remove(file, error);
+  }
+}
+
+struct BestForEach {
+  std::vector<Found<DigSearchResult>> soils;
+  bool stopped = false;  ///< by `progress`, which then is not asked again
+
+  std::vector<DigParameters> digs() const {
+    std::vector<DigParameters> all;
+    for (const auto& found : soils) {
+      if (found) all.push_back(found->dig.parameters);
+    }
+    return all;
+  }
+  /// In any of the soils.
+  std::optional<NearestDig> nearest() const {
+    std::optional<NearestDig> least;
+    for (const auto& found : soils) {
+      if (!found.nearest || (least && least->violation <= found.nearest->violation)) continue;
+      least = found.nearest;
+    }
+    return least;
+  }
+  int evaluations() const {
+    int sum = 0;
+    for (const auto& found : soils) sum += found ? found->evaluations : 0;
+    return sum;
+  }
+};
+
 /// Side by side, each from nothing: the best dig for one soil need not be near that for another.
-std::vector<std::optional<DigSearchResult>> best_for_each(const Machine& machine,
-                                                          const std::vector<PossibleSoil>& soils,
-                                                          const Terrain& terrain,
-                                                          const DigSearchOptions& options) {
-  DigSearchOptions one = options;
-  one.checkpoint = {};
-  one.threads = 1;
+BestForEach best_for_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                          const Terrain& terrain, const DigSearchOptions& options) {
+  BestForEach best;
   std::mutex mutex;
+  DigSearchOptions shared = options;
+  shared.threads = 1;
   if (options.progress) {
-    one.progress = [&](const SearchProgress& progress) {
+    shared.progress = [&](const SearchProgress& progress) {
       const std::lock_guard<std::mutex> lock(mutex);
-      return options.progress(progress);
+      best.stopped = best.stopped || !options.progress(progress);
+      return !best.stopped;
     };
   }
-  std::vector<std::optional<DigSearchResult>> each(soils.size());
+  best.soils.resize(soils.size());
   parallel_for(soils.size(), options.threads, [&](std::size_t i) {
-    each[i] = search_dig(machine, *soils[i].simulator, terrain, one);
+    DigSearchOptions one = shared;
+    one.checkpoint = checkpoint_of_soil(options.checkpoint, i);
+    best.soils[i] = search_dig(machine, *soils[i].simulator, terrain, one);
   });
-  return each;
+  return best;
 }
 
 /// Nothing but a polish of the digs given, by the default method.
@@ -291,6 +353,19 @@ DigSearchOptions from_known(const DigSearchOptions& options, std::vector<DigPara
   }
   polish.start = std::move(start);
   return polish;
+}
+
+/// Nothing but the digs given. They are those of searches not finished: a checkpoint of this one
+/// would be of no use to the next.
+DigSearchOptions only_known(const DigSearchOptions& options, std::vector<DigParameters> start) {
+  DigSearchOptions known = options;
+  MemeticSearch no_search;
+  no_search.first_generation = no_search.generations = no_search.basins = 0;
+  known.method = no_search;
+  known.start = std::move(start);
+  known.progress = {};
+  known.checkpoint = {};
+  return known;
 }
 
 }  // namespace
@@ -310,39 +385,42 @@ DigBounds::DigBounds() {
   }
 }
 
-std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
-                                          const Terrain& terrain, const DigSearchOptions& options) {
+Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
+                                  const Terrain& terrain, const DigSearchOptions& options) {
   const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
   DigProblem problem(machine, soils, terrain, options);
   const SearchResult found = problem.run();
-  if (!found.feasible()) return std::nullopt;
+  if (!found.feasible()) return nothing<DigSearchResult>(problem.nearest_of(found));
   return problem.result_of(found);
 }
 
-std::optional<UncertainDigSearchResult> search_dig(const Machine& machine,
-                                                   const std::vector<PossibleSoil>& soils,
-                                                   const Terrain& terrain,
-                                                   const DigSearchOptions& options) {
+Found<UncertainDigSearchResult> search_dig(const Machine& machine,
+                                           const std::vector<PossibleSoil>& soils,
+                                           const Terrain& terrain,
+                                           const DigSearchOptions& options) {
   check(soils);
-  const auto each = best_for_each(machine, soils, terrain, options);
-  UncertainDigSearchResult result;
-  std::vector<DigParameters> bests;
-  for (const auto& found : each) {
-    if (!found) continue;
-    result.evaluations += found->evaluations;
-    bests.push_back(found->dig.parameters);
+  check(options);
+  if (!options.checkpoint.empty() && !options.resume) {
+    remove_checkpoints(options.checkpoint, soils.size());
   }
-  if (bests.empty()) return std::nullopt;
-  const DigSearchOptions from_bests = from_known(options, bests);
+  const BestForEach best = best_for_each(machine, soils, terrain, options);
+  if (best.digs().empty()) return nothing<UncertainDigSearchResult>(best.nearest());
+  const DigSearchOptions from_bests =
+      best.stopped ? only_known(options, best.digs()) : from_known(options, best.digs());
   DigProblem problem(machine, soils, terrain, from_bests);
   const SearchResult found = problem.run();
-  if (!found.feasible()) return std::nullopt;
+  if (!found.feasible()) return nothing<UncertainDigSearchResult>(problem.nearest_of(found));
+  UncertainDigSearchResult result;
   result.expected = problem.result_of(found);
-  result.evaluations += found.evaluations * static_cast<int>(soils.size());
+  if (best.stopped) {
+    result.expected.stopped = true;
+    result.expected.stopped_by = StopReason::cancelled;
+  }
+  result.evaluations = best.evaluations() + found.evaluations * static_cast<int>(soils.size());
   for (std::size_t i = 0; i < soils.size(); ++i) {
     const double same = problem.worth_in(soils[i], found.best);
-    result.worth_if_known +=
-        soils[i].probability * (each[i] ? std::max(each[i]->worth, same) : same);
+    const auto& own = best.soils[i];
+    result.worth_if_known += soils[i].probability * (own ? std::max(own->worth, same) : same);
   }
   return result;
 }

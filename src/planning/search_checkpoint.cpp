@@ -37,13 +37,10 @@ std::string describe(const GeneticAlgorithm& method) {
          number_text(method.mutation);
 }
 
-/// All that decides the course of a search, stop rules apart.
+/// All that decides the course of a search, stop rules and given points apart.
 std::string describe(const SearchOptions& options) {
-  std::string text =
-      std::visit([](const auto& method) { return describe(method); }, options.method);
-  text += ", seed " + std::to_string(options.seed);
-  for (const Eigen::VectorXd& start : options.start) text += ", start " + text_of(start);
-  return text;
+  return std::visit([](const auto& method) { return describe(method); }, options.method) +
+         ", seed " + std::to_string(options.seed);
 }
 
 std::string describe(const SearchProblem& problem) {

@@ -159,7 +159,8 @@ struct SearchResult {
 /// The same bytes for any number of threads and any order in which evaluations end, and for a
 /// search that was interrupted and resumed any number of times (a stop by `seconds` excepted):
 /// the draws are keyed by seed, generation and individual, and a resumed search is replayed with
-/// the outcomes of the checkpoint. Stop rules and threads may be other ones when it is resumed.
+/// the outcomes of the checkpoint. Stop rules, threads and given points may be other ones when it
+/// is resumed.
 ///
 /// @throws Error (bad_input) if an option or the box is out of range, or if the first 20
 ///         evaluations all failed (the first reason is quoted)

@@ -123,16 +123,31 @@ struct DigSearchResult {
   SearchInsight insight;  ///< in the order of dig_parameter_table(), the start last if searched
 };
 
+/// The dig that a search came nearest to a feasible one with.
+struct NearestDig {
+  DigParameters parameters;
+  std::optional<double> start_x;  ///< [m]; nothing if no start was found for it
+  /// What is left of the path where the machine stalls, 0 .. 1; above 1 for a path that cannot be
+  /// driven, more the earlier it fails.
+  double violation = 0.0;
+  std::string reason;  ///< for people
+};
+
+/// The result of a search. If no dig was feasible it is empty, and says which came nearest.
+template <typename Result>
+struct Found : std::optional<Result> {
+  using std::optional<Result>::optional;
+  std::optional<NearestDig> nearest;  ///< if empty; nothing if it was stopped before the first dig
+};
+
 /// Searches the three numbers of a dig for the highest worth. All checks of the path come before
 /// the simulation: what cannot be driven costs no evaluation, and its violation is what is left of
 /// the path where it fails, so that the search finds its way out.
 ///
-/// @return nothing if no dig was feasible
 /// @throws Error (bad_input) if an option is out of range
 /// @throws Error (bad_file) if a checkpoint is of another search, truncated or altered
-std::optional<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
-                                          const Terrain& terrain,
-                                          const DigSearchOptions& options = {});
+Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
+                                  const Terrain& terrain, const DigSearchOptions& options = {});
 
 /// One of the soils that the ground may be.
 struct PossibleSoil {
@@ -153,15 +168,17 @@ struct UncertainDigSearchResult {
 };
 
 /// Searches the best dig for each soil, and from all of them the dig of the highest expected worth.
-/// The stop rules are those of each search; an evaluation of the last is one dig in every soil. A
-/// checkpoint covers the last search.
+/// The stop rules are those of each search; an evaluation of the last is one dig in every soil.
 ///
-/// @return nothing if no dig was feasible
+/// Of a checkpoint FILE the search for the first soil keeps FILE.soil1, that for the second
+/// FILE.soil2 and so on, the last search FILE itself; without `resume` all of them begin anew. What
+/// is stopped before the last search gives the best on average of the digs found so far.
+///
 /// @throws Error as above, and (bad_input) unless the probabilities are positive and add up to 1
-std::optional<UncertainDigSearchResult> search_dig(const Machine& machine,
-                                                   const std::vector<PossibleSoil>& soils,
-                                                   const Terrain& terrain,
-                                                   const DigSearchOptions& options = {});
+Found<UncertainDigSearchResult> search_dig(const Machine& machine,
+                                           const std::vector<PossibleSoil>& soils,
+                                           const Terrain& terrain,
+                                           const DigSearchOptions& options = {});
 
 /// A density the ground may have.
 struct PossibleDensity {
