@@ -92,6 +92,17 @@ TEST_F(Planner, EvaluatesThePapersFixedPath) {
   EXPECT_LT(dig.duration, 8.0);
 }
 
+TEST_F(Planner, SlopeOfTheGroundIsTheLineThroughWhatIsKnown) {
+  EXPECT_EQ(boom_plane_slope(level_, machine_.track_front), 0.0);
+  Terrain ground = slope(0.2);
+  EXPECT_NEAR(boom_plane_slope(ground, machine_.track_front), std::atan(0.2), 1e-12);
+  ground.bank.z.rightCols(20).setConstant(std::nan(""));
+  ground.bank.z.leftCols(10) += 1.0;  // under the machine
+  EXPECT_NEAR(boom_plane_slope(ground, machine_.track_front), std::atan(0.2), 1e-12);
+  ground.bank.z.setConstant(std::nan(""));
+  EXPECT_TRUE(std::isnan(boom_plane_slope(ground, machine_.track_front)));
+}
+
 TEST_F(Planner, PlannedPathBeatsThePapersFixedPath) {
   for (const double density : {10.0, 40.0, 80.0}) {
     const auto fixed = evaluate_dig(machine_, simulator(density), level_, paper_fixed_path());

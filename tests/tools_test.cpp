@@ -864,6 +864,30 @@ TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
   EXPECT_EQ(plan.at("energy_kj"), library["entries"][1].at("energy_kj"));
 }
 
+TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
+  const std::string library = folder.file("library.json");
+  answer("build-path-library",
+         Words{"--densities", "40", "--slopes=-0.1,0,0.1", "--out", library} + small_library);
+  const auto plan = [&](double rise) {
+    std::string points;
+    for (double x = 1.0; x < 11.0; x += 0.04) {
+      for (double y = -2.0; y < 2.0; y += 0.04) {
+        points += std::to_string(x) + " " + std::to_string(y) + " " +
+                  std::to_string(rise * (x - 2.0)) + "\n";
+      }
+    }
+    return answer("plan-path", {"--density", "40", "--library", library, "--terrain",
+                                folder.write("ground.xyz", points)});
+  };
+  const json gentle = plan(0.05);
+  EXPECT_NEAR(gentle.at("look_up_slope_rad"), std::atan(0.05), 1e-4);
+  EXPECT_GT(gentle.at("look_up_loss"), 0.0);
+  EXPECT_NEAR(plan(0.5).at("look_up_slope_rad"), 0.1, 1e-12) << "as far as the library goes";
+  const json level = answer("plan-path", {"--density", "40", "--library", library});
+  EXPECT_EQ(level.at("look_up_slope_rad"), 0.0);
+  EXPECT_EQ(level.at("look_up_loss"), 0.0);
+}
+
 TEST_F(Tools, PlanGoesOnFromAnEstimate) {
   const ProgramResult estimate =
       run_program("estimate-density", quickstart(folder) + Words{"--json"});

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include <excavplan/planning/path_library.hpp>
@@ -125,18 +127,28 @@ PathLibrary library_of(const Inputs& inputs, const Machine& machine, const SoilK
   return library;
 }
 
+/// The slope of the scanned ground, as far as the library goes; 0 for level ground.
+double slope_in(const PathLibrary& library, const Inputs& inputs, const Machine& machine,
+                const Site& site) {
+  if (!inputs.terrain.cloud) return 0.0;
+  const double slope = boom_plane_slope(site.ground, machine.track_front);
+  return std::clamp(std::isnan(slope) ? 0.0 : slope, library.entries.front().slope,
+                    library.entries.back().slope);
+}
+
 /// A path of the library if one fits, to start the search from.
 std::vector<DigParameters> known_good(const Inputs& inputs, const Machine& machine,
-                                      const SoilKind& soil, double density,
-                                      std::vector<Warning>& warnings) {
+                                      const SoilKind& soil, double density, Site& site) {
   try {
-    return {look_up(library_of(inputs, machine, soil), density).parameters};
+    const PathLibrary library = library_of(inputs, machine, soil);
+    return {look_up(library, density, slope_in(library, inputs, machine, site)).parameters};
   } catch (const Error& error) {
     if (inputs.library) throw;
     if (error.kind() == ErrorKind::bad_file) {
-      warnings.push_back({"library_unreadable", std::string("the search starts from nothing, not "
-                                                            "from the shipped library: ") +
-                                                    error.what()});
+      site.warnings.push_back(
+          {"library_unreadable",
+           std::string("the search starts from nothing, not from the shipped library: ") +
+               error.what()});
     }
     return {};  // none is shipped that fits
   }
@@ -168,11 +180,25 @@ DigPath lay_out(const Machine& machine, const PlannedDig& dig, const GroundProfi
   return std::get<DigPath>(std::move(path));
 }
 
+void add_look_up_error(const MidwayError& error, double slope, Plan& plan) {
+  plan.details["look_up_slope_rad"] = slope;
+  plan.details["look_up_loss"] = error.loss;
+  plan.details["look_up_expectation_error"] = error.expectation;
+  if (error.loss == 0.0 && slope == 0.0) return;
+  plan.lines.push_back("looked up    " +
+                       (slope != 0.0 ? "on a slope of " + readable(slope, 2) + " rad, " : "") +
+                       "between entries, which gives away up to " +
+                       readable(100.0 * error.loss, 2) + " % of the best efficiency");
+}
+
 Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                   double density, const Site& site) {
   Plan plan;
   plan.source = "library";
-  plan.dig = look_up(library_of(inputs, machine, soil), density);
+  const PathLibrary library = library_of(inputs, machine, soil);
+  const double slope = slope_in(library, inputs, machine, site);
+  plan.dig = look_up(library, density, slope);
+  add_look_up_error(look_up_error(library, density, slope), slope, plan);
   plan.start_rule = "of the library";
   if (!inputs.terrain.cloud) {
     plan.path = lay_out(machine, plan.dig, [](double) { return 0.0; });
@@ -241,7 +267,7 @@ std::nullopt_t no_plan(const std::optional<NearestDig>& nearest, const Console& 
 std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                                 const Density& density, Site& site, Console& console) {
   DigSearchOptions options = search_options(inputs.dig_search, console);
-  options.start = known_good(inputs, machine, soil, density.percent, site.warnings);
+  options.start = known_good(inputs, machine, soil, density.percent, site);
   Plan plan;
   plan.start_rule = describe(options.start_rule);
   const HeightMapSimulator simulator(machine, soil, density.percent);

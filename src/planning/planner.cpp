@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "../json_file.hpp"
@@ -65,6 +66,24 @@ GroundProfile boom_plane_profile(const Terrain& terrain) {
                     terrain.bank.z.middleRows(rows.first, rows.count) +
                         terrain.loose.middleRows(rows.first, rows.count),
                     rows.first);
+}
+
+double boom_plane_slope(const Terrain& terrain, double from_x) {
+  const GroundProfile ground = boom_plane_profile(terrain);
+  const HeightMap& bank = terrain.bank;
+  double count = 0.0, x_sum = 0.0, z_sum = 0.0, xx = 0.0, xz = 0.0;
+  for (Index col = 0; col < bank.z.cols(); ++col) {
+    const double x = bank.x(col) - from_x;
+    const double z = ground(bank.x(col));
+    if (x < 0.0 || std::isnan(z)) continue;
+    count += 1.0;
+    x_sum += x;
+    z_sum += z;
+    xx += x * x;
+    xz += x * z;
+  }
+  if (count < 2.0) return std::numeric_limits<double>::quiet_NaN();
+  return std::atan2(count * xz - x_sum * z_sum, count * xx - x_sum * x_sum);
 }
 
 std::string describe(const StartRule& rule) {

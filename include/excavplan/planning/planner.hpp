@@ -47,6 +47,10 @@ Terrain level_planning_ground(const Machine& machine, double cell = 0.05);
 GroundProfile boom_plane_profile(const HeightMap& surface);
 GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
 
+/// Slope of the surface in the boom plane from `from_x` on, rising away from the machine [rad]: the
+/// line of least squares through the known cells. NaN with fewer than two.
+double boom_plane_slope(const Terrain& terrain, double from_x);
+
 /// Where along the boom plane a dig begins. It decides the work of the links, and with it up to a
 /// third of the efficiency: paths are compared under one rule (docs/methods.md#start).
 struct StartRule {
