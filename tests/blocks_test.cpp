@@ -14,6 +14,7 @@
 #include <excavplan/random.hpp>
 
 #include "block_heap.hpp"
+#include "errors.hpp"
 
 namespace excavplan {
 namespace {
@@ -299,13 +300,7 @@ TEST(Blocks, AreNotLookedForWithCellsLargerThanTheyAre) {
 TEST(Blocks, RefusesWhatBreaksARule) {
   Survey survey = survey_of(test::loose_heap({}, 1), 0.05, 0.005, 1);
   const auto error = [&](const BlockOptions& options) {
-    try {
-      assess(survey, options);
-    } catch (const Error& e) {
-      EXPECT_EQ(e.kind(), ErrorKind::bad_input);
-      return std::string(e.what());
-    }
-    return std::string("no error");
+    return test::error_of([&] { assess(survey, options); });
   };
   BlockOptions options;
   options.angle_of_repose = 1.5;

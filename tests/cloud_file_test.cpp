@@ -11,7 +11,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -23,11 +22,14 @@
 #include <excavplan/random.hpp>
 #include <excavplan/survey/cloud.hpp>
 
+#include "errors.hpp"
+
 namespace excavplan {
 namespace {
 
 using std::string;
 using Points = std::vector<Eigen::Vector3d>;
+using test::error_about;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -55,23 +57,9 @@ string content_of(const string& path) {
 
 Cloud read_content(const string& content) { return read_cloud(TempFile(content).path()); }
 
-/// The text of the error that `call` throws, without the path of the file.
-string error_of(const std::function<void()>& call, const string& path,
-                ErrorKind kind = ErrorKind::bad_file) {
-  try {
-    call();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), kind);
-    const string text = e.what();
-    EXPECT_EQ(text.rfind(path + ": ", 0), 0u) << text;
-    return text.substr(std::min(text.size(), path.size() + 2));
-  }
-  return "no error";
-}
-
 string error_of_content(const string& content) {
   const TempFile file(content);
-  return error_of([&] { read_cloud(file.path()); }, file.path());
+  return error_about([&] { read_cloud(file.path()); }, file.path());
 }
 
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
@@ -386,8 +374,8 @@ TEST(StreamCloud, RefusesWithTheErrorsOfReadCloud) {
        {string("1 2 3\n4 5\n"), replaced(pcd_ascii, "POINTS 2", "POINTS 3"), pcd_binary + "abc",
         ply_ascii + "1 2 3\n", string("LASF"), string()}) {
     const TempFile file(content);
-    const string error = error_of([&] { read_cloud(file.path()); }, file.path());
-    EXPECT_EQ(error_of([&] { streamed(file.path()); }, file.path()), error);
+    const string error = error_about([&] { read_cloud(file.path()); }, file.path());
+    EXPECT_EQ(error_about([&] { streamed(file.path()); }, file.path()), error);
     EXPECT_NE(error, "no error");
   }
 }
@@ -405,7 +393,7 @@ TEST(StreamCloud, NoLimitHoldsForWhatIsNotKept) {
                               if (points > 10000) throw Enough{};
                             }),
                Enough);
-  EXPECT_NE(error_of([&] { read_cloud(temp.path()); }, temp.path()).find("4.000 GiB of memory"),
+  EXPECT_NE(error_about([&] { read_cloud(temp.path()); }, temp.path()).find("4.000 GiB of memory"),
             string::npos);
 }
 
@@ -676,7 +664,9 @@ TEST(BadText, IsNotACloud) {
 
 TEST(BadPlace, OnlyRegularFilesAreRead) {
   const TempFile temp;
-  const auto error = [&](const string& path) { return error_of([&] { read_cloud(path); }, path); };
+  const auto error = [&](const string& path) {
+    return error_about([&] { read_cloud(path); }, path);
+  };
   EXPECT_EQ(error(temp.path()), "is empty");
   EXPECT_EQ(error(testing::TempDir()), "is not a regular file");
   EXPECT_EQ(error("/dev/zero"), "is not a regular file");
@@ -693,7 +683,7 @@ TEST(BadPlace, OnlyRegularFilesAreRead) {
 TEST(BadPlace, HugeFilesAreRefusedBeforeMemoryIsAskedFor) {
   const TempFile temp(pcd_ascii);
   ASSERT_EQ(::truncate(temp.path().c_str(), off_t{1} << 40), 0);
-  EXPECT_NE(error_of([&] { read_cloud(temp.path()); }, temp.path())
+  EXPECT_NE(error_about([&] { read_cloud(temp.path()); }, temp.path())
                 .find("expected what fits into 4.000 GiB of memory"),
             string::npos);
 }
@@ -702,7 +692,7 @@ TEST(BadPlace, TheMemoryLimitCountsFileAndPoints) {
   for (const string& content : {pcd_ascii, pcd_binary, pcd_compressed, ply_ascii, ply_binary(false),
                                 ply_with_lists(true), string("1 2 3\n-4 5.5 60\n")}) {
     const TempFile temp(content);
-    EXPECT_NE(error_of([&] { read_cloud(temp.path(), content.size() + 20); }, temp.path())
+    EXPECT_NE(error_about([&] { read_cloud(temp.path(), content.size() + 20); }, temp.path())
                   .find("of memory"),
               string::npos);
     EXPECT_NO_THROW(read_cloud(temp.path(), content.size() + 2000));
@@ -777,15 +767,16 @@ TEST(WriteCloud, PcdKeepsTheOrderOfAnOrganisedCloud) {
   }
   cloud.height = 4;
   const TempFile file;
-  EXPECT_EQ(error_of([&] { write_cloud(file.path(), cloud, CloudFormat::xyz); }, file.path(),
-                     ErrorKind::bad_input),
+  EXPECT_EQ(error_about([&] { write_cloud(file.path(), cloud, CloudFormat::xyz); }, file.path(),
+                        ErrorKind::bad_input),
             "a cloud of 60 points must be width x height, is 12 x 4");
 }
 
 TEST(WriteCloud, AFileThatCannotBeWrittenIsAnError) {
   const string path = "/no/such/folder/a.pcd";
-  EXPECT_EQ(error_of([&] { write_cloud(path, sample_cloud(1.0, false), CloudFormat::xyz); }, path),
-            "cannot be written");
+  EXPECT_EQ(
+      error_about([&] { write_cloud(path, sample_cloud(1.0, false), CloudFormat::xyz); }, path),
+      "cannot be written");
 }
 
 TEST(WriteCloud, TheNameAsksForTheFormat) {
@@ -795,7 +786,7 @@ TEST(WriteCloud, TheNameAsksForTheFormat) {
   EXPECT_EQ(cloud_format_of_name("a.b.txt"), CloudFormat::xyz);
   EXPECT_EQ(cloud_format_of_name("a.asc"), CloudFormat::xyz);
   for (const string name : {"a.las", "pcd", "a.pcd/b", "a.", ""}) {
-    EXPECT_EQ(error_of([&] { cloud_format_of_name(name); }, name, ErrorKind::bad_input),
+    EXPECT_EQ(error_about([&] { cloud_format_of_name(name); }, name, ErrorKind::bad_input),
               "the name of a cloud must end in .pcd, .ply, .xyz, .txt or .asc");
   }
 }
@@ -810,7 +801,7 @@ TEST(ReadFrame, SixteenNumbersOfARigidMotion) {
 TEST(ReadFrame, AnythingElseIsRefused) {
   const auto error = [](const string& content) {
     const TempFile file(content);
-    return error_of([&] { read_frame(file.path()); }, file.path());
+    return error_about([&] { read_frame(file.path()); }, file.path());
   };
   EXPECT_EQ(error("1 0 0 0 0 1 0 0 0 0 1 0"), "a frame: found 12 numbers, expected 4 rows of 4");
   EXPECT_EQ(error("1 0 0 x"), "line 1: found 'x', expected a number");
@@ -890,10 +881,11 @@ TEST(RealScans, AreReadWhole) {
   EXPECT_NEAR(terrain.max.y() - terrain.min.y(), 129.0, 1.0);
   EXPECT_NEAR(terrain.min.z(), -3.7, 0.1);
   EXPECT_NEAR(terrain.max.z(), 8.1, 0.1);
-  EXPECT_NE(error_of([] { read_cloud(shared_file("site-terrain/rosbag2_static_terrain_0.db3")); },
-                     shared_file("site-terrain/rosbag2_static_terrain_0.db3"))
-                .find("ROS 2 bag"),
-            string::npos);
+  EXPECT_NE(
+      error_about([] { read_cloud(shared_file("site-terrain/rosbag2_static_terrain_0.db3")); },
+                  shared_file("site-terrain/rosbag2_static_terrain_0.db3"))
+          .find("ROS 2 bag"),
+      string::npos);
 }
 
 }  // namespace

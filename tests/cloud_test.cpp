@@ -14,8 +14,12 @@
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
+#include "errors.hpp"
+
 namespace excavplan {
 namespace {
+
+using test::error_of;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = 3.14159265358979323846 / 180.0;
@@ -48,16 +52,6 @@ double volume_between(const HeightMap& before, const HeightMap& after) {
 }
 
 double level(double, double) { return 0.0; }
-
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::bad_input);
-    return e.what();
-  }
-  return "no error";
-}
 
 TEST(Rasterise, PlaneIsExactAtCellCentresWhereverThePointsLie) {
   const auto plane = [](double x, double y) { return 0.3 * x - 0.7 * y + 12.0; };

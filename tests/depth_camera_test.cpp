@@ -11,6 +11,8 @@
 
 #include <excavplan/error.hpp>
 
+#include "errors.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -250,12 +252,8 @@ TEST(Lidar, WideBeamsMixTheReturnsOfAnEdge) {
 TEST(Lidar, MessageNamesTheRule) {
   Lidar lidar;
   lidar.azimuth = {0.5, -0.5};
-  try {
-    scan_surface(level(), lidar, 1);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_STREQ(e.what(), "lidar: a window must not end before it starts, rad, got -1.000000");
-  }
+  EXPECT_EQ(test::error_of([&] { scan_surface(level(), lidar, 1); }),
+            "lidar: a window must not end before it starts, rad, got -1.000000");
   lidar = {};
   lidar.angle_step = {1e-6, 1e-6};
   EXPECT_THROW(scan_surface(level(), lidar, 1), Error);
@@ -264,12 +262,10 @@ TEST(Lidar, MessageNamesTheRule) {
 TEST(DepthCamera, MessageNamesTheRule) {
   DepthCamera camera = clean_camera();
   camera.dropouts = 1.5;
-  try {
-    scan_surface(flat_ground({2, -3, 8, 3}, 0.05), camera, 1);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_STREQ(e.what(), "depth camera: dropouts must be in 0 .. 1, got 1.500000");
-  }
+  EXPECT_EQ(test::error_of([&] {
+              scan_surface(flat_ground({2, -3, 8, 3}, 0.05), camera, 1);
+            }),
+            "depth camera: dropouts must be in 0 .. 1, got 1.500000");
   camera = clean_camera();
   camera.frames = 0;
   EXPECT_THROW(scan_surface(level(), camera, 1), Error);

@@ -22,6 +22,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
+#include "errors.hpp"
 #include "run_program.hpp"
 
 namespace excavplan {
@@ -41,14 +42,8 @@ class DepthImage : public testing::Test {
   }
   /// Text of the error without the path of the file.
   string error_of(const std::function<void()>& call, ErrorKind kind = ErrorKind::bad_file) const {
-    try {
-      call();
-    } catch (const Error& e) {
-      EXPECT_EQ(e.kind(), kind);
-      const string text = e.what();
-      return text.rfind(path_ + ": ", 0) == 0 ? text.substr(path_.size() + 2) : text;
-    }
-    return "no error";
+    const string text = test::error_of(call, kind);
+    return text.rfind(path_ + ": ", 0) == 0 ? text.substr(path_.size() + 2) : text;
   }
   string image_error() const {
     return error_of([this] { depth_image_to_cloud(path_, camera_); });
@@ -151,14 +146,8 @@ TEST_F(DepthFrames, FramesOfDifferentSizeAreRefused) {
   Random random(4);
   add(frame(2000, 1.0, random));
   add(depths());
-  try {
-    average_depth_images(paths_, camera_);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::bad_file);
-    EXPECT_EQ(string(e.what()),
-              paths_[1] + ": found 3 x 2 pixels, expected 16 x 12 as in " + paths_[0]);
-  }
+  EXPECT_EQ(test::error_about([&] { average_depth_images(paths_, camera_); }, paths_[1]),
+            "found 3 x 2 pixels, expected 16 x 12 as in " + paths_[0]);
   EXPECT_EQ(error_of([&] { average_depth_images({}, camera_); }, ErrorKind::bad_input),
             "depth images: 0 frames, must be 1 to 10000");
 }

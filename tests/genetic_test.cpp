@@ -20,6 +20,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
+#include "errors.hpp"
 #include "json_file.hpp"
 #include "search_functions.hpp"
 
@@ -31,6 +32,8 @@ using functions::hartmann;
 using Origin = SearchRecord::Origin;
 using Source = SearchRecord::Source;
 using Status = Evaluation::Status;
+using test::error_about;
+using test::error_of;
 
 constexpr double hartmann_maximum = 3.86278;
 
@@ -51,15 +54,6 @@ SearchOptions papers(GeneticAlgorithm method = {}, std::uint64_t seed = 1) {
   SearchOptions options = with_seed(seed);
   options.method = method;
   return options;
-}
-
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 /// All of a result, in text: equal texts are equal bytes.
@@ -632,7 +626,8 @@ class SearchCheckpointFile : public testing::Test {
   /// What is said of a changed file.
   std::string refusal(const std::string& content) const {
     std::ofstream(file_, std::ios::binary) << content;
-    const std::string text = error_of([&] { search(with_fingerprint(hartmann), options()); });
+    const std::string text =
+        error_of([&] { search(with_fingerprint(hartmann), options()); }, ErrorKind::bad_file);
     return text.rfind(file_, 0) == 0 ? text.substr(file_.size()) : text;
   }
   /// A search cut off after some evaluations.
@@ -709,13 +704,12 @@ TEST_F(SearchCheckpointFile, IsRefusedForAnotherSearch) {
   cut_off(20, options(), hartmann);
   SearchProblem other = with_fingerprint(hartmann);
   other.fingerprint = "hartmann 6";
-  EXPECT_EQ(error_of([&] { search(other, options()); }),
-            file_ +
-                ": problem: is 'hartmann 3, box 0 0 0 to 1 1 1', which is another one than "
-                "'hartmann 6, box 0 0 0 to 1 1 1'");
+  EXPECT_EQ(error_about([&] { search(other, options()); }, file_),
+            "problem: is 'hartmann 3, box 0 0 0 to 1 1 1', which is another one than "
+            "'hartmann 6, box 0 0 0 to 1 1 1'");
   SearchOptions seeded = options();
   seeded.seed = 5;
-  EXPECT_NE(error_of([&] { search(with_fingerprint(hartmann), seeded); }).find("seed 5"),
+  EXPECT_NE(error_about([&] { search(with_fingerprint(hartmann), seeded); }, file_).find("seed 5"),
             std::string::npos);
   other.fingerprint = "";
   EXPECT_EQ(error_of([&] { search(other, options()); }),
@@ -767,8 +761,8 @@ TEST_F(SearchCheckpointFile, AFolderThatDoesNotExistIsNoticedBeforeTheSearch) {
     ADD_FAILURE();
     return 0.0;
   };
-  EXPECT_EQ(error_of([&] { search(with_fingerprint(never), nowhere); }),
-            "/nowhere/at/all.json: there is no folder /nowhere/at");
+  EXPECT_EQ(error_about([&] { search(with_fingerprint(never), nowhere); }, nowhere.checkpoint),
+            "there is no folder /nowhere/at");
 }
 
 // What a search found out ------------------------------------------------------------------------

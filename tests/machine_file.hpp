@@ -8,13 +8,12 @@
 #include <fstream>
 #include <string>
 
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
 #include <excavplan/machine/machine.hpp>
+
+#include "errors.hpp"
 
 namespace excavplan::test {
 
@@ -26,19 +25,11 @@ inline const Machine& zx120() {
   return machine;
 }
 
-/// What load_machine says about a machine file, without the file's name; "accepted" if nothing.
+/// What load_machine says about a machine file, without the file's name; "no error" if nothing.
 inline std::string complaint_about_file(const nlohmann::json& file) {
   const std::string path = testing::TempDir() + "machine" + std::to_string(::getpid()) + ".json";
   std::ofstream(path) << file;
-  std::string complaint = "accepted";
-  try {
-    load_machine(path);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_file);
-    complaint = error.what();
-    EXPECT_EQ(complaint.rfind(path + ": ", 0), 0u) << complaint;
-    complaint.erase(0, path.size() + 2);
-  }
+  const std::string complaint = error_about([&] { load_machine(path); }, path);
   std::remove(path.c_str());
   return complaint;
 }

@@ -12,8 +12,12 @@
 
 #include <excavplan/random.hpp>
 
+#include "errors.hpp"
+
 namespace excavplan {
 namespace {
+
+using test::error_of;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = 3.14159265358979323846 / 180.0;
@@ -161,16 +165,6 @@ TEST(PaperVolumes, EveryOptionActs) {
   options = {};
   options.leaf = 0.07;
   EXPECT_NE(scene.volumes(options).excavated.value, scene.volumes().excavated.value);
-}
-
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::bad_input);
-    return e.what();
-  }
-  return "no error";
 }
 
 TEST(PaperVolumes, RefuseWhatPclWouldGetWrong) {

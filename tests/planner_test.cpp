@@ -22,6 +22,8 @@
 #include <excavplan/planning/calibration.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
+#include "errors.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -173,14 +175,9 @@ TEST_F(Planner, PathsThatCannotBeDrivenCostNoDig) {
 TEST_F(Planner, RangesOfTheSearchAreChecked) {
   DigSearchOptions options;
   options.bounds.upper.drag_length = 0.1;
-  try {
-    search_dig(machine_, simulator(40.0), level_, options);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "the search range of drag_length_m to is 0.1, must be finite and not below its "
-                 "lower end");
-  }
+  EXPECT_EQ(test::error_of([&] { search_dig(machine_, simulator(40.0), level_, options); }),
+            "the search range of drag_length_m to is 0.1, must be finite and not below its "
+            "lower end");
   options = {};
   options.objective.time_price = -1.0;
   EXPECT_THROW(search_dig(machine_, simulator(40.0), level_, options), Error);

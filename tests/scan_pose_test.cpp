@@ -13,6 +13,8 @@
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
+#include "errors.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -72,13 +74,7 @@ TEST(LevelOnGround, SameSeedSamePose) {
 }
 
 std::string level_error(const Cloud& scan) {
-  try {
-    level_on_ground(scan);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), ErrorKind::bad_input);
-    return e.what();
-  }
-  return "no error";
+  return test::error_of([&] { level_on_ground(scan); });
 }
 
 TEST(LevelOnGround, RefusesWhatHasNoGround) {
@@ -150,13 +146,9 @@ TEST(PoseOfPoints, NeverMirrors) {
 }
 
 TEST(PoseOfPoints, RefusesWhatLeavesItFree) {
-  const auto error = [](std::vector<Eigen::Vector3d> scan, std::vector<Eigen::Vector3d> site) {
-    try {
-      pose_of_points(scan, site);
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
-    return std::string("no error");
+  const auto error = [](const std::vector<Eigen::Vector3d>& scan,
+                        const std::vector<Eigen::Vector3d>& site) {
+    return test::error_of([&] { pose_of_points(scan, site); });
   };
   EXPECT_EQ(error({{0, 0, 0}}, {{0, 0, 0}}), "pose of a scan: 1 known points, must be 3 or more");
   EXPECT_NE(error({{0, 0, 0}}, {}).find("1 points of the scan, but 0 known places"),

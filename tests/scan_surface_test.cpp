@@ -21,6 +21,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
+#include "errors.hpp"
 #include "survey_scenes.hpp"
 
 namespace excavplan {
@@ -102,15 +103,6 @@ double mean_known(const Eigen::ArrayXXd& z) {
   return z.isNaN().select(0.0, z).sum() / static_cast<double>(z.size() - z.isNaN().count());
 }
 
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
 // ---- Streams ----------------------------------------------------------------------------------
 
 TEST(ScanSurface, IsThatOfTheWholeCloudToTheByteHoweverItIsRead) {
@@ -181,17 +173,21 @@ TEST(ScanSurface, TellsWhichFileIsBad) {
   const std::string good = folder.write("good.pcd", {{0.0, 0.0, 0.0}});
   const std::string bad = folder.file("bad.xyz");
   std::ofstream(bad) << "1 2 3\n1 2\n";
-  EXPECT_EQ(error_of([&] {
-              survey_surface(scan_of({good, bad}), field);
-            }),
-            bad + ": line 2: found 2 columns, expected x, y and z");
-  EXPECT_EQ(error_of([&] {
-              outline(scan_of({bad, good}));
-            }),
-            bad + ": line 2: found 2 columns, expected x, y and z");
+  EXPECT_EQ(test::error_about(
+                [&] {
+                  survey_surface(scan_of({good, bad}), field);
+                },
+                bad),
+            "line 2: found 2 columns, expected x, y and z");
+  EXPECT_EQ(test::error_about(
+                [&] {
+                  outline(scan_of({bad, good}));
+                },
+                bad),
+            "line 2: found 2 columns, expected x, y and z");
   RasterOptions options;
   options.cell = -1.0;
-  EXPECT_EQ(error_of([&] { survey_surface(scan_of({good}), field, options); }),
+  EXPECT_EQ(test::error_of([&] { survey_surface(scan_of({good}), field, options); }),
             "rasterise: cell is -1 m, must be > 0");
 }
 

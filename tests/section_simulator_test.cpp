@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "errors.hpp"
 #include "soil_simulator_contract.hpp"
 
 namespace excavplan {
@@ -456,12 +457,7 @@ TEST_F(Section, SaysWhatIsWrongWithAPath) {
   const SectionSimulator simulator(machine_, soil_kind("loam"), 40.0);
   const Terrain ground = level_planning_ground(machine_);
   const auto message = [&](const Terrain& terrain, const DigPath& path) {
-    try {
-      simulator.dig(terrain, path);
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return test::error_of([&] { simulator.dig(terrain, path); });
   };
   const DigPath path = path_on(ground);
   EXPECT_EQ(message(ground, DigPath{}), "dig: a path has at least 2 poses, this one has 0");

@@ -10,6 +10,8 @@
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
+#include "errors.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -186,14 +188,9 @@ TEST(GroundWindow, RefusesLayersThatCannotBeWhereItLooks) {
   const Ground ground;
   const GroundSoil soil = {ground.kind, ground.bank, ground.loose};
   EXPECT_NO_THROW(GroundWindow(terrain, soil, {0, 10, 0, 10}));
-  try {
-    GroundWindow(terrain, soil, whole(terrain));
-    ADD_FAILURE() << "a negative layer was taken";
-  } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "dig: the loose layer in the cell at x = 3.975000 m, y = 3.975000 m is -1.000000, "
-              "must be in 0.000000 .. 1000000.000000");
-  }
+  EXPECT_EQ(test::error_of([&] { GroundWindow(terrain, soil, whole(terrain)); }),
+            "dig: the loose layer in the cell at x = 3.975000 m, y = 3.975000 m is -1.000000, "
+            "must be in 0.000000 .. 1000000.000000");
   terrain.bank_void_ratio = Eigen::ArrayXXd::Constant(80, 80, 0.2);
   EXPECT_THROW(GroundWindow(terrain, soil, {0, 10, 0, 10}), Error);
 }

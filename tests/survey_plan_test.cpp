@@ -13,6 +13,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/depth_camera.hpp>
 
+#include "errors.hpp"
 #include "survey_scenes.hpp"
 
 namespace excavplan {
@@ -280,13 +281,7 @@ TEST(SurveyPlan, RefusesWhatBreaksARule) {
   const auto error = [](double SurveyPlan::*member, double value) {
     SurveyPlan plan;
     plan.*member = value;
-    try {
-      plan_survey(plan);
-    } catch (const Error& e) {
-      EXPECT_EQ(e.kind(), ErrorKind::bad_input);
-      return std::string(e.what());
-    }
-    return std::string("no error");
+    return test::error_of([&] { plan_survey(plan); });
   };
   EXPECT_EQ(error(&SurveyPlan::dig_volume, 0.0), "survey plan: dig volume is 0, must be > 0 m^3");
   EXPECT_EQ(error(&SurveyPlan::height, -1.0),

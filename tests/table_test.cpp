@@ -4,27 +4,18 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 
 #include <excavplan/error.hpp>
 
+#include "errors.hpp"
 #include "results.hpp"
 #include "run_program.hpp"
 
 namespace excavplan::tools {
 namespace {
 
+using test::error_of;
 using test::TemporaryFolder;
-
-std::string message_of(ErrorKind kind, const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind);
-    return error.what();
-  }
-  return "no error";
-}
 
 Table table_of(const std::string& content) {
   const TemporaryFolder folder;
@@ -35,8 +26,7 @@ Table table_of(const std::string& content) {
 std::string refusal(const std::string& content) {
   const TemporaryFolder folder;
   const std::string path = folder.write("t.csv", content);
-  const std::string message =
-      message_of(ErrorKind::bad_file, [&] { Table::read(path).column("k"); });
+  const std::string message = error_of([&] { Table::read(path).column("k"); }, ErrorKind::bad_file);
   return message.rfind(path, 0) == 0 ? "t.csv" + message.substr(path.size()) : message;
 }
 
@@ -76,7 +66,7 @@ TEST(Table, FilesWithoutRowsAreRefused) {
   for (const char* content : {"", "\n\n", "# only a comment\n", "k,d\n"}) {
     EXPECT_EQ(refusal(content), "t.csv: expected a line of column names and lines of numbers");
   }
-  EXPECT_EQ(message_of(ErrorKind::bad_file, [] { Table::read("/no/such.csv"); }),
+  EXPECT_EQ(error_of([] { Table::read("/no/such.csv"); }, ErrorKind::bad_file),
             "/no/such.csv: no such file, or not readable");
 }
 
@@ -98,9 +88,7 @@ TEST(DensityList, RangesReachTheirEndThoughStepsAreNotExact) {
 }
 
 TEST(DensityList, JunkIsRefused) {
-  const auto message = [](const char* text) {
-    return message_of(ErrorKind::bad_input, [&] { densities(text); });
-  };
+  const auto message = [](const char* text) { return error_of([&] { densities(text); }); };
   EXPECT_EQ(message("0:0:100"),
             "--densities: '0:0:100' is not first:step:last with a step of 0.01 or more");
   EXPECT_EQ(message("0:100"),

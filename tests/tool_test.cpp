@@ -8,18 +8,12 @@
 #include <cmath>
 #include <limits>
 
+#include "errors.hpp"
+
 namespace excavplan::tools {
 namespace {
 
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
-    return error.what();
-  }
-  return "no error";
-}
+using test::error_of;
 
 TEST(Quantity, BareNumbersAreSi) {
   EXPECT_EQ(parse_quantity("--cell", "0.05", Quantity::length), 0.05);
@@ -37,14 +31,14 @@ TEST(Quantity, UnitsAreConverted) {
 }
 
 TEST(Quantity, JunkAndWrongKindsAreRefused) {
-  EXPECT_EQ(message_of([] { parse_quantity("--cell", "5deg", Quantity::length); }),
+  EXPECT_EQ(error_of([] { parse_quantity("--cell", "5deg", Quantity::length); }),
             "--cell: '5deg' is an angle, expected a length such as 0.05, 5cm or 50mm");
-  EXPECT_EQ(message_of([] { parse_quantity("--density", "4x", Quantity::percent); }),
+  EXPECT_EQ(error_of([] { parse_quantity("--density", "4x", Quantity::percent); }),
             "--density: '4x' ends in 'x', which is no unit known here, expected a percentage such "
             "as 40 or 40%");
   for (const char* junk :
        {"", "x", "nan", "inf", "-", "+", "+-3", "1e999", "0,5", "5cm cm", "--3"}) {
-    EXPECT_NE(message_of([&] { parse_quantity("--cell", junk, Quantity::length); }), "no error")
+    EXPECT_NE(error_of([&] { parse_quantity("--cell", junk, Quantity::length); }), "no error")
         << junk;
   }
 }
@@ -55,7 +49,7 @@ TEST(DigPathText, TakesThreeQuantities) {
   EXPECT_DOUBLE_EQ(path.penetration_length, 0.35);
   EXPECT_EQ(path.drag_length, 1.5);
   for (const char* bad : {"45deg,1m", "45deg,1m,1m,1m", "45deg,1m,1m,", "1m,1m,1m", ",,", ""}) {
-    EXPECT_NE(message_of([&] { parse_dig_path("--path", bad); }), "no error") << bad;
+    EXPECT_NE(error_of([&] { parse_dig_path("--path", bad); }), "no error") << bad;
   }
 }
 
@@ -63,7 +57,7 @@ TEST(RectangleText, NeedsAnExtent) {
   const Rectangle area = parse_rectangle("--dig-area", "4,-1,7,100cm");
   EXPECT_EQ(area.x_min, 4.0);
   EXPECT_EQ(area.y_max, 1.0);
-  EXPECT_EQ(message_of([] { parse_rectangle("--dig-area", "1,0,1,2"); }),
+  EXPECT_EQ(error_of([] { parse_rectangle("--dig-area", "1,0,1,2"); }),
             "--dig-area: '1,0,1,2' is empty: XMIN must be below XMAX, YMIN below YMAX");
 }
 
@@ -224,7 +218,7 @@ TEST(Tool, ErrorsOfTheLibraryHaveTheirCodes) {
 TEST(ShippedFiles, AreFoundByNameAndFilesByPath) {
   EXPECT_EQ(soil_named("loam").name, "loam");
   EXPECT_EQ(shipped_or_file("soils", "./my.json"), "./my.json");
-  EXPECT_EQ(message_of([] { shipped_or_file("soils", "lom"); }),
+  EXPECT_EQ(error_of([] { shipped_or_file("soils", "lom"); }),
             "'lom' is neither a file nor one of the soils that excavplan ships");
 }
 

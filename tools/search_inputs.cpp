@@ -89,7 +89,9 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.option("evaluations", inputs.evaluations,
                    "digs simulated at most in one search, 0 for the method's own: 400 (100 for "
                    "each of several densities), or all the paper's generations");
-  arguments.file("checkpoint", inputs.checkpoint, "keep the digs simulated in this file");
+  arguments.file("checkpoint", inputs.checkpoint,
+                 "keep the digs simulated in this file, those of a search for each of several "
+                 "densities in FILE.soil1, FILE.soil2, ...");
   arguments.flag("resume", inputs.resume, "go on from the checkpoint if it exists");
   arguments.option("seed", inputs.seed, "seed of the search");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
