@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -119,38 +120,46 @@ class Build {
 
   /// Computes the cells, and before each those that it starts from.
   void compute(const std::vector<Key>& wanted) {
-    std::vector<std::set<Key>> generations;
+    std::map<Key, std::size_t> generations;
     for (const Key& key : wanted) add_with_parents(key, generations);
-    std::size_t cells = outcomes_.size();
-    for (const std::set<Key>& generation : generations) cells += missing(generation).size();
-    tasks_.watch().expect(cells);
-    for (const std::set<Key>& generation : generations) compute_at_once(missing(generation));
+    std::vector<Key> keys;
+    for (const auto& [key, generation] : generations) keys.push_back(key);
+    std::stable_sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
+      return generations.at(a) < generations.at(b);
+    });
+    std::map<Key, std::size_t> places;
+    std::vector<std::vector<std::size_t>> parents(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      places[keys[i]] = i;
+      for (const Key& parent : missing_parents(keys[i])) parents[i].push_back(places.at(parent));
+    }
+    tasks_.watch().expect(outcomes_.size() + keys.size());
+    tasks_.run_in_order(
+        parents, [&](std::size_t i) { return text_of(keys[i]); },
+        [&](std::size_t i, const std::string& text) {
+          const CellOutcome outcome = read_cell("cell", text, cell_of(keys[i]), options_.search);
+          const std::lock_guard<std::mutex> lock(mutex_);
+          outcomes_[keys[i]] = outcome;
+        });
   }
 
-  /// @return the generation of the cell: 0 if it is searched from nothing
-  std::size_t add_with_parents(const Key& key, std::vector<std::set<Key>>& generations) const {
+  /// @return the generation of a cell that is missing: 0 if it need not wait for another one
+  std::size_t add_with_parents(const Key& key, std::map<Key, std::size_t>& generations) const {
+    if (outcomes_.count(key) == 1) return 0;
     std::size_t own = 0;
-    for (const double parent : parent_densities(key.second, options_.search)) {
-      own = std::max(own, 1 + add_with_parents({key.first, parent}, generations));
+    for (const Key& parent : missing_parents(key)) {
+      own = std::max(own, 1 + add_with_parents(parent, generations));
     }
-    if (generations.size() <= own) generations.resize(own + 1);
-    generations[own].insert(key);
-    return own;
+    return generations[key] = own;
   }
 
-  std::vector<Key> missing(const std::set<Key>& keys) const {
-    std::vector<Key> left;
-    std::copy_if(keys.begin(), keys.end(), std::back_inserter(left),
-                 [&](const Key& key) { return outcomes_.count(key) == 0; });
-    return left;
-  }
-
-  /// Computes cells that do not depend on each other.
-  void compute_at_once(const std::vector<Key>& keys) {
-    const auto texts = tasks_.run(keys.size(), [&](std::size_t i) { return text_of(keys[i]); });
-    for (const auto& [i, text] : texts) {
-      outcomes_[keys[i]] = read_cell("cell", text, cell_of(keys[i]), options_.search);
+  std::vector<Key> missing_parents(const Key& key) const {
+    std::vector<Key> parents;
+    for (const double density : parent_densities(key.second, options_.search)) {
+      const Key parent{key.first, density};
+      if (outcomes_.count(parent) == 0) parents.push_back(parent);
     }
+    return parents;
   }
 
   /// The text of a cell's file, from the folder or computed; empty if stopped.
@@ -166,16 +175,21 @@ class Build {
                                            ": is missing or damaged, the shard that computes it "
                                            "has not ended");
     }
-    std::vector<CellOutcome> parents;
-    for (const double parent : parent_densities(key.second, options_.search)) {
-      parents.push_back(outcomes_.at({key.first, parent}));
-    }
-    const auto outcome = compute_cell(cell, options_.search, parents, watched(cell));
+    const auto outcome = compute_cell(cell, options_.search, parents_of(key), watched(cell));
     if (!outcome) return {};
     const std::string text = cell_text(cell, options_.search, *outcome);
     if (!options_.folder.empty()) write_file(options_.folder + "/" + name, text);
     tasks_.watch().cell_done(true);
     return text;
+  }
+
+  std::vector<CellOutcome> parents_of(const Key& key) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<CellOutcome> parents;
+    for (const double density : parent_densities(key.second, options_.search)) {
+      parents.push_back(outcomes_.at({key.first, density}));
+    }
+    return parents;
   }
 
   std::string kept_text(const LibraryCell& cell, const std::string& name) const {
@@ -213,10 +227,14 @@ class Build {
     for (LibraryRow& row : rows_) {
       for (const LibraryRow::Pair& pair : row.unmeasured()) all.push_back({&row, pair});
     }
-    const auto texts = tasks_.run(all.size(), [&](std::size_t i) {
-      return text_of(all[i].first->measure(all[i].second, options_.search.cell));
-    });
-    for (const auto& [i, text] : texts) all[i].first->take(all[i].second, midway_in(text));
+    tasks_.run(
+        all.size(),
+        [&](std::size_t i) {
+          return text_of(all[i].first->measure(all[i].second, options_.search.cell));
+        },
+        [&](std::size_t i, const std::string& text) {
+          all[i].first->take(all[i].second, midway_in(text));
+        });
   }
 
   /// @return false if there was nothing to look at
@@ -226,17 +244,19 @@ class Build {
     for (LibraryRow& row : rows_) {
       for (const LibraryRow::Look& look : row.looks_due()) all.push_back({&row, look});
     }
-    const auto texts = tasks_.run(all.size(), [&](std::size_t i) {
-      const auto& [row, look] = all[i];
-      const LibraryCell cell = row->cell(look.density);
-      const auto outcome =
-          excavplan::look_again(cell, options_.search, row->starts_of(look), watched(cell));
-      return outcome ? cell_text(cell, options_.search, *outcome) : std::string();
-    });
-    for (const auto& [i, text] : texts) {
-      const auto& [row, look] = all[i];
-      row->take(look, read_cell("second look", text, row->cell(look.density), options_.search));
-    }
+    tasks_.run(
+        all.size(),
+        [&](std::size_t i) {
+          const auto& [row, look] = all[i];
+          const LibraryCell cell = row->cell(look.density);
+          const auto outcome =
+              excavplan::look_again(cell, options_.search, row->starts_of(look), watched(cell));
+          return outcome ? cell_text(cell, options_.search, *outcome) : std::string();
+        },
+        [&](std::size_t i, const std::string& text) {
+          const auto& [row, look] = all[i];
+          row->take(look, read_cell("second look", text, row->cell(look.density), options_.search));
+        });
     return !all.empty();
   }
 
@@ -288,18 +308,20 @@ class Build {
     for (std::size_t i = 0; i < library.entries.size(); ++i) {
       if (auto gap = slope_gap(library, first, i)) gaps.push_back(std::move(*gap));
     }
-    const auto texts = tasks_.run(gaps.size(), [&](std::size_t i) {
-      const SlopeGap& gap = gaps[i];
-      const MidwayDig dug =
-          dig_midway(gap.midway, options_.search.cell, gap.looked_up, gap.best_expected);
-      return text_of(MidwayDensity{dug.error, dug.evaluations});
-    });
-    for (const auto& [i, text] : texts) {
-      PathLibraryEntry& entry = library.entries[gaps[i].entry];
-      const MidwayDensity midway = midway_in(text);
-      entry.midway_slope = midway.error;
-      entry.evaluations += midway.evaluations;
-    }
+    tasks_.run(
+        gaps.size(),
+        [&](std::size_t i) {
+          const SlopeGap& gap = gaps[i];
+          const MidwayDig dug =
+              dig_midway(gap.midway, options_.search.cell, gap.looked_up, gap.best_expected);
+          return text_of(MidwayDensity{dug.error, dug.evaluations});
+        },
+        [&](std::size_t i, const std::string& text) {
+          PathLibraryEntry& entry = library.entries[gaps[i].entry];
+          const MidwayDensity midway = midway_in(text);
+          entry.midway_slope = midway.error;
+          entry.evaluations += midway.evaluations;
+        });
   }
 
   /// Midway between the slope of an entry and the next.
@@ -343,6 +365,7 @@ class Build {
   const LibraryBuildOptions& options_;
   SharedTasks tasks_;
   std::vector<LibraryRow> rows_;  // slopes of a machine and soil stand together
+  std::mutex mutex_;              // guards what follows while cells are computed
   std::map<Key, CellOutcome> outcomes_;
 };
 

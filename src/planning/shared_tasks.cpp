@@ -3,7 +3,10 @@
 #include "shared_tasks.hpp"
 
 #include <algorithm>
+#include <condition_variable>
 #include <limits>
+#include <map>
+#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -39,6 +42,71 @@ struct Parcel {
   }
 };
 
+/// Tasks that wait for others, and the threads that do them: the lowest number that is ready first.
+class OrderedTasks {
+ public:
+  OrderedTasks(const std::vector<std::vector<std::size_t>>& parents, const SharedTasks::Task& task,
+               const SharedTasks::Take& take, const LibraryWatch& watch)
+      : task_(task), take_(take), watch_(watch), left_(parents.size()) {
+    waits_for_.resize(parents.size());
+    children_.resize(parents.size());
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+      waits_for_[i] = parents[i].size();
+      for (const std::size_t parent : parents[i]) children_[parent].push_back(i);
+      if (parents[i].empty()) ready_.insert(i);
+    }
+  }
+
+  /// Of one thread, until nothing is left or one of them has failed.
+  void work() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    for (;;) {
+      changed_.wait(lock, [this] { return over() || !ready_.empty(); });
+      if (over()) return;
+      const std::size_t i = *ready_.begin();
+      ready_.erase(ready_.begin());
+      lock.unlock();
+      const std::string result = done(i);
+      lock.lock();
+      end(i, result);
+    }
+  }
+
+ private:
+  bool over() const { return left_ == 0 || failed_ || watch_.stopped(); }
+
+  std::string done(std::size_t i) {
+    try {
+      return task_(i);
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      failed_ = true;
+      changed_.notify_all();
+      throw;
+    }
+  }
+
+  void end(std::size_t i, const std::string& result) {
+    if (!result.empty()) take_(i, result);
+    for (const std::size_t child : children_[i]) {
+      if (--waits_for_[child] == 0) ready_.insert(child);
+    }
+    --left_;
+    changed_.notify_all();
+  }
+
+  const SharedTasks::Task& task_;
+  const SharedTasks::Take& take_;
+  const LibraryWatch& watch_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<std::size_t> ready_;
+  std::vector<std::size_t> waits_for_;
+  std::vector<std::vector<std::size_t>> children_;
+  std::size_t left_;
+  bool failed_ = false;
+};
+
 }  // namespace
 
 void LibraryWatch::tell() {
@@ -56,9 +124,8 @@ SharedTasks::SharedTasks(const LibraryBuildOptions& options)
                                    : std::max(1u, std::thread::hardware_concurrency())),
       watch_(options) {}
 
-std::map<std::size_t, std::string> SharedTasks::run(
-    std::size_t count, const std::function<std::string(std::size_t)>& task) {
-  if (count == 0 || stopped_) return {};
+void SharedTasks::run(std::size_t count, const Task& task, const Take& take) {
+  if (count == 0 || stopped_) return;
   Parcel mine;
   std::mutex mutex;
   const auto work = [&] {
@@ -81,7 +148,34 @@ std::map<std::size_t, std::string> SharedTasks::run(
     throw Error(all.bad_file ? ErrorKind::bad_file : ErrorKind::bad_input, all.error);
   }
   stopped_ = stopped_ || all.stopped;
-  return all.results;
+  for (const auto& [i, text] : all.results) take(i, text);
+}
+
+void SharedTasks::run_in_order(const std::vector<std::vector<std::size_t>>& parents,
+                               const Task& task, const Take& take) {
+  if (stopped_) return;
+  // Only among threads is a result known to all at once.
+  if (&sharing_ != &alone_) return run_by_generations(parents, task, take);
+  OrderedTasks tasks(parents, task, take, watch_);
+  parallel_for(std::min<std::size_t>(threads_, parents.size()), threads_,
+               [&](std::size_t) { tasks.work(); });
+  stopped_ = watch_.stopped();
+}
+
+void SharedTasks::run_by_generations(const std::vector<std::vector<std::size_t>>& parents,
+                                     const Task& task, const Take& take) {
+  std::vector<std::vector<std::size_t>> generations;
+  std::vector<std::size_t> own(parents.size(), 0);
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    for (const std::size_t parent : parents[i]) own[i] = std::max(own[i], own[parent] + 1);
+    if (generations.size() <= own[i]) generations.resize(own[i] + 1);
+    generations[own[i]].push_back(i);
+  }
+  for (const std::vector<std::size_t>& all : generations) {
+    run(
+        all.size(), [&](std::size_t i) { return task(all[i]); },
+        [&](std::size_t i, const std::string& result) { take(all[i], result); });
+  }
 }
 
 }  // namespace excavplan

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include <excavplan/planning/library_build.hpp>
 
@@ -62,12 +62,23 @@ class SharedTasks {
   LibraryWatch& watch() { return watch_; }
   bool stopped() const { return stopped_; }  ///< by the user, in any of the processes
 
-  /// Does task(0) .. task(count - 1); all processes get all results, by number. A task that was
-  /// stopped gives an empty text, which is left out.
-  std::map<std::size_t, std::string> run(std::size_t count,
-                                         const std::function<std::string(std::size_t)>& task);
+  /// What a task came to; empty if the user stopped it.
+  using Task = std::function<std::string(std::size_t number)>;
+  /// Called once for every result that is not empty, by one thread at a time, in all processes.
+  using Take = std::function<void(std::size_t number, const std::string& result)>;
+
+  /// Does task(0) .. task(count - 1), and then takes the results in this order.
+  void run(std::size_t count, const Task& task, const Take& take);
+
+  /// Does task(i) for all parents, each when the results of parents[i], which are all below i, have
+  /// been taken.
+  void run_in_order(const std::vector<std::vector<std::size_t>>& parents, const Task& task,
+                    const Take& take);
 
  private:
+  void run_by_generations(const std::vector<std::vector<std::size_t>>& parents, const Task& task,
+                          const Take& take);
+
   /// The only process there is.
   class Alone : public WorkSharing {
    public:
