@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include <excavplan/error.hpp>
 
 #include "errors.hpp"
