@@ -182,6 +182,13 @@ std::string number_text(double value) {
   return {text, end};
 }
 
+std::string decimals(double value, int digits) {
+  char text[400];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr;
+  return {text, end};
+}
+
 void write_file(const std::string& path, const std::string& content) {
   char host[65] = {};  // a folder may be shared by machines
   ::gethostname(host, sizeof host - 1);

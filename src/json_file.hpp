@@ -61,6 +61,8 @@ class JsonObject {
 
 /// Shortest text of a number that reads back the same, for messages and files.
 std::string number_text(double value);
+/// The number with so many digits after the point: "0.350".
+std::string decimals(double value, int digits);
 
 /// FNV-1a, 64 bit: against damage, not against intent. The text has 16 hexadecimal digits.
 std::uint64_t checksum(const std::string& text);

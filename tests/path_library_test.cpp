@@ -19,6 +19,7 @@
 #include <excavplan/random.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
+#include "errors.hpp"
 #include "json_file.hpp"
 #include "planning/library_row.hpp"
 #include "run_program.hpp"
@@ -62,21 +63,10 @@ PathLibrary sloped_library() {
   return library;
 }
 
-template <typename Call>
-std::string message_of(ErrorKind kind, const Call& call) {
-  try {
-    call();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.kind(), kind);
-    return e.what();
-  }
-  return "no error";
-}
-
-std::string error_of(const std::string& content) {
+std::string error_in(const std::string& content) {
   const TemporaryFolder folder;
   const std::string file = folder.write("library.json", content);
-  const std::string text = message_of(ErrorKind::bad_file, [&] { load_path_library(file); });
+  const std::string text = test::error_of([&] { load_path_library(file); }, ErrorKind::bad_file);
   return text == "no error" ? text : text.substr(file.size());
 }
 
@@ -128,7 +118,7 @@ TEST(PathLibrary, OutsideItIsAnError) {
   PathLibrary library = small_library();
   library.entries.erase(library.entries.begin());
   const auto refusal = [&](double density, double slope) {
-    return message_of(ErrorKind::bad_input, [&] { look_up(library, density, slope); });
+    return test::error_of([&] { look_up(library, density, slope); });
   };
   EXPECT_EQ(refusal(40.0, 0.0), "library: density [%] 40 is outside its range 50 .. 100");
   EXPECT_EQ(refusal(60.0, 0.1), "library: slope [rad] 0.1 is outside its range 0 .. 0");
@@ -140,7 +130,7 @@ TEST(PathLibrary, OutsideItIsAnError) {
 TEST(PathLibrary, BetweenTwoDigsWithNoneFeasibleAmidIsAnError) {
   PathLibrary library = small_library();
   library.gaps = {{75.0, 0.0}};
-  EXPECT_EQ(message_of(ErrorKind::bad_input, [&] { look_up(library, 60.0); }),
+  EXPECT_EQ(test::error_of([&] { look_up(library, 60.0); }),
             "library: no dig is feasible at a density of 75 % on a slope of 0 rad");
   EXPECT_NO_THROW(look_up(library, 40.0));
   EXPECT_NO_THROW(look_up(library, 100.0));
@@ -161,9 +151,9 @@ TEST(PathLibrary, BadFilesAreRefusedByName) {
     std::string text = good.substr(0, good.size() - seal);
     const auto at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;
-    return error_of(sealed(text.replace(at, from.size(), to)));
+    return error_in(sealed(text.replace(at, from.size(), to)));
   };
-  EXPECT_EQ(error_of(good), "no error");
+  EXPECT_EQ(error_in(good), "no error");
   EXPECT_EQ(with("\"version\": 3", "\"version\": 4"),
             ": version: is 4, this program reads version 3");
   EXPECT_EQ(with("\"version\": 3", "\"version\": 1"),
@@ -179,7 +169,7 @@ TEST(PathLibrary, BadFilesAreRefusedByName) {
   EXPECT_EQ(with("\"seed\": 7", "\"seed\": 7, \"colour\": 3"),
             ": colour: is not a key of this file");
   EXPECT_EQ(with("\"seed\": 7", "\"seed\": 7, \"seed\": 8"), ": key 'seed' stands twice");
-  EXPECT_NE(error_of(good.substr(0, good.size() / 2)).find("not valid JSON"), std::string::npos);
+  EXPECT_NE(error_in(good.substr(0, good.size() / 2)).find("not valid JSON"), std::string::npos);
   EXPECT_THROW(load_path_library("/nowhere/library.json"), Error);
 }
 
@@ -188,7 +178,7 @@ TEST(PathLibrary, EveryChangedByteIsNoticed) {
   for (std::size_t i = 0; i + 1 < good.size(); i += 7) {
     std::string text = good;
     text[i] = static_cast<char>(text[i] ^ 1);
-    EXPECT_NE(error_of(text), "no error") << i;
+    EXPECT_NE(error_in(text), "no error") << i;
   }
 }
 
@@ -333,9 +323,11 @@ TEST_F(LibraryBuilding, MergingNamesACellThatIsMissing) {
   options.folder = folder.file("cells");
   build_library_shard(grid({0, 100}), {1, 2}, options);
   options.only_merge = true;
-  const std::string text = message_of(ErrorKind::bad_file, [&] {
-    build_path_libraries(grid({0, 100}), options);
-  });
+  const std::string text = test::error_of(
+      [&] {
+        build_path_libraries(grid({0, 100}), options);
+      },
+      ErrorKind::bad_file);
   EXPECT_NE(text.find("zx120-loam-slope0-density100-"), std::string::npos) << text;
   EXPECT_NE(text.find("is missing or damaged"), std::string::npos) << text;
 }
@@ -473,7 +465,7 @@ TEST_F(LibraryBuilding, ALibraryIsRefusedForWhatItWasNotComputedFor) {
   const PathLibrary library = build_path_libraries(grid({20}), quick()).libraries[0];
   EXPECT_NO_THROW(require_fit(library, machine_, soil_, "l.json"));
   const auto refusal = [&](const PathLibrary& other, const Machine& machine, const SoilKind& soil) {
-    return message_of(ErrorKind::bad_input, [&] { require_fit(other, machine, soil, "l.json"); });
+    return test::error_of([&] { require_fit(other, machine, soil, "l.json"); });
   };
   SoilKind wet = soil_;
   wet.water_content += 0.01;
@@ -495,7 +487,7 @@ TEST_F(LibraryBuilding, ALibraryIsRefusedForWhatItWasNotComputedFor) {
 
 TEST_F(LibraryBuilding, BadGridsAndOptionsAreRefused) {
   const auto refusal = [&](const LibraryGrid& cells, const LibraryBuildOptions& options) {
-    return message_of(ErrorKind::bad_input, [&] { build_path_libraries(cells, options); });
+    return test::error_of([&] { build_path_libraries(cells, options); });
   };
   EXPECT_EQ(refusal(grid({}), quick()), "library: no densities [%] is asked for");
   EXPECT_EQ(refusal(grid({50, 40}), quick()),
@@ -630,7 +622,7 @@ TEST_F(LibraryBuilding, AnErrorOfOneProcessReachesAll) {
       options.folder = folder.file("cells");
       options.only_merge = true;
       errors[i] =
-          message_of(ErrorKind::bad_file, [&] { build_path_libraries(grid({20}), options); });
+          test::error_of([&] { build_path_libraries(grid({20}), options); }, ErrorKind::bad_file);
     });
   }
   for (std::thread& member : members) member.join();

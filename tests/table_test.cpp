@@ -7,6 +7,7 @@
 #include <excavplan/error.hpp>
 
 #include "errors.hpp"
+#include "quantity.hpp"
 #include "results.hpp"
 #include "run_program.hpp"
 
@@ -86,13 +87,24 @@ TEST(DensityList, RangesReachTheirEndThoughStepsAreNotExact) {
   EXPECT_DOUBLE_EQ(list[3], 0.3);
 }
 
+TEST(SlopeList, HoldsZeroExactly) {
+  const std::vector<double> slopes =
+      parse_series("--slopes", "-15deg:2.5deg:15deg", Quantity::angle);
+  ASSERT_EQ(slopes.size(), 13U);
+  EXPECT_EQ(slopes[6], 0.0);
+  EXPECT_NEAR(slopes[12], -slopes[0], 1e-15);
+}
+
 TEST(DensityList, JunkIsRefused) {
   const auto message = [](const char* text) { return error_of([&] { densities(text); }); };
-  EXPECT_EQ(message("0:0:100"),
-            "--densities: '0:0:100' is not first:step:last with a step of 0.01 or more");
-  EXPECT_EQ(message("0:100"),
-            "--densities: '0:100' is not first:step:last with a step of 0.01 or more");
-  EXPECT_EQ(message("100:5:0"), "--densities: '100:5:0' holds no density");
+  for (const char* text : {"0:0:100", "0:100", "0:-5:100", "0:1e-9:100"}) {
+    EXPECT_EQ(message(text), "--densities: '" + std::string(text) +
+                                 "' is not first:step:last with a step above 0 and at most 10000 "
+                                 "of them");
+  }
+  EXPECT_EQ(message("100:5:0"), "--densities: '100:5:0' holds no number");
+  EXPECT_EQ(message("90:5:110"), "--densities: 105 % is outside 0 .. 100");
+  EXPECT_EQ(message("40,-1"), "--densities: -1 % is outside 0 .. 100");
   for (const char* text : {"", ",", "10,,20", "a:5:100", "0:5:100:5", "0:nan:100", "40m"}) {
     EXPECT_NE(message(text), "no error") << text;
   }

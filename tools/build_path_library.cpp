@@ -58,12 +58,13 @@ struct Inputs {
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities [%], or a list a,b,c");
-  arguments.text("slopes", "A,B,C", inputs.slopes,
-                 "slopes of the ground [rad], rising away from the machine");
+  arguments.text("slopes", "LIST", inputs.slopes,
+                 "slopes of the ground, rising away from the machine: first:step:last or a,b,c "
+                 "[rad]");
   arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
   arguments.text("machine", "NAME,..", inputs.machines, "zx120 or machine files");
   arguments.choice("method", inputs.method, {"memetic", "paper"},
-                   "memetic: two densities searched from nothing, the others from neighbours; "
+                   "memetic: three densities searched from nothing, the others from neighbours; "
                    "paper: a genetic algorithm for each");
   arguments.option("points", inputs.anchored.points,
                    "memetic: digs that the search from nothing begins with");
@@ -92,26 +93,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "MACHINE-SOIL.json of each");
 }
 
-std::vector<std::string> words_of(const std::string& list) {
-  std::vector<std::string> words;
-  std::size_t from = 0;
-  for (std::size_t to = 0; to != std::string::npos; from = to + 1) {
-    to = list.find(',', from);
-    words.push_back(list.substr(from, to - from));
-  }
-  return words;
-}
-
 LibraryGrid grid_of(const Inputs& inputs) {
   LibraryGrid grid;
-  for (const std::string& name : words_of(inputs.machines)) {
+  for (const std::string& name : split(inputs.machines, ',')) {
     grid.machines.push_back(machine_named(name));
   }
-  for (const std::string& name : words_of(inputs.soils)) grid.soils.push_back(soil_named(name));
-  grid.slopes.clear();
-  for (const std::string& slope : words_of(inputs.slopes)) {
-    grid.slopes.push_back(parse_quantity("--slopes", slope, Quantity::angle));
-  }
+  for (const std::string& name : split(inputs.soils, ',')) grid.soils.push_back(soil_named(name));
+  grid.slopes = parse_series("--slopes", inputs.slopes, Quantity::angle);
   grid.densities_percent = parse_densities("--densities", inputs.densities);
   return grid;
 }

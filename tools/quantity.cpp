@@ -130,6 +130,43 @@ Eigen::Vector2d parse_point(const std::string& what, const std::string& text) {
           parse_quantity(what, parts[1], Quantity::length)};
 }
 
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+std::vector<double> parse_series(const std::string& what, const std::string& text,
+                                 Quantity quantity) {
+  std::vector<double> series;
+  const auto number = [&](const std::string& word) { return parse_quantity(what, word, quantity); };
+  const std::vector<std::string> range = split(text, ':');
+  if (range.size() == 1) {
+    for (const std::string& word : split(text, ',')) series.push_back(number(word));
+    return series;
+  }
+  constexpr double most = 1e4;
+  const double step = range.size() == 3 ? number(range[1]) : 0.0;
+  const double steps = step > 0.0 ? (number(range[2]) - number(range[0])) / step : HUGE_VAL;
+  if (!(steps < most)) {
+    throw Error(ErrorKind::bad_input, what + ": '" + text +
+                                          "' is not first:step:last with a step above 0 and at "
+                                          "most 10000 of them");
+  }
+  for (int i = 0; i <= std::floor(steps + 1e-9); ++i) {
+    const double value = number(range[0]) + i * step;
+    series.push_back(std::abs(value) < 1e-9 * step ? 0.0 : value);
+  }
+  if (series.empty()) throw Error(ErrorKind::bad_input, what + ": '" + text + "' holds no number");
+  return series;
+}
+
 std::string readable(double value, int digits) {
   if (!std::isfinite(value)) return "unknown";
   const double magnitude = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)));

@@ -23,6 +23,13 @@ const char* unit(Quantity quantity);         ///< "m"
 /// @throws Error (bad_input) naming `what`, the text and what is understood
 double parse_quantity(const std::string& what, const std::string& text, Quantity quantity);
 
+/// The words of a text between separators.
+std::vector<std::string> split(const std::string& text, char separator);
+
+/// "40", "10,40,80" or, first:step:last, "0:5:100". @throws Error (bad_input)
+std::vector<double> parse_series(const std::string& what, const std::string& text,
+                                 Quantity quantity);
+
 /// "45deg,0.35m,1.5m". @throws Error (bad_input)
 DigParameters parse_dig_path(const std::string& what, const std::string& text);
 

@@ -6,6 +6,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "json_file.hpp"
 #include "plot.hpp"
 #include "quantity.hpp"
 #include "tool.hpp"
@@ -14,18 +15,6 @@ namespace excavplan::tools {
 namespace {
 
 constexpr double degrees = 57.29577951308232;
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator) {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
 
 }  // namespace
 
@@ -82,28 +71,11 @@ std::vector<std::string> dig_lines(const PlannedDig& dig) {
 }
 
 std::vector<double> parse_densities(const std::string& what, const std::string& text) {
-  std::vector<double> densities;
-  const auto number = [&](const std::string& word) {
-    return parse_quantity(what, word, Quantity::percent);
-  };
-  const auto range = split(text, ':');
-  if (range.size() == 1) {
-    for (const std::string& word : split(text, ',')) densities.push_back(number(word));
-    return densities;
-  }
-  const double step = range.size() == 3 ? number(range[1]) : 0.0;
-  if (range.size() != 3 || !(step >= 0.01)) {
+  const std::vector<double> densities = parse_series(what, text, Quantity::percent);
+  for (const double density : densities) {
+    if (density >= 0.0 && density <= 100.0) continue;
     throw Error(ErrorKind::bad_input,
-                what + ": '" + text + "' is not first:step:last with a step of 0.01 or more");
-  }
-  const double first = number(range[0]);
-  if (!(number(range[2]) <= 100.0)) {
-    throw Error(ErrorKind::bad_input, what + ": '" + text + "' goes beyond 100 %");
-  }
-  const auto steps = static_cast<int>(std::floor((number(range[2]) - first) / step + 1e-9));
-  for (int i = 0; i <= steps; ++i) densities.push_back(first + i * step);
-  if (densities.empty()) {
-    throw Error(ErrorKind::bad_input, what + ": '" + text + "' holds no density");
+                what + ": " + number_text(density) + " % is outside 0 .. 100");
   }
   return densities;
 }

@@ -186,8 +186,7 @@ Setting setting_of(const Inputs& inputs) {
   setting.law =
       load_density_law(shipped_or_file("laws", inputs.law == "default" ? pair : inputs.law));
   if (!inputs.search) {
-    const std::string file =
-        inputs.library ? *inputs.library : shipped_or_file("libraries", pair);
+    const std::string file = inputs.library ? *inputs.library : shipped_or_file("libraries", pair);
     setting.library = load_path_library(file);
     require_fit(*setting.library, setting.machine, setting.soil, file);
   }

@@ -122,8 +122,11 @@ std::string help_text(const About& about, const std::vector<Arguments::Entry>& e
       continue;
     }
     std::string help = entry.help;
-    if (entry.required) help += " (required)";
-    if (!entry.default_text.empty()) help += " (default: " + entry.default_text + ")";
+    if (entry.required) {
+      help += " (required)";
+    } else if (!entry.default_text.empty()) {
+      help += " (default: " + entry.default_text + ")";
+    }
     const std::string value = entry.placeholder.empty() ? "" : " " + entry.placeholder;
     options += help_row((entry.name == "help" ? "-h, --" : "--") + entry.name + value, help);
   }

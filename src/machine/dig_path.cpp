@@ -3,7 +3,6 @@
 #include <excavplan/machine/dig_path.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -28,13 +27,6 @@ constexpr double same_posture = 1e-6;  // joints closer than this [rad]
 constexpr int ground_intervals = 16;   // where the ground is looked up under the bucket
 
 // ---- messages -----------------------------------------------------------------------------------
-
-std::string decimals(double value, int digits) {
-  char text[400];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr;
-  return {text, end};
-}
 
 std::string metres(double value) { return decimals(value, 3) + " m"; }
 std::string degrees(double value) { return decimals(value * 180.0 / pi, 2) + " deg"; }

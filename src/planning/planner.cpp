@@ -42,8 +42,8 @@ std::string describe(const DigFailure& failure) {
   if (const auto* infeasible = std::get_if<Infeasible>(&failure)) return infeasible->message;
   const Stall& stall = std::get<Stall>(failure);
   return std::string("the ") + name(stall.joint) + " stalls in the phase " + name(stall.phase) +
-         " after " + std::to_string(stall.travelled) + " m: it would need " +
-         std::to_string(std::abs(stall.torque) / 1000.0) + " kN m";
+         " after " + decimals(stall.travelled, 3) + " m: it would need " +
+         decimals(std::abs(stall.torque) / 1000.0, 1) + " kN m";
 }
 
 Rectangle planning_extent(const Machine& machine) {
