@@ -1122,6 +1122,22 @@ TEST_F(BadInput, FilesThatAreNoCloudsAreRefused) {
   }
 }
 
+TEST_F(BadInput, ThePathOfAPlanIsDugAndNothingElseTaken) {
+  const ProgramResult plan = run_program("plan-path", {"--density", "40", "--json"});
+  const std::string file = folder.write("plan.json", plan.out);
+  const Words dig = {"--density", "40", "--path-from", file};
+  const json dug = answer("simulate-dig", dig);
+  const json planned = json::parse(plan.out);
+  EXPECT_EQ(dug.at("path"), planned.at("path"));
+  EXPECT_NEAR(dug.at("energy_kj"), planned.at("energy_kj"),
+              0.01 * planned["energy_kj"].get<double>());
+  refused(2, "--path-from goes without --path and --start", "simulate-dig",
+          dig + Words{"--start", "5"});
+  const std::string other = folder.write("other.json", R"({"path": {"start_x_m": 5}})");
+  refused(3, other + ": path.penetration_angle_rad must be a number, it is missing", "simulate-dig",
+          {"--density", "40", "--path-from", other});
+}
+
 TEST_F(BadInput, HalfATaskIsRefused) {
   const std::string tool = "estimate-density";
   refused(2, "AFTER is missing", tool, {scan});

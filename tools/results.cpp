@@ -53,6 +53,23 @@ std::string path_text(const DigParameters& parameters, const std::optional<doubl
          " m" + (start_x ? " from x = " + readable(*start_x) + " m" : "");
 }
 
+std::pair<DigParameters, double> read_dig_path(const std::string& file) {
+  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const auto number = [&](const std::string& key) {
+    const nlohmann::json::json_pointer place("/path/" + key);
+    const bool there = json.is_object() && json.contains(place);
+    if (there && json.at(place).is_number()) return json.at(place).get<double>();
+    throw Error(ErrorKind::bad_file, file + ": path." + key + " must be a number, it is " +
+                                         (there ? json.at(place).dump() : "missing") +
+                                         "; expected a result of plan-path --json");
+  };
+  DigParameters parameters;
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    parameters.*info.field = number(info.name);
+  }
+  return {parameters, number("start_x_m")};
+}
+
 std::string path_text(const PlannedDig& dig) { return path_text(dig.parameters, dig.start_x); }
 
 std::string nearest_text(const std::optional<NearestDig>& nearest) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <excavplan/planning/calibration.hpp>
 #include <excavplan/random.hpp>
@@ -27,12 +29,14 @@ const About about = {
     "goes, and, if asked, what a depth camera sees before and after.",
     {{"simulate-dig --density 40", "the paper's fixed path in medium loam"},
      {"simulate-dig --density 80 --path 43deg,0.2m,2.6m --plot dig.svg", "another path, drawn"},
+     {"simulate-dig --density 40 --path-from plan.json", "the path that plan-path --json planned"},
      {"simulate-dig --density 40 --before b.pcd --after a.pcd --seed 7", "make a pair of scans"}}};
 
 struct Inputs {
   double density = 0.0;
   std::optional<DigParameters> path;
   std::optional<double> start;
+  std::optional<std::string> path_from;
   TerrainInput terrain;
   std::optional<Eigen::Vector2d> dump_at;
   std::string soil = "loam";
@@ -55,6 +59,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "45deg,0.35m,1.5m)");
   arguments.option("start", inputs.start, Quantity::length,
                    "x where the tip meets the ground (default: planned)");
+  arguments.file("path-from", inputs.path_from,
+                 "take path and start from this result of plan-path --json");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.file("terrain", inputs.terrain.cloud,
@@ -89,6 +95,16 @@ Cloud scan(const Terrain& terrain, const Inputs& inputs, const Eigen::Vector2d& 
   }
   cloud.width = cloud.points.size();
   return cloud;
+}
+
+/// The inputs with the path of the result they name.
+Inputs with_path(Inputs inputs) {
+  if (!inputs.path_from) return inputs;
+  if (inputs.path || inputs.start) {
+    throw Error(ErrorKind::bad_input, "--path-from goes without --path and --start");
+  }
+  std::tie(inputs.path, inputs.start) = read_dig_path(*inputs.path_from);
+  return inputs;
 }
 
 DigPath lay_out(const Inputs& inputs, const Machine& machine, const Terrain& ground) {
@@ -281,7 +297,8 @@ void write_scans(const Inputs& inputs, const Dug& dug) {
   }
 }
 
-Outcome work(const Inputs& inputs) {
+Outcome work(Inputs inputs) {
+  inputs = with_path(std::move(inputs));
   for (const auto& file : {inputs.before, inputs.after}) {
     if (file) cloud_format_of_name(*file);  // refuses a wrong name before anything is written
   }
