@@ -38,85 +38,24 @@ void require_rising(const std::string& what, const std::vector<double>& values, 
   }
 }
 
-class Build {
+/// Row and density of a cell.
+using Key = std::pair<std::size_t, double>;
+
+/// The cells, each for itself: what those asked for came to, computed or read from the folder.
+class Cells {
  public:
-  Build(const LibraryGrid& grid, const LibraryBuildOptions& options)
-      : grid_(grid), options_(options), tasks_(options) {
-    require_buildable(grid, options);
-    if (!options.folder.empty()) make_folder();
-    for (const Machine& machine : grid.machines) {
-      for (const SoilKind& soil : grid.soils) {
-        for (const double slope : grid.slopes) {
-          rows_.emplace_back(LibraryCell{&machine, &soil, slope, 0.0}, grid.densities_percent);
-        }
-      }
-    }
-  }
-
-  LibraryBuild whole() {
-    do {
-      compute(all_keys());
-      if (!tasks_.stopped()) settle_rows();
-    } while (!tasks_.stopped() && refine());
-    std::vector<PathLibrary> libraries;
-    for (std::size_t first = 0; first < rows_.size() && !tasks_.stopped();
-         first += grid_.slopes.size()) {
-      libraries.push_back(library_of(first));
-      measure_slopes(libraries.back(), first);
-    }
-    LibraryBuild build = summary(all_keys());
-    if (!build.stopped) build.libraries = std::move(libraries);
-    return build;
-  }
-
-  LibraryBuild part(const LibraryShard& shard) {
-    require(!options_.folder.empty(), "a shard needs a folder for its cells");
-    require(shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count,
-            "shard " + std::to_string(shard.index) + "/" + std::to_string(shard.count) +
-                " must be 1/N .. N/N");
-    const std::vector<Key> all = all_keys();
-    const auto cut = [&](int i) {
-      return static_cast<std::ptrdiff_t>(all.size() * static_cast<std::size_t>(i) /
-                                         static_cast<std::size_t>(shard.count));
-    };
-    // Neighbours stay together: only at its two ends a part computes a parent that others have too.
-    const std::vector<Key> mine(all.begin() + cut(shard.index - 1), all.begin() + cut(shard.index));
-    compute(mine);
-    return summary(mine);
-  }
-
- private:
-  /// Row and density of a cell.
-  using Key = std::pair<std::size_t, double>;
-
-  void make_folder() const {
+  Cells(const std::vector<LibraryRow>& rows, const LibraryBuildOptions& options, SharedTasks& tasks)
+      : rows_(rows), options_(options), tasks_(tasks) {
+    if (options.folder.empty()) return;
     std::error_code error;
-    std::filesystem::create_directories(options_.folder, error);
-    if (!std::filesystem::is_directory(options_.folder)) {
-      throw Error(ErrorKind::bad_file, options_.folder + ": is not a folder and cannot be made");
+    std::filesystem::create_directories(options.folder, error);
+    if (!std::filesystem::is_directory(options.folder)) {
+      throw Error(ErrorKind::bad_file, options.folder + ": is not a folder and cannot be made");
     }
   }
 
-  LibraryCell cell_of(const Key& key) const { return rows_[key.first].cell(key.second); }
-
-  std::vector<Key> all_keys() const {
-    std::vector<Key> keys;
-    for (std::size_t row = 0; row < rows_.size(); ++row) {
-      for (const double density : rows_[row].densities()) keys.push_back({row, density});
-    }
-    return keys;
-  }
-
-  LibraryBuild summary(const std::vector<Key>& wanted) const {
-    LibraryBuild build;
-    build.stopped = tasks_.stopped();
-    build.cells = wanted.size();
-    build.cells_done = static_cast<std::size_t>(std::count_if(
-        wanted.begin(), wanted.end(), [&](const Key& key) { return outcomes_.count(key) == 1; }));
-    return build;
-  }
-
-  // ---- The cells, each for itself ---------------------------------------------------------------
+  bool has(const Key& key) const { return outcomes_.count(key) == 1; }
+  const CellOutcome& operator[](const Key& key) const { return outcomes_.at(key); }
 
   /// Computes the cells, and before each those that it starts from.
   void compute(const std::vector<Key>& wanted) {
@@ -143,6 +82,7 @@ class Build {
         });
   }
 
+ private:
   /// @return the generation of a cell that is missing: 0 if it need not wait for another one
   std::size_t add_with_parents(const Key& key, std::map<Key, std::size_t>& generations) const {
     if (outcomes_.count(key) == 1) return 0;
@@ -175,7 +115,8 @@ class Build {
                                            ": is missing or damaged, the shard that computes it "
                                            "has not ended");
     }
-    const auto outcome = compute_cell(cell, options_.search, parents_of(key), watched(cell));
+    const auto outcome =
+        compute_cell(cell, options_.search, parents_of(key), tasks_.watch().of(name));
     if (!outcome) return {};
     const std::string text = cell_text(cell, options_.search, *outcome);
     if (!options_.folder.empty()) write_file(options_.folder + "/" + name, text);
@@ -205,18 +146,90 @@ class Build {
     }
   }
 
-  std::function<bool(const SearchProgress&)> watched(const LibraryCell& cell) {
-    return [this, name = cell_file_name(cell, options_.search)](const SearchProgress& now) {
-      return tasks_.watch().dig_done(name, now.best);
-    };
+  LibraryCell cell_of(const Key& key) const { return rows_[key.first].cell(key.second); }
+
+  const std::vector<LibraryRow>& rows_;
+  const LibraryBuildOptions& options_;
+  SharedTasks& tasks_;
+  std::mutex mutex_;  // guards the outcomes while cells are computed
+  std::map<Key, CellOutcome> outcomes_;
+};
+
+class Build {
+ public:
+  Build(const LibraryGrid& grid, const LibraryBuildOptions& options)
+      : grid_(grid),
+        options_(options),
+        tasks_(options),
+        rows_(rows_of(grid)),
+        cells_(rows_, options, tasks_) {}
+
+  LibraryBuild whole() {
+    do {
+      cells_.compute(all_keys());
+      if (!tasks_.stopped()) settle_rows();
+    } while (!tasks_.stopped() && refine());
+    std::vector<PathLibrary> libraries;
+    for (std::size_t first = 0; first < rows_.size() && !tasks_.stopped();
+         first += grid_.slopes.size()) {
+      libraries.push_back(library_of(first));
+      measure_slopes(libraries.back(), first);
+    }
+    LibraryBuild build = summary(all_keys());
+    if (!build.stopped) build.libraries = std::move(libraries);
+    return build;
   }
 
-  // ---- The rows, side by side -------------------------------------------------------------------
+  LibraryBuild part(const LibraryShard& shard) {
+    require(!options_.folder.empty(), "a shard needs a folder for its cells");
+    require(shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count,
+            "shard " + std::to_string(shard.index) + "/" + std::to_string(shard.count) +
+                " must be 1/N .. N/N");
+    const std::vector<Key> all = all_keys();
+    const auto cut = [&](int i) {
+      return static_cast<std::ptrdiff_t>(all.size() * static_cast<std::size_t>(i) /
+                                         static_cast<std::size_t>(shard.count));
+    };
+    // Neighbours stay together: only at its two ends a part computes a parent that others have too.
+    const std::vector<Key> mine(all.begin() + cut(shard.index - 1), all.begin() + cut(shard.index));
+    cells_.compute(mine);
+    return summary(mine);
+  }
+
+ private:
+  static std::vector<LibraryRow> rows_of(const LibraryGrid& grid) {
+    std::vector<LibraryRow> rows;
+    for (const Machine& machine : grid.machines) {
+      for (const SoilKind& soil : grid.soils) {
+        for (const double slope : grid.slopes) {
+          rows.emplace_back(LibraryCell{&machine, &soil, slope, 0.0}, grid.densities_percent);
+        }
+      }
+    }
+    return rows;
+  }
+
+  std::vector<Key> all_keys() const {
+    std::vector<Key> keys;
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      for (const double density : rows_[row].densities()) keys.push_back({row, density});
+    }
+    return keys;
+  }
+
+  LibraryBuild summary(const std::vector<Key>& wanted) const {
+    LibraryBuild build;
+    build.stopped = tasks_.stopped();
+    build.cells = wanted.size();
+    build.cells_done = static_cast<std::size_t>(std::count_if(
+        wanted.begin(), wanted.end(), [&](const Key& key) { return cells_.has(key); }));
+    return build;
+  }
 
   /// Measures between all densities, and looks again at those whose neighbours know better, until
   /// there is nothing left to do.
   void settle_rows() {
-    for (const Key& key : all_keys()) rows_[key.first].take(key.second, outcomes_.at(key));
+    for (const Key& key : all_keys()) rows_[key.first].take(key.second, cells_[key]);
     do {
       measure_midways();
     } while (!tasks_.stopped() && look_again());
@@ -250,7 +263,8 @@ class Build {
           const auto& [row, look] = all[i];
           const LibraryCell cell = row->cell(look.density);
           const auto outcome =
-              excavplan::look_again(cell, options_.search, row->starts_of(look), watched(cell));
+              excavplan::look_again(cell, options_.search, row->starts_of(look),
+                                    tasks_.watch().of(cell_file_name(cell, options_.search)));
           return outcome ? cell_text(cell, options_.search, *outcome) : std::string();
         },
         [&](std::size_t i, const std::string& text) {
@@ -280,8 +294,6 @@ class Build {
     return any;
   }
 
-  // ---- The libraries ----------------------------------------------------------------------------
-
   PathLibrary library_of(std::size_t first) const {
     const LibraryCell any = rows_[first].cell(0.0);
     PathLibrary library{any.machine->name,
@@ -304,16 +316,15 @@ class Build {
 
   /// Digs what is looked up midway between two slopes.
   void measure_slopes(PathLibrary& library, std::size_t first) {
-    std::vector<SlopeGap> gaps;
-    for (std::size_t i = 0; i < library.entries.size(); ++i) {
-      if (auto gap = slope_gap(library, first, i)) gaps.push_back(std::move(*gap));
-    }
+    const std::vector<SlopeGap> gaps = slope_gaps(library);
     tasks_.run(
         gaps.size(),
         [&](std::size_t i) {
           const SlopeGap& gap = gaps[i];
+          LibraryCell midway = rows_[first].cell(gap.density_percent);
+          midway.slope = gap.middle;
           const MidwayDig dug =
-              dig_midway(gap.midway, options_.search.cell, gap.looked_up, gap.best_expected);
+              dig_midway(midway, options_.search.cell, gap.looked_up, gap.best_expected);
           return text_of(MidwayDensity{dug.error, dug.evaluations});
         },
         [&](std::size_t i, const std::string& text) {
@@ -324,49 +335,11 @@ class Build {
         });
   }
 
-  /// Midway between the slope of an entry and the next.
-  struct SlopeGap {
-    std::size_t entry;
-    LibraryCell midway;
-    PlannedDig looked_up;
-    double best_expected;
-  };
-
-  /// Nothing for the last slope, and where there is no dig on the next.
-  std::optional<SlopeGap> slope_gap(const PathLibrary& library, std::size_t first,
-                                    std::size_t i) const {
-    const std::vector<double>& slopes = grid_.slopes;
-    const PathLibraryEntry& entry = library.entries[i];
-    const auto own = static_cast<std::size_t>(
-        std::lower_bound(slopes.begin(), slopes.end(), entry.slope) - slopes.begin());
-    if (own + 1 == slopes.size()) return std::nullopt;
-    std::vector<std::pair<double, double>> around;  // slope and efficiency
-    for (std::size_t j = own > 0 ? own - 1 : 0; j < std::min(own + 3, slopes.size()); ++j) {
-      const auto dig = dig_in(library, entry.density_percent, slopes[j]);
-      if (dig) around.push_back({slopes[j], dig->efficiency()});
-      if (!dig && j == own + 1) return std::nullopt;
-    }
-    LibraryCell midway = rows_[first + own].cell(entry.density_percent);
-    midway.slope = 0.5 * (slopes[own] + slopes[own + 1]);
-    return SlopeGap{i, midway, look_up(library, entry.density_percent, midway.slope),
-                    expected_between(around, midway.slope)};
-  }
-
-  static std::optional<PlannedDig> dig_in(const PathLibrary& library, double density,
-                                          double slope) {
-    try {
-      return look_up(library, density, slope);
-    } catch (const Error&) {
-      return std::nullopt;  // beside a gap
-    }
-  }
-
   const LibraryGrid& grid_;
   const LibraryBuildOptions& options_;
   SharedTasks tasks_;
   std::vector<LibraryRow> rows_;  // slopes of a machine and soil stand together
-  std::mutex mutex_;              // guards what follows while cells are computed
-  std::map<Key, CellOutcome> outcomes_;
+  Cells cells_;
 };
 
 }  // namespace
@@ -384,11 +357,13 @@ void require_buildable(const LibraryGrid& grid, const LibraryBuildOptions& optio
 }
 
 LibraryBuild build_path_libraries(const LibraryGrid& grid, const LibraryBuildOptions& options) {
+  require_buildable(grid, options);
   return Build(grid, options).whole();
 }
 
 LibraryBuild build_library_shard(const LibraryGrid& grid, const LibraryShard& shard,
                                  const LibraryBuildOptions& options) {
+  require_buildable(grid, options);
   return Build(grid, options).part(shard);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include <excavplan/error.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 namespace excavplan {
@@ -13,6 +14,30 @@ namespace {
 
 constexpr double near = 0.2;            // of a number's search range; ours
 constexpr double clearly_more = 0.005;  // of an efficiency; ours
+
+std::optional<PlannedDig> dig_in(const PathLibrary& library, double density, double slope) {
+  try {
+    return look_up(library, density, slope);
+  } catch (const Error&) {
+    return std::nullopt;  // beside a gap
+  }
+}
+
+/// Of the entry and the next slope; nothing if there is no dig there.
+/// @param own  its slope's place among all
+std::optional<SlopeGap> slope_gap(const PathLibrary& library, std::size_t entry,
+                                  const std::vector<double>& slopes, std::size_t own) {
+  const double density = library.entries[entry].density_percent;
+  std::vector<std::pair<double, double>> around;  // slope and efficiency
+  for (std::size_t i = own > 0 ? own - 1 : 0; i < std::min(own + 3, slopes.size()); ++i) {
+    const auto dig = dig_in(library, density, slopes[i]);
+    if (dig) around.push_back({slopes[i], dig->efficiency()});
+    if (!dig && i == own + 1) return std::nullopt;
+  }
+  const double middle = 0.5 * (slopes[own] + slopes[own + 1]);
+  return SlopeGap{entry, density, middle, look_up(library, density, middle),
+                  expected_between(around, middle)};
+}
 
 }  // namespace
 
@@ -88,6 +113,21 @@ MidwayDensity measure_midway(const LibraryCell& midway, double cell_size, const 
   if (upper.efficiency < least) both.better = Better::below;
   if (lower.efficiency < least) both.better = Better::above;
   return both;
+}
+
+std::vector<SlopeGap> slope_gaps(const PathLibrary& library) {
+  std::vector<double> slopes;
+  for (const PathLibraryEntry& entry : library.entries) {
+    if (slopes.empty() || entry.slope != slopes.back()) slopes.push_back(entry.slope);
+  }
+  std::vector<SlopeGap> gaps;
+  std::size_t own = 0;
+  for (std::size_t i = 0; i < library.entries.size(); ++i) {
+    if (library.entries[i].slope != slopes[own]) ++own;
+    if (own + 1 == slopes.size()) break;
+    if (auto gap = slope_gap(library, i, slopes, own)) gaps.push_back(*gap);
+  }
+  return gaps;
 }
 
 }  // namespace excavplan

@@ -47,4 +47,16 @@ struct MidwayDensity {
 MidwayDensity measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
                              const PlannedDig& above, double best);
 
+/// What is looked up midway between the slope of an entry and the next, at its density.
+struct SlopeGap {
+  std::size_t entry = 0;  ///< in the library
+  double density_percent = 0.0;
+  double middle = 0.0;  ///< slope [rad]
+  PlannedDig looked_up;
+  double best_expected = 0.0;  ///< efficiency there [kg/J]
+};
+
+/// Of all entries but those of the last slope, and those whose density has no dig on the next.
+std::vector<SlopeGap> slope_gaps(const PathLibrary& library);
+
 }  // namespace excavplan

@@ -14,8 +14,9 @@ namespace excavplan {
 /// An outcome that a file can hold: a finite fitness, a reason in UTF-8 of limited length.
 Evaluation sound(Evaluation outcome);
 
-/// The outcomes of a search's evaluations, in memory and in a file (docs/formats.md#search-checkpoint). A
-/// search is determined by its options and these outcomes, so that nothing else need be kept.
+/// The outcomes of a search's evaluations, in memory and in a file
+/// (docs/formats.md#search-checkpoint). A search is determined by its options and these outcomes,
+/// so that nothing else need be kept.
 class SearchCheckpoint {
  public:
   /// Reads the file if the search is to be resumed and the file exists.

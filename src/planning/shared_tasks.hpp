@@ -34,13 +34,16 @@ class LibraryWatch {
     computed_ += computed ? 1 : 0;
     tell();
   }
-  bool dig_done(const std::string& cell, double best) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++now_.evaluations;
-    now_.cell = cell;
-    now_.best = best;
-    tell();
-    return !stopped_;
+  /// The progress of the search for a cell.
+  std::function<bool(const SearchProgress&)> of(const std::string& cell) {
+    return [this, cell](const SearchProgress& progress) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ++now_.evaluations;
+      now_.cell = cell;
+      now_.best = progress.best;
+      tell();
+      return !stopped_;
+    };
   }
 
  private:
