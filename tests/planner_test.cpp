@@ -94,6 +94,42 @@ TEST_F(Planner, EvaluatesThePapersFixedPath) {
   EXPECT_LT(dig.duration, 8.0);
 }
 
+/// Energy and stall as told.
+class Told : public SoilSimulator {
+ public:
+  Told(double energy, bool stalls) : energy_(energy), stalls_(stalls) {}
+  DigResult dig(const Terrain&, const DigPath&, const DigOptions&) const override {
+    DigResult result;
+    result.payload_mass = 100.0;
+    result.energy.total = energy_;
+    if (stalls_) result.stall = Stall{};
+    return result;
+  }
+
+ private:
+  double energy_;
+  bool stalls_;
+};
+
+TEST_F(Planner, SpreadIsTheDeviationOverTheSoilsThatDoNotStall) {
+  const Told light(1000.0, false), heavy(3000.0, false), hopeless(1e6, true);
+  const PlannedDig dig = std::get<PlannedDig>(
+      evaluate_dig(machine_, light, level_, paper_fixed_path(), StartRule::Kind::least_work));
+  const DigSpread spread =
+      dig_spread(machine_, {{&light, 0.2}, {&heavy, 0.6}, {&hopeless, 0.2}}, level_, dig);
+  // Two values with probabilities of 1/4 and 3/4.
+  const double share = std::sqrt(0.25 * 0.75);
+  EXPECT_NEAR(spread.energy, share * 2000.0, 1e-9);
+  EXPECT_NEAR(spread.efficiency, share * (100.0 / 1000.0 - 100.0 / 3000.0), 1e-12);
+  EXPECT_EQ(spread.payload_mass, 0.0);
+  EXPECT_DOUBLE_EQ(spread.stall_probability, 0.2);
+  EXPECT_EQ(dig_spread(machine_, {{&hopeless, 1.0}}, level_, dig).stall_probability, 1.0);
+  PlannedDig nowhere = dig;
+  nowhere.start_x = 50.0;
+  EXPECT_THROW(dig_spread(machine_, {{&light, 1.0}}, level_, nowhere), Error);
+  EXPECT_THROW(dig_spread(machine_, {{&light, 0.5}}, level_, dig), Error);
+}
+
 TEST_F(Planner, SlopeOfTheGroundIsTheLineThroughWhatIsKnown) {
   EXPECT_EQ(boom_plane_slope(level_, machine_.track_front), 0.0);
   Terrain ground = slope(0.2);

@@ -864,6 +864,21 @@ TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
   EXPECT_EQ(plan.at("energy_kj"), library["entries"][1].at("energy_kj"));
 }
 
+TEST_F(Tools, FiguresOfAPlanScatterWithTheDensity) {
+  const json sure = answer("plan-path", {"--density", "40"});
+  const json plan = answer("plan-path", {"--density", "40", "--density-sd", "8"});
+  EXPECT_EQ(plan.at("path"), sure.at("path"));
+  EXPECT_FALSE(sure.contains("efficiency_sd_kg_per_kj"));
+  EXPECT_EQ(plan.at("density_sd_percent"), 8.0);
+  EXPECT_EQ(plan.at("evaluations"), 3);
+  EXPECT_EQ(plan.at("stall_probability"), 0.0);
+  // As the best efficiency falls over density, so does that of one path, in first order.
+  const double soft = answer("plan-path", {"--density", "32"}).at("efficiency_kg_per_kj");
+  const double firm = answer("plan-path", {"--density", "48"}).at("efficiency_kg_per_kj");
+  EXPECT_NEAR(plan.at("efficiency_sd_kg_per_kj"), 0.5 * (soft - firm), 0.1 * (soft - firm));
+  EXPECT_GT(plan.at("energy_sd_kj"), 0.0);
+}
+
 TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
   const std::string library = folder.file("library.json");
   answer("build-path-library",
@@ -1276,7 +1291,6 @@ TEST_F(BadInput, SearchOptionsAreRefusedByName) {
   refused(2, "--resume needs --checkpoint", "plan-path", search + Words{"--resume"});
   refused(2, "--start search needs --search", "plan-path",
           {"--density", "40", "--start", "search"});
-  refused(2, "--density-sd needs --search", "plan-path", {"--density", "40", "--density-sd", "8"});
 }
 
 TEST_F(BadInput, SearchWithoutADigSaysWhichCameNearestAndWhatStoodInItsWay) {

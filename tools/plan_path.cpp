@@ -50,11 +50,13 @@ struct Inputs {
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("density", inputs.density, Quantity::percent, "relative density of the ground");
-  arguments.option("density-sd", inputs.density_sd, Quantity::percent,
-                   "standard deviation of the density: search the path that is best on average");
-  arguments.file("density-from", inputs.density_from,
-                 "take the density, and for a search its uncertainty, from this result of "
-                 "estimate-density --json");
+  arguments.option(
+      "density-sd", inputs.density_sd, Quantity::percent,
+      "standard deviation of the density: how much the figures scatter; with --search the path "
+      "that is best on average");
+  arguments.file(
+      "density-from", inputs.density_from,
+      "take the density and its uncertainty from this result of estimate-density --json");
   arguments.file("library", inputs.library,
                  "path library (default: the shipped one of the machine and the soil)");
   arguments.flag("search", inputs.search, "search the path instead of looking it up");
@@ -156,6 +158,7 @@ std::vector<DigParameters> known_good(const Inputs& inputs, const Machine& machi
 
 struct Plan {
   PlannedDig dig;
+  DigSpread spread;
   DigPath path;
   std::string source;
   std::string start_rule;
@@ -243,7 +246,6 @@ void add_search(const DigSearchResult& found, const DigObjective& objective, Pla
 
 void add_uncertainty(const UncertainDigSearchResult& found, double sd, Plan& plan) {
   plan.evaluations = found.evaluations;
-  plan.details["density_sd_percent"] = sd;
   const nlohmann::ordered_json worth = plan.details["worth"];
   if (plan.details["worth_unit"] == "kg/kJ") plan.details["expected_efficiency_kg_per_kj"] = worth;
   std::string line = "expected     " + readable(worth.get<double>()) + " " +
@@ -263,6 +265,27 @@ std::nullopt_t no_plan(const std::optional<NearestDig>& nearest, const Console& 
   refuse("no dig inside the search ranges can be done on this ground" + nearest_text(nearest));
 }
 
+/// The soils that the ground may be.
+class PossibleGround {
+ public:
+  PossibleGround(const Machine& machine, const SoilKind& soil, const Density& density) {
+    const auto densities = possible_densities(density.percent, density.sd);
+    for (const auto& [percent, probability] : densities) {
+      simulators_.emplace_back(machine, soil, percent);
+      soils_.push_back({nullptr, probability});
+    }
+    for (std::size_t i = 0; i < soils_.size(); ++i) soils_[i].simulator = &simulators_[i];
+  }
+  PossibleGround(const PossibleGround&) = delete;
+  PossibleGround& operator=(const PossibleGround&) = delete;
+
+  const std::vector<PossibleSoil>& soils() const { return soils_; }
+
+ private:
+  std::vector<HeightMapSimulator> simulators_;
+  std::vector<PossibleSoil> soils_;
+};
+
 /// @return nothing if the search was interrupted before it found a dig
 std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                                 const Density& density, Site& site, Console& console) {
@@ -270,29 +293,38 @@ std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, co
   options.start = known_good(inputs, machine, soil, density.percent, site);
   Plan plan;
   plan.start_rule = describe(options.start_rule);
-  const HeightMapSimulator simulator(machine, soil, density.percent);
   if (density.sd > 0.0) {
     if (inputs.dig_search.evaluations == 0 && inputs.dig_search.method == "default")
       options.stop.evaluations = evaluations_each;
-    std::vector<HeightMapSimulator> simulators;
-    std::vector<PossibleSoil> soils;
-    const auto densities = possible_densities(density.percent, density.sd);
-    for (const auto& [percent, probability] : densities) {
-      simulators.emplace_back(machine, soil, percent);
-      soils.push_back({nullptr, probability});
-    }
-    for (std::size_t i = 0; i < soils.size(); ++i) soils[i].simulator = &simulators[i];
-    const auto uncertain = search_dig(machine, soils, site.ground, options);
+    const PossibleGround ground(machine, soil, density);
+    const auto uncertain = search_dig(machine, ground.soils(), site.ground, options);
     if (!uncertain) return no_plan(uncertain.nearest, console);
     add_search(uncertain->expected, options.objective, plan);
     add_uncertainty(*uncertain, density.sd, plan);
   } else {
+    const HeightMapSimulator simulator(machine, soil, density.percent);
     const auto known = search_dig(machine, simulator, site.ground, options);
     if (!known) return no_plan(known.nearest, console);
     add_search(*known, options.objective, plan);
   }
   plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
   return plan;
+}
+
+void add_spread(const Machine& machine, const SoilKind& soil, const Density& density,
+                const Site& site, Plan& plan) {
+  const PossibleGround ground(machine, soil, density);
+  plan.spread = dig_spread(machine, ground.soils(), site.ground, plan.dig);
+  plan.evaluations += static_cast<int>(ground.soils().size());
+  plan.details["density_sd_percent"] = density.sd;
+  plan.details["payload_mass_sd_kg"] = plan.spread.payload_mass;
+  plan.details["energy_sd_kj"] = plan.spread.energy / 1000.0;
+  plan.details["efficiency_sd_kg_per_kj"] = 1000.0 * plan.spread.efficiency;
+  plan.details["stall_probability"] = plan.spread.stall_probability;
+  if (plan.spread.stall_probability > 0.0) {
+    plan.lines.push_back("stalls       with a probability of " +
+                         readable(100.0 * plan.spread.stall_probability, 2) + " %");
+  }
 }
 
 nlohmann::ordered_json plan_json(const Plan& plan, double density, double seconds) {
@@ -323,9 +355,9 @@ void write_trajectory(const std::string& file, const Machine& machine, DigPath p
 }
 
 std::vector<std::string> lines_of(const Plan& plan, const Density& density, const SoilKind& soil) {
-  std::vector<std::string> lines = {"density      " + readable(density.percent) + " % in " +
-                                    soil.name};
-  for (const std::string& line : dig_lines(plan.dig)) lines.push_back(line);
+  std::vector<std::string> lines = {"density      " + readable(density.percent, density.sd) +
+                                    " % in " + soil.name};
+  for (const std::string& line : dig_lines(plan.dig, plan.spread)) lines.push_back(line);
   for (const std::string& line : plan.lines) lines.push_back(line);
   lines.push_back(
       "source       " + plan.source +
@@ -345,7 +377,6 @@ Outcome nothing_found(const Density& density, const std::vector<Warning>& warnin
 }
 
 void check(const Inputs& inputs) {
-  if (inputs.density_sd && !inputs.search) refuse("--density-sd needs --search");
   if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {
     refuse("--start search needs --search");
   }
@@ -367,11 +398,12 @@ Outcome work(const Inputs& inputs, Console& console) {
                              *inputs.density_from + ": its density is not trustworthy, so the "
                                                     "path may not suit the soil"});
   }
-  const std::optional<Plan> found =
-      inputs.search ? search_plan(inputs, machine, soil, density, site, console)
-                    : look_up_plan(inputs, machine, soil, density.percent, site);
+  std::optional<Plan> found = inputs.search
+                                  ? search_plan(inputs, machine, soil, density, site, console)
+                                  : look_up_plan(inputs, machine, soil, density.percent, site);
   if (!found) return nothing_found(density, site.warnings);
-  const Plan& plan = *found;
+  Plan& plan = *found;
+  if (density.sd > 0.0) add_spread(machine, soil, density, site, plan);
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = density.trustworthy;

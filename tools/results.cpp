@@ -78,13 +78,14 @@ std::string nearest_text(const std::optional<NearestDig>& nearest) {
          nearest->reason;
 }
 
-std::vector<std::string> dig_lines(const PlannedDig& dig) {
-  return {"path         " + path_text(dig),
-          "payload      " + readable(dig.payload_mass) + " kg, " + readable(dig.payload_volume) +
-              " m3 loose",
-          "energy       " + readable(dig.energy / 1000.0) + " kJ",
-          "efficiency   " + readable(1000.0 * dig.efficiency()) + " kg/kJ",
-          "duration     " + readable(dig.duration) + " s"};
+std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& spread) {
+  return {
+      "path         " + path_text(dig),
+      "payload      " + readable(dig.payload_mass, spread.payload_mass) + " kg, " +
+          readable(dig.payload_volume) + " m3 loose",
+      "energy       " + readable(dig.energy / 1000.0, spread.energy / 1000.0) + " kJ",
+      "efficiency   " + readable(1000.0 * dig.efficiency(), 1000.0 * spread.efficiency) + " kg/kJ",
+      "duration     " + readable(dig.duration) + " s"};
 }
 
 std::vector<double> parse_densities(const std::string& what, const std::string& text) {

@@ -33,7 +33,7 @@ std::string path_text(const PlannedDig& dig);
 /// "; the nearest, ANGLE, ...: why it cannot be done", to follow what says that none was found.
 std::string nearest_text(const std::optional<NearestDig>& nearest);
 /// What it lifts and costs.
-std::vector<std::string> dig_lines(const PlannedDig& dig);
+std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& spread = {});
 
 /// Densities "0:5:100", "40" or "10,40,80" [%]. @throws Error (bad_input)
 std::vector<double> parse_densities(const std::string& what, const std::string& text);

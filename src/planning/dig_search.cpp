@@ -425,6 +425,35 @@ Found<UncertainDigSearchResult> search_dig(const Machine& machine,
   return result;
 }
 
+DigSpread dig_spread(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                     const Terrain& terrain, const PlannedDig& dig) {
+  check(soils);
+  const auto path = DigLayout(machine, terrain).path(dig.parameters, StartRule(dig.start_x));
+  if (const auto* stop = std::get_if<Infeasible>(&path)) {
+    throw Error(ErrorKind::bad_input, "the dig cannot be driven: " + stop->message);
+  }
+  DigSpread spread;
+  Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
+  double probability = 0.0;
+  for (const PossibleSoil& soil : soils) {
+    const auto outcome = dig_along(machine, *soil.simulator, terrain, std::get<DigPath>(path));
+    const auto* dug = std::get_if<PlannedDig>(&outcome);
+    if (!dug) {
+      spread.stall_probability += soil.probability;
+      continue;
+    }
+    const Eigen::Array3d off(dug->payload_mass - dig.payload_mass, dug->energy - dig.energy,
+                             dug->efficiency() - dig.efficiency());
+    probability += soil.probability;
+    sum += soil.probability * off;
+    squares += soil.probability * off.square();
+  }
+  if (probability == 0.0) return spread;
+  const Eigen::Array3d mean = sum / probability;
+  const Eigen::Array3d sd = (squares / probability - mean.square()).max(0.0).sqrt();
+  return {sd(0), sd(1), sd(2), spread.stall_probability};
+}
+
 std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent, int count) {
   require(mean_percent >= 0.0 && mean_percent <= 100.0, "the mean density", mean_percent,
           "in 0 .. 100 %");

@@ -184,6 +184,21 @@ Found<UncertainDigSearchResult> search_dig(const Machine& machine,
                                            const Terrain& terrain,
                                            const DigSearchOptions& options = {});
 
+/// How much the figures of a dig scatter because the soil is uncertain: standard deviations over
+/// the soils in which the machine does not stall.
+struct DigSpread {
+  double payload_mass = 0.0;       ///< [kg]
+  double energy = 0.0;             ///< [J]
+  double efficiency = 0.0;         ///< [kg/J]
+  double stall_probability = 0.0;  ///< of the soils left out
+};
+
+/// Digs a planned dig in all the soils.
+/// @throws Error (bad_input) unless the probabilities are positive and add up to 1, or if the path
+///         cannot be driven
+DigSpread dig_spread(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                     const Terrain& terrain, const PlannedDig& dig);
+
 /// A density the ground may have.
 struct PossibleDensity {
   double percent = 0.0;
