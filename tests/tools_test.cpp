@@ -827,19 +827,20 @@ TEST_F(Tools, SearchTakesGoalRangesStartAndMethod) {
   EXPECT_EQ(paper.at("stopped_by"), "generations");
 }
 
-TEST_F(Tools, PopulationWithoutThePapersMethodIsWarnedOf) {
+TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {
   const Words few = {"--density", "40", "--population", "6", "--evaluations", "6"};
-  const json looked_up = answer("plan-path", few);
-  ASSERT_TRUE(warns(looked_up, "population_ignored"));
+  const json looked_up = answer("plan-path", few + Words{"--goal", "time"});
+  ASSERT_TRUE(warns(looked_up, "options_ignored"));
   EXPECT_EQ(looked_up["warnings"][0]["message"],
-            "--population has no effect without --search and --method paper: nothing is searched");
+            "without effect: --population, --goal, --evaluations; nothing is searched without "
+            "--search");
   const json searched = answer("plan-path", few + Words{"--search"});
-  ASSERT_TRUE(warns(searched, "population_ignored"));
+  ASSERT_TRUE(warns(searched, "options_ignored"));
   EXPECT_EQ(searched["warnings"][0]["message"],
-            "--population has no effect without --method paper: the default method has none");
+            "without effect: --population; the default method has none, --method paper has");
   const json paper = answer("plan-path", few + Words{"--search", "--method", "paper"});
-  EXPECT_FALSE(warns(paper, "population_ignored"));
-  EXPECT_FALSE(warns(answer("plan-path", {"--density", "40"}), "population_ignored"));
+  EXPECT_FALSE(warns(paper, "options_ignored"));
+  EXPECT_FALSE(warns(answer("plan-path", {"--density", "40"}), "options_ignored"));
 }
 
 TEST_F(Tools, PlanForAnUncertainDensitySaysWhatKnowingItIsWorth) {

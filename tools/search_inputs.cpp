@@ -141,11 +141,27 @@ void check(const SearchInputs& inputs) {
 }
 
 std::vector<Warning> warnings_of(const SearchInputs& inputs, bool searches) {
-  if (!inputs.population || (searches && inputs.method == "paper")) return {};
-  return {{"population_ignored",
-           std::string("--population has no effect without ") + (searches ? "" : "--search and ") +
-               "--method paper: " +
-               (searches ? "the default method has none" : "nothing is searched")}};
+  std::string ignored;
+  const auto note = [&ignored](bool given, const char* option) {
+    if (given) ignored += (ignored.empty() ? "" : ", ") + std::string(option);
+  };
+  note(inputs.population && !(searches && inputs.method == "paper"), "--population");
+  if (!searches) {
+    const SearchInputs usual;
+    note(inputs.goal != usual.goal, "--goal");
+    note(inputs.rest_of_cycle != usual.rest_of_cycle, "--rest-of-cycle");
+    note(inputs.ranges[0].has_value(), "--angle-range");
+    note(inputs.ranges[1].has_value(), "--penetration-range");
+    note(inputs.ranges[2].has_value(), "--drag-range");
+    note(inputs.method != usual.method, "--method");
+    note(inputs.generations != usual.generations, "--generations");
+    note(inputs.evaluations != usual.evaluations, "--evaluations");
+    note(inputs.checkpoint.has_value(), "--checkpoint");
+  }
+  if (ignored.empty()) return {};
+  return {{"options_ignored", "without effect: " + ignored + "; " +
+                                  (searches ? "the default method has none, --method paper has"
+                                            : "nothing is searched without --search")}};
 }
 
 }  // namespace excavplan::tools
