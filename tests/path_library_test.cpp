@@ -507,45 +507,53 @@ TEST_F(LibraryBuilding, BadGridsAndOptionsAreRefused) {
   EXPECT_THROW(build_library_shard(grid({20}), {3, 2}, options), Error);
 }
 
-TEST_F(LibraryBuilding, TheShippedLibraryIsTrue) {
-  const PathLibrary library = load_path_library(find_data_file("libraries/zx120-loam.json"));
-  EXPECT_NO_THROW(require_fit(library, machine_, soil_, "zx120-loam"));
-  EXPECT_EQ(library.entries.size(), 21U);
-  EXPECT_LE(library.evaluations(), 60 * 21);
-  const Terrain ground = level_planning_ground(machine_, library.cell);
+class ShippedLibrary : public testing::TestWithParam<const char*> {
+ protected:
+  HeightMapSimulator simulator(double density) const { return {machine_, soil_, density}; }
+
+  const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  const SoilKind soil_ = load_soil(find_data_file(std::string("soils/") + GetParam() + ".json"));
+  const PathLibrary library_ =
+      load_path_library(find_data_file(std::string("libraries/zx120-") + GetParam() + ".json"));
+  const Terrain ground_ = level_planning_ground(machine_, library_.cell);
+};
+
+TEST_P(ShippedLibrary, IsTrue) {
+  EXPECT_NO_THROW(require_fit(library_, machine_, soil_, GetParam()));
+  EXPECT_EQ(library_.entries.size(), 21U);
+  EXPECT_LE(library_.evaluations(), (soil_.name == "gravel" ? 120 : 60) * 21);
   double last = 1e9;
-  for (const PathLibraryEntry& entry : library.entries) {
-    const HeightMapSimulator simulator(machine_, soil_, entry.density_percent);
+  for (const PathLibraryEntry& entry : library_.entries) {
+    const HeightMapSimulator soil = simulator(entry.density_percent);
     const auto outcome =
-        evaluate_dig(machine_, simulator, ground, entry.dig.parameters, entry.dig.start_x);
+        evaluate_dig(machine_, soil, ground_, entry.dig.parameters, entry.dig.start_x);
     const PlannedDig& dig = std::get<PlannedDig>(outcome);
     EXPECT_NEAR(dig.energy, entry.dig.energy, 1e-6 * dig.energy) << entry.density_percent;
     EXPECT_NEAR(dig.payload_mass, entry.dig.payload_mass, 1e-6 * dig.payload_mass);
-    const auto fixed = evaluate_dig(machine_, simulator, ground, paper_fixed_path());
+    const auto fixed = evaluate_dig(machine_, soil, ground_, paper_fixed_path());
     if (const auto* possible = std::get_if<PlannedDig>(&fixed)) {
       EXPECT_GT(dig.efficiency(), possible->efficiency());
     }
     EXPECT_LT(dig.efficiency(), last);
-    EXPECT_LT(entry.midway.loss, 0.02) << entry.density_percent;
+    EXPECT_LT(entry.midway.loss, 0.03) << entry.density_percent;
     last = dig.efficiency();
   }
 }
 
 /// A long search from nothing is the yardstick.
-TEST_F(LibraryBuilding, TheShippedLibraryHoldsNearlyTheBestDigs) {
-  const PathLibrary library = load_path_library(find_data_file("libraries/zx120-loam.json"));
-  const Terrain ground = level_planning_ground(machine_, library.cell);
-  for (std::size_t i = 0; i < library.entries.size(); i += 4) {
-    const PathLibraryEntry& entry = library.entries[i];
+TEST_P(ShippedLibrary, HoldsNearlyTheBestDigs) {
+  for (std::size_t i = 0; i < library_.entries.size(); i += 4) {
+    const PathLibraryEntry& entry = library_.entries[i];
     DigSearchOptions options;
     options.seed = 99;
     options.stop.evaluations = 400;
-    const auto best = search_dig(
-        machine_, HeightMapSimulator(machine_, soil_, entry.density_percent), ground, options);
+    const auto best = search_dig(machine_, simulator(entry.density_percent), ground_, options);
     ASSERT_TRUE(best);
     EXPECT_GE(entry.dig.efficiency(), 0.99 * best->dig.efficiency()) << entry.density_percent;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Soils, ShippedLibrary, testing::Values("loam", "sand", "clay", "gravel"));
 
 /// Processes as threads: each gets numbers and the parcels of all.
 class Crew {
