@@ -898,7 +898,10 @@ TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
   const json gentle = plan(0.05);
   EXPECT_NEAR(gentle.at("look_up_slope_rad"), std::atan(0.05), 1e-4);
   EXPECT_GT(gentle.at("look_up_loss"), 0.0);
-  EXPECT_NEAR(plan(0.5).at("look_up_slope_rad"), 0.1, 1e-12) << "as far as the library goes";
+  EXPECT_FALSE(warns(gentle, "slope_outside_library"));
+  const json steep = plan(0.5);
+  EXPECT_NEAR(steep.at("look_up_slope_rad"), 0.1, 1e-12) << "as far as the library goes";
+  EXPECT_TRUE(warns(steep, "slope_outside_library"));
   const json level = answer("plan-path", {"--density", "40", "--library", library});
   EXPECT_EQ(level.at("look_up_slope_rad"), 0.0);
   EXPECT_EQ(level.at("look_up_loss"), 0.0);

@@ -194,12 +194,25 @@ void add_look_up_error(const MidwayError& error, double slope, Plan& plan) {
                        readable(100.0 * error.loss, 2) + " % of the best efficiency");
 }
 
+/// Where the library has no slope like that of the ground.
+void warn_of_slope(double looked_up, const Inputs& inputs, const Machine& machine, Site& site) {
+  constexpr double much = 0.04;  // [rad]; ours, docs/libraries.md
+  if (!inputs.terrain.cloud) return;
+  const double slope = boom_plane_slope(site.ground, machine.track_front);
+  if (!(std::abs(slope - looked_up) > much)) return;
+  site.warnings.push_back(
+      {"slope_outside_library", "the ground slopes by " + readable(slope, 2) +
+                                    " rad, the library is looked up at " + readable(looked_up, 2) +
+                                    " rad; --search finds a path that suits the ground"});
+}
+
 Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
-                  double density, const Site& site) {
+                  double density, Site& site) {
   Plan plan;
   plan.source = "library";
   const PathLibrary library = library_of(inputs, machine, soil);
   const double slope = slope_in(library, inputs, machine, site);
+  warn_of_slope(slope, inputs, machine, site);
   plan.dig = look_up(library, density, slope);
   add_look_up_error(look_up_error(library, density, slope), slope, plan);
   plan.start_rule = "of the library";
