@@ -254,6 +254,23 @@ TEST(LibraryRow, LooksAgainAtADigBelowTheLineThroughItsNeighbours) {
   EXPECT_TRUE(row_of(far_apart).looks_due().empty());
 }
 
+TEST(MidwayDensity, TellsWhichKindOfDigIsBetter) {
+  using Better = MidwayDensity::Better;
+  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  const SoilKind gravel = load_soil(find_data_file("soils/gravel.json"));
+  const PathLibrary library = load_path_library(find_data_file("libraries/zx120-gravel.json"));
+  const PlannedDig loose = look_up(library, 20.0);  // short and steep
+  const PlannedDig dense = look_up(library, 80.0);  // long and flat
+  const auto better = [&](double density, const PlannedDig& below, const PlannedDig& above) {
+    const LibraryCell cell{&machine, &gravel, 0.0, density};
+    return measure_midway(cell, library.cell, below, above, loose.efficiency()).better;
+  };
+  EXPECT_EQ(better(25.0, loose, dense), Better::below);
+  EXPECT_EQ(better(25.0, dense, loose), Better::above);
+  EXPECT_EQ(better(75.0, loose, dense), Better::above);
+  EXPECT_EQ(better(25.0, loose, look_up(library, 25.0)), Better::neither) << "of one kind";
+}
+
 class LibraryBuilding : public testing::Test {
  protected:
   static LibraryBuildOptions quick() {
