@@ -390,6 +390,9 @@ Outcome nothing_found(const Density& density, const std::vector<Warning>& warnin
 }
 
 void check(const Inputs& inputs) {
+  if (inputs.density_sd && *inputs.density_sd < 0.0) {
+    refuse("--density-sd: " + number_text(*inputs.density_sd) + " must be at least 0");
+  }
   if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {
     refuse("--start search needs --search");
   }
