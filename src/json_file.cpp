@@ -94,6 +94,11 @@ std::string sealed(const std::string& content) {
   return content + ",\n\"checksum\": \"" + checksum_text(content) + "\"\n}\n";
 }
 
+std::string sealed_text(const nlohmann::ordered_json& object) {
+  const std::string text = object.dump(1);
+  return sealed(text.substr(0, text.size() - 2));  // reopened
+}
+
 void JsonObject::fail(const std::string& key, const std::string& message) const {
   throw Error(ErrorKind::bad_file, file_ + ": " + where_ + key + ": " + message);
 }

@@ -70,6 +70,8 @@ std::string checksum_text(const std::string& text);
 
 /// A JSON object without its closing brace, with its own checksum as the last key.
 std::string sealed(const std::string& content);
+/// An object as text, with its checksum as the last key.
+std::string sealed_text(const nlohmann::ordered_json& object);
 
 /// Writes a file whole or not at all: beside it first, then renamed over it.
 /// @throws Error (bad_file) if that fails; the old file then still stands

@@ -11,12 +11,17 @@
 
 namespace excavplan {
 
+/// How many threads are meant; 0: one per core.
+inline unsigned thread_count(unsigned threads) {
+  return threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
+}
+
 /// Calls task(0) .. task(count - 1) on up to `threads` threads (0: one per core). The tasks must
 /// not depend on each other; of several exceptions the one of the lowest index is rethrown, so that
 /// the outcome is the same for any number of threads.
 template <typename Task>
 void parallel_for(std::size_t count, unsigned threads, const Task& task) {
-  if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+  threads = thread_count(threads);
   std::vector<std::exception_ptr> errors(count);
   std::atomic<std::size_t> next{0};
   const auto work = [&] {

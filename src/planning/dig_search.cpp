@@ -16,6 +16,7 @@
 #include "../json_file.hpp"
 #include "../parallel.hpp"
 #include "dig_layout.hpp"
+#include "fingerprint.hpp"
 
 namespace excavplan {
 namespace {
@@ -79,6 +80,18 @@ class Fingerprint {
   std::string bytes_;
 };
 
+/// A dig along one path in each of the soils.
+using DigsInEach = std::vector<std::variant<PlannedDig, DigFailure>>;
+
+DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                       const Terrain& terrain, const DigPath& path) {
+  DigsInEach digs;
+  for (const PossibleSoil& soil : soils) {
+    digs.push_back(dig_along(machine, *soil.simulator, terrain, path));
+  }
+  return digs;
+}
+
 /// The search for a dig as a search of a box.
 class DigProblem {
  public:
@@ -111,9 +124,12 @@ class DigProblem {
                       found.outcome.reason};
   }
 
-  DigSearchResult result_of(const SearchResult& found) const {
+  DigsInEach best_digs(const SearchResult& found) const { return dig_all(path_of(found.best)); }
+
+  /// @param digs  best_digs()
+  DigSearchResult result_of(const SearchResult& found, const DigsInEach& digs) const {
     DigSearchResult result;
-    result.dig = *mean_dig(path_of(found.best));
+    result.dig = *mean_dig(digs);
     result.worth = found.outcome.fitness;
     result.evaluations = found.evaluations;
     result.refused = found.repair;
@@ -122,13 +138,6 @@ class DigProblem {
     result.stopped_by = found.stopped_by;
     result.insight = explain(box(), found);
     return result;
-  }
-
-  /// 0 if the machine stalls.
-  double worth_in(const PossibleSoil& soil, const VectorXd& point) const {
-    const auto outcome = dig_along(layout_.machine(), *soil.simulator, terrain_, path_of(point));
-    const auto* dig = std::get_if<PlannedDig>(&outcome);
-    return dig ? options_.objective.worth(*dig) : 0.0;
   }
 
  private:
@@ -176,18 +185,22 @@ class DigProblem {
     return point;
   }
 
+  DigsInEach dig_all(const DigPath& path) const {
+    return dig_in_each(layout_.machine(), soils_, terrain_, path);
+  }
+
   Evaluation simulate(const VectorXd& point) const {
     const DigPath path = path_of(point);
+    const DigsInEach digs = dig_all(path);
     double worth = 0.0;
-    std::optional<DigFailure> failure;
+    const DigFailure* failure = nullptr;
     bool any = false;
-    for (const PossibleSoil& soil : soils_) {
-      auto outcome = dig_along(layout_.machine(), *soil.simulator, terrain_, path);
-      if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
-        worth += soil.probability * options_.objective.worth(*dig);
+    for (std::size_t i = 0; i < digs.size(); ++i) {
+      if (const auto* dig = std::get_if<PlannedDig>(&digs[i])) {
+        worth += soils_[i].probability * options_.objective.worth(*dig);
         any = true;
       } else if (!failure) {
-        failure = std::get<DigFailure>(outcome);
+        failure = &std::get<DigFailure>(digs[i]);
       }
     }
     if (any) return worth;
@@ -195,15 +208,14 @@ class DigProblem {
   }
 
   /// Means over the soils in which the machine does not stall.
-  std::optional<PlannedDig> mean_dig(const DigPath& path) const {
+  std::optional<PlannedDig> mean_dig(const DigsInEach& digs) const {
     std::optional<PlannedDig> mean;
     double probability = 0.0;
-    for (const PossibleSoil& soil : soils_) {
-      const auto outcome = dig_along(layout_.machine(), *soil.simulator, terrain_, path);
-      const auto* dig = std::get_if<PlannedDig>(&outcome);
+    for (std::size_t i = 0; i < digs.size(); ++i) {
+      const auto* dig = std::get_if<PlannedDig>(&digs[i]);
       if (!dig) continue;
-      probability += soil.probability;
-      const double share = soil.probability / probability;
+      probability += soils_[i].probability;
+      const double share = soils_[i].probability / probability;
       if (!mean) mean = *dig;
       mean->payload_mass += share * (dig->payload_mass - mean->payload_mass);
       mean->payload_volume += share * (dig->payload_volume - mean->payload_volume);
@@ -244,11 +256,6 @@ class DigProblem {
     hash.add(static_cast<double>(options_.start_rule.kind));
     hash.add(options_.start_rule.x);
     const Machine& machine = layout_.machine();
-    for (std::size_t j = 0; j < 3; ++j) {
-      hash.add(machine.limits[j].lower);
-      hash.add(machine.limits[j].upper);
-      hash.add(machine.limits[j].torque);
-    }
     const Terrain level = level_planning_ground(machine, 0.1);
     for (const PossibleSoil& soil : soils_) {
       hash.add(soil.probability);
@@ -257,7 +264,7 @@ class DigProblem {
         for (const double value : {dig->payload_mass, dig->energy, dig->duration}) hash.add(value);
       }
     }
-    return "dig on " + machine.name + " " + hash.text();
+    return "dig on " + machine.name + " " + excavplan::fingerprint(machine) + " " + hash.text();
   }
 
   static std::vector<double> key(const VectorXd& point) {
@@ -391,7 +398,7 @@ Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& s
   DigProblem problem(machine, soils, terrain, options);
   const SearchResult found = problem.run();
   if (!found.feasible()) return nothing<DigSearchResult>(problem.nearest_of(found));
-  return problem.result_of(found);
+  return problem.result_of(found, problem.best_digs(found));
 }
 
 Found<UncertainDigSearchResult> search_dig(const Machine& machine,
@@ -411,14 +418,16 @@ Found<UncertainDigSearchResult> search_dig(const Machine& machine,
   const SearchResult found = problem.run();
   if (!found.feasible()) return nothing<UncertainDigSearchResult>(problem.nearest_of(found));
   UncertainDigSearchResult result;
-  result.expected = problem.result_of(found);
+  const DigsInEach digs = problem.best_digs(found);
+  result.expected = problem.result_of(found, digs);
   if (best.stopped) {
     result.expected.stopped = true;
     result.expected.stopped_by = StopReason::cancelled;
   }
   result.evaluations = best.evaluations() + found.evaluations * static_cast<int>(soils.size());
   for (std::size_t i = 0; i < soils.size(); ++i) {
-    const double same = problem.worth_in(soils[i], found.best);
+    const auto* dig = std::get_if<PlannedDig>(&digs[i]);
+    const double same = dig ? options.objective.worth(*dig) : 0.0;  // a stall is worth nothing
     const auto& own = best.soils[i];
     result.worth_if_known += soils[i].probability * (own ? std::max(own->worth, same) : same);
   }
@@ -432,21 +441,21 @@ DigSpread dig_spread(const Machine& machine, const std::vector<PossibleSoil>& so
   if (const auto* stop = std::get_if<Infeasible>(&path)) {
     throw Error(ErrorKind::bad_input, "the dig cannot be driven: " + stop->message);
   }
+  const DigsInEach digs = dig_in_each(machine, soils, terrain, std::get<DigPath>(path));
   DigSpread spread;
   Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
   double probability = 0.0;
-  for (const PossibleSoil& soil : soils) {
-    const auto outcome = dig_along(machine, *soil.simulator, terrain, std::get<DigPath>(path));
-    const auto* dug = std::get_if<PlannedDig>(&outcome);
+  for (std::size_t i = 0; i < digs.size(); ++i) {
+    const auto* dug = std::get_if<PlannedDig>(&digs[i]);
     if (!dug) {
-      spread.stall_probability += soil.probability;
+      spread.stall_probability += soils[i].probability;
       continue;
     }
     const Eigen::Array3d off(dug->payload_mass - dig.payload_mass, dug->energy - dig.energy,
                              dug->efficiency() - dig.efficiency());
-    probability += soil.probability;
-    sum += soil.probability * off;
-    squares += soil.probability * off.square();
+    probability += soils[i].probability;
+    sum += soils[i].probability * off;
+    squares += soils[i].probability * off.square();
   }
   if (probability == 0.0) return spread;
   const Eigen::Array3d mean = sum / probability;

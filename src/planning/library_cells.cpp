@@ -260,9 +260,7 @@ std::string cell_text(const LibraryCell& cell, const LibrarySearch& search,
                                  {"evaluations", outcome.evaluations},
                                  {"feasible", outcome.entry.has_value()}};
   if (outcome.entry) json["entry"] = library_entry_json(*outcome.entry);
-  std::string text = json.dump(1);
-  text.resize(text.size() - 2);  // reopen the object
-  return sealed(text);
+  return sealed_text(json);
 }
 
 CellOutcome read_cell(const std::string& name, const std::string& text, const LibraryCell& cell,

@@ -206,9 +206,7 @@ std::string to_json(const PathLibrary& library) {
   for (const PathLibraryGap& gap : library.gaps) {
     file["gaps"].push_back({{"density_percent", gap.density_percent}, {"slope_rad", gap.slope}});
   }
-  std::string text = file.dump(1);
-  text.resize(text.size() - 2);  // reopen the object
-  return sealed(text);
+  return sealed_text(file);
 }
 
 void require_fit(const PathLibrary& library, const Machine& machine, const SoilKind& soil,

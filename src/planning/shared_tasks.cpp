@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -120,8 +119,7 @@ void LibraryWatch::tell() {
 
 SharedTasks::SharedTasks(const LibraryBuildOptions& options)
     : sharing_(options.sharing != nullptr ? *options.sharing : alone_),
-      threads_(options.threads > 0 ? options.threads
-                                   : std::max(1u, std::thread::hardware_concurrency())),
+      threads_(thread_count(options.threads)),
       watch_(options) {}
 
 void SharedTasks::run(std::size_t count, const Task& task, const Take& take) {
