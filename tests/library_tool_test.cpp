@@ -146,6 +146,7 @@ TEST_F(LibraryTool, OptionsThatDoNotGoTogetherAreRefused) {
   const std::string cells = folder_.file("cells");
   EXPECT_NE(refusal({"--shard", "3/2", "--cells", cells}).find("is not one of 1/N .. N/N"),
             std::string::npos);
+  EXPECT_FALSE(fs::exists(cells)) << "refused before anything is made";
   EXPECT_NE(refusal({"--merge", cells, "--cells", cells, "--out", out_}).find("--merge goes"),
             std::string::npos);
 }

@@ -125,24 +125,21 @@ std::string job_file(const std::string& folder) { return folder + "/job.json"; }
 
 /// The options that decide the libraries.
 std::string job_text(const Inputs& inputs) {
-  const nlohmann::ordered_json json = {{"format", job_format},
-                                       {"version", 1},
-                                       {"densities", inputs.densities},
-                                       {"slopes", inputs.slopes},
-                                       {"soil", inputs.soils},
-                                       {"machine", inputs.machines},
-                                       {"method", inputs.method},
-                                       {"points", inputs.anchored.points},
-                                       {"polish", inputs.anchored.polish_evaluations},
-                                       {"inherited", inputs.anchored.inherited_evaluations},
-                                       {"population", inputs.genetic.population},
-                                       {"generations", inputs.genetic.generations},
-                                       {"cell_m", inputs.cell},
-                                       {"seed", inputs.seed},
-                                       {"refine_percent", inputs.refine}};
-  std::string text = json.dump(1);
-  text.resize(text.size() - 2);  // reopen the object
-  return sealed(text);
+  return sealed_text({{"format", job_format},
+                      {"version", 1},
+                      {"densities", inputs.densities},
+                      {"slopes", inputs.slopes},
+                      {"soil", inputs.soils},
+                      {"machine", inputs.machines},
+                      {"method", inputs.method},
+                      {"points", inputs.anchored.points},
+                      {"polish", inputs.anchored.polish_evaluations},
+                      {"inherited", inputs.anchored.inherited_evaluations},
+                      {"population", inputs.genetic.population},
+                      {"generations", inputs.genetic.generations},
+                      {"cell_m", inputs.cell},
+                      {"seed", inputs.seed},
+                      {"refine_percent", inputs.refine}});
 }
 
 /// The same inputs with the options of a folder's job.
@@ -294,6 +291,8 @@ Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
   check(inputs);
   if (inputs.merge) inputs = with_job(inputs, *inputs.merge);
   const LibraryGrid grid = grid_of(inputs);
+  const std::optional<LibraryShard> shard =
+      inputs.shard ? std::optional(shard_of(*inputs.shard)) : std::nullopt;
   LibraryBuildOptions options = options_of(inputs, console);
   require_buildable(grid, options);
   const bool leads = ranks == nullptr || ranks->rank() == 0;
@@ -303,9 +302,8 @@ Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
     if (inputs.threads == 0) options.threads = 1;
   }
   options.sharing = ranks;
-  const LibraryBuild build = inputs.shard
-                                 ? build_library_shard(grid, shard_of(*inputs.shard), options)
-                                 : build_path_libraries(grid, options);
+  const LibraryBuild build =
+      shard ? build_library_shard(grid, *shard, options) : build_path_libraries(grid, options);
   Outcome outcome;
   if (build.stopped || inputs.shard) {
     outcome = report_cells(inputs, build);

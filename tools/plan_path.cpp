@@ -30,6 +30,9 @@ const About about = {
     true,
     true};
 
+// Digs of a search unless told otherwise.
+/// Enough for 99 % of the optimum from any seed (docs/methods.md#planning).
+constexpr int evaluations_alone = 400;
 /// For each of the soils that an uncertain density may mean, and for all together.
 constexpr int evaluations_each = 100;
 
@@ -120,30 +123,27 @@ Density density_of(const Inputs& inputs) {
           trustworthy == json.end() || *trustworthy == true};
 }
 
-PathLibrary library_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {
-  const std::string file = inputs.library
-                               ? *inputs.library
-                               : shipped_or_file("libraries", machine.name + "-" + soil.name);
-  PathLibrary library = load_path_library(file);
-  require_fit(library, machine, soil, file);
-  return library;
-}
+/// The slope of the scanned ground, and as much of it as the library goes.
+struct Slope {
+  double ground = 0.0;  ///< [rad]; NaN: unknown
+  double looked_up = 0.0;
+};
 
-/// The slope of the scanned ground, as far as the library goes; 0 for level ground.
-double slope_in(const PathLibrary& library, const Inputs& inputs, const Machine& machine,
-                const Site& site) {
-  if (!inputs.terrain.cloud) return 0.0;
+Slope slope_in(const PathLibrary& library, const Inputs& inputs, const Machine& machine,
+               const Site& site) {
+  if (!inputs.terrain.cloud) return {};
   const double slope = boom_plane_slope(site.ground, machine.track_front);
-  return std::clamp(std::isnan(slope) ? 0.0 : slope, library.entries.front().slope,
-                    library.entries.back().slope);
+  return {slope, std::clamp(std::isnan(slope) ? 0.0 : slope, library.entries.front().slope,
+                            library.entries.back().slope)};
 }
 
 /// A path of the library if one fits, to start the search from.
 std::vector<DigParameters> known_good(const Inputs& inputs, const Machine& machine,
                                       const SoilKind& soil, double density, Site& site) {
   try {
-    const PathLibrary library = library_of(inputs, machine, soil);
-    return {look_up(library, density, slope_in(library, inputs, machine, site)).parameters};
+    const PathLibrary library = library_of(inputs.library, machine, soil);
+    const Slope slope = slope_in(library, inputs, machine, site);
+    return {look_up(library, density, slope.looked_up).parameters};
   } catch (const Error& error) {
     if (inputs.library) throw;
     if (error.kind() == ErrorKind::bad_file) {
@@ -164,7 +164,7 @@ struct Plan {
   std::string start_rule;
   int evaluations = 0;
   bool stopped = false;
-  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< of a search
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< keys of its source
   std::vector<std::string> lines;
 };
 
@@ -195,26 +195,24 @@ void add_look_up_error(const MidwayError& error, double slope, Plan& plan) {
 }
 
 /// Where the library has no slope like that of the ground.
-void warn_of_slope(double looked_up, const Inputs& inputs, const Machine& machine, Site& site) {
+void warn_of_slope(const Slope& slope, Site& site) {
   constexpr double much = 0.04;  // [rad]; ours, docs/libraries.md
-  if (!inputs.terrain.cloud) return;
-  const double slope = boom_plane_slope(site.ground, machine.track_front);
-  if (!(std::abs(slope - looked_up) > much)) return;
-  site.warnings.push_back(
-      {"slope_outside_library", "the ground slopes by " + readable(slope, 2) +
-                                    " rad, the library is looked up at " + readable(looked_up, 2) +
-                                    " rad; --search finds a path that suits the ground"});
+  if (!(std::abs(slope.ground - slope.looked_up) > much)) return;
+  site.warnings.push_back({"slope_outside_library",
+                           "the ground slopes by " + readable(slope.ground, 2) +
+                               " rad, the library is looked up at " + readable(slope.looked_up, 2) +
+                               " rad; --search finds a path that suits the ground"});
 }
 
 Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                   double density, Site& site) {
   Plan plan;
   plan.source = "library";
-  const PathLibrary library = library_of(inputs, machine, soil);
-  const double slope = slope_in(library, inputs, machine, site);
-  warn_of_slope(slope, inputs, machine, site);
-  plan.dig = look_up(library, density, slope);
-  add_look_up_error(look_up_error(library, density, slope), slope, plan);
+  const PathLibrary library = library_of(inputs.library, machine, soil);
+  const Slope slope = slope_in(library, inputs, machine, site);
+  warn_of_slope(slope, site);
+  plan.dig = look_up(library, density, slope.looked_up);
+  add_look_up_error(look_up_error(library, density, slope.looked_up), slope.looked_up, plan);
   plan.start_rule = "of the library";
   if (!inputs.terrain.cloud) {
     plan.path = lay_out(machine, plan.dig, [](double) { return 0.0; });
@@ -302,23 +300,23 @@ class PossibleGround {
 /// @return nothing if the search was interrupted before it found a dig
 std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                                 const Density& density, Site& site, Console& console) {
-  DigSearchOptions options = search_options(inputs.dig_search, console);
+  const bool uncertain = density.sd > 0.0;
+  DigSearchOptions options =
+      search_options(inputs.dig_search, uncertain ? evaluations_each : evaluations_alone, console);
   options.start = known_good(inputs, machine, soil, density.percent, site);
   Plan plan;
   plan.start_rule = describe(options.start_rule);
-  if (density.sd > 0.0) {
-    if (inputs.dig_search.evaluations == 0 && inputs.dig_search.method == "default")
-      options.stop.evaluations = evaluations_each;
+  if (uncertain) {
     const PossibleGround ground(machine, soil, density);
-    const auto uncertain = search_dig(machine, ground.soils(), site.ground, options);
-    if (!uncertain) return no_plan(uncertain.nearest, console);
-    add_search(uncertain->expected, options.objective, plan);
-    add_uncertainty(*uncertain, density.sd, plan);
+    const auto found = search_dig(machine, ground.soils(), site.ground, options);
+    if (!found) return no_plan(found.nearest, console);
+    add_search(found->expected, options.objective, plan);
+    add_uncertainty(*found, density.sd, plan);
   } else {
     const HeightMapSimulator simulator(machine, soil, density.percent);
-    const auto known = search_dig(machine, simulator, site.ground, options);
-    if (!known) return no_plan(known.nearest, console);
-    add_search(*known, options.objective, plan);
+    const auto found = search_dig(machine, simulator, site.ground, options);
+    if (!found) return no_plan(found.nearest, console);
+    add_search(*found, options.objective, plan);
   }
   plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
   return plan;

@@ -6,9 +6,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include <excavplan/error.hpp>
+
+#include "json_file.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -65,10 +66,8 @@ const QuantityInfo& info(Quantity quantity) {
 /// @throws Error (bad_input) unless there are `count` parts between commas
 std::vector<std::string> parts_of(const std::string& what, const std::string& text,
                                   std::size_t count, const std::string& form) {
-  std::vector<std::string> parts;
-  std::istringstream in(text);
-  for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
-  if (parts.size() != count || text.back() == ',') {
+  std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != count || parts.back().empty()) {
     throw Error(ErrorKind::bad_input, what + ": '" + text + "' is not " + form);
   }
   return parts;
@@ -170,26 +169,20 @@ std::vector<double> parse_series(const std::string& what, const std::string& tex
 std::string readable(double value, int digits) {
   if (!std::isfinite(value)) return "unknown";
   const double magnitude = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)));
-  int decimals = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
-  const double rounding = 0.5 * std::pow(10.0, -decimals);
+  int places = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
+  const double rounding = 0.5 * std::pow(10.0, -places);
   const double carried = std::pow(10.0, magnitude + 1.0);  // 9.9996 is 10.0, not 10.00
-  if (decimals > 0 && std::abs(value) + rounding >= carried) --decimals;
-  char text[400];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr;
-  return {text, end};
+  if (places > 0 && std::abs(value) + rounding >= carried) --places;
+  return decimals(value, places);
 }
 
 std::string readable(double value, double sd) {
   if (!std::isfinite(sd) || sd <= 0.0) return readable(value);
   const std::string deviation = readable(sd, 2);
   const std::size_t point = deviation.find('.');
-  const int decimals =
+  const int places =
       point == std::string::npos ? 0 : static_cast<int>(deviation.size() - point - 1);
-  char text[400];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr;
-  return std::string(text, end) + " ± " + deviation;
+  return decimals(value, places) + " ± " + deviation;
 }
 
 }  // namespace excavplan::tools

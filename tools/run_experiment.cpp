@@ -186,9 +186,7 @@ Setting setting_of(const Inputs& inputs) {
   setting.law =
       load_density_law(shipped_or_file("laws", inputs.law == "default" ? pair : inputs.law));
   if (!inputs.search) {
-    const std::string file = inputs.library ? *inputs.library : shipped_or_file("libraries", pair);
-    setting.library = load_path_library(file);
-    require_fit(*setting.library, setting.machine, setting.soil, file);
+    setting.library = library_of(inputs.library, setting.machine, setting.soil);
   }
   setting.fixed = inputs.path.value_or(paper_fixed_path());
   setting.ground = level_planning_ground(setting.machine, inputs.cell);

@@ -12,9 +12,6 @@
 namespace excavplan::tools {
 namespace {
 
-/// Enough for 99 % of the optimum from any seed (docs/methods.md#planning).
-constexpr int default_evaluations = 400;
-
 [[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
 
 DigObjective objective_of(const SearchInputs& inputs) {
@@ -104,7 +101,7 @@ StartRule start_rule_of(const SearchInputs& inputs) {
   return parse_quantity("--start", inputs.start, Quantity::length);
 }
 
-DigSearchOptions search_options(const SearchInputs& inputs, Console& console) {
+DigSearchOptions search_options(const SearchInputs& inputs, int evaluations, Console& console) {
   if (inputs.evaluations < 0) {
     refuse("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
   }
@@ -112,7 +109,7 @@ DigSearchOptions search_options(const SearchInputs& inputs, Console& console) {
   options.method = method_of(inputs);
   options.stop.evaluations = inputs.evaluations;
   if (inputs.evaluations == 0 && inputs.method == "default") {
-    options.stop.evaluations = default_evaluations;
+    options.stop.evaluations = evaluations;
   }
   options.seed = inputs.seed;
   options.threads = static_cast<unsigned>(inputs.threads);

@@ -41,6 +41,7 @@ std::vector<Warning> warnings_of(const SearchInputs& inputs, bool searches);
 StartRule start_rule_of(const SearchInputs& inputs);
 
 /// With progress on the console, which also stops the search.
-DigSearchOptions search_options(const SearchInputs& inputs, Console& console);
+/// @param evaluations  of the default method, unless the inputs say how many
+DigSearchOptions search_options(const SearchInputs& inputs, int evaluations, Console& console);
 
 }  // namespace excavplan::tools

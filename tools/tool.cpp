@@ -515,6 +515,15 @@ Machine machine_named(const std::string& name_or_path) {
   return load_machine(shipped_or_file("machines", name_or_path));
 }
 
+PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
+                       const SoilKind& soil) {
+  const std::string name =
+      file ? *file : shipped_or_file("libraries", machine.name + "-" + soil.name);
+  PathLibrary library = load_path_library(name);
+  require_fit(library, machine, soil, name);
+  return library;
+}
+
 nlohmann::ordered_json to_json(const DigParameters& parameters) {
   return {{"penetration_angle_rad", parameters.penetration_angle},
           {"penetration_length_m", parameters.penetration_length},

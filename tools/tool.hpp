@@ -14,6 +14,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_path.hpp>
+#include <excavplan/planning/path_library.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "quantity.hpp"
@@ -158,6 +159,11 @@ int tool_main(int argc, const char* const* argv, const About& about,
 /// Reads the soil or machine that a name or path means. @throws Error (bad_input) or (bad_file)
 SoilKind soil_named(const std::string& name_or_path);
 Machine machine_named(const std::string& name_or_path);
+
+/// The path library of this file, or the shipped one of the machine and the soil.
+/// @throws Error if it cannot be read, does not fit, or none is shipped
+PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
+                       const SoilKind& soil);
 
 /// Path of the file in data/`folder` of that name, or the path itself if it is one.
 /// @throws Error (bad_input) if it looks like a name but none of that name is shipped
