@@ -229,7 +229,6 @@ double median_height(const Cloud& cloud) {
 VolumeChange paper_change(const Inputs& inputs, const Survey& survey, const VolumeChange& surface) {
   PaperMethodOptions options;
   options.leaf = survey.cell;
-  const SeenPair& heap = survey.dump ? *survey.dump : survey.dig;
   auto dig_area = inputs.change.dig_area;
   auto dump_area = inputs.change.dump_area;
   if (!survey.dump) {
@@ -239,10 +238,15 @@ VolumeChange paper_change(const Inputs& inputs, const Survey& survey, const Volu
   const bool no_heap = !survey.dump && !dump_area;
   const Cloud before = survey.dig.before.cloud();
   const Cloud after = survey.dig.after.cloud();
-  const Cloud heap_before = survey.dump ? heap.before.cloud() : before;
-  const Cloud heap_after = survey.dump ? heap.after.cloud() : after;
+  std::optional<Cloud> dump_before, dump_after;
+  if (survey.dump) {
+    dump_before = survey.dump->before.cloud();
+    dump_after = survey.dump->after.cloud();
+  }
+  const Cloud& heap_before = dump_before ? *dump_before : before;
+  const Cloud& heap_after = dump_after ? *dump_after : after;
   const double dig_ground = median_height(before);
-  const double heap_ground = median_height(heap_before);
+  const double heap_ground = dump_before ? median_height(*dump_before) : dig_ground;
   const Cloud still = levelled(before, dig_area, dig_ground);  // nothing rises in it
   VolumeChange change = measured(*inputs.before + ", " + *inputs.after, [&] {
     return paper_volumes(still, levelled(after, dig_area, dig_ground),

@@ -22,9 +22,9 @@ Scan scan_of(const std::string& file, const std::optional<std::string>& frame,
   return scan;
 }
 
-void require_points(const std::string& file, const SeenScan& seen) {
+void require_points(const SeenScan& seen) {
   if (seen.outline.finite_points >= 100) return;
-  throw Error(ErrorKind::bad_file, file + ": holds fewer than 100 finite points" +
+  throw Error(ErrorKind::bad_file, seen.file() + ": holds fewer than 100 finite points" +
                                        (seen.scan.area ? " inside --area" : ""));
 }
 
@@ -40,7 +40,7 @@ Rectangle overlap(const SeenPair& scans) {
   const Rectangle both = {std::max(a.x_min, b.x_min), std::max(a.y_min, b.y_min),
                           std::min(a.x_max, b.x_max), std::min(a.y_max, b.y_max)};
   if (!(both.x_max - both.x_min > least && both.y_max - both.y_min > least)) {
-    throw Error(ErrorKind::bad_file, scans.before_file + " and " + scans.after_file +
+    throw Error(ErrorKind::bad_file, scans.before.file() + " and " + scans.after.file() +
                                          " do not overlap: " + text(a) + " and " + text(b) +
                                          "; --before-frame and --after-frame bring them into one "
                                          "frame");
@@ -51,7 +51,7 @@ Rectangle overlap(const SeenPair& scans) {
 }  // namespace
 
 Cloud SeenScan::cloud() const {
-  Cloud cloud = read_cloud(scan.files.front());
+  Cloud cloud = read_cloud(file());
   transform(cloud, scan.site_from_scan);
   if (scan.area) {
     const auto outside = [this](const Eigen::Vector3d& p) {
@@ -69,9 +69,9 @@ SeenPair read_scans(const std::string& before, const std::string& after, const S
   std::vector<Scan> scans = {scan_of(before, frames.before, frames.area),
                              scan_of(after, frames.after, frames.area)};
   const std::vector<ScanOutline> seen = outlines(scans);
-  SeenPair pair{before, after, {std::move(scans[0]), seen[0]}, {std::move(scans[1]), seen[1]}};
-  require_points(before, pair.before);
-  require_points(after, pair.after);
+  SeenPair pair{{std::move(scans[0]), seen[0]}, {std::move(scans[1]), seen[1]}};
+  require_points(pair.before);
+  require_points(pair.after);
   return pair;
 }
 

@@ -22,19 +22,18 @@ struct SeenScan {
   Scan scan;
   ScanOutline outline;
 
+  const std::string& file() const { return scan.files.front(); }
   /// All its points in the site frame, for methods that need them.
   /// @throws Error (bad_file)
   Cloud cloud() const;
 };
 
-/// Two scans of one area in the site frame.
+/// Two scans of one area, with what brings them into the site frame.
 struct SeenPair {
-  std::string before_file;
-  std::string after_file;
   SeenScan before;
   SeenScan after;
 
-  std::string files() const { return before_file + ", " + after_file; }
+  std::string files() const { return before.file() + ", " + after.file(); }
 };
 
 /// @throws Error (bad_file) if one cannot be read or holds fewer than 100 finite points

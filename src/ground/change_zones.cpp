@@ -7,14 +7,15 @@
 #include <limits>
 #include <utility>
 
+#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/hole_filling.hpp"
 #include "ground/robust.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double least_noise = 1e-4;             // ours: no survey of soil is better [m]
 constexpr double mad_to_sd = 1.4826;             // of a normal distribution
 constexpr double clip = 4.0;                     // residuals beyond are not noise [sd]
 constexpr std::size_t fewest_stable_cells = 25;  // ours: noise and datum cannot be told from fewer
@@ -122,7 +123,7 @@ class ChangeFinder {
                const ChangeOptions& options)
       : cell_(cell), options_(options) {
     found_.difference = std::move(difference);
-    found_.holes = fill_holes(found_.difference);
+    holes_ = fill_holes(found_.difference);
     find_rim();
     smoothed_ = smooth(at_rim_.select(nan, found_.difference));
     weigh(variance);
@@ -148,7 +149,7 @@ class ChangeFinder {
 
  private:
   bool is_known(Cell cell) const {
-    return found_.holes.index(cell.row, cell.col) < 0 && !at_rim_(cell.row, cell.col);
+    return holes_.index(cell.row, cell.col) < 0 && !at_rim_(cell.row, cell.col);
   }
   bool is_stable(Cell cell) const {
     return is_known(cell) && found_.zone(cell.row, cell.col) == stable;
@@ -217,15 +218,15 @@ class ChangeFinder {
 
   /// In a hole too large to be chance between points.
   bool in_shadow(Cell cell) const {
-    const int hole = found_.holes.index(cell.row, cell.col);
-    return hole >= 0 && found_.holes.cells[static_cast<std::size_t>(hole)].size() > most_by_chance;
+    const int hole = holes_.index(cell.row, cell.col);
+    return hole >= 0 && holes_.cells[static_cast<std::size_t>(hole)].size() > most_by_chance;
   }
 
   /// A cell in a shadow belongs to the zone of the nearest cell that was seen, as far as its
   /// filling has changed: from farther away nothing says what happened there.
   void take_in_shadows(Eigen::ArrayXXi& label) const {
     constexpr int unvisited = -3;
-    for (const std::vector<Cell>& hole : found_.holes.cells) {
+    for (const std::vector<Cell>& hole : holes_.cells) {
       if (hole.size() <= most_by_chance) continue;
       for (const Cell cell : hole) label(cell.row, cell.col) = unvisited;
       std::vector<Cell> front = rim_of(hole);
@@ -247,8 +248,8 @@ class ChangeFinder {
   std::vector<Cell> rim_of(const std::vector<Cell>& hole) const {
     std::vector<Cell> rim;
     for (const Cell cell : hole) {
-      for_each_neighbour(found_.holes.index, cell, [&](Cell n) {
-        if (found_.holes.index(n.row, n.col) < 0) rim.push_back(n);
+      for_each_neighbour(holes_.index, cell, [&](Cell n) {
+        if (holes_.index(n.row, n.col) < 0) rim.push_back(n);
       });
     }
     const auto place = [](Cell c) { return std::pair(c.col, c.row); };
@@ -261,7 +262,7 @@ class ChangeFinder {
 
   /// A zone's edge below the threshold: soil that lies at 27 degrees or more, at least one cell.
   double margin() const {
-    constexpr double gentlest = 0.5;
+    constexpr double gentlest = 0.5;  // ours
     return std::max({options_.margin, cell_, options_.growth * smooth_sd_ / gentlest});
   }
 
@@ -313,6 +314,7 @@ class ChangeFinder {
   ChangedGround found_;
   Smoothed smoothed_;
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> at_rim_;  // of the survey
+  Holes holes_;  // of the difference, filled by a membrane
   std::size_t known_cells_ = 0;
   Eigen::ArrayXXd scatter_;  // what a cell's points add to the variance of a 3 x 3 mean [m^2]
   double smooth_sd_ = least_noise;  // of a 3 x 3 mean on stable ground [m]

@@ -8,14 +8,11 @@
 
 #include <excavplan/ground/volume_change.hpp>
 
-#include "ground/hole_filling.hpp"
-
 namespace excavplan {
 
 /// Where two surveys of one area differ by more than their noise, and what that noise is.
 struct ChangedGround {
   Eigen::ArrayXXd difference;     ///< after - before, less the datum, holes filled; NaN outside [m]
-  Holes holes;                    ///< of the difference, filled by a membrane
   Eigen::ArrayXXd residual;       ///< of stable cells, within 4 sd; NaN elsewhere [m]
   Eigen::ArrayXXi zone;           ///< -1 for stable ground
   std::vector<bool> zone_is_cut;  ///< the zone reaches the edge of what was surveyed

@@ -53,7 +53,7 @@ struct Covariances {
 };
 
 Covariances empirical(const Eigen::ArrayXXd& residual) {
-  constexpr double significant = 3.0;
+  constexpr double significant = 3.0;  // sd; ours
   Covariances found;
   found.at_lag.push_back(products(residual, 0));
   const double variance = found.at_lag[0].mean();
@@ -81,7 +81,7 @@ NoiseModel fit(const Covariances& covariances, double cell) {
   const double longest = cell * static_cast<double>(covariances.at_lag.size());
   NoiseModel best;
   double least = std::numeric_limits<double>::infinity();
-  for (const double power : {1.0, 1.25, 1.5, 1.75, 2.0}) {
+  for (const double power : {1.0, 1.25, 1.5, 1.75, 2.0}) {  // this grid is ours
     for (double length = 0.4 * cell; length < longest; length *= 1.06) {
       const NoiseModel shape{0.0, 1.0, length, power};
       Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
@@ -187,8 +187,8 @@ class Blocks {
   const std::vector<Block>& wanted() const { return wanted_; }
 
  private:
-  static constexpr double most_near = 900.0;
-  static constexpr double most_far = 250.0;
+  static constexpr double most_near = 900.0;  // ours, like what is near
+  static constexpr double most_far = 250.0;   // ours
 
   void collect(const Eigen::ArrayXXd& distance) {
     const HeightMap& map = field_.before;
@@ -254,7 +254,8 @@ Known known_of(const std::vector<Block>& blocks, const NoiseModel& noise,
     const Block& block = blocks[static_cast<std::size_t>(i)];
     known.trend.row(i) = block.effect.transpose() * root;
     known.mean(i) = block.mean;
-    known.covariance(i, i) = noise.white / block.cells + 1e-5 * noise.correlated;
+    known.covariance(i, i) =
+        noise.white / block.cells + 1e-5 * noise.correlated;  // positive definite
     if (noise.correlated == 0.0) continue;
     for (Eigen::Index j = 0; j <= i; ++j) {
       known.covariance(i, j) += table.between(block, blocks[static_cast<std::size_t>(j)]);

@@ -14,6 +14,8 @@
 
 namespace excavplan {
 
+constexpr double least_noise = 1e-4;  ///< ours: no survey of soil is better [m]
+
 /// Covariance of the error of height differences: white from cell to cell, and a part that
 /// neighbours share, correlated exp(-(distance / length)^power).
 struct NoiseModel {

@@ -239,17 +239,18 @@ Holes fill_holes(Eigen::ArrayXXd& z) {
   return holes;
 }
 
-FillError error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& hole,
-                           const std::vector<Cell>& summed, const std::vector<Cell>& tried) {
-  constexpr double safety = 1.5;  // ours: errors of fillings have long tails
-  constexpr std::size_t most_tries = 400;
-  constexpr int fewest_places = 8;
-  constexpr double without_places = 0.5;  // ours: of the rim's relief times the cells
+double error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& hole,
+                        const std::vector<Cell>& summed, const std::vector<Cell>& tried) {
+  constexpr double safety = 1.5;           // ours: errors of fillings have long tails
+  constexpr std::size_t most_tries = 400;  // ours
+  constexpr int fewest_places = 8;         // ours
+  constexpr double without_places = 0.5;   // ours: of the rim's relief times the cells
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(hole.size()));
-  for (std::size_t i = 0; i < hole.size(); ++i) {
-    const auto same = [&](Cell cell) { return cell.row == hole[i].row && cell.col == hole[i].col; };
-    sums(static_cast<Eigen::Index>(i)) =
-        std::any_of(summed.begin(), summed.end(), same) ? 1.0 : 0.0;
+  auto next = summed.begin();
+  for (std::size_t i = 0; i < hole.size() && next != summed.end(); ++i) {
+    if (next->row != hole[i].row || next->col != hole[i].col) continue;
+    sums(static_cast<Eigen::Index>(i)) = 1.0;
+    ++next;
   }
   const Functional plate = functional_of(z, hole, sums, Filling::thin_plate);
   const Functional membrane = functional_of(z, hole, sums, Filling::membrane);
@@ -264,7 +265,7 @@ FillError error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& ho
   const double own_relief = relief(rim);
   const double spread = plate.weight.dot(rim) - membrane.weight.dot(rim_of_membrane);
 
-  FillError error;
+  int places = 0;
   double squares = 0.0;
   const std::size_t stride = tried.size() / most_tries + 1;
   for (std::size_t i = 0; i < tried.size(); i += stride) {
@@ -274,13 +275,12 @@ FillError error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& ho
     const double there = relief(rim);
     if (!(there > 0.0)) continue;
     squares += miss * miss / there;
-    ++error.places;
+    ++places;
   }
   const double cells = sums.sum();
-  const double share = error.places >= fewest_places ? safety * safety * squares / error.places
-                                                     : std::pow(without_places * cells, 2);
-  error.variance = std::max(share * own_relief, spread * spread);
-  return error;
+  const double share = places >= fewest_places ? safety * safety * squares / places
+                                               : std::pow(without_places * cells, 2);
+  return std::max(share * own_relief, spread * spread);
 }
 
 }  // namespace excavplan

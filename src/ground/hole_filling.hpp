@@ -31,12 +31,6 @@ void fill(Eigen::ArrayXXd& z, const std::vector<Cell>& unknown, Filling filling)
 /// Fills all holes by a membrane (Laplace's equation).
 Holes fill_holes(Eigen::ArrayXXd& z);
 
-/// How far the sum of a filled hole may be off.
-struct FillError {
-  double variance = 0.0;  ///< of the sum of the filled heights [m^2]
-  int places = 0;         ///< at which it was tried
-};
-
 /// Tries a hole's filling at places that are known: the hole's shape is moved there, turned and
 /// mirrored, filled by a thin plate and compared. An error counts by the relief of the rim where
 /// it was tried against that of the hole itself, for a hole on a wall errs more than one on level
@@ -44,9 +38,10 @@ struct FillError {
 ///
 /// @param z heights, NaN in the hole and wherever nothing is known
 /// @param hole all cells of the hole
-/// @param summed those of them whose sum matters
+/// @param summed those of them whose sum matters, in the same order
 /// @param tried where the shape may be tried
-FillError error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& hole,
-                           const std::vector<Cell>& summed, const std::vector<Cell>& tried);
+/// @return variance of the sum of the filled heights [m^2]
+double error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& hole,
+                        const std::vector<Cell>& summed, const std::vector<Cell>& tried);
 
 }  // namespace excavplan

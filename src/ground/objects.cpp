@@ -23,7 +23,7 @@ Eigen::ArrayXXd excess_of(const Eigen::ArrayXXd& z, double cell) {
   return z - slope_limited(z, steepest * cell) - steepest * cell;
 }
 
-/// Cells within `margin` of the given ones.
+/// Cells within `margin` of the given ones, or next to them.
 std::vector<Cell> widened(const std::vector<Cell>& cells, const Eigen::ArrayXXd& grid,
                           double margin) {
   const auto reach = static_cast<Eigen::Index>(std::ceil(margin));

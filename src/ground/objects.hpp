@@ -25,7 +25,7 @@ struct Object {
 /// by less than a fifth of that itself. Freshly dug soil stands at 28 to 45 degrees, and in heaps
 /// of blocks as rough as those are large.
 ///
-/// @param margin by which what is found is widened [cell]
+/// @param margin by which what is found is widened, 1.5 at least (ours); 0: not at all [cell]
 std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell,
                                      double margin);
 

@@ -23,7 +23,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_cells = 100;
-constexpr double least_noise = 1e-4;       // ours: no survey of soil is better [m]
 constexpr double tukey = 4.685;            // 95 % efficient for normal noise
 constexpr double quartile_to_sd = 3.1386;  // a quarter of normal residuals is within 0.3186 sd
 constexpr double least_bend = 0.02;        // ours: a shift of rough ground bends it by no more [-]
@@ -107,7 +106,6 @@ class Aligner {
     const Gradient one = gradient_of(before.height);
     const Gradient two = gradient_of(after.height);
     const Eigen::Vector2d tilt(tilt_of(two.x - one.x), tilt_of(two.y - one.y));
-    found_.centre = {0.0, 0.0, 0.0};
     for_each_cell(map_.z, [&](Cell at) {
       const Eigen::Vector2d first(one.x(at.row, at.col), one.y(at.row, at.col));
       const Eigen::Vector2d second(two.x(at.row, at.col), two.y(at.row, at.col));
@@ -176,7 +174,7 @@ class Aligner {
       squares += sample.weight * sample.effect.head<2>().cwiseAbs2();
     }
     const double noise = scale_ * scale_ / (24.0 * map_.cell * map_.cell);
-    constexpr double margin = 1.2;
+    constexpr double margin = 1.2;  // ours
     const Eigen::Vector2d share =
         (1.0 - margin * noise * (squares / weights).cwiseInverse().array()).cwiseMax(0.0);
     reliable_ = {std::sqrt(share.x()),       std::sqrt(share.y()), 1.0, 1.0, 1.0,

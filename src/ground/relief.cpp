@@ -9,6 +9,7 @@
 
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/hole_filling.hpp"
 
 namespace excavplan {
 namespace {

@@ -17,9 +17,8 @@ namespace excavplan {
 namespace {
 
 constexpr Eigen::Index fewest_known_cells = 100;
-constexpr double least_noise = 1e-4;  // ours: no survey of soil is better [m]
-constexpr double gentle = 0.5;        // ours: soil beyond the edge of a scan lies steeper [-]
-constexpr double steep = 1.0;         // ours: gentler faces have points enough to be averages [-]
+constexpr double gentle = 0.5;  // ours: soil beyond the edge of a scan lies steeper [-]
+constexpr double steep = 1.0;   // ours: gentler faces have points enough to be averages [-]
 /// A lattice of points places a steep face no better than this share of its spacing, all along it
 /// alike; ours, from pits with upright walls under simulated cameras.
 constexpr double face_place = 0.15;
@@ -82,7 +81,7 @@ double regularity_of(const Eigen::ArrayXXi& points, const Eigen::ArrayXXi& zone)
 /// What a scan's steep faces may add to or take from each zone: their area seen from the side times
 /// how well the points place them. Points that lie by chance err anew in every cell, which the
 /// noise of the cells tells; rows of points along a face err alike.
-void sum_faces(Area& area, const Surface& scan, double noise_sd) {
+void sum_faces(Area& area, const Surface& scan) {
   if (scan.points.size() == 0) return;
   const std::size_t zones = area.zones.size();
   std::vector<double> faces(zones, 0.0);
@@ -90,7 +89,7 @@ void sum_faces(Area& area, const Surface& scan, double noise_sd) {
   const Gradient gradient = gradient_of(scan.height);
   const double regularity = regularity_of(scan.points, area.ground.zone);
   const double cell = area.grid.cell;
-  const double least = std::max(steep, 2.0 * noise_sd / cell);
+  const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell);
   for_each_cell(area.ground.zone, [&](Cell at) {
     const int index = area.ground.zone(at.row, at.col);
     if (index < 0) return;
@@ -124,14 +123,6 @@ void sum_beyond_edge(Area& area) {
     missing[static_cast<std::size_t>(index)] += cell * 0.5 * height * height / gentle;
   });
   for (std::size_t i = 0; i < missing.size(); ++i) area.zones[i].holes += std::pow(missing[i], 2);
-}
-
-HeightMap with(const HeightMap& grid, Eigen::ArrayXXd z) {
-  HeightMap map;
-  map.origin = grid.origin;
-  map.cell = grid.cell;
-  map.z = std::move(z);
-  return map;
 }
 
 /// One area's scans, with motion and objects taken out.
@@ -178,10 +169,12 @@ Scans prepared(const SurveyedPair& pair, const ChangeOptions& options,
 Area survey(const SurveyedPair& pair, const ChangeOptions& options) {
   Area area;
   const Scans scans = prepared(pair, options, area.objects);
-  area.grid = with(scans.before, {});
-  const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
+  area.grid.origin = scans.before.origin;
+  area.grid.cell = scans.before.cell;
+  Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
   area.unknown = difference.isNaN().cast<int>();
-  area.ground = find_change(difference, scans.variance_of(0.0), scans.before.cell, options);
+  area.ground =
+      find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell, options);
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
@@ -199,8 +192,8 @@ Area survey(const SurveyedPair& pair, const ChangeOptions& options) {
   noise.white = std::max(noise.white, least_noise * least_noise);
   sum_noise(area, scans.variance_of(share), noise.white);
   sum_beyond_edge(area);
-  sum_faces(area, pair.before, area.ground.noise_sd);
-  sum_faces(area, pair.after, area.ground.noise_sd);
+  sum_faces(area, pair.before);
+  sum_faces(area, pair.after);
   area.errors = ErrorField{scans.before,
                            area.ground.residual,
                            area.ground.zone,

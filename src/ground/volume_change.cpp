@@ -21,7 +21,6 @@ constexpr double least_warned_share = 0.01;  // of its kind's volume: a speck at
 constexpr double least_refused_share = 0.1;  // likewise: one part of several may be unseen
 constexpr double least_stable_share = 0.4;   // ours
 constexpr double largest_noise = 0.1;        // ours: of a cell; coarser than any range sensor [m]
-constexpr double least_after_share = 0.5;    // ours: with less, the heap is not in the scans
 constexpr double least_dumped_share = 0.2;   // ours: a smaller rise away from the hole is no heap
 constexpr double least_bulking = 0.97;       // loosest soil keeps its volume; ours: 3 % below that
 constexpr double largest_bulking = 3.0;      // ours: blocks give about 2

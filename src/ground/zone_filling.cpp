@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/zone_filling.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "ground/hole_filling.hpp"
 
 namespace excavplan {
 namespace {
@@ -72,7 +73,7 @@ class Filler {
     for (std::size_t zone = 0; zone < in_zone.size(); ++zone) {
       if (in_zone[zone].empty()) continue;
       const std::vector<Cell>& tried = anywhere ? stable_cells_ : zone_cells_[zone];
-      variance[zone] = error_of_filling(z, hole, in_zone[zone], tried).variance;
+      variance[zone] = error_of_filling(z, hole, in_zone[zone], tried);
     }
     return variance;
   }

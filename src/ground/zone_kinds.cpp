@@ -9,8 +9,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double least_after_share = 0.5;  // ours: with less, the heap is not in the scans
-
 bool any(const Chosen& chosen) {
   return std::find(chosen.begin(), chosen.end(), true) != chosen.end();
 }

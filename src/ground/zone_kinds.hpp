@@ -10,6 +10,8 @@
 
 namespace excavplan {
 
+constexpr double least_after_share = 0.5;  ///< ours: with less, the heap is not in the scans
+
 using Chosen = std::vector<bool>;  ///< by index of the zone
 
 /// Marks the hole; what rose beside it is spill. Returns the zones beside the hole.

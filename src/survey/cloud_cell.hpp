@@ -39,7 +39,8 @@ struct CellRange {
   std::size_t size() const { return static_cast<std::size_t>(last - first); }
 };
 
-inline double median(std::vector<float>& values) {
+/// The mean of the two in the middle where the count is even. Reorders the values, at least one.
+inline double mean_median(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   const auto upper = static_cast<double>(*middle);
@@ -80,7 +81,7 @@ inline bool lies_among(CellRange points, double valley) {
 }
 
 /// The lowest gap of at least `gap` in the heights, with a fiftieth of the points at most inside it
-/// and a tenth, but three points, on either side.
+/// and a tenth, but three points, on either side (all ours).
 inline std::optional<Split> two_levels(CellRange points, double level, double gap,
                                        std::vector<float>& heights) {
   const std::size_t support = std::max<std::size_t>(3, points.size() / 10);
@@ -253,7 +254,7 @@ class CellMean {
     shared_ = squared_ = all_;
     shared_.scale(1.0 / all_.count);
     squared_.scale(1.0 / (all_.count * all_.count));
-    constexpr double rough = 3.0;
+    constexpr double rough = 3.0;  // ours
     if (residual_sd() > rough * noise) share_by_area();
   }
 
@@ -269,7 +270,7 @@ class CellMean {
   }
 
  private:
-  static constexpr std::size_t enough = 8;  ///< points for a slope
+  static constexpr std::size_t enough = 8;  ///< points for a slope; ours
   /// A scan is no better than this, however many its points [m].
   static constexpr double least_sd = 1e-4;
 

@@ -11,11 +11,11 @@
 #include <utility>
 
 #include <excavplan/error.hpp>
-#include <excavplan/random.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
 #include "cloud_cell.hpp"
 #include "cloud_outline.hpp"
+#include "ground/robust.hpp"
 #include "json_file.hpp"
 #include "parallel.hpp"
 
@@ -90,7 +90,8 @@ class PointsByCell {
         heights.add(point.z());
       }
     });
-    base_ = heights.values().empty() ? 0.0 : middle_of(heights.values());
+    std::vector<double> sample = heights.values();
+    base_ = sample.empty() ? 0.0 : median(sample);
     part(std::max<std::uint64_t>(memory / sizeof(CellPoint), 1));
   }
 
@@ -132,12 +133,6 @@ class PointsByCell {
                    static_cast<std::size_t>(rows_) * static_cast<std::size_t>(place.column);
     }
     return place;
-  }
-
-  static double middle_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
   }
 
   /// Bands of at most so many points, but of one cell at least.
@@ -229,11 +224,11 @@ Levels find_levels(PointsByCell& points, const HeightMap& map) {
     values.clear();
     const std::size_t step = 1 + in_cell.size() / enough_points;
     for (std::size_t i = 0; i < in_cell.size(); i += step) values.push_back(in_cell.first[i].z);
-    const double level = median(values);
+    const double level = mean_median(values);
     levels.height(cell) = level;
     if (in_cell.size() < fewest_points || seen++ % stride != 0) return;
     for (float& value : values) value = std::abs(value - static_cast<float>(level));
-    noise.push_back(1.4826 * median(values));
+    noise.push_back(1.4826 * mean_median(values));
   });
   if (cells < fewest_cells) {
     levels.noise = std::numeric_limits<double>::infinity();
@@ -250,8 +245,8 @@ using Ceilings = std::unordered_map<Index, double>;
 
 /// True if two cells around have their ground above `valley`, or too few are known.
 bool upper_level_goes_on(const Eigen::ArrayXXd& lowest, Index cell, double valley) {
-  constexpr int enough_known = 4;  // with the cell itself
-  constexpr int enough_above = 2;
+  constexpr int enough_known = 4;  // with the cell itself; ours
+  constexpr int enough_above = 2;  // ours
   const Index column = cell / lowest.rows();
   const Index row = cell % lowest.rows();
   int known = 0;
@@ -269,8 +264,8 @@ bool upper_level_goes_on(const Eigen::ArrayXXd& lowest, Index cell, double valle
 /// Takes what grows or hangs above the ground off the levels. A gap must be wider than noise makes
 /// it, and than a slope does between a few points.
 Ceilings lower_to_ground(PointsByCell& points, Levels& levels, double cell_size) {
-  constexpr double gap_to_noise = 8.0;
-  constexpr double gap_to_cell = 0.5;
+  constexpr double gap_to_noise = 8.0;  // ours
+  constexpr double gap_to_cell = 0.5;   // ours
   Ceilings ceilings;
   if (!std::isfinite(levels.noise)) return ceilings;
   const double gap = std::max(gap_to_noise * levels.noise, gap_to_cell * cell_size);
@@ -296,7 +291,7 @@ Surface surface_of(const PointSource& source, HeightMap map, const RasterOptions
   PointsByCell points(source, map, options.memory);
   Levels levels = find_levels(points, map);
   const Ceilings ceilings = lower_to_ground(points, levels, map.cell);
-  constexpr std::size_t trusted = 5;  // points, whose median is hardly ever an outlier
+  constexpr std::size_t trusted = 5;  // points, whose median is hardly ever an outlier; ours
   const double gap = options.outlier_distance * levels.noise;
   const Index rows = map.z.rows();
   Surface surface{map, map.z, Eigen::ArrayXXi::Zero(rows, map.z.cols())};

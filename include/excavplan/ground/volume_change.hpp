@@ -54,12 +54,12 @@ struct ChangeOptions {
   double detection = 5.0;  ///< a zone holds a 3 x 3 mean of at least this many of its sd [-], > 0
   double growth = 3.0;     ///< and grows to cells of this many sd [-], in (0, detection]
   double min_zone_area = 0.03;  ///< smaller zones are noise [m^2], >= 0
-  double margin = 0.05;  ///< zones are widened by this or a cell at least, and more where noise
-                         ///< hides their feathered edge [m], >= 0
+  double margin = 0.05;  ///< zones and objects are widened by this or a cell at least, and more
+                         ///< where noise hides their feathered edge [m], >= 0
   double spill_distance = 0.6;     ///< rising ground this near to the hole is spill [m], >= 0
   double max_unknown_share = 0.2;  ///< a zone with more unknown cells draws a warning [-]
-  /// A hole, spill or heap with more unknown cells has no volume: refused [-], not below
-  /// max_unknown_share
+  /// With more unknown cells in a hole, spill or heap, unless it is a small part of its kind,
+  /// bulking_factor() refuses the volumes [-]; not below max_unknown_share
   double refused_unknown_share = 0.5;
 };
 
