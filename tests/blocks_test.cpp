@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
 #include "block_heap.hpp"

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
 #include "errors.hpp"

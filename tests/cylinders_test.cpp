@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/random.hpp>
 

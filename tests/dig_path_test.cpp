@@ -467,7 +467,7 @@ TEST(DigPath, BucketAtItsLimitMayOpenOnceItIsOutOfTheGround) {
   EXPECT_EQ(blocked.joint, Joint::bucket);
 }
 
-// ---- options ------------------------------------------------------------------------------------
+// ---- the way down -------------------------------------------------------------------------------
 
 TEST(WayDown, LowersTheBucketInItsAttitudeFromWhereItIsClear) {
   Random random(31);
@@ -510,6 +510,8 @@ TEST(WayDown, SaysWhatBlocksIt) {
   EXPECT_EQ(blocked.message.rfind("approach, after 0.0", 0), 0u) << blocked.message;
   EXPECT_THROW(way_down(zx120(), DigPath(), flat), Error);
 }
+
+// ---- options ------------------------------------------------------------------------------------
 
 TEST(DigPath, BadOptionsAreErrorsThatNameThem) {
   const auto with = [](double DigPathOptions::*field, double value) {

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/planning/planner.hpp>
 #include <excavplan/random.hpp>

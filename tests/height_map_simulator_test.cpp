@@ -212,7 +212,6 @@ TEST_F(Simulator, AWeakMachineStallsAndSaysWhere) {
               1e-9 * result.soil.solids_before);
 }
 
-// Ground that says how dense it is digs like ground the simulator was told of.
 TEST_F(Simulator, EndsAHopelessDigOnceAFullBucketCouldNotPayForIt) {
   const Terrain ground = level_planning_ground(machine_);
   const DigResult whole = dig(40.0, overfilling_path());
@@ -237,6 +236,7 @@ TEST_F(Simulator, UnsettledGroundIsStillSliding) {
   EXPECT_EQ(unsettled.payload_mass, settled.payload_mass);
 }
 
+// Ground that says how dense it is digs like ground the simulator was told of.
 TEST_F(Simulator, DensityOfTheCellsCountsLikeTheSimulatorsOwn) {
   const SoilKind loam = soil_kind("loam");
   const Terrain plain = level_planning_ground(machine_);

@@ -20,8 +20,8 @@
 #include "survey_scenes.hpp"
 
 /// @file
-/// The scenes of survey_scenes.hpp through the whole of the library: clouds, surfaces, alignment,
-/// volumes. For tests and benchmarks.
+/// The scenes of survey_scenes.hpp through alignment and volumes. Surfaces and the survey after a
+/// registration are made here; survey_registered() makes them from files (benchmarks/accuracy).
 
 namespace excavplan::scenes {
 

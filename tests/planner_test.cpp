@@ -365,7 +365,8 @@ TEST_F(Planner, KnowingOneCertainSoilIsWorthNothing) {
 // ---- Interrupted -------------------------------------------------------------------------------
 
 TEST_F(Planner, AnInterruptedSearchGoesOnFromItsCheckpoint) {
-  const std::string file = testing::TempDir() + "dig_search_checkpoint.json";
+  const std::string file =
+      testing::TempDir() + "dig_search_checkpoint" + std::to_string(::getpid()) + ".json";
   std::remove(file.c_str());
   const auto at_once = search_dig(machine_, simulator(40.0), level_, small_search());
   DigSearchOptions options = small_search();

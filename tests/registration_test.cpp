@@ -9,7 +9,6 @@
 
 #include <Eigen/Geometry>
 
-#include <excavplan/error.hpp>
 #include <excavplan/ground/registration.hpp>
 #include <excavplan/random.hpp>
 

@@ -6,6 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -56,6 +59,10 @@ struct ProgramResult {
   std::string err;
 };
 
+inline int exit_code(int status) {
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 /// Runs the program `name` of the folder EXCAVPLAN_BIN with nothing on its standard input. No shell
 /// is in between: the arguments arrive as they are.
 inline ProgramResult run_program(const std::string& name, std::vector<std::string> arguments = {}) {
@@ -79,8 +86,42 @@ inline ProgramResult run_program(const std::string& name, std::vector<std::strin
   }
   int status = 0;
   ::waitpid(child, &status, 0);
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, content_of(out), content_of(err)};
+  return {exit_code(status), content_of(out), content_of(err)};
+}
+
+/// Runs a program on a terminal and interrupts it once it has shown `sign`.
+inline ProgramResult interrupted(const std::string& name, std::vector<std::string> words,
+                                 const std::string& sign) {
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+  if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) {
+    throw std::runtime_error("no terminal to be had");
+  }
+  const std::string other_end = ::ptsname(terminal);
+  std::string program = std::string(EXCAVPLAN_BIN) + "/" + name;
+  std::vector<char*> arguments = {program.data()};
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("fork failed");
+  if (child == 0) {
+    ::dup2(::open("/dev/null", O_RDWR), STDOUT_FILENO);
+    ::dup2(::open(other_end.c_str(), O_WRONLY | O_NOCTTY), STDERR_FILENO);
+    ::execv(program.c_str(), arguments.data());
+    ::_exit(127);
+  }
+  ProgramResult result;
+  bool sent = false;
+  std::array<char, 1024> buffer{};
+  for (ssize_t got; (got = ::read(terminal, buffer.data(), buffer.size())) > 0;) {
+    result.err.append(buffer.data(), static_cast<std::size_t>(got));
+    if (!sent && result.err.find(sign) != std::string::npos) sent = ::kill(child, SIGINT) == 0;
+  }
+  ::close(terminal);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  result.code = exit_code(status);
+  return result;
 }
 
 }  // namespace excavplan::test

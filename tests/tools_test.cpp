@@ -1,12 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fcntl.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
@@ -938,10 +935,11 @@ TEST_F(Tools, SearchWarnsOfADamagedShippedLibraryAndGoesOn) {
   const std::string data = folder.file("data");
   fs::copy(EXCAVPLAN_DATA_SOURCE, data, fs::copy_options::recursive);
   folder.write("data/libraries/zx120-loam.json", R"({"format": "excavplan-path-library")");
+  fs::remove(data + "/libraries/zx120-sand.json");
   ::setenv("EXCAVPLAN_DATA", data.c_str(), 1);
   const Words few = {"--density", "40", "--search", "--evaluations", "10"};
   const json loam = answer("plan-path", few);
-  const json sand = answer("plan-path", few + Words{"--soil", "sand"});  // none is shipped
+  const json sand = answer("plan-path", few + Words{"--soil", "sand"});  // has none
   ::unsetenv("EXCAVPLAN_DATA");
   EXPECT_TRUE(warns(loam, "library_unreadable"));
   EXPECT_EQ(sand.at("warnings"), json::array());
@@ -1007,40 +1005,6 @@ TEST_F(Tools, ScansAreTheSameForTheSameSeed) {
   const std::string first = content_of(scan_pair(folder, 40, 7).after);
   EXPECT_EQ(first, content_of(scan_pair(again, 40, 7).after));
   EXPECT_NE(first, content_of(scan_pair(other, 40, 8).after));
-}
-
-/// Runs a program on a terminal and interrupts it once it has shown `sign`.
-ProgramResult interrupted(const std::string& name, Words words, const std::string& sign) {
-  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
-  if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) {
-    throw std::runtime_error("no terminal to be had");
-  }
-  const std::string other_end = ::ptsname(terminal);
-  std::string program = std::string(EXCAVPLAN_BIN) + "/" + name;
-  std::vector<char*> arguments = {program.data()};
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-
-  const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error("fork failed");
-  if (child == 0) {
-    ::dup2(::open("/dev/null", O_RDWR), STDOUT_FILENO);
-    ::dup2(::open(other_end.c_str(), O_WRONLY | O_NOCTTY), STDERR_FILENO);
-    ::execv(program.c_str(), arguments.data());
-    ::_exit(127);
-  }
-  ProgramResult result;
-  bool sent = false;
-  std::array<char, 1024> buffer{};
-  for (ssize_t got; (got = ::read(terminal, buffer.data(), buffer.size())) > 0;) {
-    result.err.append(buffer.data(), static_cast<std::size_t>(got));
-    if (!sent && contains(result.err, sign)) sent = ::kill(child, SIGINT) == 0;
-  }
-  ::close(terminal);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return result;
 }
 
 TEST_F(Tools, InterruptedLibraryIsResumedToTheSameBytes) {

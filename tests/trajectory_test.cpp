@@ -17,10 +17,10 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
 #include "errors.hpp"
+#include "run_program.hpp"
 
 namespace excavplan {
 namespace {
@@ -600,28 +600,13 @@ TEST(Trajectory, CsvOfAMachineWithoutCylindersHasNoneEither) {
   EXPECT_EQ(csv.find("nan"), std::string::npos);
 }
 
-/// A file that is gone with the test.
-class TrajectoryFile {
- public:
-  explicit TrajectoryFile(const std::string& content)
-      : path_(testing::TempDir() + "trajectory" + std::to_string(::getpid()) + ".json") {
-    std::ofstream(path_) << content;
-  }
-  ~TrajectoryFile() { std::remove(path_.c_str()); }
-  TrajectoryFile(const TrajectoryFile&) = delete;
-  TrajectoryFile& operator=(const TrajectoryFile&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 TEST(Trajectory, JsonIsReadBackExactly) {
+  const test::TemporaryFolder folder;
   Machine bare = zx120();
   bare.cylinders.reset();
   bare.hydraulics.reset();
   for (const Trajectory& written : {with_approach(), time_dig_path(bare, fixed_path())}) {
-    const Trajectory read = load_trajectory(TrajectoryFile(to_json(written)).path());
+    const Trajectory read = load_trajectory(folder.write("t.json", to_json(written)));
     EXPECT_EQ(read.machine, "zx120");
     ASSERT_EQ(read.points.size(), written.points.size());
     for (std::size_t k = 0; k < read.points.size(); ++k) {
@@ -639,8 +624,9 @@ TEST(Trajectory, JsonNamesKeyValueAndRuleOfWhatItRefuses) {
   const auto complaint = [](const std::function<void(nlohmann::json&)>& change) {
     nlohmann::json json = nlohmann::json::parse(to_json(with_approach()));
     change(json);
-    const TrajectoryFile file(json.dump());
-    return test::error_about([&] { load_trajectory(file.path()); }, file.path());
+    const test::TemporaryFolder folder;
+    const std::string file = folder.write("t.json", json.dump());
+    return test::error_about([&] { load_trajectory(file); }, file);
   };
   using nlohmann::json;
   EXPECT_EQ(complaint([](json&) {}), "no error");
