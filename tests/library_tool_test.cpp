@@ -196,13 +196,14 @@ TEST_F(LibraryTool, ARankThatFailsAloneSaysWhyAndOneSpeaksForSeveral) {
   for (const int others : {1, 3}) {
     EXPECT_EQ(run_ranks(ranks(1, "zx120") + " : " + ranks(others, "nowhere"), folder_.file("said")),
               2);
-    const std::string said = content_of(folder_.file("said"));
+    const std::string said = "\n" + content_of(folder_.file("said"));
     EXPECT_EQ(times(said, reason), 1) << said;
-    const auto rank = said.find("rank ");
-    ASSERT_NE(rank, std::string::npos) << said;
-    EXPECT_EQ(said.find(": " + reason, rank), rank + 6) << said;
-    EXPECT_GE(said[rank + 5], '1');
-    EXPECT_LE(said[rank + 5], '0' + others);
+    // mpirun's own words on the end of a rank may come before the rank's.
+    int speakers = 0;
+    for (int rank = 1; rank <= others; ++rank) {
+      speakers += times(said, "\nrank " + std::to_string(rank) + ": " + reason);
+    }
+    EXPECT_EQ(speakers, 1) << said;
   }
   EXPECT_EQ(run_ranks(ranks(3, "nowhere"), folder_.file("said")), 2);
   const std::string said = content_of(folder_.file("said"));

@@ -97,6 +97,8 @@ class MpiRanks : public Ranks {
       for (std::string line; std::getline(lines, line);) {
         std::fprintf(stderr, "rank %d: %s\n", rank_, line.c_str());
       }
+      // The launcher drops what it has not passed on when it takes the job down.
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }
   }
 
