@@ -47,6 +47,7 @@ PathLibrary small_library() {
   library.entries = {entry(0.0, {0.8, 0.30, 1.5}, 400.0), entry(50.0, {0.7, 0.40, 1.9}, 500.0),
                      entry(100.0, {1.3, 0.10, 0.3}, 300.0)};
   library.entries[0].midway = {0.01, -0.02};
+  library.entries[1].jump = true;
   return library;
 }
 
@@ -79,7 +80,7 @@ TEST(PathLibrary, LooksUpEntriesAndBlendsBetweenThem) {
   EXPECT_DOUBLE_EQ(between.payload_mass, 450.0);
 }
 
-TEST(PathLibrary, DoesNotBlendDigsOfDifferentKinds) {
+TEST(PathLibrary, TakesTheNearerDigWhereTheOptimumJumps) {
   const PathLibrary library = small_library();
   EXPECT_DOUBLE_EQ(look_up(library, 74.0).parameters.drag_length, 1.9);
   EXPECT_DOUBLE_EQ(look_up(library, 76.0).parameters.drag_length, 0.3);
@@ -90,6 +91,15 @@ TEST(PathLibrary, BlendsBetweenSlopes) {
   EXPECT_DOUBLE_EQ(look_up(library, 25.0, 0.0).payload_mass, 450.0);
   EXPECT_DOUBLE_EQ(look_up(library, 25.0, 0.2).payload_mass, 900.0);
   EXPECT_DOUBLE_EQ(look_up(library, 25.0, 0.05).payload_mass, 562.5);
+}
+
+TEST(PathLibrary, TakesTheNearerSlopeWhereTheOptimumJumps) {
+  PathLibrary library = sloped_library();
+  library.entries[0].jump_slope = true;
+  EXPECT_DOUBLE_EQ(look_up(library, 0.0, 0.09).payload_mass, 400.0);
+  EXPECT_DOUBLE_EQ(look_up(library, 0.0, 0.11).payload_mass, 800.0);
+  EXPECT_DOUBLE_EQ(look_up(library, 20.0, 0.09).payload_mass, 440.0) << "0 % is the nearer density";
+  EXPECT_DOUBLE_EQ(look_up(library, 50.0, 0.1).payload_mass, 750.0);
 }
 
 TEST(PathLibrary, TellsItsErrorMidwayAndNoneAtItsEntries) {
@@ -153,10 +163,10 @@ TEST(PathLibrary, BadFilesAreRefusedByName) {
     return error_in(sealed(text.replace(at, from.size(), to)));
   };
   EXPECT_EQ(error_in(good), "no error");
-  EXPECT_EQ(with("\"version\": 3", "\"version\": 4"),
-            ": version: is 4, this program reads version 3");
-  EXPECT_EQ(with("\"version\": 3", "\"version\": 1"),
-            ": version: is 1, this program reads version 3; build the library again: "
+  EXPECT_EQ(with("\"version\": 4", "\"version\": 5"),
+            ": version: is 5, this program reads version 4");
+  EXPECT_EQ(with("\"version\": 4", "\"version\": 3"),
+            ": version: is 3, this program reads version 4; build the library again: "
             "build-path-library --out FILE");
   EXPECT_EQ(with("excavplan-path-library", "excavplan-soil"),
             ": format: is 'excavplan-soil', expected 'excavplan-path-library'");
@@ -197,7 +207,7 @@ LibraryRow row_of(const std::vector<CellOutcome>& outcomes) {
 }
 
 TEST(LibraryRow, TriesTheBetterKindOfDigOnTheOtherSideUntilItIsNot) {
-  using Better = MidwayDensity::Better;
+  using Better = Midway::Better;
   LibraryRow row =
       row_of({outcome(0, short_dig, 500), outcome(10, short_dig, 450), outcome(20, long_dig, 390),
               outcome(30, long_dig, 359), outcome(40, long_dig, 330)});
@@ -253,8 +263,8 @@ TEST(LibraryRow, LooksAgainAtADigBelowTheLineThroughItsNeighbours) {
   EXPECT_TRUE(row_of(far_apart).looks_due().empty());
 }
 
-TEST(MidwayDensity, TellsWhichKindOfDigIsBetter) {
-  using Better = MidwayDensity::Better;
+TEST(Midway, TellsWhichKindOfDigIsBetter) {
+  using Better = Midway::Better;
   const Machine machine = load_machine(find_data_file("machines/zx120.json"));
   const SoilKind gravel = load_soil(find_data_file("soils/gravel.json"));
   const PathLibrary library = load_path_library(find_data_file("libraries/zx120-gravel.json"));
@@ -268,6 +278,39 @@ TEST(MidwayDensity, TellsWhichKindOfDigIsBetter) {
   EXPECT_EQ(better(25.0, dense, loose), Better::above);
   EXPECT_EQ(better(75.0, loose, dense), Better::above);
   EXPECT_EQ(better(25.0, loose, look_up(library, 25.0)), Better::neither) << "of one kind";
+}
+
+/// Digs all three by itself.
+TEST(Midway, JumpsWhereAMixIsWorseThanEitherDig) {
+  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  int jumps = 0;
+  int mixes = 0;
+  for (const char* soil : {"loam", "gravel"}) {
+    const SoilKind kind = load_soil(find_data_file(std::string("soils/") + soil + ".json"));
+    const PathLibrary library =
+        load_path_library(find_data_file(std::string("libraries/zx120-") + soil + ".json"));
+    for (const auto& [low, high] : {std::pair(0.0, 40.0), {20.0, 80.0}, {10.0, 30.0}}) {
+      const PlannedDig below = look_up(library, low);
+      const PlannedDig above = look_up(library, high);
+      if (!far_apart(below, above)) continue;
+      const LibraryCell cell{&machine, &kind, 0.0, 0.5 * (low + high)};
+      const auto efficiency = [&](const PlannedDig& dig) {
+        const HeightMapSimulator simulator(machine, kind, cell.density_percent);
+        const auto outcome =
+            evaluate_dig(machine, simulator, level_planning_ground(machine, library.cell),
+                         dig.parameters, dig.start_x);
+        return std::get<PlannedDig>(outcome).efficiency();
+      };
+      const double mix = efficiency(dig_between(below, above, 0.5, false));
+      const double worse = std::min(efficiency(below), efficiency(above));
+      const Midway found = measure_midway(cell, library.cell, below, above, below.efficiency());
+      EXPECT_EQ(found.jump, mix < worse) << soil << low;
+      EXPECT_NEAR(found.error.loss, 1.0 - std::max(mix, worse) / below.efficiency(), 1e-9);
+      ++(found.jump ? jumps : mixes);
+    }
+  }
+  EXPECT_GT(jumps, 0);
+  EXPECT_GT(mixes, 0);
 }
 
 class LibraryBuilding : public testing::Test {
@@ -534,39 +577,79 @@ class ShippedLibrary : public testing::TestWithParam<const char*> {
   const SoilKind soil_ = load_soil(find_data_file(std::string("soils/") + GetParam() + ".json"));
   const PathLibrary library_ =
       load_path_library(find_data_file(std::string("libraries/zx120-") + GetParam() + ".json"));
-  const Terrain ground_ = level_planning_ground(machine_, library_.cell);
+  Terrain ground(double slope) const {
+    return sloped_planning_ground(machine_, slope, library_.cell);
+  }
+  std::vector<PathLibraryEntry> level_entries() const {
+    std::vector<PathLibraryEntry> level;
+    for (const PathLibraryEntry& entry : library_.entries) {
+      if (entry.slope == 0.0) level.push_back(entry);
+    }
+    return level;
+  }
 };
 
 TEST_P(ShippedLibrary, IsTrue) {
   EXPECT_NO_THROW(require_fit(library_, machine_, soil_, GetParam()));
-  EXPECT_EQ(library_.entries.size(), 21U);
-  EXPECT_LE(library_.evaluations(), (soil_.name == "gravel" ? 120 : 60) * 21);
-  double last = 1e9;
-  for (const PathLibraryEntry& entry : library_.entries) {
-    const HeightMapSimulator soil = simulator(entry.density_percent);
-    const auto outcome =
-        evaluate_dig(machine_, soil, ground_, entry.dig.parameters, entry.dig.start_x);
+  const std::size_t cells = library_.entries.size() + library_.gaps.size();
+  EXPECT_EQ(cells, 13U * 21U);
+  for (std::size_t i = 0; i < library_.entries.size(); i += 5) {
+    const PathLibraryEntry& entry = library_.entries[i];
+    const auto outcome = evaluate_dig(machine_, simulator(entry.density_percent),
+                                      ground(entry.slope), entry.dig.parameters, entry.dig.start_x);
     const PlannedDig& dig = std::get<PlannedDig>(outcome);
     EXPECT_NEAR(dig.energy, entry.dig.energy, 1e-6 * dig.energy) << entry.density_percent;
     EXPECT_NEAR(dig.payload_mass, entry.dig.payload_mass, 1e-6 * dig.payload_mass);
-    const auto fixed = evaluate_dig(machine_, soil, ground_, paper_fixed_path());
-    if (const auto* possible = std::get_if<PlannedDig>(&fixed)) {
-      EXPECT_GT(dig.efficiency(), possible->efficiency());
-    }
-    EXPECT_LT(dig.efficiency(), last);
-    EXPECT_LT(entry.midway.loss, 0.03) << entry.density_percent;
-    last = dig.efficiency();
   }
+}
+
+TEST_P(ShippedLibrary, LiftsMoreThanTheFixedPathOnLevelGround) {
+  const std::vector<PathLibraryEntry> level = level_entries();
+  ASSERT_EQ(level.size(), 21U);
+  int evaluations = 0;
+  double last = 1e9;
+  for (const PathLibraryEntry& entry : level) {
+    const double efficiency = entry.dig.efficiency();
+    const auto fixed =
+        evaluate_dig(machine_, simulator(entry.density_percent), ground(0.0), paper_fixed_path());
+    if (const auto* possible = std::get_if<PlannedDig>(&fixed)) {
+      EXPECT_GT(efficiency, possible->efficiency());
+    }
+    EXPECT_LT(efficiency, last);
+    EXPECT_LT(entry.midway.loss, 0.03) << entry.density_percent;
+    last = efficiency;
+    evaluations += entry.evaluations;
+  }
+  const int between_slopes = 3;
+  EXPECT_LE(evaluations, ((soil_.name == "gravel" ? 120 : 60) + between_slopes) * 21);
+}
+
+/// What is looked up between slopes gives little away at most places.
+TEST_P(ShippedLibrary, LosesLittleBetweenItsSlopes) {
+  std::vector<double> losses;
+  for (const PathLibraryEntry& entry : library_.entries) {
+    losses.push_back(entry.midway_slope.loss);
+  }
+  const auto most = losses.begin() + static_cast<std::ptrdiff_t>(losses.size() * 9 / 10);
+  std::nth_element(losses.begin(), most, losses.end());
+  EXPECT_LT(*most, 0.06);
 }
 
 /// A long search from nothing is the yardstick.
 TEST_P(ShippedLibrary, HoldsNearlyTheBestDigs) {
-  for (std::size_t i = 0; i < library_.entries.size(); i += 4) {
-    const PathLibraryEntry& entry = library_.entries[i];
+  std::vector<PathLibraryEntry> some;
+  const std::vector<PathLibraryEntry> level = level_entries();
+  for (std::size_t i = 0; i < level.size(); i += 4) some.push_back(level[i]);
+  for (const double share : {0.1, 0.9}) {  // steep down, steep up
+    some.push_back(library_.entries[static_cast<std::size_t>(
+        share * static_cast<double>(library_.entries.size()))]);
+  }
+  for (const PathLibraryEntry& entry : some) {
     DigSearchOptions options;
     options.seed = 99;
     options.stop.evaluations = 400;
-    const auto best = search_dig(machine_, simulator(entry.density_percent), ground_, options);
+    const auto best =
+        search_dig(machine_, simulator(entry.density_percent), ground(entry.slope), options);
     ASSERT_TRUE(best);
     EXPECT_GE(entry.dig.efficiency(), 0.99 * best->dig.efficiency()) << entry.density_percent;
   }

@@ -274,16 +274,17 @@ class Build {
     return !all.empty();
   }
 
-  static std::string text_of(const MidwayDensity& midway) {
+  static std::string text_of(const Midway& midway) {
     return nlohmann::json{midway.error.loss, midway.error.expectation, midway.evaluations,
-                          midway.better}
+                          midway.better, midway.jump}
         .dump();
   }
-  static MidwayDensity midway_in(const std::string& text) {
+  static Midway midway_in(const std::string& text) {
     const auto json = nlohmann::json::parse(text);
     return {{json[0].get<double>(), json[1].get<double>()},
             json[2].get<int>(),
-            json[3].get<MidwayDensity::Better>()};
+            json[3].get<Midway::Better>(),
+            json[4].get<bool>()};
   }
 
   /// @return true if densities were added
@@ -323,14 +324,14 @@ class Build {
           const SlopeGap& gap = gaps[i];
           LibraryCell midway = rows_[first].cell(gap.density_percent);
           midway.slope = gap.middle;
-          const MidwayDig dug =
-              dig_midway(midway, options_.search.cell, gap.looked_up, gap.best_expected);
-          return text_of(MidwayDensity{dug.error, dug.evaluations});
+          return text_of(measure_midway(midway, options_.search.cell, gap.below, gap.above,
+                                        gap.best_expected));
         },
         [&](std::size_t i, const std::string& text) {
           PathLibraryEntry& entry = library.entries[gaps[i].entry];
-          const MidwayDensity midway = midway_in(text);
+          const Midway midway = midway_in(text);
           entry.midway_slope = midway.error;
+          entry.jump_slope = midway.jump;
           entry.evaluations += midway.evaluations;
         });
   }

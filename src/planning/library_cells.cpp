@@ -295,6 +295,8 @@ nlohmann::ordered_json library_entry_json(const PathLibraryEntry& entry) {
           {"midway_expectation_error", entry.midway.expectation},
           {"midway_slope_loss", entry.midway_slope.loss},
           {"midway_slope_expectation_error", entry.midway_slope.expectation},
+          {"jump", entry.jump},
+          {"jump_slope", entry.jump_slope},
           {"evaluations", entry.evaluations}};
 }
 
@@ -316,6 +318,8 @@ PathLibraryEntry read_library_entry(JsonObject object) {
   entry.midway.expectation = object.number("midway_expectation_error", -1.0);
   entry.midway_slope.loss = object.number("midway_slope_loss", 0.0, 1.0);
   entry.midway_slope.expectation = object.number("midway_slope_expectation_error", -1.0);
+  entry.jump = object.flag("jump");
+  entry.jump_slope = object.flag("jump_slope");
   entry.evaluations = static_cast<int>(object.number("evaluations", 0.0, 1e9));
   object.ignore("efficiency_kg_per_kj");
   object.done();

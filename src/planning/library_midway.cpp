@@ -35,8 +35,37 @@ std::optional<SlopeGap> slope_gap(const PathLibrary& library, std::size_t entry,
     if (!dig && i == own + 1) return std::nullopt;
   }
   const double middle = 0.5 * (slopes[own] + slopes[own + 1]);
-  return SlopeGap{entry, density, middle, look_up(library, density, middle),
+  return SlopeGap{entry,
+                  density,
+                  middle,
+                  library.entries[entry].dig,
+                  look_up(library, density, slopes[own + 1]),
                   expected_between(around, middle)};
+}
+
+/// A dig looked up midway, dug.
+struct MidwayDig {
+  MidwayError error;
+  double efficiency = 0.0;  ///< [kg/J]; 0 if it cannot be dug
+};
+
+/// @param best  efficiency of the best dig in the cell
+MidwayDig dig_midway(const LibraryCell& midway, double cell_size, const PlannedDig& looked_up,
+                     double best) {
+  const Terrain ground = sloped_planning_ground(*midway.machine, midway.slope, cell_size);
+  const HeightMapSimulator simulator(*midway.machine, *midway.soil, midway.density_percent);
+  auto outcome = evaluate_dig(*midway.machine, simulator, ground, looked_up.parameters,
+                              StartRule(looked_up.start_x));
+  if (const auto* failure = std::get_if<DigFailure>(&outcome);
+      failure != nullptr && std::holds_alternative<Infeasible>(*failure)) {
+    outcome = evaluate_dig(*midway.machine, simulator, ground, looked_up.parameters,
+                           DigSearchOptions{}.start_rule);
+  }
+  const auto* driven = std::get_if<PlannedDig>(&outcome);
+  const double efficiency = driven ? driven->efficiency() : 0.0;
+  return {{std::clamp(1.0 - efficiency / best, 0.0, 1.0),
+           driven ? looked_up.efficiency() / efficiency - 1.0 : 0.0},
+          efficiency};
 }
 
 }  // namespace
@@ -49,9 +78,9 @@ bool far_apart(const PlannedDig& a, const PlannedDig& b) {
   });
 }
 
-PlannedDig blend_digs(const PlannedDig& a, const PlannedDig& b, double share) {
+PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool jump) {
   if (share == 0.0) return a;
-  if (far_apart(a, b)) return share < 0.5 ? a : b;
+  if (jump) return share < 0.5 ? a : b;
   const auto mix = [share](double from, double to) { return from + share * (to - from); };
   PlannedDig dig = a;
   for (const DigParameterInfo& info : dig_parameter_table()) {
@@ -77,42 +106,24 @@ double expected_between(const std::vector<std::pair<double, double>>& known, dou
   return std::exp(sum);
 }
 
-MidwayDig dig_midway(const LibraryCell& midway, double cell_size, const PlannedDig& looked_up,
-                     double best) {
-  const Terrain ground = sloped_planning_ground(*midway.machine, midway.slope, cell_size);
-  const HeightMapSimulator simulator(*midway.machine, *midway.soil, midway.density_percent);
-  auto outcome = evaluate_dig(*midway.machine, simulator, ground, looked_up.parameters,
-                              StartRule(looked_up.start_x));
-  MidwayDig dug;
-  dug.evaluations = 1;
-  if (const auto* failure = std::get_if<DigFailure>(&outcome);
-      failure != nullptr && std::holds_alternative<Infeasible>(*failure)) {
-    outcome = evaluate_dig(*midway.machine, simulator, ground, looked_up.parameters,
-                           DigSearchOptions{}.start_rule);
-  }
-  const auto* driven = std::get_if<PlannedDig>(&outcome);
-  dug.efficiency = driven ? driven->efficiency() : 0.0;
-  dug.error = {std::clamp(1.0 - dug.efficiency / best, 0.0, 1.0),
-               driven ? looked_up.efficiency() / dug.efficiency - 1.0 : 0.0};
-  return dug;
-}
-
-MidwayDensity measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
-                             const PlannedDig& above, double best) {
-  using Better = MidwayDensity::Better;
-  const auto at = [&](double share) {
-    return dig_midway(midway, cell_size, blend_digs(below, above, share), best);
+Midway measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
+                      const PlannedDig& above, double best) {
+  const auto dig = [&](const PlannedDig& looked_up) {
+    return dig_midway(midway, cell_size, looked_up, best);
   };
-  const MidwayDig upper = at(0.5);
-  if (!far_apart(below, above)) return {upper.error, upper.evaluations, Better::neither};
-  // Either may be looked up, just below or above midway.
-  const MidwayDig lower = at(0.499);
-  MidwayDensity both{upper.error.loss > lower.error.loss ? upper.error : lower.error,
-                     upper.evaluations + lower.evaluations, Better::neither};
+  const MidwayDig mix = dig(dig_between(below, above, 0.5, false));
+  if (!far_apart(below, above)) return {mix.error, 1};
+  const MidwayDig lower = dig(below);
+  const MidwayDig upper = dig(above);
+  const MidwayDig& worse = upper.efficiency < lower.efficiency ? upper : lower;
+  Midway found;
+  found.evaluations = 3;
+  found.jump = mix.efficiency < worse.efficiency;
+  found.error = found.jump ? worse.error : mix.error;
   const double least = (1.0 - clearly_more) * std::max(upper.efficiency, lower.efficiency);
-  if (upper.efficiency < least) both.better = Better::below;
-  if (lower.efficiency < least) both.better = Better::above;
-  return both;
+  if (upper.efficiency < least) found.better = Midway::Better::below;
+  if (lower.efficiency < least) found.better = Midway::Better::above;
+  return found;
 }
 
 std::vector<SlopeGap> slope_gaps(const PathLibrary& library) {

@@ -13,47 +13,41 @@
 
 namespace excavplan {
 
-/// True if the two digs are of different kinds: a blend of them would be neither.
+/// True if the two digs differ so much that they may be of different kinds, and a mix of them
+/// neither.
 bool far_apart(const PlannedDig& a, const PlannedDig& b);
 
-/// Linear between two digs; the nearer one where they are of different kinds.
-PlannedDig blend_digs(const PlannedDig& a, const PlannedDig& b, double share);
+/// Linear between two digs; with `jump` the nearer one.
+PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool jump);
 
 /// The value midway between the middle two of some places, by the polynomial of the logarithm
 /// through all of them.
 /// @param known  up to four places and their values > 0
 double expected_between(const std::vector<std::pair<double, double>>& known, double place);
 
-/// A look-up that was dug.
-struct MidwayDig {
-  MidwayError error;
-  double efficiency = 0.0;  ///< [kg/J]; 0 if it cannot be dug
+/// What digging midway between two neighbours told: their mix, and where they are far apart both of
+/// them.
+struct Midway {
+  MidwayError error;  ///< of what is looked up; of two that may be, the larger
   int evaluations = 0;
+  /// The neighbour that is better midway by more than half a percent, so that the other one may not
+  /// be the best at its own place either; neither too if they are not far apart.
+  enum class Better { neither, below, above } better = Better::neither;
+  bool jump = false;  ///< the mix is worse than the worse one of the two
 };
 
 /// @param best  efficiency of the best dig in the cell
-MidwayDig dig_midway(const LibraryCell& midway, double cell_size, const PlannedDig& looked_up,
-                     double best);
+Midway measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
+                      const PlannedDig& above, double best);
 
-/// Where two neighbouring densities have digs of different kinds, both were dug midway.
-struct MidwayDensity {
-  MidwayError error;  ///< the larger of the two
-  int evaluations = 0;
-  /// The kind that is better midway by more than half a percent, so that the other one may not be
-  /// the best at its own density either; 0: neither, or they are of one kind.
-  enum class Better { neither, below, above } better = Better::neither;
-};
-
-MidwayDensity measure_midway(const LibraryCell& midway, double cell_size, const PlannedDig& below,
-                             const PlannedDig& above, double best);
-
-/// What is looked up midway between the slope of an entry and the next, at its density.
+/// Between the slope of an entry and the next, at its density.
 struct SlopeGap {
   std::size_t entry = 0;  ///< in the library
   double density_percent = 0.0;
   double middle = 0.0;  ///< slope [rad]
-  PlannedDig looked_up;
-  double best_expected = 0.0;  ///< efficiency there [kg/J]
+  PlannedDig below;
+  PlannedDig above;
+  double best_expected = 0.0;  ///< efficiency midway [kg/J]
 };
 
 /// Of all entries but those of the last slope, and those whose density has no dig on the next.

@@ -60,12 +60,12 @@ double LibraryRow::expected_best(const Pair& pair) const {
   return expected_between(known, middle_of(pair));
 }
 
-MidwayDensity LibraryRow::measure(const Pair& pair, double cell_size) const {
+Midway LibraryRow::measure(const Pair& pair, double cell_size) const {
   return measure_midway(cell(middle_of(pair)), cell_size, entry(pair.first)->dig,
                         entry(pair.second)->dig, expected_best(pair));
 }
 
-void LibraryRow::take(const Pair& pair, const MidwayDensity& midway) {
+void LibraryRow::take(const Pair& pair, const Midway& midway) {
   midways_[pair] = midway;
   outcomes_.at(pair.first).entry->evaluations += midway.evaluations;
 }
@@ -100,7 +100,7 @@ bool LibraryRow::below_the_line(double density) const {
 }
 
 std::vector<LibraryRow::Look> LibraryRow::looks_due() const {
-  using Better = MidwayDensity::Better;
+  using Better = Midway::Better;
   std::vector<Look> looks;
   for (const auto& [pair, midway] : midways_) {
     if (midway.better == Better::below) looks.push_back({pair.second, pair.first});
@@ -188,7 +188,9 @@ void LibraryRow::add_to(PathLibrary& library) const {
     library.entries.push_back(*known);
     if (std::next(density) == densities_.end()) continue;
     const auto midway = midways_.find({*density, *std::next(density)});
-    if (midway != midways_.end()) library.entries.back().midway = midway->second.error;
+    if (midway == midways_.end()) continue;
+    library.entries.back().midway = midway->second.error;
+    library.entries.back().jump = midway->second.jump;
   }
 }
 

@@ -36,8 +36,8 @@ class LibraryRow {
   /// Two neighbouring densities with a dig each, lower one first.
   using Pair = std::pair<double, double>;
   std::vector<Pair> unmeasured() const;
-  MidwayDensity measure(const Pair& pair, double cell_size) const;
-  void take(const Pair& pair, const MidwayDensity& midway);
+  Midway measure(const Pair& pair, double cell_size) const;
+  void take(const Pair& pair, const Midway& midway);
 
   /// A density to be looked at again, and the neighbour whose kind of dig is better midway; itself
   /// if it is below the line.
@@ -71,7 +71,7 @@ class LibraryRow {
   LibraryCell row_;
   std::set<double> densities_;
   std::map<double, CellOutcome> outcomes_;
-  std::map<Pair, MidwayDensity> midways_;
+  std::map<Pair, Midway> midways_;
   std::set<Pair> looked_;  ///< looks done: density and from
 };
 

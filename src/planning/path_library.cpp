@@ -17,7 +17,7 @@ namespace excavplan {
 namespace {
 
 constexpr const char* format = "excavplan-path-library";
-constexpr int version = 3;
+constexpr int version = 4;
 
 using Entries = std::vector<PathLibraryEntry>;
 
@@ -94,7 +94,13 @@ Between<Entries::const_iterator> densities_around(const PathLibrary& library, co
 
 PlannedDig look_up(const PathLibrary& library, const Row& row, double density) {
   const auto around = densities_around(library, row, density);
-  return blend_digs(around.below->dig, around.above->dig, around.share);
+  return dig_between(around.below->dig, around.above->dig, around.share, around.below->jump);
+}
+
+/// @param row  the lower one of the slopes
+bool jumps_between_slopes(const PathLibrary& library, const Row& row, double density) {
+  const auto around = densities_around(library, row, density);
+  return (around.share < 0.5 ? around.below : around.above)->jump_slope;
 }
 
 /// Of the error midway, at a share of the way from one entry to the next.
@@ -150,7 +156,7 @@ int PathLibrary::evaluations() const {
 
 PathLibrary load_path_library(const std::string& path) {
   const std::string content = read_file(path);
-  for (const int old : {1, 2}) {
+  for (int old = 1; old < version; ++old) {
     if (content.find("\"version\": " + std::to_string(old) + ",") < 100) {
       throw Error(ErrorKind::bad_file, path + ": version: is " + std::to_string(old) +
                                            ", this program reads version " +
@@ -230,7 +236,8 @@ PlannedDig look_up(const PathLibrary& library, double density_percent, double sl
   const Between<Row> rows = slopes_around(library, slope);
   const PlannedDig below = look_up(library, rows.below, density_percent);
   if (rows.share == 0.0) return below;
-  return blend_digs(below, look_up(library, rows.above, density_percent), rows.share);
+  return dig_between(below, look_up(library, rows.above, density_percent), rows.share,
+                     jumps_between_slopes(library, rows.below, density_percent));
 }
 
 MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope) {

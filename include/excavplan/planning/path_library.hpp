@@ -33,6 +33,10 @@ struct PathLibraryEntry {
   double slope = 0.0;   ///< of the ground in the boom direction, rising away from the machine [rad]
   MidwayError midway;   ///< towards the next density of the same slope; zero for the last
   MidwayError midway_slope;  ///< towards the next slope at the same density; zero on the last
+  /// Towards the next density, and the next slope, the nearer dig is looked up and not a mix of the
+  /// two: they are of different kinds, and the mix was found worse midway.
+  bool jump = false;
+  bool jump_slope = false;
 };
 
 /// A density at which no dig is feasible on its slope.
@@ -71,8 +75,7 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
                  const std::string& name);
 
 /// The dig for a density and a slope: parameters and expectations linear between the entries
-/// around; the nearer of two where they differ by more than a fifth of a search range, because the
-/// optimum has jumped between them.
+/// around; the nearer of two where the optimum jumps between them.
 ///
 /// @throws Error (bad_input) if density or slope are outside the library, or in a gap of it
 PlannedDig look_up(const PathLibrary& library, double density_percent, double slope = 0.0);
