@@ -42,16 +42,6 @@ std::string describe(const GeneticAlgorithm& method) {
          number_text(method.mutation);
 }
 
-/// A name that every file system takes.
-std::string plain(const std::string& name) {
-  std::string text;
-  for (const char c : name) {
-    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
-    text += good ? c : '_';
-  }
-  return text.substr(0, 60);
-}
-
 /// From nothing.
 /// @param effort  number of times as many points as usual
 DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
@@ -195,6 +185,15 @@ Terrain sloped_planning_ground(const Machine& machine, double slope, double cell
   return undisturbed(ground);
 }
 
+std::string file_name_part(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
+    text += good ? c : '_';
+  }
+  return text.substr(0, 60);
+}
+
 std::vector<double> parent_densities(double density_percent, const LibrarySearch& search) {
   if (std::holds_alternative<GeneticAlgorithm>(search.method)) return {};
   const double below = stride * std::floor(density_percent / stride);
@@ -223,7 +222,7 @@ std::string identity(const LibraryCell& cell, const LibrarySearch& search) {
 }
 
 std::string cell_file_name(const LibraryCell& cell, const LibrarySearch& search) {
-  return plain(cell.machine->name) + "-" + plain(cell.soil->name) + "-slope" +
+  return file_name_part(cell.machine->name) + "-" + file_name_part(cell.soil->name) + "-slope" +
          number_text(cell.slope) + "-density" + number_text(cell.density_percent) + "-" +
          checksum_text(identity(cell, search)) + ".json";
 }
