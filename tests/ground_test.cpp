@@ -267,6 +267,22 @@ TEST(HeightMap, HeightBesideAnUnknownCellIsUnknown) {
   EXPECT_EQ(height_at(map, 0.44, 0.55), 2.0);
 }
 
+TEST(HeightMap, ResamplingFillsNarrowGapsAndLeavesWideOnesUnknown) {
+  const HeightMap plane = map_of([](double x, double y) { return 0.2 * x - 0.1 * y; });
+  HeightMap seen = plane;
+  seen.z.block(20, 20, 40, 4).setConstant(nan);   // 0.2 m wide, 2 m long
+  seen.z.block(20, 60, 40, 10).setConstant(nan);  // 0.5 m wide
+  seen.z.block(0, 100, 4, 4).setConstant(nan);    // at the border
+  const Rectangle extent = {0.5, 0.0, 9.5, 4.0};
+  const HeightMap map = resampled(seen, extent, 0.04, 0.3);
+  EXPECT_NEAR(height_at(map, 1.1, 2.0), 0.2 * 1.1 - 0.1 * 2.0, 1e-6);
+  EXPECT_TRUE(std::isnan(height_at(map, 3.25, 2.0)));
+  EXPECT_TRUE(std::isnan(height_at(map, 5.1, 0.1)));
+  EXPECT_FALSE(std::isnan(height_at(resampled(seen, extent, 0.04, 0.5), 3.25, 2.0)));
+  EXPECT_NEAR(unseen_area(map), 0.5 * 2.0 + 0.2 * 0.2, 0.2) << "half a cell more around it";
+  EXPECT_EQ(unseen_area(plane), 0.0);
+}
+
 TEST(HeightMap, GridsAreTheSameOnlyInEveryPart) {
   const HeightMap map = flat_ground({0, 0, 1, 2}, 0.1);
   EXPECT_TRUE(same_grid(map, flat_ground({0, 0, 1, 2}, 0.1, 7.0)));

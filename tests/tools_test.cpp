@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -822,6 +823,34 @@ TEST_F(Tools, SearchTakesGoalRangesStartAndMethod) {
                                           "--population", "6", "--generations", "2"});
   EXPECT_LE(paper.at("evaluations").get<int>(), 12);
   EXPECT_EQ(paper.at("stopped_by"), "generations");
+}
+
+/// Level ground, 2500 points per m2, but for a part of it.
+std::string ground_without(const Rectangle& part) {
+  std::string points;
+  for (int i = 50; i < 500; ++i) {
+    for (int j = -90; j < 90; ++j) {
+      const double x = 0.02 * i, y = 0.02 * j;
+      if (!part.contains(x, y)) points += std::to_string(x) + " " + std::to_string(y) + " 0\n";
+    }
+  }
+  return points;
+}
+
+TEST_F(Tools, NoDigGoesWhereTheScanDoesNotSee) {
+  const auto cloud = [&](const Rectangle& part) {
+    return folder.write("unseen.xyz", ground_without(part));
+  };
+  const Words plan = {"--density", "40", "--search", "--terrain"};
+  const json narrow = answer("plan-path", plan + Words{cloud({5.0, -1.0, 5.2, 1.0})});
+  EXPECT_FALSE(warns(narrow, "unseen_ground"));
+  const json far = answer("plan-path", plan + Words{cloud({6.0, -1.0, 8.0, 1.0})});
+  EXPECT_TRUE(warns(far, "unseen_ground"));
+  EXPECT_LT(number(far, "/path/start_x_m"), 6.0);
+  EXPECT_LT(number(far, "/efficiency_kg_per_kj"), number(narrow, "/efficiency_kg_per_kj"));
+  const ProgramResult all = run_program("plan-path", plan + Words{cloud({2.2, -1.4, 8.8, 1.4})});
+  EXPECT_EQ(all.code, 2);
+  EXPECT_NE(all.err.find("is not known"), std::string::npos) << all.err;
 }
 
 TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {

@@ -81,6 +81,7 @@ struct Density {
   double percent = 0.0;
   double sd = 0.0;  ///< [points]; 0: taken as known
   bool trustworthy = true;
+  std::string soil = {};  ///< that it was estimated for; empty: not told
 };
 
 [[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
@@ -119,8 +120,24 @@ Density density_of(const Inputs& inputs) {
                     "; expected a result of estimate-density --json");
   }
   const auto trustworthy = json.find("trustworthy");
+  const auto soil = json.find("law_soil");
   return {field->get<double>(), inputs.density_sd ? *inputs.density_sd : sd_in(json, file),
-          trustworthy == json.end() || *trustworthy == true};
+          trustworthy == json.end() || *trustworthy == true,
+          soil != json.end() && soil->is_string() ? soil->get<std::string>() : ""};
+}
+
+void warn_of_density(const Density& density, const Inputs& inputs, const SoilKind& soil,
+                     Site& site) {
+  if (!density.trustworthy) {
+    site.warnings.push_back({"density_not_trustworthy",
+                             *inputs.density_from + ": its density is not trustworthy, so the "
+                                                    "path may not suit the soil"});
+  }
+  if (!density.soil.empty() && density.soil != soil.name) {
+    site.warnings.push_back(
+        {"law_of_other_soil", *inputs.density_from + ": its density was found by the law of " +
+                                  density.soil + ", the path is planned in " + soil.name});
+  }
 }
 
 /// The slope of the scanned ground, and as much of it as the library goes.
@@ -164,6 +181,7 @@ struct Plan {
   std::string start_rule;
   int evaluations = 0;
   bool stopped = false;
+  bool trustworthy = true;
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< keys of its source
   std::vector<std::string> lines;
 };
@@ -185,23 +203,40 @@ DigPath lay_out(const Machine& machine, const PlannedDig& dig, const GroundProfi
 
 void add_look_up_error(const MidwayError& error, double slope, Plan& plan) {
   plan.details["look_up_slope_rad"] = slope;
+  plan.details["look_up_loss"] = nullptr;
+  plan.details["look_up_expectation_error"] = nullptr;
+  if (!plan.trustworthy) return;
   plan.details["look_up_loss"] = error.loss;
   plan.details["look_up_expectation_error"] = error.expectation;
   if (error.loss == 0.0 && slope == 0.0) return;
-  plan.lines.push_back("looked up    " +
-                       (slope != 0.0 ? "on a slope of " + readable(slope, 2) + " rad, " : "") +
-                       "between entries, which gives away up to " +
-                       readable(100.0 * error.loss, 2) + " % of the best efficiency");
+  plan.lines.push_back(
+      "looked up    " + (slope != 0.0 ? "on a slope of " + readable(slope, 2) + " rad" : "") +
+      (slope != 0.0 && error.loss != 0.0 ? ", " : "") +
+      (error.loss != 0.0 ? "between entries, which gives away up to " +
+                               readable(100.0 * error.loss, 2) + " % of the best efficiency"
+                         : ""));
 }
 
-/// Where the library has no slope like that of the ground.
-void warn_of_slope(const Slope& slope, Site& site) {
+/// Where the library knows no ground like this.
+/// @param expected  efficiency by the library, for the slope looked up
+void warn_of_ground(const Slope& slope, double expected, Plan& plan, Site& site) {
   constexpr double much = 0.04;  // [rad]; ours, docs/libraries.md
-  if (!(std::abs(slope.ground - slope.looked_up) > much)) return;
-  site.warnings.push_back({"slope_outside_library",
-                           "the ground slopes by " + readable(slope.ground, 2) +
-                               " rad, the library is looked up at " + readable(slope.looked_up, 2) +
-                               " rad; --search finds a path that suits the ground"});
+  constexpr double far = 0.1;    // of the efficiency; ours, more than any error between entries
+  const std::string remedy = "; --search finds a path that suits the ground";
+  if (std::abs(slope.ground - slope.looked_up) > much) {
+    site.warnings.push_back(
+        {"slope_outside_library", "the ground slopes by " + readable(slope.ground, 2) +
+                                      " rad, the library is looked up at " +
+                                      readable(slope.looked_up, 2) + " rad" + remedy});
+  } else if (plan.dig.efficiency() < (1.0 - far) * expected) {
+    site.warnings.push_back({"ground_unlike_library",
+                             "the path looked up does " + readable(1000.0 * plan.dig.efficiency()) +
+                                 " kg/kJ here, against " + readable(1000.0 * expected) +
+                                 " kg/kJ on the even ground of the library" + remedy});
+  } else {
+    return;
+  }
+  plan.trustworthy = false;
 }
 
 Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
@@ -210,11 +245,12 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
   plan.source = "library";
   const PathLibrary library = library_of(inputs.library, machine, soil);
   const Slope slope = slope_in(library, inputs, machine, site);
-  warn_of_slope(slope, site);
   plan.dig = look_up(library, density, slope.looked_up);
-  add_look_up_error(look_up_error(library, density, slope.looked_up), slope.looked_up, plan);
+  const double expected = plan.dig.efficiency();
+  const MidwayError error = look_up_error(library, density, slope.looked_up);
   plan.start_rule = "of the library";
   if (!inputs.terrain.cloud) {
+    add_look_up_error(error, slope.looked_up, plan);
     plan.path = lay_out(machine, plan.dig, [](double) { return 0.0; });
     plan.dig.start_x = plan.path.start_x;
     return plan;
@@ -230,6 +266,8 @@ Plan look_up_plan(const Inputs& inputs, const Machine& machine, const SoilKind& 
         "the library's path does not work here (--search may find one): " + describe(*failure));
   }
   plan.dig = std::get<PlannedDig>(outcome);
+  warn_of_ground(slope, expected, plan, site);
+  add_look_up_error(error, slope.looked_up, plan);
   plan.path = lay_out(machine, plan.dig, boom_plane_profile(site.ground));
   return plan;
 }
@@ -322,8 +360,9 @@ std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, co
   return plan;
 }
 
-void add_spread(const Machine& machine, const SoilKind& soil, const Density& density,
-                const Site& site, Plan& plan) {
+void add_spread(const Machine& machine, const SoilKind& soil, const Density& density, Site& site,
+                Plan& plan) {
+  constexpr double likely = 0.05;  // ours
   const PossibleGround ground(machine, soil, density);
   plan.spread = dig_spread(machine, ground.soils(), site.ground, plan.dig);
   plan.evaluations += static_cast<int>(ground.soils().size());
@@ -336,6 +375,12 @@ void add_spread(const Machine& machine, const SoilKind& soil, const Density& den
     plan.lines.push_back("stalls       with a probability of " +
                          readable(100.0 * plan.spread.stall_probability, 2) + " %");
   }
+  if (plan.spread.stall_probability <= likely) return;
+  plan.trustworthy = false;
+  site.warnings.push_back({"may_stall", "the machine stalls with a probability of " +
+                                            readable(100.0 * plan.spread.stall_probability, 2) +
+                                            " %; the figures are of the digs in which it does "
+                                            "not"});
 }
 
 nlohmann::ordered_json plan_json(const Plan& plan, double density, double seconds) {
@@ -394,6 +439,9 @@ void check(const Inputs& inputs) {
   if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {
     refuse("--start search needs --search");
   }
+  for (const auto& file : {inputs.trajectory, inputs.plot}) {
+    if (file) require_folder_of(*file);  // now, not after the search
+  }
   check(inputs.dig_search);
 }
 
@@ -410,11 +458,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   for (Warning& warning : warnings_of(inputs.dig_search, use)) {
     site.warnings.push_back(std::move(warning));
   }
-  if (!density.trustworthy) {
-    site.warnings.push_back({"density_not_trustworthy",
-                             *inputs.density_from + ": its density is not trustworthy, so the "
-                                                    "path may not suit the soil"});
-  }
+  warn_of_density(density, inputs, soil, site);
   std::optional<Plan> found = inputs.search
                                   ? search_plan(inputs, machine, soil, density, site, console)
                                   : look_up_plan(inputs, machine, soil, density.percent, site);
@@ -423,7 +467,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   if (density.sd > 0.0) add_spread(machine, soil, density, site, plan);
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
-  outcome.trustworthy = density.trustworthy;
+  outcome.trustworthy = density.trustworthy && plan.trustworthy;
   outcome.warnings = site.warnings;
   outcome.lines = lines_of(plan, density, soil);
   if (inputs.trajectory) {

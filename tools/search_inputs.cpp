@@ -12,6 +12,9 @@
 namespace excavplan::tools {
 namespace {
 
+/// Generations of the default method, which its evaluations end long before; ours.
+constexpr int enough_for_the_evaluations = 20;
+
 [[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
 
 DigObjective objective_of(const SearchInputs& inputs) {
@@ -54,7 +57,7 @@ DigBounds bounds_of(const SearchInputs& inputs) {
 std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inputs) {
   if (inputs.method == "default") {
     MemeticSearch memetic;
-    if (inputs.generations != 0) memetic.generations = inputs.generations;
+    memetic.generations = inputs.generations != 0 ? inputs.generations : enough_for_the_evaluations;
     return memetic;
   }
   GeneticAlgorithm paper;

@@ -13,6 +13,11 @@
 namespace excavplan::tools {
 namespace {
 
+// Gaps in a scan up to so wide are filled [m], and [cells]; ours.
+constexpr double widest_filled = 0.3;
+constexpr double widest_filled_cells = 3.0;
+constexpr std::size_t fewest_points = 10;  // that make a ground; ours
+
 /// Points of the extent, with a metre around it to interpolate from.
 Cloud cropped(const Cloud& cloud, Rectangle extent) {
   extent = {extent.x_min - 1.0, extent.y_min - 1.0, extent.x_max + 1.0, extent.y_max + 1.0};
@@ -32,21 +37,35 @@ std::string text(const Rectangle& r) {
 }  // namespace
 
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell) {
+  if (terrain.frame && !terrain.cloud) {
+    throw Error(ErrorKind::bad_input, "--terrain-frame goes with --terrain");
+  }
   if (!terrain.cloud) return {undisturbed(flat_ground(extent, cell)), {}};
   Cloud cloud = read_cloud(*terrain.cloud);
   if (terrain.frame) transform(cloud, read_frame(*terrain.frame));
   const Cloud near = cropped(cloud, extent);
-  if (near.points.empty()) {
-    throw Error(ErrorKind::bad_file,
-                *terrain.cloud + ": no point lies within the machine's reach, " + text(extent) +
-                    " in the site frame (origin on the swing axis at ground level, x forward); "
-                    "--terrain-frame brings another frame in");
+  if (near.points.size() < fewest_points) {
+    throw Error(
+        ErrorKind::bad_file,
+        *terrain.cloud + ": " +
+            (near.points.empty() ? "no point lies"
+                                 : "only " + std::to_string(near.points.size()) + " points lie") +
+            " within the machine's reach, " + text(extent) +
+            " in the site frame (origin on the swing axis at ground level, x forward); "
+            "--terrain-frame brings another frame in");
   }
   const double density = summarise(near).density;
   RasterOptions raster;
   raster.cell = std::max(cell, std::sqrt(2.0 / density));
   const HeightMap map = rasterise(near, plan_extent(near), raster);
-  Site site{undisturbed(resampled(map, extent, cell)), {}};
+  const double widest_gap = std::max(widest_filled, widest_filled_cells * raster.cell);
+  Site site{undisturbed(resampled(map, extent, cell, widest_gap)), {}};
+  if (const double unseen = unseen_area(site.ground.bank); unseen > 0.0) {
+    site.warnings.push_back(
+        {"unseen_ground", *terrain.cloud + ": the scan does not see " + readable(unseen, 2) +
+                              " m2 of the ground within reach, in gaps wider than " +
+                              readable(widest_gap, 2) + " m; no dig goes there"});
+  }
   if (raster.cell > cell) {
     site.warnings.push_back(
         {"sparse_terrain", *terrain.cloud + ": " + readable(density, 2) +

@@ -25,10 +25,11 @@ struct Site {
 };
 
 /// The ground of `extent` on cells of this size: measured if a cloud is given, else level. A cloud
-/// with fewer than 2 points per cell is rasterised on larger cells and interpolated, which a
-/// warning says.
+/// with fewer than 2 points per cell is rasterised on larger cells and interpolated, and what it
+/// does not see but for small gaps stays unknown; a warning says either.
 ///
-/// @throws Error (bad_file) if the cloud cannot be read or holds no point in the extent
+/// @throws Error (bad_file) if the cloud cannot be read or holds hardly a point in the extent
+/// @throws Error (bad_input) if a frame is given without a cloud
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell);
 
 }  // namespace excavplan::tools

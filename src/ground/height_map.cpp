@@ -34,6 +34,19 @@ Bracket bracket(double cells_from_first_centre, Eigen::Index count) {
   return {first, std::min(first + 1, count - 1), place - static_cast<double>(first)};
 }
 
+/// Unknown cells in a row through one of them, which lies in a hole.
+/// @param step  (0, 1) along x, (1, 0) along y
+Eigen::Index gap_along(const Eigen::ArrayXXd& z, Cell at, Cell step) {
+  Eigen::Index count = 1;
+  for (const Eigen::Index way : {-1, 1}) {
+    Cell next{at.row + way * step.row, at.col + way * step.col};
+    for (; std::isnan(z(next.row, next.col)); ++count) {
+      next = {next.row + way * step.row, next.col + way * step.col};
+    }
+  }
+  return count;
+}
+
 }  // namespace
 
 HeightMap flat_ground(const Rectangle& extent, double cell, double height) {
@@ -87,14 +100,38 @@ bool same_grid(const HeightMap& a, const HeightMap& b) {
          ((a.origin - b.origin).array().abs() <= tolerance).all();
 }
 
-HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell) {
+HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell, double widest_gap) {
   HeightMap whole = map;
-  fill_holes(whole.z);
+  const double most = std::floor(widest_gap / map.cell + grid_tolerance);
+  for (const std::vector<Cell>& hole : fill_holes(whole.z).cells) {
+    for (const Cell& at : hole) {
+      const auto width = std::min(gap_along(map.z, at, {0, 1}), gap_along(map.z, at, {1, 0}));
+      if (static_cast<double>(width) > most) whole.z(at.row, at.col) = nan;
+    }
+  }
   HeightMap result = flat_ground(extent, cell);
   for_each_cell(result.z, [&](Cell at) {
     result.z(at.row, at.col) = height_at(whole, result.x(at.col), result.y(at.row));
   });
   return result;
+}
+
+double unseen_area(const HeightMap& map) {
+  Eigen::Index cells = 0;
+  for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+    Eigen::Index unknown = 0;
+    bool begun = false;
+    for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+      if (std::isnan(map.z(row, col))) {
+        unknown += begun ? 1 : 0;
+      } else {
+        begun = true;
+        cells += unknown;
+        unknown = 0;
+      }
+    }
+  }
+  return static_cast<double>(cells) * map.cell * map.cell;
 }
 
 }  // namespace excavplan

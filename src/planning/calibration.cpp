@@ -84,6 +84,7 @@ DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soi
   const auto measured = pairs(calibration.samples, &Sample::bulking_factor_measured);
   calibration.name = machine.name + "-" + soil.name;
   calibration.source = "digs of the built-in simulator, " + machine.name + " in " + soil.name;
+  calibration.soil = soil.name;
   calibration.use = "closed_form_as_measured";
   calibration.line = fit_line(freed);
   calibration.closed_form = fit_closed_form(freed);

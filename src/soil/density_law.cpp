@@ -219,6 +219,7 @@ DensityLaw load_density_law(const std::string& path) {
   DensityLaw law;
   law.name = file.text("name");
   law.source = file.text("source");
+  law.soil = file.text_or("soil", "");
   const std::string use = file.text("use");
   std::map<std::string, DensityForm> forms;
   for (const char* key : {"line", "closed_form", "line_as_measured", "closed_form_as_measured"}) {
@@ -344,10 +345,11 @@ std::string to_json(const DensityCalibration& calibration) {
   nlohmann::ordered_json file = {{"format", file_format},
                                  {"version", 1},
                                  {"name", calibration.name},
-                                 {"source", calibration.source},
-                                 {"use", calibration.use},
-                                 {"line", to_object(calibration.line)},
-                                 {"closed_form", to_object(calibration.closed_form)}};
+                                 {"source", calibration.source}};
+  if (!calibration.soil.empty()) file["soil"] = calibration.soil;
+  file["use"] = calibration.use;
+  file["line"] = to_object(calibration.line);
+  file["closed_form"] = to_object(calibration.closed_form);
   if (calibration.line_as_measured) {
     file["line_as_measured"] = to_object(*calibration.line_as_measured);
   }

@@ -49,11 +49,14 @@ double height_at(const HeightMap& map, double x, double y);
 /// True if both maps have the same origin, cell and size, to 1e-9 of a cell.
 bool same_grid(const HeightMap& a, const HeightMap& b);
 
-/// A surface on another grid, bilinear between its cells: fills enclosed unknown cells by a
-/// membrane through their rims first; what lies outside the survey stays NaN. For maps that are
-/// coarser than the work needs.
+/// A surface on another grid, bilinear between its cells. Unknown cells with known ground all
+/// around, in gaps no wider than `widest_gap` [m] along x or y, are filled by a membrane through
+/// their rims first; what lies in wider ones or outside the survey stays NaN.
 ///
 /// @throws Error (bad_input) as flat_ground()
-HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell);
+HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell, double widest_gap);
+
+/// Area of the unknown cells that have known ones before and behind them along x [m^2].
+double unseen_area(const HeightMap& map);
 
 }  // namespace excavplan

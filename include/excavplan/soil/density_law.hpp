@@ -55,6 +55,7 @@ struct DensityLaw {
   /// For k freed of what fell back into the cut (free_of_fallback()): the twin of an
   /// "..._as_measured" form where the file has one, else `form` itself.
   DensityForm freed_form{};
+  std::string soil = {};  ///< name of the soil it holds for; empty: not said
 };
 
 /// Reads a law file (docs/formats.md) and takes the form that its key "use" names.
@@ -100,6 +101,7 @@ DensityClosedForm fit_closed_form(const std::vector<BulkingSample>& samples);
 struct DensityCalibration {
   std::string name;
   std::string source;
+  std::string soil;  ///< name of the soil; empty: not known
   std::string use;   ///< key of the form that serves: "line", "closed_form", "..._as_measured"
   DensityLine line;  ///< on k freed of fallback where it is known
   DensityClosedForm closed_form;
