@@ -73,7 +73,8 @@ std::string sealed(const std::string& content);
 /// An object as text, with its checksum as the last key.
 std::string sealed_text(const nlohmann::ordered_json& object);
 
-/// Writes a file whole or not at all: beside it first, then renamed over it.
+/// Writes a file whole or not at all: beside it first, then renamed over it. A link, a pipe or a
+/// device is written to.
 /// @throws Error (bad_file) if that fails; the old file then still stands
 void write_file(const std::string& path, const std::string& content);
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -34,7 +35,13 @@ void parallel_for(std::size_t count, unsigned threads, const Task& task) {
     }
   };
   std::vector<std::thread> others;
-  for (std::size_t t = 1; t < std::min<std::size_t>(threads, count); ++t) others.emplace_back(work);
+  try {
+    for (std::size_t t = 1; t < std::min<std::size_t>(threads, count); ++t) {
+      others.emplace_back(work);
+    }
+  } catch (const std::system_error&) {
+    // The system gives no more threads; those there are do it all.
+  }
   work();
   for (std::thread& other : others) other.join();
   for (const std::exception_ptr& error : errors) {

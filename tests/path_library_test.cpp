@@ -429,7 +429,7 @@ TEST_F(LibraryBuilding, MergingNamesACellThatIsMissing) {
       },
       ErrorKind::bad_file);
   EXPECT_NE(text.find("zx120-loam-slope0-density100-"), std::string::npos) << text;
-  EXPECT_NE(text.find("is missing or damaged"), std::string::npos) << text;
+  EXPECT_NE(text.find("is missing: the shard"), std::string::npos) << text;
 }
 
 TEST_F(LibraryBuilding, GoesOnFromWhatIsDone) {
@@ -778,7 +778,7 @@ TEST_F(LibraryBuilding, AnErrorOfOneProcessReachesAll) {
   }
   for (std::thread& member : members) member.join();
   EXPECT_EQ(errors[0], errors[1]);
-  EXPECT_NE(errors[0].find("is missing or damaged"), std::string::npos) << errors[0];
+  EXPECT_NE(errors[0].find("is missing: the shard"), std::string::npos) << errors[0];
 }
 
 }  // namespace

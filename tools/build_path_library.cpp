@@ -255,7 +255,7 @@ Outcome report_libraries(const Inputs& inputs, const LibraryBuild& build) {
   fs::create_directories(*inputs.out);
   int evaluations = 0;
   for (const PathLibrary& library : build.libraries) {
-    const std::string file = *inputs.out + "/" + library.machine + "-" + library.soil + ".json";
+    const std::string file = *inputs.out + "/" + file_name(library);
     write_file(file, to_json(library));
     outcome.json["libraries"].push_back({{"file", file}});
     outcome.json["libraries"].back().update(library_json(library));
@@ -279,11 +279,47 @@ Outcome report_cells(const Inputs& inputs, const LibraryBuild& build) {
   return outcome;
 }
 
+/// Now, not after the search.
+void require_writable(const std::string& out, bool several) {
+  require_folder_of(out);
+  if (!fs::exists(out) || fs::is_directory(out) == several) return;
+  throw Error(ErrorKind::bad_file,
+              out + (several ? ": is a file, several libraries need a folder"
+                             : ": is a folder, the library needs a file of its own"));
+}
+
+/// Removes what a run put into a folder of its own, and the folder if nothing else is in it.
+void remove_cells(const std::string& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::exists(job_file(folder)) && !fs::is_empty(folder)) {
+    throw Error(ErrorKind::bad_file, folder +
+                                         ": is no folder of cells, and would have to be one; "
+                                         "remove it, or give another --cells");
+  }
+  for (const auto& file : fs::directory_iterator(folder)) {
+    const std::string name = file.path().filename();
+    const bool part = name.find(".json.part-") != std::string::npos;
+    if (part || file.path().extension() == ".json") fs::remove(file.path());
+  }
+  if (fs::is_empty(folder)) fs::remove(folder);
+}
+
 /// What one process does before all, so that the others find it done.
-void prepare(const Inputs& inputs) {
-  if (inputs.out) require_folder_of(*inputs.out);  // now, not after the search
-  if (folder_is_ours(inputs) && !inputs.resume) fs::remove_all(folder_of(inputs));
+void prepare(const Inputs& inputs, const LibraryGrid& grid) {
+  if (inputs.out) require_writable(*inputs.out, grid.machines.size() * grid.soils.size() > 1);
+  if (folder_is_ours(inputs) && !inputs.resume) remove_cells(folder_of(inputs));
   if (!inputs.merge) begin_job(inputs, folder_of(inputs));
+}
+
+/// They share out one build.
+void require_same_job(const Inputs& inputs, Ranks& ranks) {
+  const std::string own = job_text(inputs) + inputs.shard.value_or("");
+  for (const std::string& other : ranks.exchange(own)) {
+    if (other == own) continue;
+    throw Error(ErrorKind::bad_input,
+                "the ranks of an MPI job share out the work by themselves: give all of them the "
+                "same options, and the same --shard");
+  }
 }
 
 Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
@@ -296,7 +332,8 @@ Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
   LibraryBuildOptions options = options_of(inputs, console);
   require_buildable(grid, options);
   const bool leads = ranks == nullptr || ranks->rank() == 0;
-  if (leads) prepare(inputs);
+  if (ranks != nullptr) require_same_job(inputs, *ranks);
+  if (leads) prepare(inputs, grid);
   if (ranks != nullptr) {
     ranks->exchange({});
     if (inputs.threads == 0) options.threads = 1;
@@ -309,7 +346,7 @@ Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
     outcome = report_cells(inputs, build);
   } else if (leads) {
     outcome = report_libraries(inputs, build);
-    if (folder_is_ours(inputs)) fs::remove_all(folder_of(inputs));
+    if (folder_is_ours(inputs)) remove_cells(folder_of(inputs));
   }
   outcome.json["wall_time_s"] = watch.seconds();
   return outcome;

@@ -404,7 +404,10 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
-  for (Warning& warning : warnings_of(inputs.dig_search, inputs.search)) {
+  const SearchUse use = inputs.search          ? SearchUse::all
+                        : inputs.terrain.cloud ? SearchUse::start_only
+                                               : SearchUse::none;
+  for (Warning& warning : warnings_of(inputs.dig_search, use)) {
     site.warnings.push_back(std::move(warning));
   }
   if (!density.trustworthy) {

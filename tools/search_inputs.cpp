@@ -137,14 +137,16 @@ void check(const SearchInputs& inputs) {
   bounds_of(inputs);
 }
 
-std::vector<Warning> warnings_of(const SearchInputs& inputs, bool searches) {
+std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use) {
+  const bool searches = use == SearchUse::all;
+  const SearchInputs usual;
   std::string ignored;
   const auto note = [&ignored](bool given, const char* option) {
     if (given) ignored += (ignored.empty() ? "" : ", ") + std::string(option);
   };
   note(inputs.population && !(searches && inputs.method == "paper"), "--population");
+  note(inputs.start != usual.start && use == SearchUse::none, "--start");
   if (!searches) {
-    const SearchInputs usual;
     note(inputs.goal != usual.goal, "--goal");
     note(inputs.rest_of_cycle != usual.rest_of_cycle, "--rest-of-cycle");
     note(inputs.ranges[0].has_value(), "--angle-range");
@@ -154,6 +156,7 @@ std::vector<Warning> warnings_of(const SearchInputs& inputs, bool searches) {
     note(inputs.generations != usual.generations, "--generations");
     note(inputs.evaluations != usual.evaluations, "--evaluations");
     note(inputs.checkpoint.has_value(), "--checkpoint");
+    note(inputs.seed != usual.seed, "--seed");
   }
   if (ignored.empty()) return {};
   return {{"options_ignored", "without effect: " + ignored + "; " +

@@ -35,8 +35,15 @@ void declare_search(Arguments& arguments, SearchInputs& inputs);
 /// What can be told to be wrong before anything is read. @throws Error (bad_input)
 void check(const SearchInputs& inputs);
 
-/// Of options that have no effect, `searches` or not.
-std::vector<Warning> warnings_of(const SearchInputs& inputs, bool searches);
+/// What is done with the options of a search.
+enum class SearchUse {
+  none,
+  start_only,  ///< a path that is known is dug by its rule for the start
+  all,
+};
+
+/// Of options that have no effect.
+std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use);
 
 StartRule start_rule_of(const SearchInputs& inputs);
 

@@ -487,8 +487,9 @@ DigSpread dig_spread(const Machine& machine, const std::vector<PossibleSoil>& so
 std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent, int count) {
   require(mean_percent >= 0.0 && mean_percent <= 100.0, "the mean density", mean_percent,
           "in 0 .. 100 %");
-  require(sd_percent > 0.0 && sd_percent <= 1000.0, "the standard deviation of the density",
-          sd_percent, "above 0 and at most 1000 points");
+  require(sd_percent > 0.0 && std::isfinite(sd_percent), "the standard deviation of the density",
+          sd_percent, "above 0 and finite");
+  sd_percent = std::min(sd_percent, 1000.0);  // above it all densities are equally likely
   require(count >= 1 && count <= 20, "the number of possible densities", count, "in 1 .. 20");
   // Three-term recurrence of the polynomials orthogonal under the density on a fine grid
   // (Stieltjes), then the eigenvalues of its matrix (Golub and Welsch 1969).

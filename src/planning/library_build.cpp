@@ -23,6 +23,8 @@
 namespace excavplan {
 namespace {
 
+constexpr std::uint64_t most_exact = 9007199254740992;  // whole numbers of a double, 2^53
+
 void require(bool holds, const std::string& text) {
   if (!holds) throw Error(ErrorKind::bad_input, "library: " + text);
 }
@@ -35,6 +37,16 @@ void require_rising(const std::string& what, const std::vector<double>& values, 
     require(values[i] >= lowest && values[i] <= highest && rising,
             what + " must rise inside " + number_text(lowest) + " .. " + number_text(highest) +
                 ", got " + number_text(values[i]) + " at place " + std::to_string(i + 1));
+  }
+}
+
+/// Libraries are told apart by the names of their machine and soil.
+template <typename Named>
+void require_unlike(const std::string& what, const std::vector<Named>& all) {
+  std::set<std::string> names;
+  for (const Named& one : all) {
+    require(names.insert(file_name_part(one.name)).second,
+            "two of the " + what + "s are named '" + one.name + "', or alike");
   }
 }
 
@@ -57,8 +69,10 @@ class Cells {
   bool has(const Key& key) const { return outcomes_.count(key) == 1; }
   const CellOutcome& operator[](const Key& key) const { return outcomes_.at(key); }
 
-  /// Computes the cells, and before each those that it starts from.
-  void compute(const std::vector<Key>& wanted) {
+  enum class Source { folder, anywhere };
+
+  /// Reads or computes the cells, and before each those that it starts from.
+  void take(const std::vector<Key>& wanted, Source source) {
     std::map<Key, std::size_t> generations;
     for (const Key& key : wanted) add_with_parents(key, generations);
     std::vector<Key> keys;
@@ -74,7 +88,7 @@ class Cells {
     }
     tasks_.watch().expect(outcomes_.size() + keys.size());
     tasks_.run_in_order(
-        parents, [&](std::size_t i) { return text_of(keys[i]); },
+        parents, [&](std::size_t i) { return text_of(keys[i], source); },
         [&](std::size_t i, const std::string& text) {
           const CellOutcome outcome = read_cell("cell", text, cell_of(keys[i]), options_.search);
           const std::lock_guard<std::mutex> lock(mutex_);
@@ -103,17 +117,17 @@ class Cells {
   }
 
   /// The text of a cell's file, from the folder or computed; empty if stopped.
-  std::string text_of(const Key& key) {
+  std::string text_of(const Key& key, Source source) {
     const LibraryCell cell = cell_of(key);
     const std::string name = cell_file_name(cell, options_.search);
-    if (const std::string kept = kept_text(cell, name); !kept.empty()) {
+    if (const std::string kept = kept_text(cell, name, source); !kept.empty()) {
       tasks_.watch().cell_done(false);
       return kept;
     }
-    if (options_.only_merge) {
+    if (source == Source::folder) {
       throw Error(ErrorKind::bad_file, options_.folder + "/" + name +
-                                           ": is missing or damaged, the shard that computes it "
-                                           "has not ended");
+                                           ": is missing: the shard that computes it has not "
+                                           "ended, or machine, soil or program have changed since");
     }
     const auto outcome =
         compute_cell(cell, options_.search, parents_of(key), tasks_.watch().of(name));
@@ -133,7 +147,7 @@ class Cells {
     return parents;
   }
 
-  std::string kept_text(const LibraryCell& cell, const std::string& name) const {
+  std::string kept_text(const LibraryCell& cell, const std::string& name, Source source) const {
     const std::string path = options_.folder + "/" + name;
     if (options_.folder.empty() || !std::filesystem::exists(path)) return {};
     try {
@@ -141,7 +155,8 @@ class Cells {
       read_cell(path, text, cell, options_.search);
       return text;
     } catch (const Error& e) {
-      if (options_.note) options_.note(std::string(e.what()) + "; it is computed anew");
+      if (source == Source::folder) throw;
+      tasks_.watch().note(std::string(e.what()) + "; it is computed anew");
       return {};
     }
   }
@@ -165,8 +180,10 @@ class Build {
         cells_(rows_, options, tasks_) {}
 
   LibraryBuild whole() {
+    Source source = options_.only_merge ? Source::folder : Source::anywhere;
     do {
-      cells_.compute(all_keys());
+      cells_.take(all_keys(), source);
+      source = Source::anywhere;  // densities that are added belong to no shard
       if (!tasks_.stopped()) settle_rows();
     } while (!tasks_.stopped() && refine());
     std::vector<PathLibrary> libraries;
@@ -192,11 +209,13 @@ class Build {
     };
     // Neighbours stay together: only at its two ends a part computes a parent that others have too.
     const std::vector<Key> mine(all.begin() + cut(shard.index - 1), all.begin() + cut(shard.index));
-    cells_.compute(mine);
+    cells_.take(mine, Source::anywhere);
     return summary(mine);
   }
 
  private:
+  using Source = Cells::Source;
+
   static std::vector<LibraryRow> rows_of(const LibraryGrid& grid) {
     std::vector<LibraryRow> rows;
     for (const Machine& machine : grid.machines) {
@@ -352,6 +371,11 @@ void require_buildable(const LibraryGrid& grid, const LibraryBuildOptions& optio
   require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
   require(options.refine >= 0.0 && options.refine < 1.0,
           "refine must be in 0 .. 1, got " + number_text(options.refine));
+  require_unlike("machine", grid.machines);
+  require_unlike("soil", grid.soils);
+  require(options.search.seed <= most_exact,
+          "the seed must be at most " + std::to_string(most_exact) + ", the largest whole number " +
+              "that the file keeps, got " + std::to_string(options.search.seed));
   require(options.search.cell > 0.0 && options.search.cell <= 1.0,
           "the cell of the ground must be in 0 .. 1 m, got " + number_text(options.search.cell));
   require(!options.only_merge || !options.folder.empty(), "a merge needs a folder of cells");

@@ -36,16 +36,6 @@ std::string describe(const AnchoredSearch& method) {
          "; others: " + std::to_string(method.inherited_evaluations) + " from neighbours";
 }
 
-/// A name that every file system takes.
-std::string plain(const std::string& name) {
-  std::string text;
-  for (const char c : name) {
-    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
-    text += good ? c : '_';
-  }
-  return text.substr(0, 60);
-}
-
 constexpr int most_points = 1000000;  // of a first generation; ours
 
 void check(const LibrarySearch& search) {
@@ -200,6 +190,15 @@ Terrain sloped_planning_ground(const Machine& machine, double slope, double cell
   return undisturbed(ground);
 }
 
+std::string file_name_part(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
+    text += good ? c : '_';
+  }
+  return text.substr(0, 60);
+}
+
 std::vector<double> parent_densities(double density_percent, const LibrarySearch& search) {
   if (std::holds_alternative<GeneticAlgorithm>(search.method)) return {};
   const double below = stride * std::floor(density_percent / stride);
@@ -228,7 +227,7 @@ std::string identity(const LibraryCell& cell, const LibrarySearch& search) {
 }
 
 std::string cell_file_name(const LibraryCell& cell, const LibrarySearch& search) {
-  return plain(cell.machine->name) + "-" + plain(cell.soil->name) + "-slope" +
+  return file_name_part(cell.machine->name) + "-" + file_name_part(cell.soil->name) + "-slope" +
          number_text(cell.slope) + "-density" + number_text(cell.density_percent) + "-" +
          checksum_text(identity(cell, search)) + ".json";
 }

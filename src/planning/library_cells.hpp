@@ -40,6 +40,9 @@ std::vector<double> parent_densities(double density_percent, const LibrarySearch
 /// Everything that decides the outcome of a cell, in words.
 std::string identity(const LibraryCell& cell, const LibrarySearch& search);
 
+/// A name as every file system takes it.
+std::string file_name_part(const std::string& name);
+
 /// Name of a cell's file: readable, and different for cells of different identity.
 std::string cell_file_name(const LibraryCell& cell, const LibrarySearch& search);
 

@@ -64,6 +64,11 @@ Between<Row> slopes_around(const PathLibrary& library, double slope) {
   const Row below = row_of(library, std::prev(exact.begin)->slope);
   const Row above = row_of(library, exact.begin->slope);
   const double from = below.begin->slope;
+  for (const PathLibraryGap& gap : library.gaps) {
+    if (gap.slope <= from || gap.slope >= above.begin->slope) continue;
+    throw Error(ErrorKind::bad_input, "library: no dig is feasible at any density on a slope of " +
+                                          number_text(gap.slope) + " rad");
+  }
   return {below, above, (slope - from) / (above.begin->slope - from)};
 }
 
@@ -190,6 +195,10 @@ PathLibrary load_path_library(const std::string& path) {
   file.ignore("note");
   file.done();
   return library;
+}
+
+std::string file_name(const PathLibrary& library) {
+  return file_name_part(library.machine) + "-" + file_name_part(library.soil) + ".json";
 }
 
 std::string to_json(const PathLibrary& library) {

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -59,30 +60,31 @@ class OrderedTasks {
   /// Of one thread, until nothing is left or one of them has failed.
   void work() {
     std::unique_lock<std::mutex> lock(mutex_);
-    for (;;) {
-      changed_.wait(lock, [this] { return over() || !ready_.empty(); });
-      if (over()) return;
-      const std::size_t i = *ready_.begin();
-      ready_.erase(ready_.begin());
-      lock.unlock();
-      const std::string result = done(i);
-      lock.lock();
-      end(i, result);
+    try {
+      while (const auto i = next(lock)) {
+        lock.unlock();
+        const std::string result = task_(*i);
+        lock.lock();
+        end(*i, result);
+      }
+    } catch (...) {
+      if (!lock.owns_lock()) lock.lock();
+      failed_ = true;
+      changed_.notify_all();
+      throw;
     }
   }
 
  private:
   bool over() const { return left_ == 0 || failed_ || watch_.stopped(); }
 
-  std::string done(std::size_t i) {
-    try {
-      return task_(i);
-    } catch (...) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      failed_ = true;
-      changed_.notify_all();
-      throw;
-    }
+  /// Waits for a task that is ready. @return nothing when it is over
+  std::optional<std::size_t> next(std::unique_lock<std::mutex>& lock) {
+    changed_.wait(lock, [this] { return over() || !ready_.empty(); });
+    if (over()) return std::nullopt;
+    const std::size_t i = *ready_.begin();
+    ready_.erase(ready_.begin());
+    return i;
   }
 
   void end(std::size_t i, const std::string& result) {

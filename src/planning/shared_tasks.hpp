@@ -21,7 +21,8 @@ namespace excavplan {
 /// What the user sees of a build, and whether he stopped it.
 class LibraryWatch {
  public:
-  explicit LibraryWatch(const LibraryBuildOptions& options) : callback_(options.progress) {}
+  explicit LibraryWatch(const LibraryBuildOptions& options)
+      : callback_(options.progress), note_(options.note) {}
 
   bool stopped() const { return stopped_; }
   void expect(std::size_t cells) {
@@ -33,6 +34,10 @@ class LibraryWatch {
     ++now_.cells_done;
     computed_ += computed ? 1 : 0;
     tell();
+  }
+  void note(const std::string& line) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (note_) note_(line);
   }
   /// The progress of the search for a cell, whose evaluations never fall.
   std::function<bool(const SearchProgress&)> of(const std::string& cell) {
@@ -51,6 +56,7 @@ class LibraryWatch {
   void tell();
 
   const std::function<bool(const LibraryProgress&)>& callback_;
+  const std::function<void(const std::string&)>& note_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
   LibraryProgress now_;

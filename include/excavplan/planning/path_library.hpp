@@ -65,6 +65,9 @@ struct PathLibrary {
 /// @throws Error (bad_file) naming file, key, value and rule
 PathLibrary load_path_library(const std::string& path);
 
+/// MACHINE-SOIL.json, the names as every file system takes them.
+std::string file_name(const PathLibrary& library);
+
 /// The text of a library file; the same library gives the same bytes.
 std::string to_json(const PathLibrary& library);
 

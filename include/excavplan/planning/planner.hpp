@@ -204,7 +204,7 @@ struct PossibleDensity {
 /// are exact for polynomials of the density up to degree 2 count - 1
 /// (docs/methods.md#uncertain-density).
 ///
-/// @throws Error (bad_input) unless 0 <= mean <= 100, 0 < sd <= 1000, 1 <= count <= 20
+/// @throws Error (bad_input) unless 0 <= mean <= 100, 0 < sd < infinity, 1 <= count <= 20
 std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent,
                                                 int count = 3);
 
