@@ -12,6 +12,7 @@
 #include <fstream>
 #include <limits>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -132,6 +133,20 @@ TEST(PapersAlgorithm, FindsHartmannsMaximum) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     EXPECT_GT(search(problem(hartmann), papers({}, seed)).outcome.fitness, 0.95 * hartmann_maximum);
   }
+}
+
+TEST(PapersAlgorithm, GivenPointsBeyondThePopulationAreEvaluatedToo) {
+  GeneticAlgorithm method;
+  method.population = 2;
+  method.generations = 4;
+  SearchOptions options = papers(method);
+  for (const double at : {0.1, 0.2, 0.3, 0.4, 0.7}) {
+    options.start.push_back(VectorXd::Constant(3, at));
+  }
+  const SearchResult result = search(problem(hill), options);
+  EXPECT_DOUBLE_EQ(result.outcome.fitness, 2.0);  // at the last of them
+  EXPECT_EQ(result.asked, 5 + 3);                 // the later generations are no larger than asked
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(result.history[i].origin, Origin::given);
 }
 
 TEST(PapersAlgorithm, WithoutMutationEveryGeneComesFromTheFirstGeneration) {
@@ -422,6 +437,40 @@ TEST_P(BothMethods, ProgressKnowsWhatIsLeft) {
   EXPECT_LE(last.mean, last.best);
 }
 
+TEST_P(BothMethods, ProgressIsToldOfEveryEvaluationAndBatch) {
+  SearchOptions watched = options();
+  int calls = 0;
+  SearchProgress last;
+  watched.progress = [&](const SearchProgress& progress) {
+    ++calls;
+    EXPECT_GE(progress.evaluations, last.evaluations);
+    EXPECT_LE(progress.evaluations, last.evaluations + 1);
+    last = progress;
+    return true;
+  };
+  const SearchResult result = search(problem(hill), watched);
+  EXPECT_EQ(last.evaluations, result.evaluations);
+  EXPECT_EQ(calls, result.evaluations + last.generation + 1);
+}
+
+TEST_P(BothMethods, PlansNoMoreThanAnIntCanHold) {
+  constexpr int most = std::numeric_limits<int>::max();
+  SearchOptions endless = options();
+  if (auto* genetic = std::get_if<GeneticAlgorithm>(&endless.method)) {
+    genetic->generations = most;
+  } else {
+    auto& memetic = std::get<MemeticSearch>(endless.method);
+    memetic.generations = memetic.polish_evaluations = memetic.basins = most;
+  }
+  int planned = 0;
+  endless.progress = [&](const SearchProgress& progress) {
+    planned = progress.planned;
+    return progress.evaluations < 40;
+  };
+  EXPECT_EQ(search(problem(hill), endless).evaluations, 40);
+  EXPECT_EQ(planned, most);
+}
+
 TEST_P(BothMethods, AnErrorOfTheProgressCallbackArrives) {
   SearchOptions broken = options();
   broken.progress = [](const SearchProgress& progress) -> bool {
@@ -504,6 +553,10 @@ TEST_P(BothMethods, WhenAllFailsTheFirstReasonIsQuoted) {
   EXPECT_EQ(error_of([&] { search(problem(broken), options()); }),
             "search: all of the first 20 evaluations failed, the first one: engine on fire");
   EXPECT_EQ(calls, 20);
+  SearchOptions shorter = options();
+  shorter.stop.evaluations = 5;
+  EXPECT_EQ(error_of([&] { search(problem(broken), shorter); }),
+            "search: all of the first 5 evaluations failed, the first one: again");
 }
 
 TEST_P(BothMethods, NothingFeasibleIsAResult) {
@@ -581,7 +634,12 @@ TEST_P(BothMethods, ARepairThatBreaksIsAFailureOfThePoint) {
     if (x(0) < 0.1) return VectorXd(VectorXd::Zero(2));
     if (x(0) < 0.2) return VectorXd(VectorXd::Constant(3, std::nan("")));
     if (x(0) < 0.3) return Evaluation(5.0);
-    if (x(0) < 0.4) throw std::runtime_error("no spare part");
+    if (x(0) < 0.35) throw std::runtime_error("no spare part");
+    if (x(0) < 0.4) {
+      Evaluation lost = Evaluation::infeasible(1.0);
+      lost.violation = std::nan("");  // would be in no order with others
+      return lost;
+    }
     return x;
   };
   const SearchResult result = search(broken, options());
@@ -754,6 +812,42 @@ TEST_F(SearchCheckpointFile, ReasonsInAnyEncodingAndLengthComeBackTheSame) {
   EXPECT_EQ(text_of(search(with_fingerprint(muttering), options())), expected);
 }
 
+/// What no constructor of Evaluation gives, and a user may fill in.
+Evaluation by_hand(const VectorXd& x) {
+  Evaluation outcome = hill(x);
+  if (x(0) < 0.5) {
+    outcome.status = x(0) < 0.1   ? Status::ok
+                     : x(0) < 0.2 ? Status::failed
+                     : x(0) < 0.3 ? Status::timed_out
+                                  : Status::infeasible;
+    outcome.violation = x(0) < 0.3    ? 3.0
+                        : x(0) < 0.35 ? std::numeric_limits<double>::infinity()
+                        : x(0) < 0.4  ? std::nan("")
+                        : x(0) < 0.45 ? -1.0
+                                      : x(0);
+    outcome.reason = "by hand";
+  }
+  return outcome;
+}
+
+TEST_F(SearchCheckpointFile, OutcomesFilledInByHandComeBackTheSame) {
+  SearchOptions uninterrupted = options();
+  uninterrupted.checkpoint.clear();
+  const SearchResult result = search(with_fingerprint(by_hand), uninterrupted);
+  std::set<Status> seen;
+  for (const SearchRecord& record : result.history) {
+    const auto& [status, fitness, violation, reason] = record.outcome;
+    seen.insert(status);
+    EXPECT_EQ(std::isfinite(fitness), status == Status::ok);
+    EXPECT_TRUE(violation >= 0.0 && std::isfinite(violation));
+    EXPECT_TRUE(violation == 0.0 || status == Status::infeasible);
+    EXPECT_EQ(reason.empty(), status == Status::ok);
+  }
+  EXPECT_EQ(seen.size(), 4U);
+  cut_off(60, options(), by_hand);
+  EXPECT_EQ(text_of(search(with_fingerprint(by_hand), options())), text_of(result));
+}
+
 TEST_F(SearchCheckpointFile, AFolderThatDoesNotExistIsNoticedBeforeTheSearch) {
   SearchOptions nowhere = options();
   nowhere.checkpoint = "/nowhere/at/all.json";
@@ -835,6 +929,21 @@ TEST(SearchInsights, RepeatsTakeTheLuckOutOfTheBest) {
   EXPECT_GT(too_good / 20.0, 0.03);
   EXPECT_LT(std::abs(fair) / 20.0, 0.015);
   EXPECT_LT(fair, too_good / 3.0);
+}
+
+TEST(SearchInsights, WhateverARepeatThrowsItIsNotOk) {
+  const SearchResult result = search(problem(hill), with_seed(1));
+  const auto throwing = [](const VectorXd&, int repeat) -> Evaluation {
+    if (repeat == 0) throw 42;
+    if (repeat == 1) throw std::runtime_error("no more");
+    Evaluation odd = 1.0;
+    if (repeat == 2) odd.fitness = std::nan("");
+    return odd;
+  };
+  for (const RepeatedEvaluation& point : evaluate_again(result, throwing, 3, 5)) {
+    EXPECT_EQ(point.ok, 2);
+    EXPECT_EQ(point.mean, 1.0);
+  }
 }
 
 TEST(SearchInsights, HistoryAsCsvRedrawsTheSearch) {

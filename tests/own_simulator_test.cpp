@@ -4,9 +4,11 @@
 /// @file
 /// How to plug in a soil simulator of your own: derive from SoilSimulator, implement dig(), and run
 /// the contract suite on it. Anything in this library that takes a SoilSimulator then takes yours.
+/// Its identity() tells the checkpoints of its searches apart.
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -28,7 +30,11 @@ class ShovelSimulator : public SoilSimulator {
   ShovelSimulator(const Machine& machine, const SoilKind& soil, double density_percent)
       : width_(machine.bucket.width_outside),
         bank_(bank_state(soil, density_percent)),
-        loose_(loose_state(soil)) {}
+        loose_(loose_state(soil)),
+        identity_("shovel 1, machine " + fingerprint(machine) + ", soil " + fingerprint(soil) +
+                  " at " + std::to_string(density_percent) + " %") {}
+
+  std::string identity() const override { return identity_; }
 
   DigResult dig(const Terrain& terrain, const DigPath& path,
                 const DigOptions& options) const override {
@@ -154,6 +160,7 @@ class ShovelSimulator : public SoilSimulator {
   double width_;
   SoilState bank_;
   SoilState loose_;
+  std::string identity_;
 };
 
 SoilKind loam() { return load_soil(find_data_file("soils/loam.json")); }

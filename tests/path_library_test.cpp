@@ -21,6 +21,7 @@
 #include "errors.hpp"
 #include "json_file.hpp"
 #include "planning/library_row.hpp"
+#include "planning/shared_tasks.hpp"
 #include "run_program.hpp"
 
 namespace excavplan {
@@ -354,6 +355,46 @@ TEST_F(LibraryBuilding, AnEntryDoesNotDependOnTheOthers) {
     EXPECT_EQ(alone.dig.energy, entries[i].dig.energy) << density;
     EXPECT_EQ(alone.dig.payload_mass, entries[i].dig.payload_mass) << density;
   }
+}
+
+TEST(LibraryWatch, CountsDigsNotCalls) {
+  int told = 0;
+  LibraryBuildOptions options;
+  options.progress = [&](const LibraryProgress& now) {
+    told = now.evaluations;
+    return true;
+  };
+  LibraryWatch watch(options);
+  const auto one = watch.of("one"), other = watch.of("other");
+  SearchProgress progress;
+  for (const int evaluations : {1, 2, 2, 3}) {
+    progress.evaluations = evaluations;
+    one(progress);
+    other(progress);
+  }
+  EXPECT_EQ(told, 6);
+}
+
+TEST_F(LibraryBuilding, ProgressOfACellIsThatOfAllItsSearches) {
+  const LibraryCell cell{&machine_, &soil_, 0.0, 30.0};
+  const DigParameters dig{0.8, 0.3, 1.5};  // far better at 40 and 50 % than any dig can be
+  const std::vector<CellOutcome> parents = {{entry(40.0, dig, 4e4), 1}, {entry(50.0, dig, 4e4), 1}};
+  int told = 0;
+  const auto outcome =
+      compute_cell(cell, quick().search, parents, [&](const SearchProgress& progress) {
+        EXPECT_GE(progress.evaluations, told);
+        told = progress.evaluations;
+        return true;
+      });
+  EXPECT_GT(outcome->evaluations, 8);  // more than the search from its neighbours may make
+  EXPECT_EQ(told, outcome->evaluations);
+}
+
+TEST_F(LibraryBuilding, MorePointsThanCanBeCountedAreRefused) {
+  LibraryBuildOptions options = quick();
+  std::get<AnchoredSearch>(options.search.method).points = 300000000;
+  EXPECT_EQ(test::error_of([&] { build_path_libraries(grid({20}), options); }),
+            "library: points must be <= 1000000, got 300000000");
 }
 
 TEST_F(LibraryBuilding, AnotherSeedGivesAnotherLibrary) {

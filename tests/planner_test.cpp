@@ -21,6 +21,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/planning/calibration.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/section_simulator.hpp>
 
 #include "errors.hpp"
 
@@ -383,6 +384,100 @@ TEST_F(Planner, AnInterruptedSearchGoesOnFromItsCheckpoint) {
   EXPECT_THROW(search_dig(machine_, simulator(41.0), level_, options), Error);
   EXPECT_THROW(search_dig(machine_, simulator(40.0), slope(0.1), options), Error);
   std::remove(file.c_str());
+}
+
+/// Stalls under a torque of its own, wherever it is.
+class Stuck : public SoilSimulator {
+ public:
+  explicit Stuck(double torque) : torque_(torque) {}
+  DigResult dig(const Terrain&, const DigPath&, const DigOptions&) const override {
+    DigResult result;
+    result.stall = Stall{DigPhase::drag, Joint::arm, 0.5, torque_};
+    return result;
+  }
+
+ private:
+  double torque_;
+};
+
+class DigCheckpoint : public Planner {
+ protected:
+  void SetUp() override { TearDown(); }
+  void TearDown() override { std::remove(file_.c_str()); }
+
+  void search(const SoilSimulator& simulator, const Terrain& terrain, bool resume) const {
+    DigSearchOptions options = small_search(1);
+    options.stop.evaluations = 6;
+    options.checkpoint = file_;
+    options.resume = resume;
+    search_dig(machine_, simulator, terrain, options);
+  }
+  void begin(const SoilSimulator& simulator) const { search(simulator, level_, false); }
+  /// What is said of the checkpoint when another search takes it.
+  std::string refusal(const SoilSimulator& simulator) const { return refusal(simulator, level_); }
+  std::string refusal(const SoilSimulator& simulator, const Terrain& terrain) const {
+    return test::error_of([&] { search(simulator, terrain, true); }, ErrorKind::bad_file);
+  }
+  bool refuses(const SoilSimulator& simulator) const {
+    return refusal(simulator).find("which is another one") != std::string::npos;
+  }
+  HeightMapSimulator in(const char* soil, double density) const {
+    return {machine_, load_soil(find_data_file(std::string("soils/") + soil + ".json")), density};
+  }
+
+  const std::string file_ =
+      testing::TempDir() + "excavplan_dig_checkpoint_" + std::to_string(::getpid()) + ".json";
+};
+
+TEST_F(DigCheckpoint, OfAnotherSoilIsRefusedWhereThePapersDigStallsInBoth) {
+  for (const auto& simulator : {in("gravel", 80.0), in("clay", 100.0)}) {
+    const auto dig = evaluate_dig(machine_, simulator, level_, paper_fixed_path());
+    ASSERT_TRUE(std::holds_alternative<DigFailure>(dig));
+  }
+  begin(in("gravel", 80.0));
+  EXPECT_EQ(refusal(in("gravel", 80.0)), "no error");
+  EXPECT_TRUE(refuses(in("clay", 100.0)));
+  EXPECT_TRUE(refuses(in("gravel", 80.0 + 1e-9)));
+  EXPECT_TRUE(
+      refuses(SectionSimulator(machine_, load_soil(find_data_file("soils/gravel.json")), 80.0)));
+  EXPECT_TRUE(refuses(
+      HeightMapSimulator(weakened(1e5), load_soil(find_data_file("soils/gravel.json")), 80.0)));
+}
+
+TEST_F(DigCheckpoint, OfAnotherSimulatorWithoutANameIsRefusedByWhatItDoes) {
+  begin(Stuck(1e6));
+  EXPECT_EQ(refusal(Stuck(1e6)), "no error");
+  EXPECT_TRUE(refuses(Stuck(2e6)));
+  EXPECT_TRUE(refuses(HandMade()));
+  TearDown();
+  begin(HandMade(0.8));
+  EXPECT_EQ(refusal(HandMade(0.8)), "no error");
+  EXPECT_TRUE(refuses(HandMade(0.9)));
+}
+
+TEST_F(DigCheckpoint, OfGroundOfAnotherDensityIsRefused) {
+  Terrain dense = level_, loose = level_;
+  dense.bank_void_ratio = loose.loose_void_ratio =
+      Eigen::ArrayXXd::Constant(level_.loose.rows(), level_.loose.cols(), 0.7);
+  const HandMade simulator;
+  search(simulator, dense, false);
+  EXPECT_EQ(refusal(simulator, dense), "no error");
+  EXPECT_NE(refusal(simulator, loose), "no error");
+}
+
+TEST_F(DigCheckpoint, IsWrittenAsOftenAsAsked) {
+  for (const double interval : {0.0, 1e9}) {
+    TearDown();
+    DigSearchOptions options = small_search(1);
+    options.checkpoint = file_;
+    options.checkpoint_interval = interval;
+    options.progress = [&](const SearchProgress& progress) {
+      EXPECT_EQ(std::ifstream(file_).good(), interval == 0.0);
+      return progress.evaluations < 3;
+    };
+    search_dig(machine_, HandMade(), level_, options);
+    EXPECT_TRUE(std::ifstream(file_).good());
+  }
 }
 
 /// The search for three soils, stopped at some call of its progress and gone on with.

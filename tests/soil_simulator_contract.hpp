@@ -114,6 +114,19 @@ TEST_P(SoilSimulatorContract, GivesTheSameBytesAgainAndFromManyThreads) {
   for (const DigResult& result : results) EXPECT_TRUE(same_bytes(first, result));
 }
 
+TEST_P(SoilSimulatorContract, HasAnIdentityOfItsMachineAndDensityOrNone) {
+  Machine weaker = machine_;
+  weaker.limits[1].torque *= 0.5;
+  const auto identity_of = [](const Machine& machine, double density) {
+    return GetParam().make(machine, density)->identity();
+  };
+  const std::string identity = identity_of(machine_, 40.0);
+  EXPECT_EQ(identity, identity_of(machine_, 40.0));
+  if (identity.empty()) return;
+  EXPECT_NE(identity, identity_of(machine_, 40.001));
+  EXPECT_NE(identity, identity_of(weaker, 40.0));
+}
+
 TEST_P(SoilSimulatorContract, UnsettledGroundChangesNeitherPayloadNorEnergy) {
   const auto simulator = GetParam().make(machine_, 40.0);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

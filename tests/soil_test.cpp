@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -182,6 +183,25 @@ TEST(Soil, WallOfFiveKilopascalStandsTwoAndAHalfMetres) {
   state.friction_angle = 0.0;
   EXPECT_NEAR(critical_height(state), 4.0 * 5000.0 / 13.3e3, 1e-12);
   EXPECT_EQ(critical_height(loose_state(shipped("loam"))), 0.0);
+}
+
+TEST(Soil, FingerprintChangesWithEveryNumberAndNotWithTheName) {
+  const SoilKind loam = shipped("loam");
+  std::set<std::string> seen = {fingerprint(loam)};
+  for (const auto number :
+       {&SoilKind::specific_gravity, &SoilKind::water_content, &SoilKind::void_ratio_max,
+        &SoilKind::void_ratio_min, &SoilKind::void_ratio_loose, &SoilKind::cohesion_loosest,
+        &SoilKind::cohesion_growth, &SoilKind::friction_loosest, &SoilKind::friction_gain,
+        &SoilKind::tool_friction_ratio, &SoilKind::adhesion_ratio, &SoilKind::angle_of_repose,
+        &SoilKind::cone_index_reference, &SoilKind::cone_index_rate,
+        &SoilKind::cone_index_reference_density, &SoilKind::cone_index_stress_exponent}) {
+    SoilKind other = loam;
+    other.*number += 1e-9;
+    EXPECT_TRUE(seen.insert(fingerprint(other)).second);
+  }
+  SoilKind renamed = loam;
+  renamed.name = "another";
+  EXPECT_EQ(fingerprint(renamed), fingerprint(loam));
 }
 
 TEST(Soil, DensityOutsideItsRangeIsRefused) {

@@ -16,7 +16,7 @@
 #include "../json_file.hpp"
 #include "../parallel.hpp"
 #include "dig_layout.hpp"
-#include "fingerprint.hpp"
+#include "search_points.hpp"
 
 namespace excavplan {
 namespace {
@@ -72,13 +72,46 @@ class Fingerprint {
     bytes_.append(bytes, sizeof value);
   }
   void add(const Eigen::ArrayXXd& values) {
+    add(static_cast<double>(values.rows()));
+    add(static_cast<double>(values.cols()));
     for (Index i = 0; i < values.size(); ++i) add(values(i));
   }
-  std::string text() const { return std::to_string(checksum(bytes_)); }
+  void add(const std::variant<PlannedDig, DigFailure>& outcome) {
+    add(static_cast<double>(outcome.index()));
+    if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
+      for (const double value :
+           {dig->payload_mass, dig->payload_volume, dig->energy, dig->duration}) {
+        add(value);
+      }
+    } else if (const auto* stall = std::get_if<Stall>(&std::get<DigFailure>(outcome))) {
+      for (const double value :
+           {static_cast<double>(stall->phase), static_cast<double>(stall->joint), stall->travelled,
+            stall->torque}) {
+        add(value);
+      }
+    }
+  }
+  std::string text() const { return checksum_text(bytes_); }
 
  private:
   std::string bytes_;
 };
+
+/// All that decides the digs of a simulator: its own words, or what it says of a few digs, from the
+/// paper's down to short ones that few machines and soils forbid.
+std::string identity_of(const SoilSimulator& simulator, const Machine& machine) {
+  std::string own = simulator.identity();
+  if (!own.empty()) return own;
+  const Terrain level = level_planning_ground(machine, 0.1);
+  Fingerprint hash;
+  for (const double share : {1.0, 0.5, 0.25}) {
+    DigParameters dig = paper_fixed_path();
+    dig.penetration_length *= share;
+    dig.drag_length *= share;
+    hash.add(evaluate_dig(machine, simulator, level, dig));
+  }
+  return "a simulator of digs " + hash.text();
+}
 
 /// A dig along one path in each of the soils.
 using DigsInEach = std::vector<std::variant<PlannedDig, DigFailure>>;
@@ -102,14 +135,7 @@ class DigProblem {
   }
 
   SearchResult run() {
-    SearchOptions search_options;
-    search_options.method = options_.method;
-    search_options.seed = options_.seed;
-    search_options.stop = options_.stop;
-    search_options.threads = options_.threads;
-    search_options.progress = options_.progress;
-    search_options.checkpoint = options_.checkpoint;
-    search_options.resume = options_.resume;
+    SearchOptions search_options{options_, {}};
     for (const DigParameters& dig : options_.start) search_options.start.push_back(point_of(dig));
     SearchProblem problem{box(), [this](const VectorXd& point) { return simulate(point); },
                           [this](const VectorXd& point) { return lay_out(point); }};
@@ -181,7 +207,7 @@ class DigProblem {
       return Evaluation::infeasible(violation(*stop, parameters), stop->message);
     }
     const std::lock_guard<std::mutex> lock(mutex_);
-    starts_[key(point)] = std::get<DigPath>(path).start_x;
+    starts_[key_of(point)] = std::get<DigPath>(path).start_x;
     return point;
   }
 
@@ -229,7 +255,7 @@ class DigProblem {
     if (start_is_searched()) return point(3);
     if (options_.start_rule.kind == StartRule::Kind::given) return options_.start_rule.x;
     const std::lock_guard<std::mutex> lock(mutex_);
-    const auto known = starts_.find(key(point));
+    const auto known = starts_.find(key_of(point));
     return known != starts_.end() ? std::optional(known->second) : std::nullopt;
   }
 
@@ -240,35 +266,30 @@ class DigProblem {
     return std::get<DigPath>(path);
   }
 
-  /// All that decides the worth of a dig; the simulators by what they say of one dig.
+  /// All that decides the worth of a dig.
   std::string fingerprint() const {
-    Fingerprint hash;
-    hash.add(terrain_.bank.origin.x());
-    hash.add(terrain_.bank.origin.y());
-    hash.add(terrain_.bank.cell);
+    Fingerprint ground;
+    ground.add(terrain_.bank.origin.x());
+    ground.add(terrain_.bank.origin.y());
+    ground.add(terrain_.bank.cell);
     for (const Eigen::ArrayXXd* layer : {&terrain_.bank.z, &terrain_.loose,
                                          &terrain_.bank_void_ratio, &terrain_.loose_void_ratio}) {
-      hash.add(*layer);
+      ground.add(*layer);
     }
-    hash.add(static_cast<double>(options_.objective.goal));
-    hash.add(options_.objective.time_price);
-    hash.add(options_.objective.rest_of_cycle);
-    hash.add(static_cast<double>(options_.start_rule.kind));
-    hash.add(options_.start_rule.x);
+    Fingerprint worth;
+    worth.add(static_cast<double>(options_.objective.goal));
+    worth.add(options_.objective.time_price);
+    worth.add(options_.objective.rest_of_cycle);
+    worth.add(static_cast<double>(options_.start_rule.kind));
+    worth.add(options_.start_rule.x);
     const Machine& machine = layout_.machine();
-    const Terrain level = level_planning_ground(machine, 0.1);
+    std::string text = "dig on " + machine.name + " " + excavplan::fingerprint(machine) +
+                       ", ground " + ground.text() + ", worth " + worth.text();
     for (const PossibleSoil& soil : soils_) {
-      hash.add(soil.probability);
-      const auto outcome = evaluate_dig(machine, *soil.simulator, level, paper_fixed_path());
-      if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
-        for (const double value : {dig->payload_mass, dig->energy, dig->duration}) hash.add(value);
-      }
+      text += ", with probability " + number_text(soil.probability) + " in " +
+              identity_of(*soil.simulator, machine);
     }
-    return "dig on " + machine.name + " " + excavplan::fingerprint(machine) + " " + hash.text();
-  }
-
-  static std::vector<double> key(const VectorXd& point) {
-    return {point.data(), point.data() + point.size()};
+    return text;
   }
 
   const std::vector<PossibleSoil>& soils_;
@@ -276,7 +297,7 @@ class DigProblem {
   const DigSearchOptions& options_;
   DigLayout layout_;
   mutable std::mutex mutex_;
-  std::map<std::vector<double>, double> starts_;  ///< of the drivable paths looked at
+  std::map<PointKey, double> starts_;  ///< of the drivable paths looked at
 };
 
 template <typename Result>

@@ -2,84 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fingerprint.hpp"
 
-#include <cmath>
-
 #include <excavplan/simulation/height_map_simulator.hpp>
 
-#include "../json_file.hpp"
-
 namespace excavplan {
-namespace {
 
-/// Numbers in the order they are given, as text.
-class Numbers {
- public:
-  Numbers& operator<<(double number) {
-    text_ += number_text(number) + ' ';
-    return *this;
-  }
-  Numbers& operator<<(const Eigen::Vector2d& point) { return *this << point.x() << point.y(); }
-  std::string digest() const { return checksum_text(text_); }
-
- private:
-  std::string text_;
-};
-
-void add_bucket(const Bucket& bucket, Numbers& numbers) {
-  for (const Eigen::Vector2d& corner : bucket.profile) numbers << corner;
-  numbers << bucket.width_outside << bucket.width_inside << bucket.edge_thickness
-          << bucket.edge_angle << (bucket.teeth ? 1.0 : 0.0);
-  if (const auto& teeth = bucket.teeth) {
-    numbers << teeth->count << teeth->width << teeth->thickness << teeth->length << teeth->angle;
-  }
-}
-
-void add_hydraulics(const Machine& machine, Numbers& numbers) {
-  numbers << (machine.cylinders ? 1.0 : 0.0) << (machine.hydraulics ? 1.0 : 0.0);
-  if (machine.cylinders) {
-    for (const Cylinder& cylinder : *machine.cylinders) {
-      // Computed lengths: rounded, so that they are the same with every mathematical library.
-      numbers << cylinder.count() << std::round(1e6 * cylinder.shortest())
-              << std::round(1e6 * cylinder.longest());
-    }
-  }
-  if (machine.hydraulics) {
-    for (const Piston& piston : machine.hydraulics->pistons) {
-      numbers << piston.diameter << piston.rod_diameter << piston.speed;
-    }
-    numbers << machine.hydraulics->pump_flow;
-  }
-}
-
-}  // namespace
-
-std::string fingerprint(const Machine& machine) {
-  Numbers numbers;
-  numbers << machine.boom_pin << machine.boom_length << machine.arm_length << machine.bucket_length
-          << machine.track_front;
-  for (const JointLimits& limits : machine.limits) {
-    numbers << limits.lower << limits.upper << limits.speed << limits.acceleration << limits.torque;
-  }
-  for (const LinkMass& link : machine.links) numbers << link.mass << link.along << link.across;
-  add_bucket(machine.bucket, numbers);
-  add_hydraulics(machine, numbers);
-  return numbers.digest();
-}
-
-std::string fingerprint(const SoilKind& soil) {
-  Numbers numbers;
-  numbers << soil.specific_gravity << soil.water_content << soil.void_ratio_max
-          << soil.void_ratio_min << soil.void_ratio_loose << soil.cohesion_loosest
-          << soil.cohesion_growth << soil.friction_loosest << soil.friction_gain
-          << soil.tool_friction_ratio << soil.adhesion_ratio << soil.angle_of_repose
-          << static_cast<int>(soil.cone_index_law) << soil.cone_index_reference
-          << soil.cone_index_rate << soil.cone_index_reference_density
-          << soil.cone_index_stress_exponent;
-  return numbers.digest();
-}
-
-std::string simulator_fingerprint() {
-  return "height-map " + std::to_string(height_map_simulator_version);
-}
+std::string simulator_fingerprint() { return HeightMapSimulator::name(); }
 
 }  // namespace excavplan

@@ -20,15 +20,15 @@ class Population {
   Population(const GeneticAlgorithm& method, const SearchTask& task, SearchLog& log)
       : method_(method), task_(task), log_(log) {
     std::vector<Candidate> first;
-    for (int i = 0; i < method.population; ++i) {
+    for (const VectorXd& point : task.start) first.push_back({point, Origin::given, {}});
+    for (int i = static_cast<int>(first.size()); i < method.population; ++i) {
       Random random = stream(0, i);
-      const auto given = static_cast<std::size_t>(i);
-      first.push_back(given < task.start.size()
-                          ? Candidate{task.start[given], Origin::given, {}}
-                          : Candidate{random_point(random), Origin::random, {}});
+      first.push_back({random_point(random), Origin::random, {}});
     }
     individuals_ = log_.evaluate(0, first);
     sort();
+    const auto population = static_cast<std::size_t>(method.population);
+    individuals_.resize(std::min(individuals_.size(), population));
   }
 
   void breed(int generation) {

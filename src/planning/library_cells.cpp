@@ -12,6 +12,7 @@
 
 #include "fingerprint.hpp"
 #include "library_midway.hpp"
+#include "search_checkpoint.hpp"
 
 namespace excavplan {
 namespace {
@@ -35,11 +36,13 @@ std::string describe(const AnchoredSearch& method) {
          "; others: " + std::to_string(method.inherited_evaluations) + " from neighbours";
 }
 
-std::string describe(const GeneticAlgorithm& method) {
-  return "genetic algorithm: population " + std::to_string(method.population) + ", generations " +
-         std::to_string(method.generations) + ", tournament " + std::to_string(method.tournament) +
-         ", crossover " + number_text(method.crossover) + ", mutation " +
-         number_text(method.mutation);
+constexpr int most_points = 1000000;  // of a first generation; ours
+
+void check(const LibrarySearch& search) {
+  const auto* anchored = std::get_if<AnchoredSearch>(&search.method);
+  if (!anchored || anchored->points <= most_points) return;
+  throw Error(ErrorKind::bad_input, "library: points must be <= " + std::to_string(most_points) +
+                                        ", got " + std::to_string(anchored->points));
 }
 
 /// From nothing.
@@ -143,7 +146,9 @@ class CellSearch {
     options.threads = 1;
     options.progress = [&](const SearchProgress& now) {
       evaluations = now.evaluations;
-      stopped_ = progress_ && !progress_(now);
+      SearchProgress whole = now;
+      whole.evaluations += outcome_.evaluations;
+      stopped_ = progress_ && !progress_(whole);
       return !stopped_;
     };
     const auto found = search_dig(*cell_.machine, simulator_, ground_, options);
@@ -230,6 +235,7 @@ std::string cell_file_name(const LibraryCell& cell, const LibrarySearch& search)
 std::optional<CellOutcome> compute_cell(
     const LibraryCell& cell, const LibrarySearch& search, const std::vector<CellOutcome>& parents,
     const std::function<bool(const SearchProgress&)>& progress) {
+  check(search);
   CellSearch work(cell, search, progress);
   const Expectation expected = expected_of(cell.density_percent, parents);
   if (!expected.starts.empty()) work.attempt(warm_search(search, expected.starts));

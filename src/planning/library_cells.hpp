@@ -50,7 +50,9 @@ std::string cell_file_name(const LibraryCell& cell, const LibrarySearch& search)
 std::string describe(const LibrarySearch& search);
 
 /// @param parents  outcomes of the cell's parent_densities()
+/// @param progress  its evaluations are those of all searches for the cell together
 /// @return nothing if `progress` stopped it
+/// @throws Error (bad_input) if the search is out of range
 std::optional<CellOutcome> compute_cell(const LibraryCell& cell, const LibrarySearch& search,
                                         const std::vector<CellOutcome>& parents,
                                         const std::function<bool(const SearchProgress&)>& progress);

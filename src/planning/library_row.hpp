@@ -27,7 +27,6 @@ class LibraryRow {
       : row_(row), densities_(densities.begin(), densities.end()) {}
 
   LibraryCell cell(double density) const;
-  double slope() const { return row_.slope; }
   const std::set<double>& densities() const { return densities_; }
 
   /// What the density's own search came to; the first word counts.

@@ -12,33 +12,13 @@
 #include <excavplan/random.hpp>
 
 #include "search_methods.hpp"
+#include "search_points.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::VectorXd;
 using Origin = SearchRecord::Origin;
-
-/// A box seen as the unit cube, where all distances of the search are measured.
-class UnitCube {
- public:
-  explicit UnitCube(const SearchBox& box) : lower_(box.lower), range_(box.upper - box.lower) {}
-
-  Eigen::Index dimensions() const { return lower_.size(); }
-  bool is_flat(Eigen::Index i) const { return range_(i) == 0.0; }
-  VectorXd point(const VectorXd& u) const { return lower_ + u.cwiseProduct(range_); }
-  VectorXd inside(const VectorXd& point) const {
-    return (point - lower_).cwiseQuotient((range_.array() > 0.0).select(range_, 1.0));
-  }
-  /// Largest difference of a coordinate.
-  double distance(const VectorXd& a, const VectorXd& b) const {
-    return (inside(a) - inside(b)).cwiseAbs().maxCoeff();
-  }
-
- private:
-  VectorXd lower_;
-  VectorXd range_;
-};
 
 /// Space-filling points: the additive recurrence of Roberts ("The unreasonable effectiveness of
 /// quasirandom sequences", 2018) from a random first point.

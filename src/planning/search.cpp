@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -86,14 +87,16 @@ std::vector<VectorXd> clipped(const std::vector<VectorXd>& points, const SearchB
   return inside;
 }
 
-int planned_evaluations(const GeneticAlgorithm& method) {
-  return method.population + (method.generations - 1) * (method.population - 1);
+/// Evaluations a method makes at most; a double, for the products know no bounds.
+double planned_evaluations(const GeneticAlgorithm& method, const SearchTask& task) {
+  const double first = std::max<double>(method.population, static_cast<double>(task.start.size()));
+  return first + (method.generations - 1.0) * (method.population - 1.0);
 }
 
-int planned_evaluations(const MemeticSearch& method) {
-  const int polishes = method.basins > 0 ? method.basins + 1 + method.generations : 0;
+double planned_evaluations(const MemeticSearch& method, const SearchTask&) {
+  const double polishes = method.basins > 0 ? 1.0 + method.basins + method.generations : 0.0;
   return method.first_generation + polishes * method.polish_evaluations +
-         method.generations * method.generation_size;
+         1.0 * method.generations * method.generation_size;
 }
 
 /// Rank of a status: feasible before infeasible before unknown.
@@ -184,7 +187,7 @@ SearchResult search(const SearchProblem& problem, const SearchOptions& options) 
   return std::visit(
       [&](const auto& method) {
         check(method, task);
-        SearchLog log(problem, options, planned_evaluations(method));
+        SearchLog log(problem, options, planned_evaluations(method, task));
         run(method, task, log);
         return log.finish();
       },

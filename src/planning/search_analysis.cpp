@@ -12,6 +12,8 @@
 
 #include "../json_file.hpp"
 #include "../parallel.hpp"
+#include "search_log.hpp"
+#include "search_points.hpp"
 
 namespace excavplan {
 namespace {
@@ -29,14 +31,13 @@ struct Point {
 
 /// One of each feasible point, best first.
 std::vector<Point> feasible_points(const SearchBox& box, const SearchResult& result) {
-  const VectorXd range = box.upper - box.lower;
-  const VectorXd scale = (range.array() > 0.0).select(range, 1.0);
+  const UnitCube cube(box);
   std::vector<Point> points;
   for (std::size_t i = 0; i < result.history.size(); ++i) {
     const SearchRecord& record = result.history[i];
     if (!record.outcome.ok() || record.source != SearchRecord::Source::simulated) continue;
-    points.push_back({(record.point - result.best).cwiseQuotient(scale), record.outcome.fitness,
-                      static_cast<int>(i)});
+    points.push_back(
+        {cube.share(record.point - result.best), record.outcome.fitness, static_cast<int>(i)});
   }
   std::stable_sort(points.begin(), points.end(),
                    [](const Point& a, const Point& b) { return a.fitness > b.fitness; });
@@ -251,11 +252,9 @@ std::vector<RepeatedEvaluation> evaluate_again(const SearchResult& result,
   const auto each = static_cast<std::size_t>(repeats);
   std::vector<Evaluation> outcomes(order.size() * each);
   parallel_for(outcomes.size(), threads, [&](std::size_t i) {
-    try {
-      outcomes[i] = objective(order[i / each]->point, static_cast<int>(i % each));
-    } catch (const std::exception& e) {
-      outcomes[i] = Evaluation::failed(e.what());
-    }
+    outcomes[i] = sound(caught([&]() -> Evaluation {
+      return objective(order[i / each]->point, static_cast<int>(i % each));
+    }));
   });
   std::vector<RepeatedEvaluation> points;
   for (std::size_t i = 0; i < order.size(); ++i) {

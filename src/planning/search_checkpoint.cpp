@@ -30,13 +30,6 @@ std::string describe(const MemeticSearch& method) {
          ", polish " + std::to_string(method.polish_evaluations);
 }
 
-std::string describe(const GeneticAlgorithm& method) {
-  return "genetic, population " + std::to_string(method.population) + ", generations " +
-         std::to_string(method.generations) + ", tournament " + std::to_string(method.tournament) +
-         ", crossover " + number_text(method.crossover) + ", mutation " +
-         number_text(method.mutation);
-}
-
 /// All that decides the course of a search, stop rules and given points apart.
 std::string describe(const SearchOptions& options) {
   return std::visit([](const auto& method) { return describe(method); }, options.method) +
@@ -50,7 +43,7 @@ std::string describe(const SearchProblem& problem) {
   return text;
 }
 
-ordered_json to_json(const std::vector<double>& point, const Evaluation& outcome) {
+ordered_json to_json(const PointKey& point, const Evaluation& outcome) {
   ordered_json entry = {{"point", point}, {"status", name(outcome.status)}};
   if (outcome.ok()) entry["fitness"] = outcome.fitness;
   if (outcome.violation > 0.0) entry["violation"] = outcome.violation;
@@ -71,18 +64,37 @@ Evaluation read_outcome(JsonObject& entry) {
   entry.fail("status", "is '" + status + "', expected ok, infeasible, failed or timed out");
 }
 
+/// Invalid UTF-8 has no place in JSON; what the file cannot hold, the search must not see.
+std::string sound(std::string reason) {
+  constexpr std::size_t longest = 500;
+  if (reason.size() > longest) reason = reason.substr(0, longest) + " ...";
+  return ordered_json::parse(
+             ordered_json(reason).dump(-1, ' ', false, ordered_json::error_handler_t::replace))
+      .get<std::string>();
+}
+
 }  // namespace
 
-Evaluation sound(Evaluation outcome) {
-  if (outcome.ok() && !std::isfinite(outcome.fitness)) return {outcome.fitness};
-  constexpr std::size_t longest = 500;
-  if (outcome.reason.size() > longest) outcome.reason = outcome.reason.substr(0, longest) + " ...";
-  // Invalid UTF-8 has no place in JSON; what the file cannot hold, the search must not see.
-  outcome.reason =
-      ordered_json::parse(
-          ordered_json(outcome.reason).dump(-1, ' ', false, ordered_json::error_handler_t::replace))
-          .get<std::string>();
-  return outcome;
+std::string describe(const GeneticAlgorithm& method) {
+  return "genetic algorithm: population " + std::to_string(method.population) + ", generations " +
+         std::to_string(method.generations) + ", tournament " + std::to_string(method.tournament) +
+         ", crossover " + number_text(method.crossover) + ", mutation " +
+         number_text(method.mutation);
+}
+
+Evaluation sound(const Evaluation& outcome) {
+  using Status = Evaluation::Status;
+  switch (outcome.status) {
+    case Status::ok:
+      return {outcome.fitness};
+    case Status::infeasible:
+      return Evaluation::infeasible(outcome.violation, sound(outcome.reason));
+    case Status::failed:
+      return Evaluation::failed(sound(outcome.reason));
+    case Status::timed_out:
+      return Evaluation::timed_out(sound(outcome.reason));
+  }
+  return Evaluation::failed("the status is none");
 }
 
 SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOptions& options)
@@ -100,13 +112,13 @@ SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOpt
 
 const Evaluation* SearchCheckpoint::find(const Eigen::VectorXd& point) const {
   if (earlier_.empty()) return nullptr;
-  const auto found = earlier_.find({point.data(), point.data() + point.size()});
+  const auto found = earlier_.find(key_of(point));
   return found == earlier_.end() ? nullptr : &found->second;
 }
 
 void SearchCheckpoint::add(const Eigen::VectorXd& point, const Evaluation& outcome) {
   if (file_.empty()) return;
-  fresh_.insert_or_assign({point.data(), point.data() + point.size()}, outcome);
+  fresh_.insert_or_assign(key_of(point), outcome);
   changed_ = true;
 }
 

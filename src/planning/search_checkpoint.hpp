@@ -9,10 +9,17 @@
 
 #include <excavplan/planning/genetic.hpp>
 
+#include "search_points.hpp"
+
 namespace excavplan {
 
-/// An outcome that a file can hold: a finite fitness, a reason in UTF-8 of limited length.
-Evaluation sound(Evaluation outcome);
+/// All that decides the course of a method, in words.
+std::string describe(const GeneticAlgorithm& method);
+
+/// An outcome as the constructors of Evaluation make it, whoever filled its fields, which a file
+/// can hold: finite numbers, a violation only if infeasible, a reason only if not ok, in UTF-8 of
+/// limited length.
+Evaluation sound(const Evaluation& outcome);
 
 /// The outcomes of a search's evaluations, in memory and in a file
 /// (docs/formats.md#search-checkpoint). A search is determined by its options and these outcomes,
@@ -30,7 +37,7 @@ class SearchCheckpoint {
   void save();
 
  private:
-  using Outcomes = std::map<std::vector<double>, Evaluation>;
+  using Outcomes = std::map<PointKey, Evaluation>;
 
   void load(std::size_t dimensions);
   std::string text() const;

@@ -21,25 +21,9 @@ using Eigen::VectorXd;
 constexpr int certain = 20;  // failures in a row from the start that say all will fail; ours
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double> key_of(const VectorXd& point) {
-  return {point.data(), point.data() + point.size()};
-}
-
 bool failed(const Evaluation& outcome) {
   return outcome.status == Evaluation::Status::failed ||
          outcome.status == Evaluation::Status::timed_out;
-}
-
-/// What a call says; its exception is a failure with that text.
-template <typename Call>
-auto caught(const Call& call) -> decltype(call()) {
-  try {
-    return call();
-  } catch (const std::exception& e) {
-    return Evaluation::failed(e.what());
-  } catch (...) {
-    return Evaluation::failed("an exception that is no std::exception");
-  }
 }
 
 std::variant<VectorXd, Evaluation> repair(const SearchProblem& problem, const VectorXd& point) {
@@ -47,8 +31,10 @@ std::variant<VectorXd, Evaluation> repair(const SearchProblem& problem, const Ve
   Repaired repaired = caught([&]() -> Repaired { return problem.repair(point); });
   if (const auto* refusal = std::get_if<Evaluation>(&repaired)) {
     if (refusal->ok()) return Evaluation::failed("the repair gave a fitness, not a point");
-  } else if (const auto& fit = std::get<VectorXd>(repaired);
-             fit.size() != point.size() || !fit.allFinite()) {
+    return sound(*refusal);
+  }
+  if (const auto& fit = std::get<VectorXd>(repaired);
+      fit.size() != point.size() || !fit.allFinite()) {
     return Evaluation::failed("the repair gave no finite point of the box's dimensions");
   }
   return repaired;
@@ -67,10 +53,11 @@ VectorXd snapped(const VectorXd& point, const SearchProblem& problem) {
 
 }  // namespace
 
-SearchLog::SearchLog(const SearchProblem& problem, const SearchOptions& options, int planned)
+SearchLog::SearchLog(const SearchProblem& problem, const SearchOptions& options, double planned)
     : problem_(problem), options_(options), checkpoint_(problem, options) {
   const int limit = options.stop.evaluations;
-  progress_.planned = limit > 0 ? std::min(limit, planned) : planned;
+  const int most = limit > 0 ? limit : std::numeric_limits<int>::max();
+  progress_.planned = static_cast<int>(std::min<double>(most, planned));
   progress_.best = progress_.mean = progress_.seconds_left = unknown;
 }
 
@@ -189,7 +176,7 @@ std::vector<int> SearchLog::evaluate(int generation, const std::vector<Candidate
 
 std::vector<SearchRecord*> SearchLog::mark_fresh(Prepared* batch, std::size_t& count) {
   std::vector<SearchRecord*> fresh;
-  std::set<Key> in_batch;
+  std::set<PointKey> in_batch;
   for (std::size_t i = 0; i < count; ++i) {
     Prepared& it = batch[i];
     if (it.record.source == SearchRecord::Source::repair) continue;
@@ -244,7 +231,7 @@ void SearchLog::run_strands(int generation, int evaluations,
   check_rules();
 }
 
-const Evaluation* SearchLog::Strand::remembered(const Key& key) const {
+const Evaluation* SearchLog::Strand::remembered(const PointKey& key) const {
   if (const auto own = seen_.find(key); own != seen_.end()) return &own->second;
   const auto all = log_.seen_.find(key);
   return all != log_.seen_.end() ? &all->second : nullptr;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -12,12 +13,25 @@
 #include <excavplan/planning/genetic.hpp>
 
 #include "search_checkpoint.hpp"
+#include "search_points.hpp"
 
 /// @file
 /// The part of a search that knows nothing of its method: evaluates points, remembers them, counts,
 /// stops. Private to the library.
 
 namespace excavplan {
+
+/// What a call says; what it throws is a failure, with the text of a std::exception.
+template <typename Call>
+auto caught(const Call& call) -> decltype(call()) {
+  try {
+    return call();
+  } catch (const std::exception& e) {
+    return Evaluation::failed(e.what());
+  } catch (...) {
+    return Evaluation::failed("an exception that is no std::exception");
+  }
+}
 
 /// A point that a method wants to know about.
 struct Candidate {
@@ -32,7 +46,7 @@ class SearchLog {
   class Strand;
 
   /// @param planned  evaluations that the method will about make, for the progress
-  SearchLog(const SearchProblem& problem, const SearchOptions& options, int planned);
+  SearchLog(const SearchProblem& problem, const SearchOptions& options, double planned);
 
   /// Evaluates candidates side by side; returns the places of their records. Fewer than asked if a
   /// stop rule cut it short.
@@ -54,12 +68,11 @@ class SearchLog {
   SearchResult finish();
 
  private:
-  using Key = std::vector<double>;
   using Clock = std::chrono::steady_clock;
 
   struct Prepared {
     SearchRecord record;
-    Key key;
+    PointKey key;
   };
   Prepared prepare(int generation, const Candidate& candidate) const;
   /// Calls the objective, or takes its answer from the checkpoint. Thread-safe.
@@ -86,7 +99,7 @@ class SearchLog {
   const Clock::time_point begin_ = Clock::now();
 
   std::vector<SearchRecord> history_;
-  std::map<Key, Evaluation> seen_;
+  std::map<PointKey, Evaluation> seen_;
   int evaluations_ = 0;
   int failed_ = 0;
   int best_ = -1;
@@ -113,7 +126,7 @@ class SearchLog::Strand {
   Strand(SearchLog& log, int generation, int number, int limit)
       : log_(log), generation_(generation), number_(number), limit_(limit) {}
 
-  const Evaluation* remembered(const Key& key) const;
+  const Evaluation* remembered(const PointKey& key) const;
 
   SearchLog& log_;
   int generation_;
@@ -121,7 +134,7 @@ class SearchLog::Strand {
   int limit_;
   int evaluations_ = 0;
   bool reached_ = false;
-  std::map<Key, Evaluation> seen_;
+  std::map<PointKey, Evaluation> seen_;
   std::vector<SearchRecord> records_;
 };
 

@@ -39,11 +39,12 @@ class LibraryWatch {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (note_) note_(line);
   }
-  /// The progress of the search for a cell.
+  /// The progress of the search for a cell, whose evaluations never fall.
   std::function<bool(const SearchProgress&)> of(const std::string& cell) {
-    return [this, cell](const SearchProgress& progress) {
+    return [this, cell, counted = 0](const SearchProgress& progress) mutable {
       const std::lock_guard<std::mutex> lock(mutex_);
-      ++now_.evaluations;
+      now_.evaluations += progress.evaluations - counted;
+      counted = progress.evaluations;
       now_.cell = cell;
       now_.best = progress.best;
       tell();

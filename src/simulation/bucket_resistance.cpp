@@ -55,9 +55,10 @@ SoilState dug_state(const SoilKind& soil) {
 // ---- Model and swath ----------------------------------------------------------------------------
 
 HeightMapModel::HeightMapModel(const Machine& machine_, const SoilKind& soil_,
-                               double density_percent)
+                               double density_percent_)
     : machine(machine_),
       soil(soil_),
+      density_percent(density_percent_),
       bank(bank_state(soil, density_percent)),
       loose(loose_state(soil)),
       on_steel(bank.friction_angle, bank.tool_friction_angle),

@@ -27,6 +27,7 @@ struct HeightMapModel {
 
   Machine machine;
   SoilKind soil;
+  double density_percent;
   SoilState bank;
   SoilState loose;
   HoldingSlopes slopes;

@@ -10,6 +10,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "../json_file.hpp"
 #include "bucket_cavity.hpp"
 #include "bucket_resistance.hpp"
 #include "soil_layers.hpp"
@@ -351,6 +352,15 @@ void check(const Terrain& terrain, const DigPath& path) {
 HeightMapSimulator::HeightMapSimulator(const Machine& machine, const SoilKind& soil,
                                        double density_percent)
     : model_(std::make_shared<const HeightMapModel>(machine, soil, density_percent)) {}
+
+std::string HeightMapSimulator::name() {
+  return "height-map " + std::to_string(height_map_simulator_version);
+}
+
+std::string HeightMapSimulator::identity() const {
+  return name() + ", machine " + fingerprint(model_->machine) + ", soil " +
+         fingerprint(model_->soil) + " at " + number_text(model_->density_percent) + " %";
+}
 
 const SoilState& HeightMapSimulator::bank() const { return model_->bank; }
 const SoilState& HeightMapSimulator::loose() const { return model_->loose; }

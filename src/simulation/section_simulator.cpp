@@ -16,6 +16,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/earthmoving.hpp>
 
+#include "../json_file.hpp"
 #include "soil_section.hpp"
 
 namespace excavplan {
@@ -175,9 +176,10 @@ class PackedFront {
 
 /// What is known before any ground is seen.
 struct SectionModel {
-  SectionModel(const Machine& machine_, const SoilKind& kind_, double density_percent)
+  SectionModel(const Machine& machine_, const SoilKind& kind_, double density_percent_)
       : machine(machine_),
         kind(kind_),
+        density_percent(density_percent_),
         bank(bank_state(kind, density_percent)),
         loose(loose_state(kind)),
         packed(machine.bucket),
@@ -207,6 +209,7 @@ struct SectionModel {
 
   Machine machine;
   SoilKind kind;
+  double density_percent;
   SoilState bank;
   SoilState loose;
   HoldingSlopes slopes;
@@ -804,6 +807,12 @@ DigResult SectionSimulator::dig(const Terrain& terrain, const DigPath& path,
                                 const DigOptions& options) const {
   check(terrain);
   return SectionDig(*model_, terrain, path, options).run();
+}
+
+std::string SectionSimulator::identity() const {
+  return "section " + std::to_string(section_simulator_version) + ", machine " +
+         fingerprint(model_->machine) + ", soil " + fingerprint(model_->kind) + " at " +
+         number_text(model_->density_percent) + " %";
 }
 
 }  // namespace excavplan

@@ -114,6 +114,19 @@ SoilKind load_soil(const std::string& path) {
   return soil;
 }
 
+std::string fingerprint(const SoilKind& soil) {
+  std::string numbers;
+  for (const double number :
+       {soil.specific_gravity, soil.water_content, soil.void_ratio_max, soil.void_ratio_min,
+        soil.void_ratio_loose, soil.cohesion_loosest, soil.cohesion_growth, soil.friction_loosest,
+        soil.friction_gain, soil.tool_friction_ratio, soil.adhesion_ratio, soil.angle_of_repose,
+        static_cast<double>(soil.cone_index_law), soil.cone_index_reference, soil.cone_index_rate,
+        soil.cone_index_reference_density, soil.cone_index_stress_exponent}) {
+    numbers += number_text(number) + ' ';
+  }
+  return checksum_text(numbers);
+}
+
 SoilState bank_state(const SoilKind& soil, double density_percent) {
   SoilState state = state_of_void_ratio(soil, void_ratio(soil, density_percent));
   const double d = density_percent / 100.0;

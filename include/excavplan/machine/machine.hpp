@@ -100,6 +100,10 @@ struct Machine {
 ///         falling all the way through its joint's range
 Machine load_machine(const std::string& path);
 
+/// 16 hexadecimal digits that change with every number of a machine that decides a dig; the name
+/// does not count.
+std::string fingerprint(const Machine& machine);
+
 /// Where the tip is and how the bucket stands.
 struct BucketPose {
   double x = 0.0;            ///< of the tip [m]

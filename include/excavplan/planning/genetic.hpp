@@ -48,8 +48,9 @@ const char* name(Evaluation::Status status);
 /// Feasible before infeasible before failed or timed out; then less violation, then more fitness.
 bool better(const Evaluation& a, const Evaluation& b);
 
-/// Must say the same of the same point, and may be called from several threads. What it throws
-/// (std::exception) is a failed evaluation with that text; the search goes on.
+/// Must say the same of the same point, and may be called from several threads. What it throws is a
+/// failed evaluation, with the text of a std::exception; the search goes on. So is an outcome that
+/// the constructors of Evaluation would not make, such as a violation that is not finite.
 using Objective = std::function<Evaluation(const Eigen::VectorXd&)>;
 
 /// A point made fit to evaluate, or why it cannot be: infeasible without an evaluation.
@@ -68,7 +69,8 @@ struct SearchProblem {
 /// The paper's genetic algorithm (section 2.3.3): the best individual is kept, parents are chosen
 /// by tournament among the rest, segments of two parents are exchanged between two points, genes
 /// are drawn anew within their limits. The paper's Table 2 is not published as text: the numbers
-/// are ours, after docs/methods.md#planning.
+/// are ours, after docs/methods.md#planning. Given points are the first of the first generation,
+/// which is as large as it must be to hold all of them.
 struct GeneticAlgorithm {
   int population = 50;     ///< individuals, >= 2
   int generations = 20;    ///< including the first, >= 1
@@ -90,7 +92,10 @@ struct MemeticSearch {
   double basin_radius = 0.2;    ///< two basins are farther apart than this share of the box, > 0
 };
 
-/// The search ends at the first that holds. 0: no such rule.
+/// The search ends at the first that is seen to hold. 0: no such rule. `evaluations` is never
+/// exceeded, and none begins once one has ended after `seconds`. `stall` and `target` are looked at
+/// after each batch of points and each round of polishes, for any number of threads; a polish that
+/// reaches the target ends at once.
 struct StopRules {
   int evaluations = 0;
   int stall = 0;                      ///< evaluations without a better point
@@ -108,18 +113,25 @@ struct SearchProgress {
   double seconds_left = 0.0;  ///< estimated from the pace and the stop rules; NaN if unknown
 };
 
-struct SearchOptions {
+/// How to search, whatever is searched.
+struct SearchConduct {
   std::variant<MemeticSearch, GeneticAlgorithm> method = MemeticSearch{};
   std::uint64_t seed = 1;
-  std::vector<Eigen::VectorXd> start = {};  ///< points to begin with, clipped to the box
   StopRules stop = {};
   unsigned threads = 0;  ///< 0: one per core. The result does not depend on it.
-  /// After every evaluation, one call at a time, from any thread; false cancels.
+  /// After every evaluation and, with the mean of a batch of points, after the batch; one call at a
+  /// time, from any thread; false cancels.
   std::function<bool(const SearchProgress&)> progress = nullptr;
   /// File that holds the evaluations made, for a search that was cancelled or killed; empty: none.
   std::string checkpoint = {};
   double checkpoint_interval = 1.0;  ///< at least this long between two writes of it [s]
   bool resume = false;               ///< go on from the checkpoint if the file exists
+
+  SearchConduct() {}  // NOLINT: of an aggregate, GCC 12 wrongly calls temporaries uninitialized
+};
+
+struct SearchOptions : SearchConduct {
+  std::vector<Eigen::VectorXd> start = {};  ///< points to begin with, clipped to the box
 };
 
 /// One point the search asked for.
@@ -163,7 +175,8 @@ struct SearchResult {
 /// is resumed.
 ///
 /// @throws Error (bad_input) if an option or the box is out of range, or if the first 20
-///         evaluations all failed (the first reason is quoted)
+///         evaluations all failed, or all of a search that ends with fewer without being cancelled
+///         or out of time (the first reason is quoted)
 /// @throws Error (bad_file) if a checkpoint is of another search, truncated or altered
 SearchResult search(const SearchProblem& problem, const SearchOptions& options = {});
 

@@ -82,7 +82,7 @@ struct LibraryBuildOptions {
   std::string folder;
   bool only_merge = false;         ///< a cell of the grid that is not in the folder is an error
   WorkSharing* sharing = nullptr;  ///< among processes; nothing: there is one
-  /// After every dig, one call at a time, from any thread; false stops.
+  /// After every dig, batch of digs and cell, one call at a time, from any thread; false stops.
   std::function<bool(const LibraryProgress&)> progress;
   /// For people: a file in the folder that is not what it should be, and is computed anew. Never
   /// called at once with itself or `progress`, from any thread.

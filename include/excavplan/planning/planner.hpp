@@ -102,18 +102,12 @@ struct DigBounds {
   DigBounds();
 };
 
-struct DigSearchOptions {
-  std::variant<MemeticSearch, GeneticAlgorithm> method = MemeticSearch{};
-  StopRules stop = {};  ///< the target is a worth
-  std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< 0: one per core. The result does not depend on it.
-  std::function<bool(const SearchProgress&)> progress;  ///< after every dig; false stops
-  std::vector<DigParameters> start = {};                ///< known good digs to begin with
+/// An evaluation is a dig, its fitness the dig's worth.
+struct DigSearchOptions : SearchConduct {
+  std::vector<DigParameters> start = {};  ///< known good digs to begin with
   DigObjective objective = {};
   DigBounds bounds = {};
   StartRule start_rule = StartRule::Kind::least_work;
-  std::string checkpoint = {};  ///< file of the digs made, to go on from; empty: none
-  bool resume = false;          ///< go on from the checkpoint if the file exists
 };
 
 struct DigSearchResult {
@@ -149,7 +143,8 @@ struct Found : std::optional<Result> {
 /// the path where it fails, so that the search finds its way out.
 ///
 /// @throws Error (bad_input) if an option is out of range
-/// @throws Error (bad_file) if a checkpoint is of another search, truncated or altered
+/// @throws Error (bad_file) if a checkpoint is of another search, truncated or altered; another
+///         simulator is known by its identity()
 Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
                                   const Terrain& terrain, const DigSearchOptions& options = {});
 

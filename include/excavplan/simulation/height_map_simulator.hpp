@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
@@ -48,6 +49,9 @@ class HeightMapSimulator : public SoilSimulator {
 
   DigResult dig(const Terrain& terrain, const DigPath& path,
                 const DigOptions& options = {}) const override;
+  std::string identity() const override;
+
+  static std::string name();  ///< with its version: "height-map 1"
 
   const SoilState& bank() const;
   const SoilState& loose() const;

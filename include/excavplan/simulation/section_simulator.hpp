@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -10,6 +11,9 @@
 #include <excavplan/soil/soil.hpp>
 
 namespace excavplan {
+
+/// Rises with every change of the simulator that changes the result of a dig.
+inline constexpr int section_simulator_version = 1;
 
 struct SectionModel;
 
@@ -28,6 +32,7 @@ class SectionSimulator : public SoilSimulator {
 
   DigResult dig(const Terrain& terrain, const DigPath& path,
                 const DigOptions& options = {}) const override;
+  std::string identity() const override;
 
  private:
   std::shared_ptr<const SectionModel> model_;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -133,6 +134,11 @@ class SoilSimulator {
   ///         lies off the map
   virtual DigResult dig(const Terrain& terrain, const DigPath& path,
                         const DigOptions& options = {}) const = 0;
+
+  /// All that decides its digs besides their arguments, as text: with its name and version, the
+  /// fingerprints of machine and soil, the density. The checkpoint of a search is refused by
+  /// another identity. Empty: a search knows the simulator by what it says of a few digs alone.
+  virtual std::string identity() const { return {}; }
 };
 
 /// Volumes of a dig straight from the height maps, cell by cell, as the paper does in its

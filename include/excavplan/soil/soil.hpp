@@ -56,6 +56,9 @@ struct SoilState {
 /// @throws Error (bad_file) naming file, key, value and rule
 SoilKind load_soil(const std::string& path);
 
+/// 16 hexadecimal digits that change with every number of a soil; the name does not count.
+std::string fingerprint(const SoilKind& soil);
+
 /// State of undisturbed soil. @throws Error (bad_input) unless 0 <= density_percent <= 100
 SoilState bank_state(const SoilKind& soil, double density_percent);
 
