@@ -601,6 +601,43 @@ TEST(DigPathAnywhere, SaysWhyTheBestOfTheFailingStartPointsFails) {
   driven(make_dig_path_anywhere(zx120(), paper_fixed_path(), flat, beyond));
 }
 
+// The scoop is deepest between two poses of the scan: starts survive it that full sampling refuses.
+TEST(DigPathAnywhere, SaysWhyTheBestFailsWhereTheScanMissedWhatStopsThemAll) {
+  const DigParameters digs[] = {{1.0, 0.5, 0.7}, {1.0, 0.6, 0.8}, {1.0, 0.7, 0.8}, {1.1, 0.8, 1.1}};
+  for (const DigParameters& parameters : digs) {
+    DigPathOptions options;
+    options.max_depth = infinity;
+    std::vector<Outcome> outcomes;
+    const auto start_everywhere = [&] {
+      outcomes.clear();
+      for (int i = 46; i <= 170; ++i) {
+        outcomes.push_back(make_dig_path(zx120(), parameters, i / 20.0, flat, options));
+      }
+    };
+    start_everywhere();
+    double least_depth = infinity;
+    for (const Outcome& outcome : outcomes) {
+      if (std::holds_alternative<Infeasible>(outcome)) continue;
+      double depth = 0.0;
+      for (const DigPose& pose : std::get<DigPath>(outcome).poses) {
+        depth = std::max(depth, -pose.bucket.z);
+      }
+      least_depth = std::min(least_depth, depth);
+    }
+    options.max_depth = least_depth - 2e-4;
+    start_everywhere();
+    std::pair<DigPhase, double> best(DigPhase::approach, 0.0);
+    for (const Outcome& outcome : outcomes) {
+      const Infeasible failed = stopped(outcome);
+      best = std::max(best, {failed.phase, failed.distance});
+    }
+    const Infeasible told = stopped(make_dig_path_anywhere(zx120(), parameters, flat, options));
+    EXPECT_EQ(told.phase, best.first);
+    EXPECT_EQ(told.distance, best.second);
+    EXPECT_FALSE(told.message.empty());
+  }
+}
+
 // 24-29 % of the search box press the heel on the ground wherever they start; all else is drivable.
 TEST(DigPathAnywhere, OnlyTheHeelLimitsTheSearchBox) {
   const Machine machine = without_tracks();

@@ -211,6 +211,43 @@ TEST(Trajectory, DurationHardlyDependsOnTheSampling) {
   EXPECT_NEAR(time_dig_path(zx120(), fixed_path(0.1)).dig_duration(), fine, 0.03 * fine);
 }
 
+/// Boom, arm and bucket one after the other, a phase each, in steps of equal length.
+DigPath one_joint_after_the_other(double turn, int steps) {
+  JointAngles at(-0.3, 1.5, 0.5);
+  std::vector<JointAngles> joints = {at};
+  for (int i = 0; i < 3; ++i) {
+    const double from = at[i];
+    for (int k = 1; k <= steps; ++k) {
+      at[i] = from + turn * k / steps;
+      joints.push_back(at);
+    }
+  }
+  DigPath path = path_through(joints);
+  const DigPhase phases[] = {DigPhase::penetrate, DigPhase::drag, DigPhase::scoop};
+  for (std::size_t k = 1; k < path.poses.size(); ++k) {
+    path.poses[k].phase = phases[(k - 1) / static_cast<std::size_t>(steps)];
+  }
+  return path;
+}
+
+TEST(Trajectory, PhasesOfOneStepAreAsFastAsThoseOfManyBesideACornerToo) {
+  for (const double turn : {0.01, 0.03, 0.1}) {
+    for (const double off : {0.0, 1e-4, 1e-3}) {
+      const TrajectoryOptions options{1.0, off};
+      const double fine =
+          time_dig_path(zx120(), one_joint_after_the_other(turn, 200), options).duration();
+      for (const int steps : {1, 2, 3, 4}) {
+        const DigPath path = one_joint_after_the_other(turn, steps);
+        const Trajectory trajectory = time_dig_path(zx120(), path, options);
+        expect_well_formed(trajectory);
+        ASSERT_NO_FATAL_FAILURE(expect_within(used_of(zx120(), trajectory), 1.0));
+        EXPECT_LT(trajectory.duration(), 1.05 * fine) << turn << " rad, " << steps << ", " << off;
+        EXPECT_GT(trajectory.duration(), 0.95 * fine) << turn << " rad, " << steps << ", " << off;
+      }
+    }
+  }
+}
+
 /// Arm, boom or bucket moved from one angle to another in many steps by a machine that is fast but
 /// for its oil.
 double oil_time(Joint joint, double from, double to, const std::function<void(Hydraulics&)>& set) {
@@ -402,7 +439,10 @@ struct RandomDig {
 };
 
 /// Somewhere on a slope of up to 20 degrees, by a machine that is up to twice as fast or slow.
-RandomDig random_dig(Random& random) {
+/// `shrink` may make the phases shorter.
+RandomDig random_dig(
+    Random& random, const DigPathOptions& layout = {},
+    const std::function<void(DigParameters&)>& shrink = [](DigParameters&) {}) {
   RandomDig dig{zx120(), {}, {random.uniform(0.3, 1.0), std::min(1e-3, random.uniform(0.0, 2e-3))}};
   for (JointLimits& limits : dig.machine.limits) {
     limits.speed *= std::exp2(random.uniform(-1, 1));
@@ -415,12 +455,13 @@ RandomDig random_dig(Random& random) {
     for (const DigParameterInfo& info : dig_parameter_table()) {
       parameters.*info.field = random.uniform(info.lower, info.upper);
     }
+    shrink(parameters);
     const double slope = std::tan(random.uniform(-0.35, 0.35));
     const auto ground = [slope](double x) { return slope * (x - 6.0); };
-    auto outcome = make_dig_path(dig.machine, parameters, random.uniform(3.0, 8.0), ground);
+    auto outcome = make_dig_path(dig.machine, parameters, random.uniform(3.0, 8.0), ground, layout);
     if (!std::holds_alternative<DigPath>(outcome)) continue;
     dig.path = std::get<DigPath>(std::move(outcome));
-    auto approach = way_down(dig.machine, dig.path, ground);
+    auto approach = way_down(dig.machine, dig.path, ground, layout);
     if (auto* poses = std::get_if<std::vector<DigPose>>(&approach)) dig.path.approach = *poses;
     return dig;
   }
@@ -447,6 +488,54 @@ TEST(Trajectory, TenThousandDigsKeepTheirLimitsAndTheirPathAtEveryPoint) {
   EXPECT_GT(mean.speed, 0.98);  // fast as well as safe: something is nearly always at its limit
   EXPECT_GT(mean.acceleration, 0.9);
   EXPECT_LT(attitude, 2e-3);
+}
+
+/// The same path in the joints, with the tip moving at most a default step between poses.
+DigPath refined(const Machine& machine, const DigPath& path) {
+  DigPath fine = path;
+  fine.approach.clear();
+  fine.poses = path.approach;
+  fine.poses.insert(fine.poses.end(), path.poses.begin(), path.poses.end());
+  std::vector<DigPose> poses = {fine.poses.front()};
+  for (std::size_t k = 1; k < fine.poses.size(); ++k) {
+    const DigPose &from = fine.poses[k - 1], &to = fine.poses[k];
+    const double travel = std::hypot(to.bucket.x - from.bucket.x, to.bucket.z - from.bucket.z);
+    const int steps = std::max(1, static_cast<int>(std::ceil(travel / DigPathOptions{}.step)));
+    for (int i = 1; i <= steps; ++i) {
+      poses.push_back(to);
+      poses.back().joints += (1.0 - static_cast<double>(i) / steps) * (from.joints - to.joints);
+      poses.back().bucket = forward_kinematics(machine, poses.back().joints);
+    }
+  }
+  fine.poses = std::move(poses);
+  return fine;
+}
+
+TEST(Trajectory, WhateverTheStepRoundingCostsNoTimeAndKeepsLimitsAndPath) {
+  Random random(23);
+  double mean = 0.0;
+  const int count = 3000;
+  for (int n = 0; n < count; ++n) {
+    DigPathOptions layout;
+    if (n % 2 == 0) layout.step *= std::exp2(random.uniform(-2, 6));
+    const RandomDig dig = random_dig(random, layout, [&](DigParameters& parameters) {
+      parameters.penetration_length *= std::min(1.0, std::pow(10.0, random.uniform(-3, 1)));
+      parameters.drag_length *= std::min(1.0, std::pow(10.0, random.uniform(-3, 1)));
+    });
+    const Trajectory rounded = time_dig_path(dig.machine, dig.path, dig.options);
+    expect_well_formed(rounded);
+    ASSERT_NO_FATAL_FAILURE(
+        expect_within(used_of(dig.machine, rounded), dig.options.speed_fraction))
+        << n;
+    Deviation deviation(dig.machine, refined(dig.machine, dig.path));
+    deviation.add(rounded);
+    ASSERT_LE(deviation.tip(), 1e-3) << n << ", step " << layout.step;
+    const double stopping =
+        time_dig_path(dig.machine, dig.path, {dig.options.speed_fraction, 0.0}).duration();
+    ASSERT_LT(rounded.duration(), 1.02 * stopping) << n << ", step " << layout.step;
+    mean += rounded.duration() / stopping / count;
+  }
+  EXPECT_LT(mean, 0.985);
 }
 
 TEST(Trajectory, StatedRatesAreThoseOfTheJoints) {

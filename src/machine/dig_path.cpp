@@ -532,13 +532,14 @@ std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
                            static_cast<int>(std::floor(furthest * scan_per_metre))};
   const Layout scan(machine, parameters, ground, options, Sampling::scan);
   DrivableStarts starts(Layout(machine, parameters, ground, options, Sampling::ends), scan, points);
-  std::optional<std::variant<DigPath, Infeasible>> path;
+  Sampling told_by = Sampling::scan;
   while (const std::optional<double> start_x = starts.take()) {
-    path = make_dig_path(machine, parameters, *start_x, ground, options);
-    if (std::holds_alternative<DigPath>(*path)) break;
+    auto path = make_dig_path(machine, parameters, *start_x, ground, options);
+    if (std::holds_alternative<DigPath>(path)) return path;
+    told_by = Sampling::full;  // the scan missed what stops this one
   }
-  if (path) return *std::move(path);
-  return make_dig_path(machine, parameters, best_failing(scan, points), ground, options);
+  const Layout judge(machine, parameters, ground, options, told_by);
+  return make_dig_path(machine, parameters, best_failing(judge, points), ground, options);
 }
 
 std::variant<std::vector<DigPose>, Infeasible> way_down(const Machine& machine, const DigPath& path,

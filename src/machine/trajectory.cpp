@@ -123,8 +123,12 @@ class Route {
   void find_corners(double tolerance);
   double reach_at(const Corner& corner, double tolerance) const;
   void lay_out();
-  void stop_at(const DigPose& pose);
+  void stop_at(std::size_t pose);
   void add_rounding(const Corner& corner);
+  void add_faster_point(double slow_begin, DigPhase phase);
+  void end_slow_place(double along);
+  JointAngles joints_at(double along) const;
+  void add_point(DigPhase phase, const JointAngles& joints);
 
   const Machine& machine_;
   std::vector<DigPose> poses_;
@@ -132,6 +136,8 @@ class Route {
   std::vector<Corner> corners_;
   std::vector<TrajectoryPoint> points_;
   std::vector<std::size_t> stops_;
+  std::size_t slow_points_ = 0;  // up to the end of the last slow place: a stop or a rounding
+  double slow_end_ = 0.0;        // where it ends along the path [rad]
 };
 
 void Route::find_corners(double tolerance) {
@@ -159,8 +165,8 @@ void Route::find_corners(double tolerance) {
 
 void Route::lay_out() {
   constexpr double spacing = 1.25;  // no pose is kept nearer than this to the corner [reach]
-  points_.reserve(poses_.size() + 2 * steps_a_side * corners_.size() + 1);
-  stop_at(poses_.front());
+  points_.reserve(poses_.size() + (2 * steps_a_side + 1) * corners_.size() + 1);
+  stop_at(0);
   std::size_t i = 1;
   for (const Corner& corner : corners_) {
     while (i < corner.pose && along_[i] < corner.along - spacing * corner.reach) {
@@ -169,44 +175,59 @@ void Route::lay_out() {
     if (corner.reach > 0.0) {
       add_rounding(corner);
     } else {
-      stop_at(poses_[corner.pose]);
+      stop_at(corner.pose);
     }
     i = corner.pose + 1;
     while (along_[i] < corner.along + spacing * corner.reach) ++i;
   }
   while (i + 1 < poses_.size()) points_.push_back(point_at(poses_[i++]));
-  if (i < poses_.size()) stop_at(poses_[i]);
+  if (i < poses_.size()) stop_at(i);
 }
 
-/// Between two stops there is always a point that can have a speed.
-void Route::stop_at(const DigPose& pose) {
-  if (!stops_.empty() && stops_.back() + 1 == points_.size()) {
-    DigPose between;
-    between.phase = pose.phase;
-    between.joints = 0.5 * (points_.back().joints + pose.joints);
-    between.bucket = forward_kinematics(machine_, between.joints);
-    points_.push_back(point_at(between));
-  }
+void Route::stop_at(std::size_t pose) {
+  add_faster_point(along_[pose], poses_[pose].phase);
   stops_.push_back(points_.size());
-  points_.push_back(point_at(pose));
+  points_.push_back(point_at(poses_[pose]));
+  end_slow_place(along_[pose]);
 }
 
 void Route::add_rounding(const Corner& corner) {
-  std::size_t end = corner.pose;  // of the step of the path that holds the point
-  while (end > 1 && along_[end - 1] > corner.along - corner.reach) --end;
+  add_faster_point(corner.along - corner.reach, poses_[corner.pose].phase);
   for (int step = -steps_a_side; step <= steps_a_side; ++step) {
     const double share = static_cast<double>(step) / steps_a_side;
-    const double along = corner.along + share * corner.reach;
-    while (end + 1 < poses_.size() && along_[end] < along) ++end;
-    const double part = (along - along_[end - 1]) / (along_[end] - along_[end - 1]);
     const double off_path = 0.25 * corner.reach * (1.0 - std::abs(share)) * (1.0 - std::abs(share));
-    const JointAngles& from = poses_[end - 1].joints;
-    DigPose pose;
-    pose.phase = poses_[share > 0.0 ? corner.pose + 1 : corner.pose].phase;
-    pose.joints = from + part * (poses_[end].joints - from) + off_path * corner.turn;
-    pose.bucket = forward_kinematics(machine_, pose.joints);
-    points_.push_back(point_at(pose));
+    add_point(poses_[share > 0.0 ? corner.pose + 1 : corner.pose].phase,
+              joints_at(corner.along + share * corner.reach) + off_path * corner.turn);
   }
+  end_slow_place(corner.along + corner.reach);
+}
+
+/// Between two slow places there is always a point that can be faster: alone, a segment from one to
+/// the other would be driven as slowly as they are.
+void Route::add_faster_point(double slow_begin, DigPhase phase) {
+  if (points_.empty() || points_.size() > slow_points_) return;
+  add_point(phase, joints_at(0.5 * (slow_end_ + slow_begin)));
+}
+
+void Route::end_slow_place(double along) {
+  slow_points_ = points_.size();
+  slow_end_ = along;
+}
+
+/// Of the path, between its poses.
+JointAngles Route::joints_at(double along) const {
+  const auto end = std::lower_bound(along_.begin() + 1, along_.end() - 1, along);
+  const double part = (along - end[-1]) / (end[0] - end[-1]);
+  const DigPose* to = poses_.data() + (end - along_.begin());
+  return to[-1].joints + part * (to->joints - to[-1].joints);
+}
+
+void Route::add_point(DigPhase phase, const JointAngles& joints) {
+  DigPose pose;
+  pose.phase = phase;
+  pose.joints = joints;
+  pose.bucket = forward_kinematics(machine_, joints);
+  points_.push_back(point_at(pose));
 }
 
 // ---- how fast -----------------------------------------------------------------------------------

@@ -129,7 +129,8 @@ std::variant<DigPath, Infeasible> make_dig_path(const Machine& machine,
 /// Chooses the start point by a scan of the reach: the one with the largest smallest margin to the
 /// joint limits (and to heel contact), ties to the middle (docs/methods.md#path).
 ///
-/// @return the path from there, or why the best of the failing start points fails
+/// @return the path from there, or why the best of the failing start points fails: the one that
+/// gets furthest, at a few poses a phase unless these miss what stops it
 std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
                                                          const DigParameters& parameters,
                                                          const GroundProfile& ground,

@@ -57,7 +57,8 @@ struct StartRule {
   enum class Kind {
     largest_margin,  ///< make_dig_path_anywhere()
     /// least positive work of the links' own weight, on known ground and with all joints 2 degrees
-    /// off their limits; the largest margin where there is no such start
+    /// off their limits; the largest margin where there is no such start. Starts are compared at
+    /// coarse poses, on a grid of 0.2 m and then by halved steps (docs/methods.md#start)
     least_work,
     given,
     searched,  ///< one more number of the search; for search_dig() only
