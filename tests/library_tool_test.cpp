@@ -77,6 +77,83 @@ TEST_F(LibraryTool, ShardsMergeToTheSameBytes) {
   EXPECT_EQ(content_of(out_), whole_);
 }
 
+TEST_F(LibraryTool, AMergeAddsTheDensitiesOfARefinement) {
+  const Words refined = grid + Words{"--refine", "0.5"};
+  ASSERT_EQ(build(refined + Words{"--out", folder_.file("refined.json")}).code, 0);
+  const std::string cells = folder_.file("cells");
+  for (const char* shard : {"2/2", "1/2"}) {
+    EXPECT_EQ(build(refined + Words{"--cells", cells, "--shard", shard}).code, 0);
+  }
+  const ProgramResult result = build({"--merge", cells, "--out", out_});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(content_of(out_), content_of(folder_.file("refined.json")));
+  EXPECT_GT(content_of(out_).size(), whole_.size());
+}
+
+TEST_F(LibraryTool, AMergeRefusesOptionsThatItsCellsDoNotHave) {
+  const std::string cells = folder_.file("cells");
+  build(grid + Words{"--cells", cells, "--shard", "1/1"});
+  const ProgramResult sand = build({"--merge", cells, "--soil", "sand", "--out", out_});
+  EXPECT_EQ(sand.code, 2);
+  EXPECT_NE(sand.err.find("soil is \"loam\", \"sand\" is asked for"), std::string::npos)
+      << sand.err;
+  EXPECT_FALSE(fs::exists(out_));
+  EXPECT_EQ(build(grid + Words{"--merge", cells, "--out", out_}).code, 0);
+  EXPECT_EQ(content_of(out_), whole_);
+}
+
+TEST_F(LibraryTool, LibrariesThatCannotBeToldApartAreRefused) {
+  auto soil =
+      nlohmann::json::parse(content_of(std::string(EXCAVPLAN_DATA_SOURCE) + "/soils/loam.json"));
+  const std::string mine = folder_.write("mine.json", soil.dump());
+  const ProgramResult alike = build(grid + Words{"--soil", "loam," + mine, "--out", out_});
+  EXPECT_EQ(alike.code, 2);
+  EXPECT_NE(alike.err.find("two of the soils are named 'loam'"), std::string::npos) << alike.err;
+  soil["name"] = "loam of site a/b";
+  folder_.write("mine.json", soil.dump());
+  const std::string libraries = folder_.file("libraries");
+  const ProgramResult odd = build(grid + Words{"--soil", "sand," + mine, "--out", libraries});
+  EXPECT_EQ(odd.code, 0) << odd.err;
+  EXPECT_TRUE(fs::exists(libraries + "/zx120-loam_of_site_a_b.json"));
+}
+
+TEST_F(LibraryTool, WhereItWritesIsCheckedBeforeTheSearch) {
+  const std::string file = folder_.write("file", "mine");
+  const ProgramResult several = build(grid + Words{"--soil", "loam,sand", "--out", file});
+  EXPECT_EQ(several.code, 3);
+  EXPECT_NE(several.err.find("is a file, several libraries need a folder"), std::string::npos);
+  const std::string folder = folder_.file("folder");
+  fs::create_directory(folder);
+  const ProgramResult one = build(grid + Words{"--out", folder});
+  EXPECT_EQ(one.code, 3);
+  EXPECT_NE(one.err.find("is a folder, the library needs a file"), std::string::npos) << one.err;
+  EXPECT_EQ(content_of(file), "mine");
+}
+
+TEST_F(LibraryTool, LeavesFilesOfOthersAlone) {
+  const std::string cells = out_ + ".cells";
+  fs::create_directory(cells);
+  const std::string thesis = folder_.write("library.json.cells/thesis.txt", "years of work");
+  const ProgramResult foreign = build(grid + Words{"--out", out_});
+  EXPECT_EQ(foreign.code, 3);
+  EXPECT_NE(foreign.err.find("is no folder of cells"), std::string::npos) << foreign.err;
+  build(grid + Words{"--cells", cells, "--shard", "1/4"});  // now it is one
+  EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);
+  EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_EQ(content_of(thesis), "years of work");
+  EXPECT_FALSE(fs::exists(cells + "/job.json"));
+}
+
+TEST_F(LibraryTool, SeedsThatAFileCannotKeepAndOptionsWithoutEffectAreTold) {
+  const ProgramResult seed = build(grid + Words{"--seed", "18446744073709551615", "--out", out_});
+  EXPECT_EQ(seed.code, 2);
+  EXPECT_NE(seed.err.find("must be at most 9007199254740992"), std::string::npos) << seed.err;
+  const ProgramResult population = build(grid + Words{"--population", "6", "--out", out_});
+  EXPECT_EQ(population.code, 0);
+  EXPECT_NE(population.err.find("without effect: --population"), std::string::npos);
+  EXPECT_EQ(content_of(out_), whole_);
+}
+
 TEST_F(LibraryTool, ShardsOfAnotherRunAreRefused) {
   const std::string cells = folder_.file("cells");
   build(grid + Words{"--cells", cells, "--shard", "1/3"});
@@ -209,6 +286,13 @@ TEST_F(LibraryTool, ARankThatFailsAloneSaysWhyAndOneSpeaksForSeveral) {
   const std::string said = content_of(folder_.file("said"));
   EXPECT_GE(times(said, reason), 1) << said;
   EXPECT_LT(times(said, reason), 3) << said;  // where the first rank is late another speaks too
+  const std::string cells = " --densities 20 --cells " + folder_.file("cells") + " --shard ";
+  const std::string program = std::string(EXCAVPLAN_BIN) + "/build-path-library";
+  EXPECT_EQ(run_ranks("-n 1 " + program + cells + "1/2 : -n 1 " + program + cells + "2/2",
+                      folder_.file("said")),
+            2);
+  EXPECT_NE(content_of(folder_.file("said")).find("give all of them the same options"),
+            std::string::npos);
 #endif
 }
 

@@ -146,6 +146,14 @@ TEST(PathLibrary, BetweenTwoDigsWithNoneFeasibleAmidIsAnError) {
   EXPECT_NO_THROW(look_up(library, 100.0));
 }
 
+TEST(PathLibrary, ASlopeWithoutAnyDigIsNotInterpolatedAcross) {
+  PathLibrary library = sloped_library();
+  library.gaps = {{0.0, 0.1}, {50.0, 0.1}, {100.0, 0.1}};
+  EXPECT_EQ(test::error_of([&] { look_up(library, 50.0, 0.05); }),
+            "library: no dig is feasible at any density on a slope of 0.1 rad");
+  EXPECT_NO_THROW(look_up(library, 50.0, 0.2));
+}
+
 TEST(PathLibrary, FileRoundTripGivesTheSameBytes) {
   PathLibrary library = sloped_library();
   library.gaps = {{75.0, 0.0}, {20.0, 0.2}};

@@ -853,6 +853,56 @@ TEST_F(Tools, NoDigGoesWhereTheScanDoesNotSee) {
   EXPECT_NE(all.err.find("is not known"), std::string::npos) << all.err;
 }
 
+TEST_F(Tools, ALookUpSaysWhereTheGroundIsNotThatOfTheLibrary) {
+  const std::string terrain = shipped("quickstart/after.pcd");
+  const json pit = answer("plan-path", {"--density", "40", "--terrain", terrain});
+  EXPECT_TRUE(warns(pit, "ground_unlike_library"));
+  EXPECT_EQ(pit.at("look_up_loss"), nullptr);
+  EXPECT_EQ(run_program("plan-path", {"--density", "40", "--terrain", terrain, "--strict"}).code,
+            4);
+  const json even = answer(
+      "plan-path", {"--density", "40", "--terrain", shipped("quickstart/before.pcd"), "--strict"});
+  EXPECT_FALSE(warns(even, "ground_unlike_library"));
+  EXPECT_LT(number(even, "/look_up_loss"), 0.05);
+}
+
+TEST_F(Tools, APlanThatMayStallIsNotTrusted) {
+  const Words plan = {"--density",
+                      "90",
+                      "--soil",
+                      "clay",
+                      "--density-sd",
+                      "10",
+                      "--search",
+                      "--penetration-range",
+                      "0.5,0.9",
+                      "--angle-range",
+                      "60deg,80deg",
+                      "--evaluations",
+                      "30"};
+  const json risky = answer("plan-path", plan);
+  EXPECT_GT(number(risky, "/stall_probability"), 0.05);
+  EXPECT_TRUE(warns(risky, "may_stall"));
+  EXPECT_EQ(run_program("plan-path", plan + Words{"--strict"}).code, 4);
+}
+
+TEST_F(Tools, ADensityByTheLawOfAnotherSoilIsWarnedOf) {
+  const std::string result =
+      folder.write("result.json", R"({"density_percent": 40, "law_soil": "sand"})");
+  EXPECT_TRUE(warns(answer("plan-path", {"--density-from", result}), "law_of_other_soil"));
+  EXPECT_FALSE(warns(answer("plan-path", {"--density-from", result, "--soil", "sand"}),
+                     "law_of_other_soil"));
+}
+
+TEST_F(Tools, ALinkIsWrittenThrough) {
+  const std::string target = folder.write("target.csv", "old");
+  const std::string link = folder.file("link.csv");
+  fs::create_symlink(target, link);
+  answer("plan-path", {"--density", "40", "--trajectory", link});
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(content_of(target).rfind("time_s,phase,", 0), 0U);
+}
+
 TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {
   const Words few = {"--density", "40", "--population", "6", "--evaluations", "6"};
   const json looked_up = answer("plan-path", few + Words{"--goal", "time"});
@@ -860,6 +910,8 @@ TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {
   EXPECT_EQ(looked_up["warnings"][0]["message"],
             "without effect: --population, --goal, --evaluations; nothing is searched without "
             "--search");
+  const json started = answer("plan-path", {"--density", "40", "--start", "5.7"});
+  ASSERT_TRUE(warns(started, "options_ignored"));
   const json searched = answer("plan-path", few + Words{"--search"});
   ASSERT_TRUE(warns(searched, "options_ignored"));
   EXPECT_EQ(searched["warnings"][0]["message"],
@@ -1219,9 +1271,9 @@ TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
   refused(2, "must end in .pcd, .ply", "inspect-cloud", {scan, "--out", png});
   refused(2, "must end in .pcd, .ply", "simulate-dig",
           {"--density", "40", "--before", folder.file("b.pcd"), "--after", png});
-  refused(3, "cannot be written", "plan-path",
+  refused(3, "there is no folder", "plan-path",
           {"--density", "40", "--trajectory", folder.file("none/dig.csv")});
-  refused(3, "cannot be written", "simulate-dig",
+  refused(3, "there is no folder", "simulate-dig",
           {"--density", "40", "--history", folder.file("none/dig.csv")});
 }
 

@@ -164,6 +164,39 @@ Inputs with_job(Inputs inputs, const std::string& folder) {
   return inputs;
 }
 
+/// A merge takes the options of its cells: those given here must be the same.
+void require_agreement(const Inputs& given, const std::string& folder) {
+  const auto usual = nlohmann::json::parse(job_text(Inputs{}));
+  const auto asked = nlohmann::json::parse(job_text(given));
+  const auto job = nlohmann::json::parse(job_text(with_job(given, folder)));
+  for (const auto& [key, value] : asked.items()) {
+    if (key == "checksum" || value == usual[key] || value == job[key]) continue;
+    throw Error(ErrorKind::bad_input, job_file(folder) + ": " + key + " is " + job[key].dump() +
+                                          ", " + value.dump() +
+                                          " is asked for; a merge takes the options of its cells");
+  }
+}
+
+/// Of options that only the other method has.
+std::vector<Warning> warnings_of(const Inputs& inputs) {
+  const AnchoredSearch anchored;
+  const GeneticAlgorithm genetic;
+  const bool paper = inputs.method == "paper";
+  std::string ignored;
+  const auto note = [&ignored](bool given, const char* option) {
+    if (given) ignored += (ignored.empty() ? "" : ", ") + std::string(option);
+  };
+  note(paper && inputs.anchored.points != anchored.points, "--points");
+  note(paper && inputs.anchored.polish_evaluations != anchored.polish_evaluations, "--polish");
+  note(paper && inputs.anchored.inherited_evaluations != anchored.inherited_evaluations,
+       "--inherited");
+  note(!paper && inputs.genetic.population != genetic.population, "--population");
+  note(!paper && inputs.genetic.generations != genetic.generations, "--generations");
+  if (ignored.empty()) return {};
+  return {{"options_ignored",
+           "without effect: " + ignored + "; --method " + inputs.method + " has none"}};
+}
+
 /// Makes the folder and notes the job in it, or checks that it is of the same job.
 void begin_job(const Inputs& inputs, const std::string& folder) {
   std::error_code error;
@@ -325,7 +358,11 @@ void require_same_job(const Inputs& inputs, Ranks& ranks) {
 Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
   const Stopwatch watch;
   check(inputs);
-  if (inputs.merge) inputs = with_job(inputs, *inputs.merge);
+  const std::vector<Warning> warnings = warnings_of(inputs);
+  if (inputs.merge) {
+    require_agreement(inputs, *inputs.merge);
+    inputs = with_job(inputs, *inputs.merge);
+  }
   const LibraryGrid grid = grid_of(inputs);
   const std::optional<LibraryShard> shard =
       inputs.shard ? std::optional(shard_of(*inputs.shard)) : std::nullopt;
@@ -349,6 +386,7 @@ Outcome work(Inputs inputs, Console& console, Ranks* ranks) {
     if (folder_is_ours(inputs)) remove_cells(folder_of(inputs));
   }
   outcome.json["wall_time_s"] = watch.seconds();
+  outcome.warnings = warnings;
   return outcome;
 }
 

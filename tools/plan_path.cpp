@@ -33,8 +33,10 @@ const About about = {
 // Digs of a search unless told otherwise.
 /// Enough for 99 % of the optimum from any seed (docs/methods.md#planning).
 constexpr int evaluations_alone = 400;
-/// For each of the soils that an uncertain density may mean, and for all together.
+/// For each of the soils that an uncertain density may mean, and for all together: from the
+/// library's dig, and from nothing.
 constexpr int evaluations_each = 100;
+constexpr int evaluations_each_from_nothing = 200;
 
 struct Inputs {
   std::optional<double> density;
@@ -154,7 +156,8 @@ Slope slope_in(const PathLibrary& library, const Inputs& inputs, const Machine& 
                             library.entries.back().slope)};
 }
 
-/// A path of the library if one fits, to start the search from.
+/// A path of the library if one fits, to start the search from. Its paths are those of most mass
+/// per energy: a search for something else would stay near the wrong one.
 std::vector<DigParameters> known_good(const Inputs& inputs, const Machine& machine,
                                       const SoilKind& soil, double density, Site& site) {
   try {
@@ -339,9 +342,14 @@ class PossibleGround {
 std::optional<Plan> search_plan(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
                                 const Density& density, Site& site, Console& console) {
   const bool uncertain = density.sd > 0.0;
+  std::vector<DigParameters> start;
+  if (inputs.dig_search.goal == SearchInputs{}.goal) {
+    start = known_good(inputs, machine, soil, density.percent, site);
+  }
+  const int each = start.empty() ? evaluations_each_from_nothing : evaluations_each;
   DigSearchOptions options =
-      search_options(inputs.dig_search, uncertain ? evaluations_each : evaluations_alone, console);
-  options.start = known_good(inputs, machine, soil, density.percent, site);
+      search_options(inputs.dig_search, uncertain ? each : evaluations_alone, console);
+  options.start = start;
   Plan plan;
   plan.start_rule = describe(options.start_rule);
   if (uncertain) {

@@ -88,7 +88,8 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.option("generations", inputs.generations, "of the search, 0 for the method's own");
   arguments.option("evaluations", inputs.evaluations,
                    "digs simulated at most in one search, 0 for the method's own: 400 (100 for "
-                   "each of several densities), or all the paper's generations");
+                   "each of several densities, 200 without a library's dig to begin with), or all "
+                   "the paper's generations");
   arguments.file("checkpoint", inputs.checkpoint,
                  "keep the digs simulated in this file, those of a search for each of several "
                  "densities in FILE.soil1, FILE.soil2, ...");

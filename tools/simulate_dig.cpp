@@ -302,6 +302,13 @@ Outcome work(Inputs inputs) {
   for (const auto& file : {inputs.before, inputs.after}) {
     if (file) cloud_format_of_name(*file);  // refuses a wrong name before anything is written
   }
+  if (inputs.before && inputs.before == inputs.after) {
+    throw Error(ErrorKind::bad_input, "--before and --after are one file, " + *inputs.before);
+  }
+  for (const auto& file :
+       {inputs.before, inputs.after, inputs.history, inputs.plot, inputs.report}) {
+    if (file) require_folder_of(*file);
+  }
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   const Rectangle extent = scene_extent(machine, inputs.dump_at.value_or(default_dump_point()));

@@ -8,10 +8,15 @@
 #include <excavplan/error.hpp>
 #include <excavplan/survey/cloud.hpp>
 
+#include "json_file.hpp"
 #include "quantity.hpp"
 
 namespace excavplan::tools {
 namespace {
+
+// Of the simulated ground [m]; ours: a dig on finer cells takes minutes.
+constexpr double finest_cell = 0.005;
+constexpr double coarsest_cell = 1.0;
 
 // Gaps in a scan up to so wide are filled [m], and [cells]; ours.
 constexpr double widest_filled = 0.3;
@@ -39,6 +44,11 @@ std::string text(const Rectangle& r) {
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell) {
   if (terrain.frame && !terrain.cloud) {
     throw Error(ErrorKind::bad_input, "--terrain-frame goes with --terrain");
+  }
+  if (!(cell >= finest_cell && cell <= coarsest_cell)) {
+    throw Error(ErrorKind::bad_input, "--cell: the cell is " + number_text(cell) +
+                                          " m, must be in " + number_text(finest_cell) + " .. " +
+                                          number_text(coarsest_cell) + " m");
   }
   if (!terrain.cloud) return {undisturbed(flat_ground(extent, cell)), {}};
   Cloud cloud = read_cloud(*terrain.cloud);

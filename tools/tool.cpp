@@ -256,7 +256,8 @@ volatile std::sig_atomic_t stop_signal = 0;
 
 void on_stop_signal(int signal) {
   stop_signal = signal;
-  std::signal(signal, SIG_DFL);  // a second one ends the program at once
+  std::signal(SIGINT, SIG_DFL);  // a second one, of either kind, ends the program at once
+  std::signal(SIGTERM, SIG_DFL);
 }
 
 void print_outcome(const About& about, const Common& common, const Outcome& outcome) {
@@ -521,8 +522,15 @@ Machine machine_named(const std::string& name_or_path) {
 
 PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
                        const SoilKind& soil) {
-  const std::string name =
-      file ? *file : shipped_or_file("libraries", machine.name + "-" + soil.name);
+  const std::string shipped = "libraries/" + machine.name + "-" + soil.name + ".json";
+  std::string name;
+  try {
+    name = file ? *file : find_data_file(shipped);
+  } catch (const Error&) {
+    throw Error(ErrorKind::bad_input, "no library of " + machine.name + " in " + soil.name +
+                                          " is shipped: --search needs none, build-path-library "
+                                          "makes one");
+  }
   PathLibrary library = load_path_library(name);
   require_fit(library, machine, soil, name);
   return library;

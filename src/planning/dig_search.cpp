@@ -366,6 +366,7 @@ BestForEach best_for_each(const Machine& machine, const std::vector<PossibleSoil
   best.soils.resize(soils.size());
   parallel_for(soils.size(), options.threads, [&](std::size_t i) {
     DigSearchOptions one = shared;
+    one.seed = options.seed + i;  // what one overlooks another may see
     one.checkpoint = checkpoint_of_soil(options.checkpoint, i);
     best.soils[i] = search_dig(machine, *soils[i].simulator, terrain, one);
   });

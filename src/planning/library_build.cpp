@@ -23,6 +23,7 @@
 namespace excavplan {
 namespace {
 
+constexpr double finest_cell = 0.005;  // [m]; ours: a dig on finer cells takes minutes
 constexpr std::uint64_t most_exact = 9007199254740992;  // whole numbers of a double, 2^53
 
 void require(bool holds, const std::string& text) {
@@ -376,8 +377,9 @@ void require_buildable(const LibraryGrid& grid, const LibraryBuildOptions& optio
   require(options.search.seed <= most_exact,
           "the seed must be at most " + std::to_string(most_exact) + ", the largest whole number " +
               "that the file keeps, got " + std::to_string(options.search.seed));
-  require(options.search.cell > 0.0 && options.search.cell <= 1.0,
-          "the cell of the ground must be in 0 .. 1 m, got " + number_text(options.search.cell));
+  require(options.search.cell >= finest_cell && options.search.cell <= 1.0,
+          "the cell of the ground must be in " + number_text(finest_cell) + " .. 1 m, got " +
+              number_text(options.search.cell));
   require(!options.only_merge || !options.folder.empty(), "a merge needs a folder of cells");
 }
 

@@ -168,7 +168,8 @@ struct UncertainDigSearchResult {
 };
 
 /// Searches the best dig for each soil, and from all of them the dig of the highest expected worth.
-/// The stop rules are those of each search; an evaluation of the last is one dig in every soil.
+/// The stop rules are those of each search; an evaluation of the last is one dig in every soil. The
+/// search for the i-th soil has the i-th seed from the one given on.
 ///
 /// Of a checkpoint FILE the search for the first soil keeps FILE.soil1, that for the second
 /// FILE.soil2 and so on, the last search FILE itself; without `resume` all of them begin anew. What
