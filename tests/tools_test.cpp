@@ -1186,6 +1186,26 @@ TEST_F(BadInput, FilesThatAreNoCloudsAreRefused) {
   }
 }
 
+/// The ground of the next scan is never quite that on which it was planned.
+TEST_F(BadInput, ThePathOfAPlanMayComeMillimetresNearerToTheTracks) {
+  const auto asked = [](double start) {
+    return Words{"--density", "40", "--path", "45deg,0.35m,0.3m", "--start", std::to_string(start)};
+  };
+  double start = 4.2;
+  while (run_program("simulate-dig", asked(start)).code == 0) start -= 0.01;
+  refused(2, "it must stay beyond 2.300 m", "simulate-dig", asked(start));
+  const auto planned = [&](double start_x) {
+    const json path = {{"penetration_angle_rad", 0.7853981634},
+                       {"penetration_length_m", 0.35},
+                       {"drag_length_m", 0.3},
+                       {"start_x_m", start_x}};
+    return Words{"--density", "40", "--path-from",
+                 folder.write("near.json", json{{"path", path}}.dump())};
+  };
+  EXPECT_EQ(run_program("simulate-dig", planned(start)).code, 0);
+  EXPECT_EQ(run_program("simulate-dig", planned(start - 0.1)).code, 2);
+}
+
 TEST_F(BadInput, ThePathOfAPlanIsDugAndNothingElseTaken) {
   const ProgramResult plan = run_program("plan-path", {"--density", "40", "--json"});
   const std::string file = folder.write("plan.json", plan.out);

@@ -107,11 +107,26 @@ Inputs with_path(Inputs inputs) {
   return inputs;
 }
 
+/// A planned path keeps to the safe distances on the ground it was planned on, and often just so;
+/// here the ground may lie some millimetres off it.
+DigPathOptions rules_of(const Inputs& inputs) {
+  constexpr double of_angle = 0.01;   // [rad]; ours
+  constexpr double of_length = 0.02;  // [m]; ours
+  DigPathOptions rules;
+  if (!inputs.path_from) return rules;
+  rules.min_heel_clearance -= of_angle;
+  rules.track_margin -= of_length;
+  rules.max_depth += of_length;
+  rules.lift_clearance -= of_length;
+  return rules;
+}
+
 DigPath lay_out(const Inputs& inputs, const Machine& machine, const Terrain& ground) {
   const DigParameters parameters = inputs.path.value_or(paper_fixed_path());
   const GroundProfile profile = boom_plane_profile(ground);
-  auto path = inputs.start ? make_dig_path(machine, parameters, *inputs.start, profile)
-                           : make_dig_path_anywhere(machine, parameters, profile);
+  const DigPathOptions rules = rules_of(inputs);
+  auto path = inputs.start ? make_dig_path(machine, parameters, *inputs.start, profile, rules)
+                           : make_dig_path_anywhere(machine, parameters, profile, rules);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
     throw Error(ErrorKind::bad_input, "this dig cannot be driven: " + infeasible->message);
   }
