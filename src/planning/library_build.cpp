@@ -12,9 +12,9 @@
 #include <utility>
 
 #include <excavplan/error.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "../json_file.hpp"
-#include "fingerprint.hpp"
 #include "library_cells.hpp"
 #include "library_midway.hpp"
 #include "library_row.hpp"
@@ -321,7 +321,7 @@ class Build {
                         any.soil->name,
                         fingerprint(*any.machine),
                         fingerprint(*any.soil),
-                        simulator_fingerprint(),
+                        HeightMapSimulator::name(),
                         options_.search.cell,
                         options_.search.seed,
                         describe(options_.search),

@@ -10,7 +10,6 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
-#include "fingerprint.hpp"
 #include "library_midway.hpp"
 #include "search_checkpoint.hpp"
 
@@ -220,7 +219,7 @@ std::string describe(const LibrarySearch& search) {
 
 std::string identity(const LibraryCell& cell, const LibrarySearch& search) {
   return "machine " + fingerprint(*cell.machine) + ", soil " + fingerprint(*cell.soil) +
-         ", simulator " + simulator_fingerprint() + " on cells of " + number_text(search.cell) +
+         ", simulator " + HeightMapSimulator::name() + " on cells of " + number_text(search.cell) +
          " m, slope " + number_text(cell.slope) + " rad, density " +
          number_text(cell.density_percent) + " %, seed " + std::to_string(search.seed) + ", " +
          describe(search) + ", start " + describe(DigSearchOptions{}.start_rule);

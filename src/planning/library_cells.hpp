@@ -33,8 +33,8 @@ struct CellOutcome {
 
 /// The densities whose digs the search of this one starts from, nearest first; none: it is searched
 /// from nothing. They depend on the density alone, so that a cell is the same in every library:
-/// those that divide by ten form chains from 20 % and from 70 % outwards, each other starts from
-/// the two of them around it.
+/// those that divide by ten form chains from 0, 50 and 100 % outwards, each other starts from the
+/// two of them around it.
 std::vector<double> parent_densities(double density_percent, const LibrarySearch& search);
 
 /// Everything that decides the outcome of a cell, in words.

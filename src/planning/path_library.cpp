@@ -7,9 +7,9 @@
 #include <string>
 
 #include <excavplan/error.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "../json_file.hpp"
-#include "fingerprint.hpp"
 #include "library_cells.hpp"
 #include "library_midway.hpp"
 
@@ -228,7 +228,7 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
                  const std::string& name) {
   std::string text = difference("its machine", library.machine, machine.name) +
                      difference("its soil", library.soil, soil.name) +
-                     difference("its simulator", library.simulator, simulator_fingerprint());
+                     difference("its simulator", library.simulator, HeightMapSimulator::name());
   if (library.machine == machine.name && library.machine_fingerprint != fingerprint(machine)) {
     text += "; the numbers of machine " + machine.name + " have changed since it was computed";
   }
