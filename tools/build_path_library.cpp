@@ -182,19 +182,15 @@ std::vector<Warning> warnings_of(const Inputs& inputs) {
   const AnchoredSearch anchored;
   const GeneticAlgorithm genetic;
   const bool paper = inputs.method == "paper";
-  std::string ignored;
-  const auto note = [&ignored](bool given, const char* option) {
-    if (given) ignored += (ignored.empty() ? "" : ", ") + std::string(option);
-  };
-  note(paper && inputs.anchored.points != anchored.points, "--points");
-  note(paper && inputs.anchored.polish_evaluations != anchored.polish_evaluations, "--polish");
-  note(paper && inputs.anchored.inherited_evaluations != anchored.inherited_evaluations,
-       "--inherited");
-  note(!paper && inputs.genetic.population != genetic.population, "--population");
-  note(!paper && inputs.genetic.generations != genetic.generations, "--generations");
-  if (ignored.empty()) return {};
-  return {{"options_ignored",
-           "without effect: " + ignored + "; --method " + inputs.method + " has none"}};
+  IgnoredOptions ignored;
+  ignored.add(paper && inputs.anchored.points != anchored.points, "--points");
+  ignored.add(paper && inputs.anchored.polish_evaluations != anchored.polish_evaluations,
+              "--polish");
+  ignored.add(paper && inputs.anchored.inherited_evaluations != anchored.inherited_evaluations,
+              "--inherited");
+  ignored.add(!paper && inputs.genetic.population != genetic.population, "--population");
+  ignored.add(!paper && inputs.genetic.generations != genetic.generations, "--generations");
+  return ignored.warnings("--method " + inputs.method + " has none");
 }
 
 /// Makes the folder and notes the job in it, or checks that it is of the same job.

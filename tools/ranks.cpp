@@ -23,6 +23,10 @@ class MpiRanks : public Ranks {
   MpiRanks() {
     int provided = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
+    if (provided < MPI_THREAD_SERIALIZED) {
+      std::fprintf(stderr, "build-path-library: this MPI may not be called from several threads\n");
+      MPI_Abort(MPI_COMM_WORLD, 1);
+    }
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
     const MPI_Aint bytes = rank_ == 0 ? 2 * sizeof(long long) : 0;

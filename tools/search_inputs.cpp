@@ -144,28 +144,23 @@ void check(const SearchInputs& inputs) {
 std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use) {
   const bool searches = use == SearchUse::all;
   const SearchInputs usual;
-  std::string ignored;
-  const auto note = [&ignored](bool given, const char* option) {
-    if (given) ignored += (ignored.empty() ? "" : ", ") + std::string(option);
-  };
-  note(inputs.population && !(searches && inputs.method == "paper"), "--population");
-  note(inputs.start != usual.start && use == SearchUse::none, "--start");
+  IgnoredOptions ignored;
+  ignored.add(inputs.population && !(searches && inputs.method == "paper"), "--population");
+  ignored.add(inputs.start != usual.start && use == SearchUse::none, "--start");
   if (!searches) {
-    note(inputs.goal != usual.goal, "--goal");
-    note(inputs.rest_of_cycle != usual.rest_of_cycle, "--rest-of-cycle");
-    note(inputs.ranges[0].has_value(), "--angle-range");
-    note(inputs.ranges[1].has_value(), "--penetration-range");
-    note(inputs.ranges[2].has_value(), "--drag-range");
-    note(inputs.method != usual.method, "--method");
-    note(inputs.generations != usual.generations, "--generations");
-    note(inputs.evaluations != usual.evaluations, "--evaluations");
-    note(inputs.checkpoint.has_value(), "--checkpoint");
-    note(inputs.seed != usual.seed, "--seed");
+    ignored.add(inputs.goal != usual.goal, "--goal");
+    ignored.add(inputs.rest_of_cycle != usual.rest_of_cycle, "--rest-of-cycle");
+    ignored.add(inputs.ranges[0].has_value(), "--angle-range");
+    ignored.add(inputs.ranges[1].has_value(), "--penetration-range");
+    ignored.add(inputs.ranges[2].has_value(), "--drag-range");
+    ignored.add(inputs.method != usual.method, "--method");
+    ignored.add(inputs.generations != usual.generations, "--generations");
+    ignored.add(inputs.evaluations != usual.evaluations, "--evaluations");
+    ignored.add(inputs.checkpoint.has_value(), "--checkpoint");
+    ignored.add(inputs.seed != usual.seed, "--seed");
   }
-  if (ignored.empty()) return {};
-  return {{"options_ignored", "without effect: " + ignored + "; " +
-                                  (searches ? "the default method has none, --method paper has"
-                                            : "nothing is searched without --search")}};
+  return ignored.warnings(searches ? "the default method has none, --method paper has"
+                                   : "nothing is searched without --search");
 }
 
 }  // namespace excavplan::tools

@@ -134,6 +134,22 @@ class Console {
   bool line_open_ = false;
 };
 
+/// Options that were given and have no effect.
+class IgnoredOptions {
+ public:
+  void add(bool given, const std::string& option) {
+    if (given) text_ += (text_.empty() ? "" : ", ") + option;
+  }
+  /// One (options_ignored), or none.
+  std::vector<Warning> warnings(const std::string& reason) const {
+    if (text_.empty()) return {};
+    return {{"options_ignored", "without effect: " + text_ + "; " + reason}};
+  }
+
+ private:
+  std::string text_;
+};
+
 /// Runs a tool: parses, works, prints. @return the exit code
 int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
