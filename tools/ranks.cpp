@@ -66,6 +66,8 @@ class MpiRanks : public Ranks {
     constexpr int stopped_early = 75;
     if (code != 0 && code != stopped_early) {
       complain(complaint);
+      // The launcher drops what it has not passed on when it takes the job down.
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
       MPI_Abort(MPI_COMM_WORLD, code);
     }
     MPI_Win_unlock_all(window_);
@@ -101,8 +103,6 @@ class MpiRanks : public Ranks {
       for (std::string line; std::getline(lines, line);) {
         std::fprintf(stderr, "rank %d: %s\n", rank_, line.c_str());
       }
-      // The launcher drops what it has not passed on when it takes the job down.
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
     }
   }
 
