@@ -196,21 +196,16 @@ std::string decimals(double value, int digits) {
 
 void write_file(const std::string& path, const std::string& content) {
   struct stat status {};
-  if (::lstat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    std::ofstream out(path, std::ios::binary);  // a link, a pipe or a device stays what it is
-    out.write(content.data(), static_cast<std::streamsize>(content.size()));
-    out.close();
-    if (!out) throw Error(ErrorKind::bad_file, path + ": cannot be written");
-    return;
-  }
+  const bool stays = ::lstat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
   char host[65] = {};  // a folder may be shared by machines
   ::gethostname(host, sizeof host - 1);
   const std::string beside = path + ".part-" + host + "-" + std::to_string(::getpid());
-  std::ofstream out(beside, std::ios::binary);
+  const std::string& written = stays ? path : beside;
+  std::ofstream out(written, std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
-  if (!out || std::rename(beside.c_str(), path.c_str()) != 0) {
-    std::remove(beside.c_str());
+  if (!out || (!stays && std::rename(beside.c_str(), path.c_str()) != 0)) {
+    if (!stays) std::remove(beside.c_str());
     throw Error(ErrorKind::bad_file, path + ": cannot be written");
   }
 }

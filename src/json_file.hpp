@@ -59,6 +59,9 @@ class JsonObject {
   std::set<std::string> read_;
 };
 
+/// The largest whole number of which JSON's double keeps this and all smaller ones, 2^53.
+constexpr std::uint64_t most_exact = 9007199254740992;
+
 /// Shortest text of a number that reads back the same, for messages and files.
 std::string number_text(double value);
 /// The number with so many digits after the point: "0.350".

@@ -33,17 +33,8 @@ const Words grid = {"--densities", "10,20,35,70", "--cell", "0.1",         "--po
 ProgramResult build(const Words& words) { return run_program("build-path-library", words); }
 
 /// A run that is killed after a while, unless it has ended.
-void killed(Words words, std::chrono::microseconds after) {
-  const std::string program = std::string(EXCAVPLAN_BIN) + "/build-path-library";
-  words.insert(words.begin(), program);
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::execv(program.c_str(), arguments.data());
-    ::_exit(127);
-  }
+void killed(const Words& words, std::chrono::microseconds after) {
+  const pid_t child = started("build-path-library", words, [] {});
   std::this_thread::sleep_for(after);
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);

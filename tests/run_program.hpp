@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -63,53 +64,54 @@ inline int exit_code(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// Runs the program `name` of the folder EXCAVPLAN_BIN with nothing on its standard input. No shell
-/// is in between: the arguments arrive as they are.
-inline ProgramResult run_program(const std::string& name, std::vector<std::string> arguments = {}) {
-  const TemporaryFolder folder;
-  const std::string out = folder.file("out");
-  const std::string err = folder.file("err");
+/// Starts the program `name` of the folder EXCAVPLAN_BIN. No shell is in between: the arguments
+/// arrive as they are.
+/// @param redirect  gives the child its streams
+inline pid_t started(const std::string& name, std::vector<std::string> arguments,
+                     const std::function<void()>& redirect) {
   std::string program = std::string(EXCAVPLAN_BIN) + "/" + name;
   std::vector<char*> words = {program.data()};
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
-
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("fork failed");
   if (child == 0) {
+    redirect();
+    ::execv(program.c_str(), words.data());
+    ::_exit(127);
+  }
+  return child;
+}
+
+/// Runs a program to its end, with nothing on its standard input.
+inline ProgramResult run_program(const std::string& name,
+                                 const std::vector<std::string>& arguments = {}) {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  const std::string err = folder.file("err");
+  const pid_t child = started(name, arguments, [&] {
     constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
     ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
     ::dup2(::open(out.c_str(), flags, 0600), STDOUT_FILENO);
     ::dup2(::open(err.c_str(), flags, 0600), STDERR_FILENO);
-    ::execv(program.c_str(), words.data());
-    ::_exit(127);
-  }
+  });
   int status = 0;
   ::waitpid(child, &status, 0);
   return {exit_code(status), content_of(out), content_of(err)};
 }
 
 /// Runs a program on a terminal and interrupts it once it has shown `sign`.
-inline ProgramResult interrupted(const std::string& name, std::vector<std::string> words,
+inline ProgramResult interrupted(const std::string& name, const std::vector<std::string>& words,
                                  const std::string& sign) {
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   if (terminal < 0 || ::grantpt(terminal) != 0 || ::unlockpt(terminal) != 0) {
     throw std::runtime_error("no terminal to be had");
   }
   const std::string other_end = ::ptsname(terminal);
-  std::string program = std::string(EXCAVPLAN_BIN) + "/" + name;
-  std::vector<char*> arguments = {program.data()};
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-
-  const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error("fork failed");
-  if (child == 0) {
+  const pid_t child = started(name, words, [&] {
     ::dup2(::open("/dev/null", O_RDWR), STDOUT_FILENO);
     ::dup2(::open(other_end.c_str(), O_WRONLY | O_NOCTTY), STDERR_FILENO);
-    ::execv(program.c_str(), arguments.data());
-    ::_exit(127);
-  }
+  });
   ProgramResult result;
   bool sent = false;
   std::array<char, 1024> buffer{};

@@ -158,7 +158,7 @@ Inputs with_job(Inputs inputs, const std::string& folder) {
   inputs.genetic.population = whole("population");
   inputs.genetic.generations = whole("generations");
   inputs.cell = job.number("cell_m");
-  inputs.seed = static_cast<std::uint64_t>(job.number("seed", 0.0, 9007199254740992.0));
+  inputs.seed = static_cast<std::uint64_t>(job.number("seed", 0.0, most_exact));
   inputs.refine = job.number("refine_percent");
   job.done();
   return inputs;

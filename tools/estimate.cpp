@@ -131,11 +131,8 @@ nlohmann::ordered_json estimate_json(const VolumeChange& change, const Estimate&
   json["fallback"] = known.fallback ? fallback_json(*known.fallback) : nullptr;
   json["blocks"] = known.blocks ? blocks_json(*known.blocks) : nullptr;
   json["law"] = law.name;
-  if (law.soil.empty()) {
-    json["law_soil"] = nullptr;
-  } else {
-    json["law_soil"] = law.soil;
-  }
+  json["law_soil"] = nullptr;
+  if (!law.soil.empty()) json["law_soil"] = law.soil;
   json["trustworthy"] = result.trustworthy;
   return json;
 }

@@ -85,7 +85,8 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.option("population", inputs.population,
                    "individuals, --method paper (default: " +
                        std::to_string(GeneticAlgorithm{}.population) + ")");
-  arguments.option("generations", inputs.generations, "of the search, 0 for the method's own");
+  arguments.option("generations", inputs.generations,
+                   "of the search, 0 for as many as the evaluations allow, or the paper's");
   arguments.option("evaluations", inputs.evaluations,
                    "digs simulated at most in one search, 0 for the method's own: 400 (100 for "
                    "each of several densities, 200 without a library's dig to begin with), or all "

@@ -14,10 +14,6 @@
 namespace excavplan::tools {
 namespace {
 
-// Of the simulated ground [m]; ours: a dig on finer cells takes minutes.
-constexpr double finest_cell = 0.005;
-constexpr double coarsest_cell = 1.0;
-
 // Gaps in a scan up to so wide are filled [m], and [cells]; ours.
 constexpr double widest_filled = 0.3;
 constexpr double widest_filled_cells = 3.0;

@@ -371,9 +371,9 @@ void Arguments::option(const std::string& name, std::uint64_t& value, const std:
   add({name, "N", help, std::to_string(value), false, false,
        [&value, name](const std::string& text) {
          value = parse_integer<std::uint64_t>("--" + name, text);
-         constexpr std::uint64_t most = 9007199254740992;  // that JSON keeps exactly, 2^53
-         if (value > most) {
-           usage_error("--" + name + ": " + text + " must be at most " + std::to_string(most));
+         if (value > most_exact) {
+           usage_error("--" + name + ": " + text + " must be at most " +
+                       std::to_string(most_exact));
          }
        }});
 }

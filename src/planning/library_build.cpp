@@ -23,8 +23,7 @@
 namespace excavplan {
 namespace {
 
-constexpr double finest_cell = 0.005;  // [m]; ours: a dig on finer cells takes minutes
-constexpr std::uint64_t most_exact = 9007199254740992;  // whole numbers of a double, 2^53
+constexpr int most_points = 1000000;  // of a first generation; ours
 
 void require(bool holds, const std::string& text) {
   if (!holds) throw Error(ErrorKind::bad_input, "library: " + text);
@@ -377,9 +376,13 @@ void require_buildable(const LibraryGrid& grid, const LibraryBuildOptions& optio
   require(options.search.seed <= most_exact,
           "the seed must be at most " + std::to_string(most_exact) + ", the largest whole number " +
               "that the file keeps, got " + std::to_string(options.search.seed));
-  require(options.search.cell >= finest_cell && options.search.cell <= 1.0,
-          "the cell of the ground must be in " + number_text(finest_cell) + " .. 1 m, got " +
-              number_text(options.search.cell));
+  const auto* anchored = std::get_if<AnchoredSearch>(&options.search.method);
+  require(!anchored || anchored->points <= most_points,
+          "points must be <= " + std::to_string(most_points) + ", got " +
+              std::to_string(anchored ? anchored->points : 0));
+  require(options.search.cell >= finest_cell && options.search.cell <= coarsest_cell,
+          "the cell of the ground must be in " + number_text(finest_cell) + " .. " +
+              number_text(coarsest_cell) + " m, got " + number_text(options.search.cell));
   require(!options.only_merge || !options.folder.empty(), "a merge needs a folder of cells");
 }
 

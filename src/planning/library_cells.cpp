@@ -35,15 +35,6 @@ std::string describe(const AnchoredSearch& method) {
          "; others: " + std::to_string(method.inherited_evaluations) + " from neighbours";
 }
 
-constexpr int most_points = 1000000;  // of a first generation; ours
-
-void check(const LibrarySearch& search) {
-  const auto* anchored = std::get_if<AnchoredSearch>(&search.method);
-  if (!anchored || anchored->points <= most_points) return;
-  throw Error(ErrorKind::bad_input, "library: points must be <= " + std::to_string(most_points) +
-                                        ", got " + std::to_string(anchored->points));
-}
-
 /// From nothing.
 /// @param effort  number of times as many points as usual
 DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
@@ -234,7 +225,6 @@ std::string cell_file_name(const LibraryCell& cell, const LibrarySearch& search)
 std::optional<CellOutcome> compute_cell(
     const LibraryCell& cell, const LibrarySearch& search, const std::vector<CellOutcome>& parents,
     const std::function<bool(const SearchProgress&)>& progress) {
-  check(search);
   CellSearch work(cell, search, progress);
   const Expectation expected = expected_of(cell.density_percent, parents);
   if (!expected.starts.empty()) work.attempt(warm_search(search, expected.starts));

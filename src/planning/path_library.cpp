@@ -178,7 +178,7 @@ PathLibrary load_path_library(const std::string& path) {
   library.soil_fingerprint = file.text("soil_fingerprint");
   library.simulator = file.text("simulator");
   library.cell = file.number("cell_m", 0.0, 1.0);
-  library.seed = static_cast<std::uint64_t>(file.number("seed", 0.0, 9007199254740992.0));
+  library.seed = static_cast<std::uint64_t>(file.number("seed", 0.0, most_exact));
   library.search = file.text("search");
   for (JsonObject& object : file.objects("entries")) {
     library.entries.push_back(read_library_entry(std::move(object)));

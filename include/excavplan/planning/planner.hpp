@@ -39,6 +39,11 @@ std::string describe(const DigFailure& failure);
 /// windrows wide on both sides of the boom plane.
 Rectangle planning_extent(const Machine& machine);
 
+/// Between which cells the tools and libraries simulate the ground [m]; ours: a dig on finer ones
+/// takes minutes.
+inline constexpr double finest_cell = 0.005;
+inline constexpr double coarsest_cell = 1.0;
+
 /// planning_extent() as level ground.
 Terrain level_planning_ground(const Machine& machine, double cell = 0.05);
 
