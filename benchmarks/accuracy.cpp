@@ -16,11 +16,11 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/depth_camera.hpp>
 
-#include "block_heap.hpp"
-#include "estimate.hpp"
-#include "parallel.hpp"
-#include "scans.hpp"
-#include "survey_scenes.hpp"
+#include "base/parallel.hpp"
+#include "shared/estimate.hpp"
+#include "shared/scans.hpp"
+#include "support/block_heap.hpp"
+#include "support/survey_scenes.hpp"
 
 /// @file
 /// Surveys of digs whose volumes are known, from the scans' files to the density as
@@ -102,8 +102,8 @@ HeightMap surface_of(const Dig& dig, Part part, bool after) {
   for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
     for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
       for (int i = 0; i < fine * fine; ++i) {
-        const double dx = ((i % fine + 0.5) / fine - 0.5) * map.cell;
-        const double dy = ((i / fine + 0.5) / fine - 0.5) * map.cell;
+        const double dx = ((i % fine + 0.5) / fine - 0.5) * map.cell_size;
+        const double dy = ((i / fine + 0.5) / fine - 0.5) * map.cell_size;
         map.z(row, col) += change_at(dig, part, map.x(col) + dx, map.y(row) + dy);
       }
       map.z(row, col) /= fine * fine;
@@ -156,7 +156,7 @@ std::string record_of(const Survey& survey, const VolumeChange& change,
   const Measured none{std::nan(""), std::nan("")};
   const Measured k = found.bulking.value_or(none);
   const Measured free = found.corrected.value_or(k);
-  const DensityEstimate d = found.density.value_or(DensityEstimate{});
+  const RelativeDensity d = found.density.value_or(RelativeDensity{});
   const double k_free = dig.bulking - survey.voids / dig.pit_volume();
   char line[1024];
   std::snprintf(line, sizeof line,
@@ -181,15 +181,15 @@ std::string measured(const std::string& folder, const Survey& survey) {
   const bool align_them = survey.kind.registered;
   if (survey.whole) {
     const tools::SeenPair scans = scans_of(folder, survey, Part::whole);
-    const SurveyedPair scene = tools::surveyed(scans, cell_for(scans), align_them).surfaces;
+    const SurfacePair scene = tools::surveyed(scans, cell_for(scans), align_them).surfaces;
     const VolumeChange change = measure_change(scene);
     return record_of(survey, change, estimate(change, {scene.after.height}, *survey.law));
   }
   const tools::SeenPair dig_scans = scans_of(folder, survey, Part::dig);
   const tools::SeenPair dump_scans = scans_of(folder, survey, Part::dump);
   const double cell = std::max(cell_for(dig_scans), cell_for(dump_scans));
-  const SurveyedPair dig = tools::surveyed(dig_scans, cell, align_them).surfaces;
-  const SurveyedPair dump = tools::surveyed(dump_scans, cell, align_them).surfaces;
+  const SurfacePair dig = tools::surveyed(dig_scans, cell, align_them).surfaces;
+  const SurfacePair dump = tools::surveyed(dump_scans, cell, align_them).surfaces;
   const VolumeChange change = measure_change(dig, dump);
   return record_of(survey, change,
                    estimate(change, {dig.after.height, dump.after.height}, *survey.law));

@@ -11,7 +11,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
-#include "parallel.hpp"
+#include "base/parallel.hpp"
 #include "planning/dig_layout.hpp"
 
 namespace excavplan {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../tests/search_functions.hpp"
+#include "support/search_functions.hpp"
 
 /// @file
 /// The efficiency of a real dig in the built-in simulator as a function of the unit cube.

@@ -20,14 +20,14 @@
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/random.hpp>
 
+#include "base/angles.hpp"
+
 /// @file
 /// Inverse kinematics in closed form beside the numeric solvers of orocos-kdl (optional), on the
 /// same random postures within the limits; and what timing a path costs.
 
 namespace excavplan {
 namespace {
-
-constexpr double pi = 3.141592653589793;
 
 const Machine& zx120() {
   static const Machine machine = load_machine(find_data_file("machines/zx120.json"));

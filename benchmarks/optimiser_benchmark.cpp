@@ -20,11 +20,11 @@
 #include <pagmo/problem.hpp>
 #endif
 
-#include <excavplan/planning/genetic.hpp>
+#include <excavplan/optimisation/search.hpp>
 #include <excavplan/random.hpp>
 
-#include "../tests/search_functions.hpp"
 #include "dig_functions.hpp"
+#include "support/search_functions.hpp"
 
 /// @file
 /// optimiser_benchmark [SEEDS [BUDGET [DIGS [GRID]]]]: how many evaluations each optimiser needs to

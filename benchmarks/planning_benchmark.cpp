@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/planning/path_library.hpp>
+#include <excavplan/library/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/simulation/section_simulator.hpp>
 

@@ -55,7 +55,7 @@ void survey(benchmark::State& state) {
   for (auto _ : state) {
     const std::vector<ScanOutline> seen = outlines(files.scans());
     RasterOptions raster;
-    raster.cell = cell_for(seen);
+    raster.cell_size = cell_for(seen);
     benchmark::DoNotOptimize(survey_surfaces(files.scans(), *seen.front().extent, raster));
   }
   state.SetItemsProcessed(state.iterations() * state.range(0) * state.range(1));

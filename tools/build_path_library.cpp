@@ -7,12 +7,14 @@
 #include <sstream>
 #include <vector>
 
-#include <excavplan/planning/library_build.hpp>
+#include <excavplan/library/library_build.hpp>
 
-#include "json_file.hpp"
-#include "ranks.hpp"
-#include "results.hpp"
-#include "tool.hpp"
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "shared/ranks.hpp"
+#include "shared/results.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -44,7 +46,7 @@ struct Inputs {
   std::string method = "memetic";
   AnchoredSearch anchored;
   GeneticAlgorithm genetic;
-  double cell = LibrarySearch{}.cell;
+  double cell_size = LibrarySearch{}.cell_size;
   std::uint64_t seed = LibrarySearch{}.seed;
   double refine = 0.0;
   std::uint64_t threads = 0;
@@ -74,7 +76,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "memetic: digs of a density that starts from its neighbours");
   arguments.option("population", inputs.genetic.population, "paper: individuals of a generation");
   arguments.option("generations", inputs.genetic.generations, "paper: generations of a search");
-  arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
   arguments.option("seed", inputs.seed, "seed; the same seed gives the same file");
   arguments.option("refine", inputs.refine, Quantity::percent,
                    "add densities midway, down to 1 % apart, wherever the look-up there gives away "
@@ -137,7 +139,7 @@ std::string job_text(const Inputs& inputs) {
                       {"inherited", inputs.anchored.inherited_evaluations},
                       {"population", inputs.genetic.population},
                       {"generations", inputs.genetic.generations},
-                      {"cell_m", inputs.cell},
+                      {"cell_m", inputs.cell_size},
                       {"seed", inputs.seed},
                       {"refine_percent", inputs.refine}});
 }
@@ -157,7 +159,7 @@ Inputs with_job(Inputs inputs, const std::string& folder) {
   inputs.anchored.inherited_evaluations = whole("inherited");
   inputs.genetic.population = whole("population");
   inputs.genetic.generations = whole("generations");
-  inputs.cell = job.number("cell_m");
+  inputs.cell_size = job.number("cell_m");
   inputs.seed = static_cast<std::uint64_t>(job.number("seed", 0.0, most_exact));
   inputs.refine = job.number("refine_percent");
   job.done();
@@ -234,7 +236,7 @@ LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   } else {
     options.search.method = inputs.anchored;
   }
-  options.search.cell = inputs.cell;
+  options.search.cell_size = inputs.cell_size;
   options.search.seed = inputs.seed;
   options.refine = inputs.refine / 100.0;
   options.threads = static_cast<unsigned>(inputs.threads);

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include <excavplan/planning/calibration.hpp>
+#include <excavplan/simulation/calibration.hpp>
 
-#include "json_file.hpp"
-#include "results.hpp"
-#include "table.hpp"
-#include "tool.hpp"
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "shared/results.hpp"
+#include "shared/table.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -27,7 +28,7 @@ struct Inputs {
   std::string machine = "zx120";
   std::string densities = "0:5:100";
   std::optional<DigParameters> path;
-  double cell = 0.05;
+  double cell_size = 0.05;
   std::optional<std::string> out;
 };
 
@@ -39,7 +40,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities to dig [%], or a list a,b,c");
   arguments.option("path", inputs.path, "dig path (default: the paper's 45deg,0.35m,1.5m)");
-  arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
   arguments.file("out", inputs.out, "law file to write, for estimate-density --law");
 }
 
@@ -71,7 +72,7 @@ DensityCalibration from_samples(const std::string& file) {
 DensityCalibration from_simulator(const Inputs& inputs) {
   CalibrationOptions options;
   options.densities_percent = parse_densities("--densities", inputs.densities);
-  options.cell = inputs.cell;
+  options.cell_size = inputs.cell_size;
   if (inputs.path) options.path = *inputs.path;
   return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);
 }

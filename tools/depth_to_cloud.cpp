@@ -9,9 +9,11 @@
 
 #include <excavplan/survey/scan_pose.hpp>
 
-#include "json_file.hpp"
-#include "table.hpp"
-#include "tool.hpp"
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "shared/table.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <excavplan/ground/blocks.hpp>
-#include <excavplan/planning/fallback.hpp>
 #include <excavplan/planning/planner.hpp>
+#include <excavplan/simulation/fallback.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/survey/cloud.hpp>
 
@@ -13,13 +13,14 @@
 #include <excavplan/survey/paper_method.hpp>
 #endif
 
-#include "estimate.hpp"
-#include "figures.hpp"
-#include "json_file.hpp"
-#include "results.hpp"
-#include "scans.hpp"
-#include "survey_planning.hpp"
-#include "tool.hpp"
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "shared/estimate.hpp"
+#include "shared/figures.hpp"
+#include "shared/results.hpp"
+#include "shared/scans.hpp"
+#include "shared/survey_planning.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -50,7 +51,7 @@ struct Inputs {
   bool compare = false;
   bool still = false;
   std::optional<std::string> plan_survey;
-  std::optional<double> cell;
+  std::optional<double> cell_size;
   std::optional<DigParameters> dug_path;
   std::optional<double> dug_start;
   std::string machine = "zx120";
@@ -76,7 +77,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.flag("no-register", inputs.still,
                  "the sensor stood still between the scans: do not bring them onto each other");
   arguments.flag("compare-methods", inputs.compare, "show what both methods give");
-  arguments.option("cell", inputs.cell, Quantity::length,
+  arguments.option("cell", inputs.cell_size, Quantity::length,
                    "cell of the height map, voxel of the paper's method (default: from the density "
                    "of the points, at least 0.05)");
   arguments.text("law", "NAME|FILE", inputs.law,
@@ -107,7 +108,7 @@ VolumeChange measured(const std::string& files, const Measure& measure) {
 struct Survey {
   SeenPair dig;
   std::optional<SeenPair> dump;
-  double cell = 0.05;
+  double cell_size = 0.05;
 };
 
 Survey read_survey(const Inputs& inputs) {
@@ -116,12 +117,12 @@ Survey read_survey(const Inputs& inputs) {
   }
   Survey survey;
   survey.dig = read_scans(*inputs.before, *inputs.after, inputs.frames);
-  survey.cell = cell_for(survey.dig);
+  survey.cell_size = cell_for(survey.dig);
   if (inputs.dump_before) {
     survey.dump = read_scans(*inputs.dump_before, *inputs.dump_after, inputs.frames);
-    survey.cell = std::max(survey.cell, cell_for(*survey.dump));
+    survey.cell_size = std::max(survey.cell_size, cell_for(*survey.dump));
   }
-  if (inputs.cell) survey.cell = *inputs.cell;
+  if (inputs.cell_size) survey.cell_size = *inputs.cell_size;
   return survey;
 }
 
@@ -139,8 +140,8 @@ struct Maps {
 
 Maps maps_of(const Survey& survey, bool align_them) {
   Maps maps;
-  maps.dig = surveyed(survey.dig, survey.cell, align_them);
-  if (survey.dump) maps.dump = surveyed(*survey.dump, survey.cell, align_them);
+  maps.dig = surveyed(survey.dig, survey.cell_size, align_them);
+  if (survey.dump) maps.dump = surveyed(*survey.dump, survey.cell_size, align_them);
   return maps;
 }
 
@@ -228,7 +229,7 @@ double median_height(const Cloud& cloud) {
 
 VolumeChange paper_change(const Inputs& inputs, const Survey& survey, const VolumeChange& surface) {
   PaperMethodOptions options;
-  options.leaf = survey.cell;
+  options.leaf = survey.cell_size;
   auto dig_area = inputs.change.dig_area;
   auto dump_area = inputs.change.dump_area;
   if (!survey.dump) {
@@ -377,7 +378,7 @@ Outcome work_on_scans(const Inputs& inputs) {
 
   Outcome outcome;
   outcome.json = counts.json;
-  outcome.json["cell_m"] = survey.cell;
+  outcome.json["cell_m"] = survey.cell_size;
   outcome.json["registration"] = registration_json(maps, !inputs.still);
   outcome.json["zones"] = zones_json(surface);
   outcome.lines = counts.lines;

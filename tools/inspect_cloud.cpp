@@ -4,7 +4,7 @@
 
 #include <excavplan/survey/cloud.hpp>
 
-#include "tool.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -7,10 +7,11 @@
 
 #include <excavplan/ground/volume_change.hpp>
 
-#include "json_file.hpp"
-#include "scans.hpp"
-#include "table.hpp"
-#include "tool.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "shared/scans.hpp"
+#include "shared/table.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -51,7 +52,7 @@ struct Inputs {
   RunInputs second;
   std::optional<std::string> before_frame;
   std::optional<std::string> after_frame;
-  std::optional<double> cell;
+  std::optional<double> cell_size;
 };
 
 void declare_run(Arguments& arguments, RunInputs& run, const std::string& prefix,
@@ -81,7 +82,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("before-frame", inputs.before_frame,
                  "4 x 4 matrix that takes the clouds before into the site frame");
   arguments.file("after-frame", inputs.after_frame, "the same for the clouds after");
-  arguments.option("cell", inputs.cell, Quantity::length,
+  arguments.option("cell", inputs.cell_size, Quantity::length,
                    "cell of the height maps (default: from the density of the points, at least "
                    "0.05)");
 }
@@ -241,9 +242,9 @@ Measured heap_volume(const RunInputs& run, const Inputs& inputs, std::vector<War
   const SeenPair scans =
       read_scans(*run.dump_before, *run.dump_after, {inputs.before_frame, inputs.after_frame, {}});
   const std::string files = scans.files() + ": ";
-  const SurfacePair dump = surfaces(scans, inputs.cell.value_or(cell_for(scans)));
+  const HeightMapPair dump = surfaces(scans, inputs.cell_size.value_or(cell_for(scans)));
   try {
-    const SurfacePair no_dig{dump.before, dump.before};
+    const HeightMapPair no_dig{dump.before, dump.before};
     const VolumeChange change = measure_change(no_dig, dump);
     if (!(change.dumped.value > 0.0)) {
       throw Error(ErrorKind::bad_file, "no ground rose by more than the noise of the scans");

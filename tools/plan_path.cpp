@@ -4,15 +4,17 @@
 #include <cmath>
 #include <variant>
 
-#include <excavplan/planning/path_library.hpp>
+#include <excavplan/library/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
-#include "figures.hpp"
-#include "json_file.hpp"
-#include "results.hpp"
-#include "search_inputs.hpp"
-#include "site.hpp"
-#include "tool.hpp"
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "shared/figures.hpp"
+#include "shared/results.hpp"
+#include "shared/search_inputs.hpp"
+#include "shared/site.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -47,7 +49,7 @@ struct Inputs {
   TerrainInput terrain;
   std::string soil = "loam";
   std::string machine = "zx120";
-  double cell = 0.05;
+  double cell_size = 0.05;
   SearchInputs dig_search;
   std::optional<std::string> trajectory;
   std::optional<std::string> plot;
@@ -71,7 +73,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "4 x 4 matrix that takes the terrain cloud into the site frame");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
-  arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
   declare_search(arguments, inputs.dig_search);
   arguments.file("trajectory", inputs.trajectory,
                  "write the joint trajectory, CSV, or JSON as .json");
@@ -459,7 +461,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Density density = density_of(inputs);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell);
+  Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
   const SearchUse use = inputs.search          ? SearchUse::all
                         : inputs.terrain.cloud ? SearchUse::start_only
                                                : SearchUse::none;

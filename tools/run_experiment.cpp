@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include <excavplan/planning/calibration.hpp>
-#include <excavplan/planning/path_library.hpp>
+#include <excavplan/library/path_library.hpp>
+#include <excavplan/simulation/calibration.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
-#include "json_file.hpp"
-#include "results.hpp"
-#include "tool.hpp"
+#include "base/json.hpp"
+#include "shared/results.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -30,7 +30,7 @@ struct Inputs {
   std::optional<std::string> library;
   std::string law = "default";
   bool search = false;
-  double cell = 0.05;
+  double cell_size = 0.05;
   std::uint64_t seed = 1;
   std::uint64_t threads = 0;
 };
@@ -47,7 +47,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("path", inputs.path, "fixed path (default: the paper's 45deg,0.35m,1.5m)");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
-  arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
   arguments.option("seed", inputs.seed, "seed of the searches");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core");
 }
@@ -133,8 +133,8 @@ struct Row {
 
 Row run(const Inputs& inputs, const Setting& setting, const Condition& condition) {
   // 1-2: dig once along the fixed path, measure k from the height maps.
-  const Terrain scene =
-      undisturbed(flat_ground(scene_extent(setting.machine, default_dump_point()), inputs.cell));
+  const Terrain scene = undisturbed(
+      flat_ground(scene_extent(setting.machine, default_dump_point()), inputs.cell_size));
   const HeightMapSimulator simulator(setting.machine, setting.soil, condition.density);
   const PlannedDig fixed = dig_or_fail(setting, simulator, setting.fixed);
   const auto path =
@@ -144,7 +144,7 @@ Row run(const Inputs& inputs, const Setting& setting, const Condition& condition
   const DigResult result = simulator.dig(scene, std::get<DigPath>(path), dump);
   const HeightMapVolumes volumes = height_map_volumes(scene, result.after(scene), *dump.dump_at);
   // 3: choose the path for the density estimated from it.
-  const DensityEstimate estimate = estimate_density(setting.law, {volumes.bulking_factor, 0.0});
+  const RelativeDensity estimate = relative_density(setting.law, {volumes.bulking_factor, 0.0});
   const PlannedDig chosen = planned_dig(inputs, setting, estimate.percent);
   // 4: dig again in the true soil; the fixed path, too, from where the planned one's rule puts it.
   const PlannedDig planned = dig_as_planned(setting, simulator, chosen);
@@ -189,7 +189,7 @@ Setting setting_of(const Inputs& inputs) {
     setting.library = library_of(inputs.library, setting.machine, setting.soil);
   }
   setting.fixed = inputs.path.value_or(paper_fixed_path());
-  setting.ground = level_planning_ground(setting.machine, inputs.cell);
+  setting.ground = level_planning_ground(setting.machine, inputs.cell_size);
   return setting;
 }
 

@@ -5,23 +5,24 @@
 #include <tuple>
 #include <utility>
 
-#include <excavplan/planning/calibration.hpp>
 #include <excavplan/random.hpp>
+#include <excavplan/simulation/calibration.hpp>
 #include <excavplan/simulation/depth_camera.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/survey/cloud.hpp>
 
-#include "figures.hpp"
-#include "joint_loads.hpp"
-#include "json_file.hpp"
-#include "results.hpp"
-#include "site.hpp"
-#include "tool.hpp"
+#include "base/angles.hpp"
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "shared/figures.hpp"
+#include "shared/joint_loads.hpp"
+#include "shared/results.hpp"
+#include "shared/site.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-constexpr double pi = 3.141592653589793;
 
 const About about = {
     "simulate-dig",
@@ -41,7 +42,7 @@ struct Inputs {
   std::optional<Eigen::Vector2d> dump_at;
   std::string soil = "loam";
   std::string machine = "zx120";
-  double cell = 0.05;
+  double cell_size = 0.05;
   std::uint64_t seed = 1;
   double noise = DepthCamera{}.noise;
   std::optional<std::string> before;
@@ -68,7 +69,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("terrain-frame", inputs.terrain.frame,
                  "4 x 4 matrix that takes the terrain cloud into the site frame");
   arguments.option("dump-at", inputs.dump_at, "where the payload is dumped (default: 5.5,4)");
-  arguments.option("cell", inputs.cell, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
   arguments.file("before", inputs.before, "write the scene before, as a depth camera sees it");
   arguments.file("after", inputs.after, "write the scene after");
   arguments.option("seed", inputs.seed, "seed of the scans' noise");
@@ -327,7 +328,7 @@ Outcome work(Inputs inputs) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   const Rectangle extent = scene_extent(machine, inputs.dump_at.value_or(default_dump_point()));
-  Site site = make_site(inputs.terrain, extent, inputs.cell);
+  Site site = make_site(inputs.terrain, extent, inputs.cell_size);
   const Dug dug = dig(inputs, machine, soil, site);
 
   Outcome outcome;

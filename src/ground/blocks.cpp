@@ -11,8 +11,8 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/text.hpp"
 #include "ground/grid_cells.hpp"
-#include "json_file.hpp"
 
 namespace excavplan {
 namespace {
@@ -96,7 +96,7 @@ std::optional<WindowFit> fit_window(const Patch& patch, Cell at, Eigen::Index ra
   const Vector surface = solver.solve(right);
   const Vector x_row = solver.solve(Vector::Unit(1));
   const Vector y_row = solver.solve(Vector::Unit(2));
-  const double cell = patch.map.cell;
+  const double cell = patch.map.cell_size;
   return WindowFit{surface(1) / cell, surface(2) / cell,
                    std::max(0.0, squares - surface.dot(right)) / (count - terms),
                    0.5 * (x_row(1) + y_row(2)) / (cell * cell)};
@@ -123,7 +123,7 @@ Eigen::Vector3d normal_of(const WindowFit& fit) {
 void judge_cell(const Patch& patch, Cell cell, double repose, Findings& found) {
   const auto radius =
       std::max(least_coarse_radius,
-               static_cast<Eigen::Index>(std::lround(0.5 * coarse_window / patch.map.cell)));
+               static_cast<Eigen::Index>(std::lround(0.5 * coarse_window / patch.map.cell_size)));
   const auto fine = fit_window<3>(patch, cell, 1);
   const auto coarse = fit_window<6>(patch, cell, radius);
   if (!fine || !coarse) return;
@@ -222,7 +222,7 @@ std::optional<double> size_of_blocks(const std::vector<Patch>& heap) {
   constexpr double median_of_normal = 0.6745;
   constexpr std::size_t fewest_bends = 50;
   std::vector<double> bend_per_lag;
-  const double cell = heap.front().map.cell;
+  const double cell = heap.front().map.cell_size;
   const auto last = static_cast<Eigen::Index>(longest_lag / cell);
   for (Eigen::Index lag = 1; lag <= last; ++lag) {
     std::vector<double> bends;
@@ -365,9 +365,9 @@ void estimate_voids(const VolumeChange& change, double depth, const BlockOptions
 BlockReport assess_blocks(const std::vector<HeightMap>& after, const VolumeChange& change,
                           const BlockOptions& options) {
   check(after, change, options);
-  if (after.front().cell > largest_cell) {
+  if (after.front().cell_size > largest_cell) {
     BlockReport unjudged;
-    unjudged.reasons.push_back("cells of " + number_text(after.front().cell) +
+    unjudged.reasons.push_back("cells of " + number_text(after.front().cell_size) +
                                " m are too large to tell blocks, at most " +
                                number_text(largest_cell) + " m");
     return unjudged;

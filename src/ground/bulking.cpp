@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "json_file.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 

@@ -173,13 +173,13 @@ class Blocks {
     Eigen::ArrayXXd outside = (field.zone >= 0)
                                   .select(Eigen::ArrayXXd::Zero(map.z.rows(), map.z.cols()),
                                           std::numeric_limits<double>::infinity());
-    const Eigen::ArrayXXd distance = map.cell * slope_limited(outside, 1.0);
+    const Eigen::ArrayXXd distance = map.cell_size * slope_limited(outside, 1.0);
     near_ = correlated && field.zones > 0 ? 2.5 * reach : -1.0;
     const auto cells_near = static_cast<double>((distance <= near_).count());
     const auto cells = static_cast<double>(map.z.size());
     const double fewest = std::sqrt(std::max(cells_near / most_near, cells / 16.0 / most_far));
     small_ = std::max<Eigen::Index>(
-        1, static_cast<Eigen::Index>(std::round(std::max(0.5 * reach / map.cell, fewest))));
+        1, static_cast<Eigen::Index>(std::round(std::max(0.5 * reach / map.cell_size, fewest))));
     collect(distance);
   }
 
@@ -209,7 +209,7 @@ class Blocks {
       Eigen::Vector2d slope(gradient_.x(at.row, at.col), gradient_.y(at.row, at.col));
       if (slope.hasNaN()) slope.setZero();
       block.centre += Eigen::Vector2d(map.x(at.col), map.y(at.row));
-      block.size = map.cell * static_cast<double>(size);
+      block.size = map.cell_size * static_cast<double>(size);
       block.cells += 1.0;
       block.mean += zone < 0 ? residual : 0.0;
       block.effect += motion_effect(place, slope);
@@ -219,7 +219,7 @@ class Blocks {
       block.centre /= block.cells;
       block.mean /= block.cells;
       block.effect /= block.cells;
-      block.size = std::min(block.size, map.cell * std::sqrt(block.cells));
+      block.size = std::min(block.size, map.cell_size * std::sqrt(block.cells));
       (block.zone < 0 ? known_ : wanted_).push_back(block);
     }
   }
@@ -332,10 +332,10 @@ Gradient gradient_of(const HeightMap& map) {
   const Eigen::ArrayXXd along = z.topRows(rows) + z.middleRows(1, rows) + z.bottomRows(rows);
   const Eigen::ArrayXXd across = z.leftCols(cols) + z.middleCols(1, cols) + z.rightCols(cols);
   gradient.x.block(1, 1, rows, cols) =
-      (along.rightCols(cols) - along.leftCols(cols)) / (6.0 * map.cell) +
+      (along.rightCols(cols) - along.leftCols(cols)) / (6.0 * map.cell_size) +
       0.0 * along.middleCols(1, cols);
   gradient.y.block(1, 1, rows, cols) =
-      (across.bottomRows(rows) - across.topRows(rows)) / (6.0 * map.cell) +
+      (across.bottomRows(rows) - across.topRows(rows)) / (6.0 * map.cell_size) +
       0.0 * across.middleRows(1, rows);
   return gradient;
 }
@@ -345,7 +345,8 @@ ZoneErrors ErrorField::predict() const {
   const Blocks blocks(*this, gradient);
   const Eigen::MatrixXd root = square_root(alignment.left);
   const Known known = known_of(blocks.known(), noise, root);
-  const Wanted wanted = wanted_of(blocks, noise, root, {zones, before.cell * before.cell});
+  const Wanted wanted =
+      wanted_of(blocks, noise, root, {zones, before.cell_size * before.cell_size});
 
   const Eigen::LLT<Eigen::MatrixXd> factor(known.covariance);
   const Eigen::MatrixXd to_wanted = factor.solve(wanted.with_known);

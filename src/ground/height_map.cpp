@@ -11,7 +11,7 @@
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
 
-#include "json_file.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
@@ -69,15 +69,15 @@ HeightMap flat_ground(const Rectangle& extent, double cell, double height) {
   }
   HeightMap map;
   map.origin = {extent.x_min, extent.y_min};
-  map.cell = cell;
+  map.cell_size = cell;
   map.z = Eigen::ArrayXXd::Constant(static_cast<Eigen::Index>(rows),
                                     static_cast<Eigen::Index>(cols), height);
   return map;
 }
 
 double height_at(const HeightMap& map, double x, double y) {
-  const double u = (x - map.origin.x()) / map.cell;
-  const double v = (y - map.origin.y()) / map.cell;
+  const double u = (x - map.origin.x()) / map.cell_size;
+  const double v = (y - map.origin.y()) / map.cell_size;
   const bool inside = u >= 0.0 && v >= 0.0 && u <= static_cast<double>(map.z.cols()) &&
                       v <= static_cast<double>(map.z.rows());
   if (!inside || map.z.size() == 0) return nan;
@@ -94,15 +94,15 @@ double height_at(const HeightMap& map, double x, double y) {
 }
 
 bool same_grid(const HeightMap& a, const HeightMap& b) {
-  const double tolerance = grid_tolerance * a.cell;
+  const double tolerance = grid_tolerance * a.cell_size;
   return a.z.rows() == b.z.rows() && a.z.cols() == b.z.cols() &&
-         std::abs(a.cell - b.cell) <= tolerance &&
+         std::abs(a.cell_size - b.cell_size) <= tolerance &&
          ((a.origin - b.origin).array().abs() <= tolerance).all();
 }
 
 HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell, double widest_gap) {
   HeightMap whole = map;
-  const double most = std::floor(widest_gap / map.cell + grid_tolerance);
+  const double most = std::floor(widest_gap / map.cell_size + grid_tolerance);
   for (const std::vector<Cell>& hole : fill_holes(whole.z).cells) {
     for (const Cell& at : hole) {
       const auto width = std::min(gap_along(map.z, at, {0, 1}), gap_along(map.z, at, {1, 0}));
@@ -131,7 +131,7 @@ double unseen_area(const HeightMap& map) {
       }
     }
   }
-  return static_cast<double>(cells) * map.cell * map.cell;
+  return static_cast<double>(cells) * map.cell_size * map.cell_size;
 }
 
 }  // namespace excavplan

@@ -13,10 +13,10 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/text.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/robust.hpp"
-#include "json_file.hpp"
 
 namespace excavplan {
 namespace {
@@ -155,7 +155,7 @@ class Aligner {
     const auto quarter = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 4);
     std::nth_element(sorted.begin(), quarter, sorted.end());
     scale_ = std::max(quartile_to_sd * *quarter, least_noise);
-    const double bend_sd = std::max(scale_ / (std::sqrt(6.0) * map_.cell), least_bend);
+    const double bend_sd = std::max(scale_ / (std::sqrt(6.0) * map_.cell_size), least_bend);
     for (std::size_t i = 0; i < away.size(); ++i) {
       Sample& sample = samples_[i * stride_];
       sample.weight = tukey_weight(away[i] / scale_) * tukey_weight(sample.bend / bend_sd);
@@ -173,7 +173,7 @@ class Aligner {
       weights += sample.weight;
       squares += sample.weight * sample.effect.head<2>().cwiseAbs2();
     }
-    const double noise = scale_ * scale_ / (24.0 * map_.cell * map_.cell);
+    const double noise = scale_ * scale_ / (24.0 * map_.cell_size * map_.cell_size);
     constexpr double margin = 1.2;  // ours
     const Eigen::Vector2d share =
         (1.0 - margin * noise * (squares / weights).cwiseInverse().array()).cwiseMax(0.0);
@@ -211,7 +211,8 @@ class Aligner {
       ++stable;
     }
     found_.stable_share = static_cast<double>(stable) / static_cast<double>(samples_.size());
-    const double variance = find_noise(residual, map_.cell).large_area_variance(map_.cell);
+    const double variance =
+        find_noise(residual, map_.cell_size).large_area_variance(map_.cell_size);
     return std::max(variance, scale_ * scale_);
   }
 
@@ -338,8 +339,8 @@ HeightMap realigned(const HeightMap& after, const Alignment& alignment) {
     const double here = after.z(at.row, at.col);
     if (std::isnan(here)) return;
     const Eigen::Vector2d gradient(
-        slope(z(at.row, at.col - 1), here, z(at.row, at.col + 1), after.cell),
-        slope(z(at.row - 1, at.col), here, z(at.row + 1, at.col), after.cell));
+        slope(z(at.row, at.col - 1), here, z(at.row, at.col + 1), after.cell_size),
+        slope(z(at.row - 1, at.col), here, z(at.row + 1, at.col), after.cell_size));
     const Eigen::Vector3d place =
         Eigen::Vector3d(after.x(at.col), after.y(at.row), here) - alignment.centre;
     map.z(at.row, at.col) -= motion_effect(place, gradient).dot(alignment.motion);

@@ -90,7 +90,7 @@ double take_relief_off(const HeightMap& before, ChangedGround& ground, Alignment
   for_each_cell(relief, [&](Cell at) { relief(at.row, at.col) -= plane(at); });
   fill_holes(relief);
   const double share = share_of_relief(relief, ground.residual);
-  if (share == 0.0 || !is_alike(relief, ground, before.cell)) return 0.0;
+  if (share == 0.0 || !is_alike(relief, ground, before.cell_size)) return 0.0;
   const Eigen::ArrayXXd taken = relief.isNaN().select(0.0, share * relief);
   ground.residual -= taken;
   ground.difference -= taken;

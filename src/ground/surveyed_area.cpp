@@ -27,13 +27,13 @@ constexpr double face_place = 0.15;
 void sum_zones(Area& area) {
   const HeightMap& grid = area.grid;
   const ChangedGround& ground = area.ground;
-  const double cell_area = grid.cell * grid.cell;
+  const double cell_area = grid.cell_size * grid.cell_size;
   for_each_cell(ground.zone, [&](Cell cell) {
     const int index = ground.zone(cell.row, cell.col);
     if (index < 0) return;
     ZoneSum& zone = area.zones[static_cast<std::size_t>(index)];
     const Eigen::Vector2d place(grid.x(cell.col), grid.y(cell.row));
-    const double half = 0.5 * grid.cell;
+    const double half = 0.5 * grid.cell_size;
     if (zone.area == 0.0) zone.extent = {place.x(), place.y(), place.x(), place.y()};
     zone.extent = {std::min(zone.extent.x_min, place.x() - half),
                    std::min(zone.extent.y_min, place.y() - half),
@@ -52,7 +52,7 @@ void sum_zones(Area& area) {
 
 /// Noise of the cells of each zone: what stable ground shows, or more where their points scatter.
 void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_variance) {
-  const double cell_area = area.grid.cell * area.grid.cell;
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for_each_cell(area.ground.zone, [&](Cell cell) {
     const int index = area.ground.zone(cell.row, cell.col);
     if (index < 0 || area.unknown(cell.row, cell.col) != 0) return;
@@ -88,7 +88,7 @@ void sum_faces(Area& area, const Surface& scan) {
   std::vector<double> points(zones, 0.0);
   const Gradient gradient = gradient_of(scan.height);
   const double regularity = regularity_of(scan.points, area.ground.zone);
-  const double cell = area.grid.cell;
+  const double cell = area.grid.cell_size;
   const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell);
   for_each_cell(area.ground.zone, [&](Cell at) {
     const int index = area.ground.zone(at.row, at.col);
@@ -108,7 +108,7 @@ void sum_faces(Area& area, const Surface& scan) {
 /// What may be missing of zones that reach the edge of what was seen: from there on soil that falls
 /// or rises to the ground by a gentle slope.
 void sum_beyond_edge(Area& area) {
-  const double cell = area.grid.cell;
+  const double cell = area.grid.cell_size;
   std::vector<double> missing(area.zones.size(), 0.0);
   const auto& zone = area.ground.zone;
   for_each_cell(zone, [&](Cell at) {
@@ -138,7 +138,7 @@ struct Scans {
   }
 };
 
-Scans prepared(const SurveyedPair& pair, const ChangeOptions& options,
+Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
                std::vector<Object>& objects) {
   if (!same_grid(pair.before.height, pair.after.height)) {
     throw Error(ErrorKind::bad_input,
@@ -151,8 +151,8 @@ Scans prepared(const SurveyedPair& pair, const ChangeOptions& options,
     scans.variance_before = pair.before.variance;
     scans.variance_after = pair.after.variance;
   }
-  objects = take_out_objects(scans.before.z, scans.after.z, scans.before.cell,
-                             options.margin / scans.before.cell);
+  objects = take_out_objects(scans.before.z, scans.after.z, scans.before.cell_size,
+                             options.margin / scans.before.cell_size);
   const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
   const Eigen::Index known = difference.size() - difference.isNaN().count();
   if (known < fewest_known_cells) {
@@ -166,20 +166,20 @@ Scans prepared(const SurveyedPair& pair, const ChangeOptions& options,
 
 }  // namespace
 
-Area survey(const SurveyedPair& pair, const ChangeOptions& options) {
+Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   Area area;
   const Scans scans = prepared(pair, options, area.objects);
   area.grid.origin = scans.before.origin;
-  area.grid.cell = scans.before.cell;
+  area.grid.cell_size = scans.before.cell_size;
   Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
   area.unknown = difference.isNaN().cast<int>();
   area.ground =
-      find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell, options);
+      find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell_size, options);
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
-  const double cell_area = area.grid.cell * area.grid.cell;
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
     area.zones[i].holes = filling.variance[i] * cell_area * cell_area;
   }
@@ -188,7 +188,7 @@ Area survey(const SurveyedPair& pair, const ChangeOptions& options) {
   Alignment left = pair.alignment;
   const double share = take_relief_off(scans.before, area.ground, left);
   sum_zones(area);
-  NoiseModel noise = find_noise(area.ground.residual, area.grid.cell);
+  NoiseModel noise = find_noise(area.ground.residual, area.grid.cell_size);
   noise.white = std::max(noise.white, least_noise * least_noise);
   sum_noise(area, scans.variance_of(share), noise.white);
   sum_beyond_edge(area);

@@ -43,6 +43,6 @@ struct Area {
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid or share fewer than 100 known
 ///         cells
-Area survey(const SurveyedPair& pair, const ChangeOptions& options);
+Area survey(const SurfacePair& pair, const ChangeOptions& options);
 
 }  // namespace excavplan

@@ -10,9 +10,9 @@
 
 #include <Eigen/Geometry>
 
+#include "base/text.hpp"
 #include "ground/surveyed_area.hpp"
 #include "ground/zone_kinds.hpp"
-#include "json_file.hpp"
 
 namespace excavplan {
 namespace {
@@ -227,7 +227,7 @@ Warning object_warning(const ChangeZone& zone, bool is_before, std::size_t count
 
 /// Objects are reported as zones of their own that count for nothing.
 void report_objects(const Area& area, VolumeChange& change, AreaChange& result) {
-  const double half = 0.5 * area.grid.cell;
+  const double half = 0.5 * area.grid.cell_size;
   std::size_t count = 0;
   std::optional<ChangeZone> largest;
   bool largest_is_before = false;
@@ -235,7 +235,8 @@ void report_objects(const Area& area, VolumeChange& change, AreaChange& result) 
     if (object.is_blunder) continue;
     ChangeZone zone;
     zone.volume.value = object.volume;
-    zone.area = area.grid.cell * area.grid.cell * static_cast<double>(object.cells.size());
+    zone.area =
+        area.grid.cell_size * area.grid.cell_size * static_cast<double>(object.cells.size());
     zone.unknown_share = 1.0;
     Eigen::AlignedBox2d box;
     for (const Cell at : object.cells) {
@@ -312,7 +313,7 @@ const char* name(ZoneKind kind) {
   return "other";
 }
 
-VolumeChange measure_change(const SurveyedPair& scene, const ChangeOptions& options) {
+VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& options) {
   check(options);
   std::vector<Area> areas(1);
   areas[0] = survey(scene, options);
@@ -320,7 +321,7 @@ VolumeChange measure_change(const SurveyedPair& scene, const ChangeOptions& opti
   return result_of(std::move(areas), options);
 }
 
-VolumeChange measure_change(const SurveyedPair& dig, const SurveyedPair& dump,
+VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
                             const ChangeOptions& options) {
   check(options);
   std::vector<Area> areas(2);
@@ -333,13 +334,13 @@ VolumeChange measure_change(const SurveyedPair& dig, const SurveyedPair& dump,
 
 VolumeChange measure_change(const HeightMap& before, const HeightMap& after,
                             const ChangeOptions& options) {
-  return measure_change(SurveyedPair{{before, {}, {}}, {after, {}, {}}, {}}, options);
+  return measure_change(SurfacePair{{before, {}, {}}, {after, {}, {}}, {}}, options);
 }
 
-VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
+VolumeChange measure_change(const HeightMapPair& dig, const HeightMapPair& dump,
                             const ChangeOptions& options) {
-  return measure_change(SurveyedPair{{dig.before, {}, {}}, {dig.after, {}, {}}, {}},
-                        SurveyedPair{{dump.before, {}, {}}, {dump.after, {}, {}}, {}}, options);
+  return measure_change(SurfacePair{{dig.before, {}, {}}, {dig.after, {}, {}}, {}},
+                        SurfacePair{{dump.before, {}, {}}, {dump.after, {}, {}}, {}}, options);
 }
 
 }  // namespace excavplan

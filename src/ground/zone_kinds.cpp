@@ -24,7 +24,7 @@ Chosen choose(const Area& area, double sign, Wanted wanted) {
 }
 
 Chosen near(const Area& area, const Chosen& chosen, const ChangeOptions& options) {
-  return zones_near(area.ground.zone, chosen, options.spill_distance / area.grid.cell);
+  return zones_near(area.ground.zone, chosen, options.spill_distance / area.grid.cell_size);
 }
 
 /// The given area's zones, or else the largest candidate and the candidates near to it.

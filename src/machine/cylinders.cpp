@@ -9,14 +9,14 @@
 
 #include <excavplan/error.hpp>
 
-#include "../json_file.hpp"
+#include "base/angles.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double pi = 3.141592653589793;
 constexpr double rounding = 1e-12;         // [m]
 constexpr double round_trip_error = 1e-9;  // [rad]
 constexpr double least_lever = 1e-3;       // of that in the middle of the range

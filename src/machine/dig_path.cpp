@@ -10,14 +10,14 @@
 
 #include <excavplan/error.hpp>
 
-#include "../json_file.hpp"
+#include "base/angles.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
 using Reason = Infeasible::Reason;
 
-constexpr double pi = 3.141592653589793;
 constexpr int most_poses = 10000;      // a phase
 constexpr int scan_poses = 12;         // a phase, while start points are compared
 constexpr double scan_lift = 0.1;      // tip travel between poses of a lift, likewise [m]

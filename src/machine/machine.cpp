@@ -8,14 +8,15 @@
 
 #include <excavplan/error.hpp>
 
-#include "../json_file.hpp"
+#include "base/angles.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double pi = 3.141592653589793;
 constexpr double standard_gravity = 9.80665;  // [m/s^2], ISO 80000-3
 constexpr double rounding = 1e-12;
 constexpr double longest = 100.0;  // a length beyond this is a mistake of units [m]

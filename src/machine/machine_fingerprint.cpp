@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "../json_file.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {

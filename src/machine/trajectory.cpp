@@ -9,7 +9,7 @@
 
 #include <excavplan/error.hpp>
 
-#include "../json_file.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {

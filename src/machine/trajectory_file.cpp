@@ -5,7 +5,8 @@
 
 #include <excavplan/machine/trajectory.hpp>
 
-#include "../json_file.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "dig_layout.hpp"
+#include "planning/dig_layout.hpp"
 
 #include <algorithm>
 #include <array>
@@ -67,7 +67,7 @@ double left_to_drive(const Infeasible& stop, const DigParameters& parameters) {
 }  // namespace
 
 KnownStrip::KnownStrip(const Terrain& terrain, const Machine& machine)
-    : origin_(terrain.bank.origin.x()), cell_(terrain.bank.cell) {
+    : origin_(terrain.bank.origin.x()), cell_(terrain.bank.cell_size) {
   const HeightMap& bank = terrain.bank;
   const double half = 0.5 * machine.bucket.width_outside;
   const auto begin = static_cast<Index>(std::floor((-half - bank.origin.y()) / cell_));
@@ -128,7 +128,7 @@ std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& para
 
 /// The path, if every cell the bucket passes and those just ahead of it are known.
 std::variant<DigPath, Infeasible> DigLayout::known(DigPath path) const {
-  const double x_max = path.start_x + strip_.cell();
+  const double x_max = path.start_x + strip_.cell_size();
   const DigPose* phase_start = &path.poses.front();
   for (const DigPose& pose : path.poses) {
     if (pose.phase != phase_start->phase) phase_start = &pose;

@@ -16,7 +16,7 @@ class KnownStrip {
   KnownStrip(const Terrain& terrain, const Machine& machine);
 
   bool is_known(double x_min, double x_max) const;
-  double cell() const { return cell_; }
+  double cell_size() const { return cell_; }
 
  private:
   double origin_;

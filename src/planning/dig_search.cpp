@@ -13,10 +13,10 @@
 #include <excavplan/error.hpp>
 #include <excavplan/planning/planner.hpp>
 
-#include "../json_file.hpp"
-#include "../parallel.hpp"
-#include "dig_layout.hpp"
-#include "search_points.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "optimisation/search_points.hpp"
+#include "planning/dig_layout.hpp"
 
 namespace excavplan {
 namespace {
@@ -271,7 +271,7 @@ class DigProblem {
     Fingerprint ground;
     ground.add(terrain_.bank.origin.x());
     ground.add(terrain_.bank.origin.y());
-    ground.add(terrain_.bank.cell);
+    ground.add(terrain_.bank.cell_size);
     for (const Eigen::ArrayXXd* layer : {&terrain_.bank.z, &terrain_.loose,
                                          &terrain_.bank_void_ratio, &terrain_.loose_void_ratio}) {
       ground.add(*layer);

@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "bucket_cavity.hpp"
+#include "simulation/bucket_cavity.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "base/angles.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double steepest_face = 80.0 * pi / 180.0;  // of soil, however cohesive; ours
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "bucket_resistance.hpp"
+#include "simulation/bucket_resistance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/angles.hpp"
+
 namespace excavplan {
 namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
-
-constexpr double pi = 3.14159265358979323846;
 
 // Numbers of our own choice; docs/methods.md#simulation says why.
 constexpr double slope_reach = 0.30;  // the surface's slope is taken over this ahead of the lip [m]
@@ -85,8 +85,8 @@ EarthmovingFactors HeightMapModel::factors(double rake, double slope, const Soil
 
 Swath::Swath(const HeightMap& map, double width) : map_(map) {
   const double half = 0.5 * width;
-  const double first = (-half - map.origin.y()) / map.cell;
-  const double last = (half - map.origin.y()) / map.cell;
+  const double first = (-half - map.origin.y()) / map.cell_size;
+  const double last = (half - map.origin.y()) / map.cell_size;
   if (!(first >= 0.0 && last <= static_cast<double>(map.z.rows()))) {
     throw Error(ErrorKind::bad_input,
                 "dig: the map must hold the bucket's width, y = " + std::to_string(-half) + " .. " +
@@ -102,7 +102,7 @@ Swath::Swath(const HeightMap& map, double width) : map_(map) {
 }
 
 Index Swath::column(double x) const {
-  const double col = std::floor((x - map_.origin.x()) / map_.cell);
+  const double col = std::floor((x - map_.origin.x()) / map_.cell_size);
   if (!(col >= 0.0 && col < static_cast<double>(map_.z.cols()))) {
     const Rectangle extent = map_.extent();
     throw Error(ErrorKind::bad_input, "dig: the path leaves the map at x = " + std::to_string(x) +
@@ -264,7 +264,7 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
   const bool even = ground_.bank_is_even();
   for (Index i = 0; i < swath_.rows(); ++i) {
     const Index row = swath_.first_row() + i;
-    const double width = swath_.cover(i) * ground_.cell();
+    const double width = swath_.cover(i) * ground_.cell_size();
     const Strip strip = strip_at(row, col, tip.y());
     if (strip.bank + strip.loose <= 0.0) continue;
     const FaceTerms t = even ? mean : terms_of(ground_.bank_state(row, col));
@@ -297,12 +297,12 @@ double BucketResistance::loose_on_wedge(Index row, Index col, const Strip& strip
                                         const FaceTerms& terms) const {
   if (!(strip.bank > 0.0)) return strip.loose;
   const double ahead = strip.bank * terms.cot_failure;
-  const double cells = ahead / ground_.cell();
+  const double cells = ahead / ground_.cell_size();
   double sum = 0.0;
   for (Index i = 0; static_cast<double>(i) < cells && col - i >= ground_.cells().col_begin; ++i) {
     sum += std::min(1.0, cells - static_cast<double>(i)) * ground_.loose(row, col - i);
   }
-  return sum * ground_.cell() / (ahead + strip.bank * terms.cot_rake);
+  return sum * ground_.cell_size() / (ahead + strip.bank * terms.cot_rake);
 }
 
 /// Where the outline behind the lip reaches below what the tip has cut, the ground bears it like a
@@ -354,7 +354,7 @@ double BucketResistance::swept_to(double x, std::size_t& pose) const {
 double BucketResistance::uncut_between(double x) const {
   const HeightMap& map = ground_.before().bank;
   const double last = static_cast<double>(map.z.cols() - 1);
-  const double at = std::clamp((x - map.origin.x()) / map.cell - 0.5, 0.0, last);
+  const double at = std::clamp((x - map.origin.x()) / map.cell_size - 0.5, 0.0, last);
   const auto col = static_cast<Index>(at);
   const double t = at - static_cast<double>(col);
   const double uncut =
@@ -380,12 +380,13 @@ SoilState BucketResistance::mean_soil_at(Index col) const {
 
 /// Slope of the surface ahead of the lip along the travel, positive uphill.
 double BucketResistance::surface_slope(Index col) const {
-  const auto reach = std::max<Index>(1, std::lround(slope_reach / ground_.cell()));
+  const auto reach = std::max<Index>(1, std::lround(slope_reach / ground_.cell_size()));
   const Index ahead = std::max<Index>(0, col - reach);
   if (ahead == col) return 0.0;
   const double rise = uncut_at(ahead) - uncut_at(col);
-  return std::isnan(rise) ? 0.0
-                          : std::atan2(rise, ground_.cell() * static_cast<double>(col - ahead));
+  return std::isnan(rise)
+             ? 0.0
+             : std::atan2(rise, ground_.cell_size() * static_cast<double>(col - ahead));
 }
 
 /// Area of lip or teeth that meets soil which cannot yield, `driven` along the floor. The lip

@@ -13,8 +13,8 @@
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
-#include "bucket_cavity.hpp"
-#include "soil_layers.hpp"
+#include "simulation/bucket_cavity.hpp"
+#include "simulation/soil_layers.hpp"
 
 namespace excavplan {
 

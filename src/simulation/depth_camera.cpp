@@ -81,7 +81,7 @@ Eigen::Matrix3d site_from_camera(const DepthCamera& camera) {
 /// Distance along the ray at which it first meets the surface; NaN if it does not.
 double hit(const HeightMap& surface, const Eigen::Vector3d& from, const Eigen::Vector3d& ray,
            double range) {
-  const double step = 0.5 * surface.cell;
+  const double step = 0.5 * surface.cell_size;
   double last = nan;
   double last_distance = 0.0;
   for (double distance = 0.0; distance <= range; distance += step) {
@@ -106,7 +106,7 @@ double hit_from_above(const HeightMap& surface, double top, const Eigen::Vector3
                       const Eigen::Vector3d& ray, double range) {
   if (!(ray.z() < 0.0)) return nan;
   // Nothing can be met before the ray is down at the highest point of the ground.
-  const double skipped = std::max(0.0, (top + surface.cell - from.z()) / ray.z());
+  const double skipped = std::max(0.0, (top + surface.cell_size - from.z()) / ray.z());
   return skipped + hit(surface, from + skipped * ray, ray, range - skipped);
 }
 

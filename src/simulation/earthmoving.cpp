@@ -9,10 +9,11 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/angles.hpp"
+
 namespace excavplan {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double degree = pi / 180.0;
 
 double cot(double angle) { return 1.0 / std::tan(angle); }

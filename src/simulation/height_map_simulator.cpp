@@ -10,18 +10,17 @@
 
 #include <excavplan/error.hpp>
 
-#include "../json_file.hpp"
-#include "bucket_cavity.hpp"
-#include "bucket_resistance.hpp"
-#include "soil_layers.hpp"
+#include "base/angles.hpp"
+#include "base/text.hpp"
+#include "simulation/bucket_cavity.hpp"
+#include "simulation/bucket_resistance.hpp"
+#include "simulation/soil_layers.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Index;
 using Eigen::Vector2d;
-
-constexpr double pi = 3.14159265358979323846;
 
 // Numbers of our own choice; docs/methods.md#simulation says why.
 constexpr double sweeps_per_step = 3.0;  // of slumping while the bucket moves, on 5 cm cells; as
@@ -41,7 +40,7 @@ class Dig {
         cavity_(model.machine.bucket),
         resistance_(model, ground_, swath_, path) {
     sweeps_ = static_cast<int>(
-        std::ceil(sweeps_per_step * std::max(1.0, std::pow(0.05 / terrain.bank.cell, 2))));
+        std::ceil(sweeps_per_step * std::max(1.0, std::pow(0.05 / terrain.bank.cell_size, 2))));
   }
 
   DigResult run(const DigOptions& options) {
@@ -72,7 +71,7 @@ class Dig {
       const Index col = swath_.column(pose.bucket.x);
       cells.include({swath_.first_row(), swath_.end_row(), col, col + 1});
     }
-    const auto room = static_cast<Index>(std::ceil(room_around / terrain.bank.cell));
+    const auto room = static_cast<Index>(std::ceil(room_around / terrain.bank.cell_size));
     return cells.widened(room, terrain.loose.rows(), terrain.loose.cols());
   }
 
@@ -101,7 +100,7 @@ class Dig {
     travelled_ += s.length;
     if (!digs) return;
     cut(s);
-    const Index ahead = swath_.column(s.to.x() - ground_.cell());
+    const Index ahead = swath_.column(s.to.x() - ground_.cell_size());
     overflow(s.to.x(), std::max(0.0, resistance_.surface_at(ahead) - s.to.y()), model_.slopes);
     ground_.set_wall(under_bucket(s.to));
     // While the bucket stands in the cut it holds the walls.
@@ -112,7 +111,8 @@ class Dig {
   CellBlock under_bucket(const Vector2d& tip) const {
     const Index lip = swath_.column(tip.x());
     if (!(resistance_.surface_at(lip) > tip.y())) return {};
-    const auto length = static_cast<Index>(std::ceil(resistance_.floor_length() / ground_.cell()));
+    const auto length =
+        static_cast<Index>(std::ceil(resistance_.floor_length() / ground_.cell_size()));
     return {swath_.first_row(), swath_.end_row(), lip + 1,
             std::min(lip + 1 + length, ground_.before().loose.cols())};
   }
@@ -126,9 +126,9 @@ class Dig {
     const double slope = (s.from.y() - s.to.y()) / (s.from.x() - s.to.x());
     const Index last = swath_.column(s.to.x());
     for (Index col = swath_.column(s.from.x()); col >= last; --col) {
-      const double left = map.origin.x() + map.cell * static_cast<double>(col);
+      const double left = map.origin.x() + map.cell_size * static_cast<double>(col);
       const double x0 = std::max(s.to.x(), left);
-      const double x1 = std::min(s.from.x(), left + map.cell);
+      const double x1 = std::min(s.from.x(), left + map.cell_size);
       if (!(x1 > x0)) continue;
       const double z0 = s.to.y() + slope * (x0 - s.to.x());
       cut_column(col, x0, x1, z0, z0 + slope * (x1 - x0));
@@ -147,10 +147,11 @@ class Dig {
 
   void cut_column(Index col, double x0, double x1, double z0, double z1) {
     const HeightMap& map = ground_.before().bank;
-    const double left = map.origin.x() + map.cell * static_cast<double>(col);
-    const double share = (x1 - x0) / map.cell;
-    const double ahead = (x1 - left) / map.cell;  // share of the cell the lip has not passed yet
-    const double area = map.cell * map.cell;
+    const double left = map.origin.x() + map.cell_size * static_cast<double>(col);
+    const double share = (x1 - x0) / map.cell_size;
+    const double ahead =
+        (x1 - left) / map.cell_size;  // share of the cell the lip has not passed yet
+    const double area = map.cell_size * map.cell_size;
     for (Index i = 0; i < swath_.rows(); ++i) {
       const Index row = swath_.first_row() + i;
       const double top = map.z(row, col);  // of what is still uncut
@@ -183,7 +184,7 @@ class Dig {
   void overflow(double lip_x, double support, const HoldingSlopes& slopes) {
     const double excess = fill_ - cavity_.capacity(support, slopes);
     if (!(excess > 0.0)) return;
-    const double area = ground_.cell() * ground_.cell();
+    const double area = ground_.cell_size() * ground_.cell_size();
     const Index last = swath_.column(lip_x - 1e-9);
     const Index first = swath_.column(lip_x - spread_ahead);
     double share = 0.0;
@@ -202,8 +203,8 @@ class Dig {
   /// Share of a column that lies ahead of the lip.
   double ahead_of(double lip_x, Index col) const {
     const HeightMap& map = ground_.before().bank;
-    const double left = map.origin.x() + map.cell * static_cast<double>(col);
-    return std::clamp((lip_x - left) / map.cell, 0.0, 1.0);
+    const double left = map.origin.x() + map.cell_size * static_cast<double>(col);
+    return std::clamp((lip_x - left) / map.cell_size, 0.0, 1.0);
   }
 
   // ---- energy ----------------------------------------------------------------------------------
@@ -291,7 +292,7 @@ class Dig {
     const Terrain& before = ground_.before();
     const CellBlock& cells = ground_.cells();
     SoilLedger& ledger = result_.soil;
-    const double area = ground_.cell() * ground_.cell();
+    const double area = ground_.cell_size() * ground_.cell_size();
     for (Index col = cells.col_begin; col < cells.col_end; ++col) {
       for (Index row = cells.row_begin; row < cells.row_end; ++row) {
         const double gained = ground_.loose(row, col) - before.loose(row, col);
@@ -334,8 +335,8 @@ void check(const Terrain& terrain, const DigPath& path) {
   };
   const auto& z = terrain.bank.z;
   if (z.size() == 0) bad("the map is empty");
-  if (!(terrain.bank.cell > 0.0)) {
-    bad("cell must be > 0 m, got " + std::to_string(terrain.bank.cell));
+  if (!(terrain.bank.cell_size > 0.0)) {
+    bad("cell must be > 0 m, got " + std::to_string(terrain.bank.cell_size));
   }
   const auto same = [&](const Eigen::ArrayXXd& layer) {
     return layer.rows() == z.rows() && layer.cols() == z.cols();

@@ -16,8 +16,9 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/earthmoving.hpp>
 
-#include "../json_file.hpp"
-#include "soil_section.hpp"
+#include "base/angles.hpp"
+#include "base/text.hpp"
+#include "simulation/soil_section.hpp"
 
 namespace excavplan {
 namespace {
@@ -25,7 +26,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double degree = pi / 180.0;
 
 constexpr double cone_half_angle = 15.0 * degree;  // of the standard cone (ASAE S313)
@@ -780,7 +780,7 @@ void check(const Terrain& terrain) {
   };
   const HeightMap& map = terrain.bank;
   if (map.z.size() == 0) refuse("the map is empty");
-  if (!(map.cell > 0.0)) refuse("cell must be > 0 m, got " + std::to_string(map.cell));
+  if (!(map.cell_size > 0.0)) refuse("cell must be > 0 m, got " + std::to_string(map.cell_size));
   const auto fits = [&](const Eigen::ArrayXXd& layer) {
     return layer.rows() == map.z.rows() && layer.cols() == map.z.cols();
   };
@@ -809,10 +809,13 @@ DigResult SectionSimulator::dig(const Terrain& terrain, const DigPath& path,
   return SectionDig(*model_, terrain, path, options).run();
 }
 
+std::string SectionSimulator::name() {
+  return "section " + std::to_string(section_simulator_version);
+}
+
 std::string SectionSimulator::identity() const {
-  return "section " + std::to_string(section_simulator_version) + ", machine " +
-         fingerprint(model_->machine) + ", soil " + fingerprint(model_->kind) + " at " +
-         number_text(model_->density_percent) + " %";
+  return name() + ", machine " + fingerprint(model_->machine) + ", soil " +
+         fingerprint(model_->kind) + " at " + number_text(model_->density_percent) + " %";
 }
 
 }  // namespace excavplan

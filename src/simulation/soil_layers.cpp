@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "soil_layers.hpp"
+#include "simulation/soil_layers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -98,7 +98,7 @@ class Slump {
   /// How much has to leave a cell so that it falls no steeper than `slope`, if the share of each
   /// axis arrives swollen by `swell` below; 0 if it does not.
   double excess(const Fall& x, const Fall& y, double slope, double swell) const {
-    const double stable = slope * ground_.cell();
+    const double stable = slope * ground_.cell_size();
     const double squared = x.height * x.height + y.height * y.height;
     if (!(squared > (stable + limits_.at_rest) * (stable + limits_.at_rest))) return 0.0;
     const double steepness = std::sqrt(squared);
@@ -288,7 +288,7 @@ double GroundWindow::mass(Cell&& cell_mass) const {
     }
     mass += sum;
   }
-  return mass * cell() * cell();
+  return mass * cell_size() * cell_size();
 }
 
 double GroundWindow::bank_density(Index row, Index col) const {
@@ -352,8 +352,8 @@ CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits
 
 void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double slope) {
   const HeightMap& map = ground.before().bank;
-  const double row_at = std::floor((at.y() - map.origin.y()) / map.cell);
-  const double col_at = std::floor((at.x() - map.origin.x()) / map.cell);
+  const double row_at = std::floor((at.y() - map.origin.y()) / map.cell_size);
+  const double col_at = std::floor((at.x() - map.origin.x()) / map.cell_size);
   const bool on_map = row_at >= 0.0 && col_at >= 0.0 &&
                       row_at < static_cast<double>(map.z.rows()) &&
                       col_at < static_cast<double>(map.z.cols());
@@ -368,7 +368,8 @@ void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double
   // ground's.
   const double radius = std::cbrt(3.0 * volume / (3.14159265358979323846 * slope));
   const CellBlock axis = {row, row + 1, col, col + 1};
-  const CellBlock block = ground.widened(axis, static_cast<Index>(3.0 * radius / map.cell) + 2);
+  const CellBlock block =
+      ground.widened(axis, static_cast<Index>(3.0 * radius / map.cell_size) + 2);
   ground.cover(block);
   const auto raised = [&](Index r, Index c, double apex) {
     const double distance = std::hypot(map.x(c) - at.x(), map.y(r) - at.y());
@@ -380,7 +381,7 @@ void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double
     for (Index c = block.col_begin; c < block.col_end; ++c) {
       for (Index r = block.row_begin; r < block.row_end; ++r) sum += raised(r, c, apex);
     }
-    return sum * map.cell * map.cell;
+    return sum * map.cell_size * map.cell_size;
   };
   double low = ground.height(row, col);
   double high = low + 1.0;

@@ -70,7 +70,7 @@ class GroundWindow {
   const Terrain& before() const { return whole_; }
   const GroundSoil& soil() const { return soil_; }
   const CellBlock& cells() const { return cells_; }
-  double cell() const { return whole_.bank.cell; }
+  double cell_size() const { return whole_.bank.cell_size; }
   CellBlock widened(const CellBlock& block, Eigen::Index margin) const {
     return block.widened(margin, whole_.loose.rows(), whole_.loose.cols());
   }

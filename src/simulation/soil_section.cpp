@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "soil_section.hpp"
+#include "simulation/soil_section.hpp"
 
 #include <cmath>
 #include <limits>
@@ -94,7 +94,8 @@ std::string span(double from, double to) {
 
 /// Edges of the bucket in rows of the map.
 std::pair<double, double> edges(const HeightMap& map, double width) {
-  return {(-0.5 * width - map.origin.y()) / map.cell, (0.5 * width - map.origin.y()) / map.cell};
+  return {(-0.5 * width - map.origin.y()) / map.cell_size,
+          (0.5 * width - map.origin.y()) / map.cell_size};
 }
 
 /// The cells that the bucket passes.
@@ -107,7 +108,9 @@ CellBlock cells_under(const HeightMap& map, double width, const Reach& reach) {
   if (!(reach.x_min >= extent.x_min && reach.x_max < extent.x_max)) {
     refuse("the path, x = " + span(reach.x_min, reach.x_max) + ", must lie on the map");
   }
-  const auto col_of = [&](double x) { return static_cast<Index>((x - map.origin.x()) / map.cell); };
+  const auto col_of = [&](double x) {
+    return static_cast<Index>((x - map.origin.x()) / map.cell_size);
+  };
   const CellBlock cells = {static_cast<Index>(std::floor(low + 1e-9)),
                            static_cast<Index>(std::ceil(high - 1e-9)), col_of(reach.x_min),
                            std::min(map.z.cols(), col_of(reach.x_max) + 1)};
@@ -123,7 +126,7 @@ CellBlock cells_under(const HeightMap& map, double width, const Reach& reach) {
 /// These cells and the room around them that a dig looks at first.
 CellBlock with_room(const CellBlock& cells, const HeightMap& map, const Reach& reach) {
   const auto cells_in = [&](double length) {
-    return static_cast<Index>(std::ceil(length / map.cell));
+    return static_cast<Index>(std::ceil(length / map.cell_size));
   };
   CellBlock room = cells;
   room.col_begin = std::max<Index>(0, cells.col_begin - cells_in(growth));
@@ -167,8 +170,8 @@ class MapWriter {
     }
     const double area = heap * width_ + (cut ? 0.0 : column.windrow);
     if (area > 0.0) spread(col, area, HeapShape(area, width_, slope_));
-    (cut ? rest.in_cut : rest.elsewhere) += (column.settled * width_ + fallen) * map_.cell;
-    rest.elsewhere += (column.windrow - fallen) * map_.cell;
+    (cut ? rest.in_cut : rest.elsewhere) += (column.settled * width_ + fallen) * map_.cell_size;
+    rest.elsewhere += (column.windrow - fallen) * map_.cell_size;
   }
 
   /// Walls beside the cut that are higher than they can stand break back at the friction angle;
@@ -189,13 +192,13 @@ class MapWriter {
       const double outwards = std::abs(map_.y(row)) - 0.5 * width_;
       const double fall = wall - foot - broken_slope * outwards;
       if (outwards < 0.0 || !(fall > 0.0) || std::isnan(map_.z(row, col))) continue;
-      fallen += ground_.swollen_bank(row, col, fall) * map_.cell;
+      fallen += ground_.swollen_bank(row, col, fall) * map_.cell_size;
       ground_.lower_bank(row, col, fall);
     }
     if (!(fallen > 0.0)) return;
     spread(col, fallen,
            [&](double outwards) { return outwards < 0.0 ? foot + slope_ * outwards : 0.0; });
-    rest.in_cut += fallen * map_.cell;
+    rest.in_cut += fallen * map_.cell_size;
   }
 
   void fill(Index col, double thickness) {
@@ -218,8 +221,8 @@ class MapWriter {
       raised_.push_back(std::isnan(map_.z(row, col)) ? 0.0 : rise);
       sum += raised_.back();
     }
-    if (!(sum > 0.0)) return fill(col, area / (section_.rows() * map_.cell));
-    const double exact = area / (sum * map_.cell);
+    if (!(sum > 0.0)) return fill(col, area / (section_.rows() * map_.cell_size));
+    const double exact = area / (sum * map_.cell_size);
     for (Index row = rows.row_begin; row < rows.row_end; ++row) {
       const double rise = exact * raised_[static_cast<std::size_t>(row - rows.row_begin)];
       if (rise > 0.0) ground_.raise_loose(row, col, rise);
@@ -228,12 +231,12 @@ class MapWriter {
 
   /// The rows under the bucket and so far beside it; the window is made to hold them.
   CellBlock rows_within(double outwards) {
-    const double reach = 0.5 * width_ + outwards + map_.cell;
+    const double reach = 0.5 * width_ + outwards + map_.cell_size;
     const auto row_at = [&](double y) {
-      const double row = (y - map_.origin.y()) / map_.cell;
+      const double row = (y - map_.origin.y()) / map_.cell_size;
       return static_cast<Index>(std::clamp(row, 0.0, static_cast<double>(map_.z.rows())));
     };
-    const CellBlock rows = {row_at(-reach), row_at(reach + map_.cell), section_.first_col(),
+    const CellBlock rows = {row_at(-reach), row_at(reach + map_.cell_size), section_.first_col(),
                             section_.end_col()};
     ground_.cover(rows);
     return rows;
@@ -256,7 +259,7 @@ SoilSection::SoilSection(const Terrain& terrain, const GroundSoil& soil, double 
     : ground_(terrain, soil,
               with_room(cells_under(terrain.bank, width, reach), terrain.bank, reach)),
       width_(width),
-      cell_(terrain.bank.cell),
+      cell_(terrain.bank.cell_size),
       origin_(terrain.bank.origin.x()) {
   cover_rows();
   cover_columns(reach);

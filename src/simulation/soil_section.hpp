@@ -10,7 +10,7 @@
 
 #include <excavplan/simulation/soil_simulator.hpp>
 
-#include "soil_layers.hpp"
+#include "simulation/soil_layers.hpp"
 
 /// @file
 /// The ground of SectionSimulator: mean heights over the bucket's width, one column of cells each.
@@ -76,7 +76,7 @@ class SoilSection {
 
   GroundWindow& ground() { return ground_; }
   double width() const { return width_; }
-  double cell() const { return cell_; }
+  double cell_size() const { return cell_; }
   Eigen::Index first_row() const { return first_row_; }
   const std::vector<double>& coverage() const { return coverage_; }  ///< of the rows
   double rows() const { return rows_; }                              ///< sum of the coverage

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "base/angles.hpp"
+
 namespace excavplan {
-namespace {
-constexpr double pi = 3.14159265358979323846;
-}  // namespace
+namespace {}  // namespace
 
 HeightMap Terrain::surface() const {
   HeightMap map = bank;
@@ -42,7 +42,7 @@ HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,
   HeightMapVolumes volumes;
   for (Eigen::Index col = 0; col < from.z.cols(); ++col) {
     for (Eigen::Index row = 0; row < from.z.rows(); ++row) {
-      const double rise = (to.z(row, col) - from.z(row, col)) * from.cell * from.cell;
+      const double rise = (to.z(row, col) - from.z(row, col)) * from.cell_size * from.cell_size;
       if (std::isnan(rise)) continue;
       const bool heap =
           std::hypot(from.x(col) - dump_at.x(), from.y(row) - dump_at.y()) <= dump_radius;

@@ -10,7 +10,8 @@
 
 #include <nlopt.hpp>
 
-#include "json_file.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
@@ -192,7 +193,7 @@ class HyperbolaFit {
   std::vector<double> x_;
 };
 
-void warn_of_range(const DensityLaw& law, double bulking_factor, DensityEstimate& estimate) {
+void warn_of_range(const DensityLaw& law, double bulking_factor, RelativeDensity& estimate) {
   const std::string found = "bulking factor " + thousandths(bulking_factor) +
                             " gives a relative density of " + tenths(estimate.raw_percent) +
                             " % by the law '" + law.name + "', ";
@@ -270,7 +271,7 @@ double density_slope(const DensityForm& form, double bulking_factor) {
   return 100.0 / closed.r * closed.A / (excess * excess);
 }
 
-DensityEstimate estimate_density(const DensityLaw& law, const Measured& bulking_factor) {
+RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_factor) {
   const double k = bulking_factor.value;
   if (!(k > 0.0 && std::isfinite(k)) ||
       !(bulking_factor.sd >= 0.0 && std::isfinite(bulking_factor.sd))) {
@@ -281,7 +282,7 @@ DensityEstimate estimate_density(const DensityLaw& law, const Measured& bulking_
   }
   const double residual_sd =
       std::visit([](const auto& form) { return form.residual_sd; }, law.form);
-  DensityEstimate estimate;
+  RelativeDensity estimate;
   estimate.raw_percent = density_of_bulking(law.form, k);
   estimate.percent = std::clamp(estimate.raw_percent, 0.0, 100.0);
   estimate.sd_percent = std::hypot(density_slope(law.form, k) * bulking_factor.sd, residual_sd);

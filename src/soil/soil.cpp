@@ -7,7 +7,8 @@
 
 #include <excavplan/error.hpp>
 
-#include "json_file.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
@@ -137,10 +138,9 @@ SoilState bank_state(const SoilKind& soil, double density_percent) {
 
 SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio) {
   if (!(void_ratio >= soil.void_ratio_min && void_ratio <= soil.void_ratio_max)) {
-    throw Error(ErrorKind::bad_input, "void ratio of " + soil.name + " is " +
-                                          number_text(void_ratio) + ", must be in " +
-                                          number_text(soil.void_ratio_min) + " .. " +
-                                          number_text(soil.void_ratio_max));
+    throw Error(ErrorKind::bad_input,
+                "void ratio of " + soil.name + " is " + number_text(void_ratio) + ", must be in " +
+                    number_text(soil.void_ratio_min) + " .. " + number_text(soil.void_ratio_max));
   }
   const double span = soil.void_ratio_max - soil.void_ratio_min;
   return bank_state(soil, 100.0 * std::clamp((soil.void_ratio_max - void_ratio) / span, 0.0, 1.0));

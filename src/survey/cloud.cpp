@@ -8,7 +8,7 @@
 
 #include <excavplan/error.hpp>
 
-#include "cloud_outline.hpp"
+#include "survey/cloud_outline.hpp"
 
 namespace excavplan {
 namespace {

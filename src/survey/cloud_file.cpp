@@ -9,8 +9,9 @@
 #include <excavplan/error.hpp>
 #include <excavplan/survey/cloud.hpp>
 
-#include "cloud_format.hpp"
-#include "json_file.hpp"
+#include "base/files.hpp"
+#include "base/text.hpp"
+#include "survey/cloud_format.hpp"
 
 namespace excavplan {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "cloud_format.hpp"
+#include "survey/cloud_format.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "cloud_format.hpp"
+#include "survey/cloud_format.hpp"
 
 // PCD as the Point Cloud Library documents it (versions 0.5 to 0.7).
 

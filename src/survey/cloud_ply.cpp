@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "cloud_format.hpp"
+#include "survey/cloud_format.hpp"
 
 // PLY 1.0 as Greg Turk describes it (Stanford, 1994), with the type names int8 ... float64 that
 // later programs write.

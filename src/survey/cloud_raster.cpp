@@ -13,11 +13,11 @@
 #include <excavplan/error.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
-#include "cloud_cell.hpp"
-#include "cloud_outline.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "ground/robust.hpp"
-#include "json_file.hpp"
-#include "parallel.hpp"
+#include "survey/cloud_cell.hpp"
+#include "survey/cloud_outline.hpp"
 
 namespace excavplan {
 namespace {
@@ -42,26 +42,26 @@ HeightMap empty_map(const Rectangle& extent, const RasterOptions& options) {
   const auto refuse = [](const std::string& what) {
     throw Error(ErrorKind::bad_input, "rasterise: " + what);
   };
-  if (!(options.cell > 0.0) || !std::isfinite(options.cell)) {
-    refuse("cell is " + number_text(options.cell) + " m, must be > 0");
+  if (!(options.cell_size > 0.0) || !std::isfinite(options.cell_size)) {
+    refuse("cell is " + number_text(options.cell_size) + " m, must be > 0");
   }
   if (!(options.outlier_distance > 0.0)) {
     refuse("outlier_distance is " + number_text(options.outlier_distance) + ", must be > 0");
   }
-  const Span columns = span_of(extent.x_min, extent.x_max, options.cell);
-  const Span rows = span_of(extent.y_min, extent.y_max, options.cell);
+  const Span columns = span_of(extent.x_min, extent.x_max, options.cell_size);
+  const Span rows = span_of(extent.y_min, extent.y_max, options.cell_size);
   if (!(columns.count > 0.0) || !(rows.count > 0.0)) {
     refuse("extent x " + number_text(extent.x_min) + " .. " + number_text(extent.x_max) + ", y " +
            number_text(extent.y_min) + " .. " + number_text(extent.y_max) + " m is empty");
   }
   if (!(columns.count * rows.count <= most_cells)) {
-    refuse("cells of " + number_text(options.cell) + " m make a map of " +
+    refuse("cells of " + number_text(options.cell_size) + " m make a map of " +
            number_text(columns.count) + " x " + number_text(rows.count) +
            ", at most 100 million cells are possible");
   }
   HeightMap map;
-  map.cell = options.cell;
-  map.origin = options.cell * Eigen::Vector2d(columns.first, rows.first);
+  map.cell_size = options.cell_size;
+  map.origin = options.cell_size * Eigen::Vector2d(columns.first, rows.first);
   map.z = Eigen::ArrayXXd::Constant(static_cast<Index>(rows.count),
                                     static_cast<Index>(columns.count), unknown);
   return map;
@@ -77,7 +77,7 @@ class PointsByCell {
   PointsByCell(const PointSource& source, const HeightMap& map, std::uint64_t memory)
       : source_(source),
         origin_(map.origin),
-        per_cell_(1.0 / map.cell),
+        per_cell_(1.0 / map.cell_size),
         rows_(map.z.rows()),
         columns_(map.z.cols()),
         counts_(static_cast<std::size_t>(map.z.size())) {
@@ -290,7 +290,7 @@ Ceilings lower_to_ground(PointsByCell& points, Levels& levels, double cell_size)
 Surface surface_of(const PointSource& source, HeightMap map, const RasterOptions& options) {
   PointsByCell points(source, map, options.memory);
   Levels levels = find_levels(points, map);
-  const Ceilings ceilings = lower_to_ground(points, levels, map.cell);
+  const Ceilings ceilings = lower_to_ground(points, levels, map.cell_size);
   constexpr std::size_t trusted = 5;  // points, whose median is hardly ever an outlier; ours
   const double gap = options.outlier_distance * levels.noise;
   const Index rows = map.z.rows();
@@ -357,11 +357,11 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
                                  const RasterOptions& options, double registration_cell) {
   constexpr int most_rounds = 3;
   RasterOptions coarse = options;
-  coarse.cell = std::max(options.cell, registration_cell);
-  const bool is_fine = coarse.cell > options.cell;
+  coarse.cell_size = std::max(options.cell_size, registration_cell);
+  const bool is_fine = coarse.cell_size > options.cell_size;
   Scan after = scans.after;
   RegisteredPair result;
-  SurveyedPair& pair = result.surfaces;
+  SurfacePair& pair = result.surfaces;
   const auto survey = [&](const RasterOptions& raster) {
     std::vector<Surface> both = survey_surfaces({scans.before, after}, extent, raster);
     pair.before = std::move(both[0]);
@@ -371,7 +371,7 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
   pair.alignment = result.first = align(pair.before, pair.after);
   for (int round = 1; round < most_rounds; ++round) {
     const double largest = pair.alignment.largest_shift(pair.after.height);
-    if (!(largest > (is_fine ? 0.0 : 0.5 * options.cell))) break;
+    if (!(largest > (is_fine ? 0.0 : 0.5 * options.cell_size))) break;
     result.correction = pair.alignment.correction() * result.correction;
     after.site_from_scan = result.correction * scans.after.site_from_scan;
     pair.after = survey_surface(after, extent, coarse);

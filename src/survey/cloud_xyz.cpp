@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "cloud_format.hpp"
+#include "survey/cloud_format.hpp"
 
 namespace excavplan {
 namespace {

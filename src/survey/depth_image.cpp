@@ -14,7 +14,9 @@
 
 #include <excavplan/error.hpp>
 
-#include "json_file.hpp"
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {

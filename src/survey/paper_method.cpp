@@ -14,7 +14,7 @@
 
 #include <excavplan/error.hpp>
 
-#include "json_file.hpp"
+#include "base/text.hpp"
 
 // PCL's filters write to the console only where they are misused (no points, more voxels than an
 // int counts); both are excluded before they are called, so its global verbosity stays untouched.

@@ -11,7 +11,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 
-#include "json_file.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {

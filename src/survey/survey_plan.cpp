@@ -7,12 +7,12 @@
 
 #include <excavplan/error.hpp>
 
-#include "json_file.hpp"
+#include "base/angles.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double pi = 3.141592653589793;
 constexpr double degree = pi / 180.0;
 constexpr double margin = 0.10;       // by which zones are wider than what changed [m]
 constexpr double scans = 2.0;         // before and after

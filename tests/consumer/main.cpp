@@ -5,7 +5,7 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
-#include <excavplan/planning/path_library.hpp>
+#include <excavplan/library/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 int main() {

@@ -20,19 +20,23 @@ struct Rectangle {
 
 /// Heights of the ground on a regular grid, seen from above, in the site frame.
 ///
-/// Cell (row, col) is the square whose corner of smallest x and y is at origin + cell * (col, row);
-/// its height is the mean height of the ground inside it. A cell that no scan has seen is NaN and
-/// stays NaN through every function that does not say that it fills.
+/// Cell (row, col) is the square whose corner of smallest x and y is at origin + cell_size * (col,
+/// row); its height is the mean height of the ground inside it. A cell that no scan has seen is NaN
+/// and stays NaN through every function that does not say that it fills.
 struct HeightMap {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< corner of cell (0, 0): x, y [m]
-  double cell = 0.05;                                ///< edge of a cell [m], > 0
+  double cell_size = 0.05;                           ///< edge of a cell [m], > 0
   Eigen::ArrayXXd z;                                 ///< (rows along y, cols along x) [m]
 
-  double x(Eigen::Index col) const { return origin.x() + cell * (static_cast<double>(col) + 0.5); }
-  double y(Eigen::Index row) const { return origin.y() + cell * (static_cast<double>(row) + 0.5); }
+  double x(Eigen::Index col) const {
+    return origin.x() + cell_size * (static_cast<double>(col) + 0.5);
+  }
+  double y(Eigen::Index row) const {
+    return origin.y() + cell_size * (static_cast<double>(row) + 0.5);
+  }
   Rectangle extent() const {
-    return {origin.x(), origin.y(), origin.x() + cell * static_cast<double>(z.cols()),
-            origin.y() + cell * static_cast<double>(z.rows())};
+    return {origin.x(), origin.y(), origin.x() + cell_size * static_cast<double>(z.cols()),
+            origin.y() + cell_size * static_cast<double>(z.rows())};
   }
 };
 
@@ -40,7 +44,7 @@ struct HeightMap {
 ///
 /// @throws Error (bad_input) if the extent is empty, the cell is not positive, or the map would
 ///         hold more than 100 million cells
-HeightMap flat_ground(const Rectangle& extent, double cell, double height = 0.0);
+HeightMap flat_ground(const Rectangle& extent, double cell_size, double height = 0.0);
 
 /// Height at a point, bilinear between the four cell centres around it; within half a cell of the
 /// border the nearest centres hold. NaN outside the map or beside an unknown cell.
@@ -54,7 +58,8 @@ bool same_grid(const HeightMap& a, const HeightMap& b);
 /// their rims first; what lies in wider ones or outside the survey stays NaN.
 ///
 /// @throws Error (bad_input) as flat_ground()
-HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell, double widest_gap);
+HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell_size,
+                    double widest_gap);
 
 /// Area of the unknown cells that have known ones before and behind them along x [m^2].
 double unseen_area(const HeightMap& map);

@@ -89,7 +89,7 @@ struct VolumeChange {
 };
 
 /// Surfaces of one area before and after, on one grid, and how they lie against each other.
-struct SurveyedPair {
+struct SurfacePair {
   Surface before;
   Surface after;
   Alignment alignment;  ///< align(before, after), or what is known otherwise
@@ -117,12 +117,12 @@ struct SurveyedPair {
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid, share fewer than 100 known cells,
 ///         or an option is out of range
-VolumeChange measure_change(const SurveyedPair& scene, const ChangeOptions& options = {});
+VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& options = {});
 
 /// Volumes from separate surfaces of the dig area and of the dump area (the paper's four clouds).
 ///
 /// @throws Error (bad_input) as for a whole scene
-VolumeChange measure_change(const SurveyedPair& dig, const SurveyedPair& dump,
+VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
                             const ChangeOptions& options = {});
 
 /// As for surfaces, with noise as the stable ground shows it and nothing known to have moved but
@@ -131,12 +131,12 @@ VolumeChange measure_change(const HeightMap& before, const HeightMap& after,
                             const ChangeOptions& options = {});
 
 /// A map of one area before and after.
-struct SurfacePair {
+struct HeightMapPair {
   HeightMap before;
   HeightMap after;
 };
 
-VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
+VolumeChange measure_change(const HeightMapPair& dig, const HeightMapPair& dump,
                             const ChangeOptions& options = {});
 
 }  // namespace excavplan

@@ -11,7 +11,8 @@
 
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/trajectory.hpp>
-#include <excavplan/planning/search_analysis.hpp>
+#include <excavplan/optimisation/search_analysis.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 
 /// @file
@@ -34,27 +35,6 @@ struct PlannedDig {
 /// Why a dig cannot be done: the path cannot be driven, or the machine stalls in the soil.
 using DigFailure = std::variant<Infeasible, Stall>;
 std::string describe(const DigFailure& failure);
-
-/// Ground that matters for a dig: from near the tracks to the machine's reach, one bucket and its
-/// windrows wide on both sides of the boom plane.
-Rectangle planning_extent(const Machine& machine);
-
-/// Between which cells the tools and libraries simulate the ground [m]; ours: a dig on finer ones
-/// takes minutes.
-inline constexpr double finest_cell = 0.005;
-inline constexpr double coarsest_cell = 1.0;
-
-/// planning_extent() as level ground.
-Terrain level_planning_ground(const Machine& machine, double cell = 0.05);
-
-/// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the row
-/// of cells it needs.
-GroundProfile boom_plane_profile(const HeightMap& surface);
-GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
-
-/// Slope of the surface in the boom plane from `from_x` on, rising away from the machine [rad]: the
-/// line of least squares through the known cells. NaN with fewer than two.
-double boom_plane_slope(const Terrain& terrain, double from_x);
 
 /// Where along the boom plane a dig begins. It decides the work of the links, and with it up to a
 /// third of the efficiency: paths are compared under one rule (docs/methods.md#start).
@@ -109,7 +89,7 @@ struct DigBounds {
 };
 
 /// An evaluation is a dig, its fitness the dig's worth.
-struct DigSearchOptions : SearchConduct {
+struct DigSearchOptions : SearchSettings {
   std::vector<DigParameters> start = {};  ///< known good digs to begin with
   DigObjective objective = {};
   DigBounds bounds = {};

@@ -34,6 +34,8 @@ class SectionSimulator : public SoilSimulator {
                 const DigOptions& options = {}) const override;
   std::string identity() const override;
 
+  static std::string name();  ///< with its version: "section 1"
+
  private:
   std::shared_ptr<const SectionModel> model_;
 };

@@ -47,7 +47,7 @@ struct DensityClosedForm {
 
 using DensityForm = std::variant<DensityLine, DensityClosedForm>;
 
-/// A law with its origin. `form` is what estimate_density() uses.
+/// A law with its origin. `form` is what relative_density() uses.
 struct DensityLaw {
   std::string name;
   std::string source;
@@ -73,7 +73,7 @@ double bulking_of_density(const DensityForm& form, double density_percent);
 double density_slope(const DensityForm& form, double bulking_factor);  ///< dd/dk [%]
 
 /// Relative density [%] with what is known about its error.
-struct DensityEstimate {
+struct RelativeDensity {
   double percent = 0.0;      ///< inside 0 .. 100
   double raw_percent = 0.0;  ///< as the law gives it
   double sd_percent = 0.0;   ///< delta method: (dd/dk sd_k)^2 + residual_sd^2
@@ -86,7 +86,7 @@ struct DensityEstimate {
 /// warning; further outside than the error explains (1.96 sd) the estimate is not trustworthy.
 ///
 /// @throws Error (bad_input) unless the bulking factor is finite and positive and its sd is >= 0
-DensityEstimate estimate_density(const DensityLaw& law, const Measured& bulking_factor);
+RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_factor);
 
 /// Least-squares line of d on k.
 /// @throws Error (bad_input) with fewer than 3 different factors, a factor that is not positive, a

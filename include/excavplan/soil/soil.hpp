@@ -62,7 +62,8 @@ std::string fingerprint(const SoilKind& soil);
 /// State of undisturbed soil. @throws Error (bad_input) unless 0 <= density_percent <= 100
 SoilState bank_state(const SoilKind& soil, double density_percent);
 
-/// The same for a void ratio. @throws Error (bad_input) unless void_ratio_min <= e <= void_ratio_max
+/// The same for a void ratio. @throws Error (bad_input) unless void_ratio_min <= e <=
+/// void_ratio_max
 SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio);
 
 /// State of dug soil: void_ratio_loose, cohesion and adhesion lost, friction of the loosest state.

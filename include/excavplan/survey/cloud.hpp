@@ -84,7 +84,7 @@ CloudSummary summarise(const Cloud& cloud);
 
 /// Settings of rasterise().
 struct RasterOptions {
-  double cell = 0.05;             ///< [m], > 0
+  double cell_size = 0.05;        ///< [m], > 0
   double outlier_distance = 4.0;  ///< points this many robust sd beyond the heights found around
                                   ///< their cell are left out [-], > 0
   std::uint64_t memory = std::uint64_t{256} << 20;  ///< for points held at a time [byte]; where

@@ -74,7 +74,7 @@ struct ScanPair {
 
 /// Surfaces of a pair of scans, for measure_change().
 struct RegisteredPair {
-  SurveyedPair surfaces;
+  SurfacePair surfaces;
   /// Takes points of the scan after to where the ground that did not change says they belong, in
   /// the frame of the scan before; the identity where nothing significant moved.
   Eigen::Matrix4d correction = Eigen::Matrix4d::Identity();

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <excavplan/machine/machine.hpp>
+#include <excavplan/planning/planner.hpp>
+#include <excavplan/soil/soil.hpp>
+
+/// @file
+/// Best digs computed beforehand, and the one for a density and a slope looked up among them
+/// (docs/methods.md#library). How libraries are made: library_build.hpp.
+
+namespace excavplan {
+
+/// How far a path looked up midway between two entries is off, found by digging it.
+struct MidwayError {
+  /// Share of the best efficiency there that it gives away [0, 1]; 1 if it cannot be dug. The best
+  /// is estimated from the entries around.
+  double loss = 0.0;
+  /// The efficiency that look_up() expects, against the one simulated: their ratio less 1.
+  double expectation = 0.0;
+};
+
+/// The best dig for one density on one slope.
+struct PathLibraryEntry {
+  double density_percent = 0.0;
+  PlannedDig dig;
+  int evaluations = 0;  ///< digs simulated for it
+  double slope = 0.0;   ///< of the ground in the boom direction, rising away from the machine [rad]
+  MidwayError midway;   ///< towards the next density of the same slope; zero for the last
+  MidwayError midway_slope;  ///< towards the next slope at the same density; zero on the last
+  /// Towards the next density, and the next slope, the nearer dig is looked up and not a mix of the
+  /// two: they are of different kinds, and the mix was found worse midway.
+  bool jump = false;
+  bool jump_slope = false;
+};
+
+/// A density at which no dig is feasible on its slope.
+struct PathLibraryGap {
+  double density_percent = 0.0;
+  double slope = 0.0;  ///< [rad]
+};
+
+/// Best digs of one machine in one soil.
+struct PathLibrary {
+  std::string machine;  ///< name of the machine
+  std::string soil;     ///< name of the soil
+  std::string machine_fingerprint;
+  std::string soil_fingerprint;
+  std::string simulator;   ///< name and version
+  double cell_size = 0.0;  ///< of the ground it was computed on [m]
+  std::uint64_t seed = 0;
+  std::string search;                     ///< how the digs were searched, for people
+  std::vector<PathLibraryEntry> entries;  ///< slope rising, then density; at least one
+  std::vector<PathLibraryGap> gaps;       ///< in the same order
+
+  int evaluations() const;
+};
+
+/// Reads a library file (docs/formats.md#path-library).
+/// @throws Error (bad_file) naming file, key, value and rule
+PathLibrary load_path_library(const std::string& path);
+
+/// MACHINE-SOIL.json, the names as every file system takes them.
+std::string file_name(const PathLibrary& library);
+
+/// The text of a library file; the same library gives the same bytes.
+std::string to_json(const PathLibrary& library);
+
+/// Refuses a library that was computed for another machine, soil or simulator.
+/// @param name  of the library, for the message
+/// @throws Error (bad_input) naming all that differs
+void require_fit(const PathLibrary& library, const Machine& machine, const SoilKind& soil,
+                 const std::string& name);
+
+/// The dig for a density and a slope: parameters and expectations linear between the entries
+/// around; the nearer of two where the optimum jumps between them.
+///
+/// @throws Error (bad_input) if density or slope are outside the library, or in a gap of it
+PlannedDig look_up(const PathLibrary& library, double density_percent, double slope = 0.0);
+
+/// How far what look_up() returns may be off: the error found midway between the two densities,
+/// less near an entry (by the square of the distance, as the error of a line between two points),
+/// the larger of the two slopes around; and likewise that midway between the two slopes, the larger
+/// of the two densities around. The two add up.
+///
+/// @throws Error as look_up()
+MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope = 0.0);
+
+}  // namespace excavplan

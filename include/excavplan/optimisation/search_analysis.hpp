@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/optimisation/search.hpp>
+
+/// @file
+/// What a search found out beyond its best point.
+
+namespace excavplan {
+
+const char* name(SearchRecord::Origin origin);
+const char* name(SearchRecord::Source source);
+
+/// Every point asked, one line each: place, generation, origin, polish, parents (joined by ';'),
+/// source, status, fitness, violation, reason, coordinates.
+std::string to_csv(const SearchResult& result);
+
+struct ParameterRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// How sure the best point is of its place.
+struct SearchInsight {
+  /// Place in the history of the best point of another basin: farther from the best than the
+  /// radius, and no better point within the radius around it.
+  std::optional<int> second_basin;
+  /// Per parameter: from the lowest to the highest value among the evaluated points that are worth
+  /// the share and are linked to the best by others of the kind, no step longer than half the
+  /// radius. The true range is at least that wide.
+  std::vector<ParameterRange> seen;
+  /// Per parameter: the range worth the share if all others follow, by a quadratic fitted to the
+  /// points around the best; clipped to the box. Empty if the points are too few or lie on no hill
+  /// (a cliff, steps).
+  std::vector<ParameterRange> fitted;
+};
+
+/// @param share  of the best fitness; for a negative best, 1 - share of its amount below it
+/// @param radius  of a basin, as a share of the box
+SearchInsight explain(const SearchBox& box, const SearchResult& result, double share = 0.98,
+                      double radius = 0.2);
+
+/// An objective with noise; must say the same of the same point and repeat.
+using NoisyObjective = std::function<Evaluation(const Eigen::VectorXd& point, int repeat)>;
+
+/// A point evaluated several times.
+struct RepeatedEvaluation {
+  Eigen::VectorXd point;
+  double first = 0.0;  ///< what the search saw: too good, for it was chosen for it
+  double mean = 0.0;   ///< of the repeats that were ok; NaN if none was
+  double sd = 0.0;     ///< of one evaluation; NaN for fewer than two
+  int ok = 0;
+  int repeats = 0;
+};
+
+/// Evaluates the best few points of a search again, all points and repeats side by side; best mean
+/// first. Exceptions count as repeats that are not ok.
+///
+/// @throws Error (bad_input) if `best` or `repeats` is < 1
+std::vector<RepeatedEvaluation> evaluate_again(const SearchResult& result,
+                                               const NoisyObjective& objective, int best = 5,
+                                               int repeats = 8, unsigned threads = 0);
+
+}  // namespace excavplan

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/soil/density_law.hpp>
+#include <excavplan/soil/soil.hpp>
+
+namespace excavplan {
+
+struct CalibrationOptions {
+  std::vector<double> densities_percent;  ///< empty: 0, 5 .. 100, as the paper does
+  DigParameters path = paper_fixed_path();
+  double cell_size = 0.05;  ///< [m]
+};
+
+/// Digs the built-in simulator at every density, measures the bulking factor from its height maps
+/// as the paper does (section 3.1), and fits line and closed form to it: once as measured, once
+/// freed of the soil that fell back into the cut. The as-measured closed form is the one to use
+/// with scans, which cannot see what lies under fallen soil.
+///
+/// @throws Error (bad_input) if the path cannot be driven, the machine stalls, or fewer than 4
+/// densities are given
+DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
+                                     const CalibrationOptions& options = {});
+
+/// How far the bulking factor of the height maps and the true one part, and why.
+///
+/// Soil that fell back lies in the hole: it is missing from both volumes, and k_measured =
+/// (k - f) / (1 - f) with f the fallback fraction (docs/methods.md#density-law).
+struct BulkingDifference {
+  DensityCalibration::Sample largest;  ///< where they part most
+  double density_points = 0.0;  ///< error of its density if k were taken for the true one [%]
+  double unexplained = 0.0;     ///< largest |k - k_true| once freed of fallback, any sample
+};
+
+/// Nothing if the true factor of some sample is not known, as in measured samples.
+std::optional<BulkingDifference> bulking_difference(const DensityCalibration& calibration);
+
+}  // namespace excavplan

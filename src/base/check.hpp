@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <excavplan/error.hpp>
+
+#include "base/text.hpp"
+
+/// @file
+/// The checks that public functions make of their arguments. Private to the project.
+
+namespace excavplan {
+
+/// @throws Error (bad_input) "WHAT is VALUE, must be RULE" unless it holds
+inline void require(bool holds, const std::string& what, double value, const std::string& rule) {
+  if (holds) return;
+  throw Error(ErrorKind::bad_input, what + " is " + number_text(value) + ", must be " + rule);
+}
+
+}  // namespace excavplan

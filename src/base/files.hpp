@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+/// @file
+/// Whole files, read and written. Private to the project.
+
+namespace excavplan {
+
+/// Writes a file whole or not at all: beside it first, then renamed over it. A link, a pipe or a
+/// device is written to.
+/// @throws Error (bad_file) if that fails; the old file then still stands
+void write_file(const std::string& path, const std::string& content);
+
+/// @throws Error (bad_file) if the folder that is to hold a file does not exist
+void require_folder_of(const std::string& path);
+
+/// The whole content of a regular file. @throws Error (bad_file)
+std::string read_file(const std::string& path);
+
+}  // namespace excavplan

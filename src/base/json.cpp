@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "base/json.hpp"
+
+#include <cmath>
+
+#include <excavplan/error.hpp>
+
+#include "base/files.hpp"
+#include "base/text.hpp"
+
+namespace excavplan {
+namespace {
+
+using nlohmann::json;
+
+/// nlohmann keeps the last of two equal keys without a word; this callback refuses them.
+json parse(const std::string& path, const std::string& content) {
+  std::vector<std::set<std::string>> keys;
+  const auto refuse_duplicates = [&](int, json::parse_event_t event, json& parsed) {
+    if (event == json::parse_event_t::object_start) {
+      keys.emplace_back();
+    } else if (event == json::parse_event_t::object_end) {
+      keys.pop_back();
+    } else if (event == json::parse_event_t::key &&
+               !keys.back().insert(parsed.get<std::string>()).second) {
+      throw Error(ErrorKind::bad_file,
+                  path + ": key '" + parsed.get<std::string>() + "' stands twice");
+    }
+    return true;
+  };
+  try {
+    return json::parse(content, refuse_duplicates);
+  } catch (const json::exception& e) {
+    throw Error(ErrorKind::bad_file, path + ": not valid JSON: " + e.what());
+  }
+}
+
+}  // namespace
+
+JsonObject::JsonObject(std::string file, std::string where, json object)
+    : file_(std::move(file)), where_(std::move(where)), json_(std::move(object)) {}
+
+JsonObject JsonObject::of_text(const std::string& name, const std::string& content,
+                               const std::string& format, int version) {
+  JsonObject top(name, "", parse(name, content));
+  if (!top.json_.is_object()) {
+    throw Error(ErrorKind::bad_file, name + ": expected a JSON object");
+  }
+  if (top.text("format") != format) {
+    top.fail("format", "is '" + top.text("format") + "', expected '" + format + "'");
+  }
+  if (const double found = top.number("version"); found != version) {
+    top.fail("version", "is " + number_text(found) + ", this program reads version " +
+                            std::to_string(version));
+  }
+  return top;
+}
+
+JsonObject JsonObject::open(const std::string& path, const std::string& format, int version) {
+  return of_text(path, read_file(path), format, version);
+}
+
+JsonObject JsonObject::open_sealed(const std::string& name, const std::string& content,
+                                   const std::string& format, int version) {
+  JsonObject top = of_text(name, content, format, version);
+  const std::size_t seal = sealed("").size();
+  if (content.size() < seal || sealed(content.substr(0, content.size() - seal)) != content) {
+    top.fail("checksum", "does not fit the content: the file was altered");
+  }
+  top.ignore("checksum");
+  return top;
+}
+
+std::string sealed(const std::string& content) {
+  return content + ",\n\"checksum\": \"" + checksum_text(content) + "\"\n}\n";
+}
+
+std::string sealed_text(const nlohmann::ordered_json& object) {
+  const std::string text = object.dump(1);
+  return sealed(text.substr(0, text.size() - 2));  // reopened
+}
+
+void JsonObject::fail(const std::string& key, const std::string& message) const {
+  throw Error(ErrorKind::bad_file, file_ + ": " + where_ + key + ": " + message);
+}
+
+bool JsonObject::has(const std::string& key) const { return json_.contains(key); }
+
+const json& JsonObject::at(const std::string& key) {
+  read_.insert(key);
+  const auto found = json_.find(key);
+  if (found == json_.end()) fail(key, "is missing");
+  return *found;
+}
+
+double JsonObject::number(const std::string& key, double lowest, double highest) {
+  const json& value = at(key);
+  if (!value.is_number()) fail(key, "is " + value.dump() + ", expected a number");
+  const double number = value.get<double>();
+  if (!std::isfinite(number) || number < lowest || number > highest) {
+    fail(key, "is " + number_text(number) + ", must be in " + number_text(lowest) + " .. " +
+                  number_text(highest));
+  }
+  return number;
+}
+
+double JsonObject::number_or(const std::string& key, double fallback, double lowest,
+                             double highest) {
+  return has(key) ? number(key, lowest, highest) : fallback;
+}
+
+std::string JsonObject::text(const std::string& key) {
+  const json& value = at(key);
+  if (!value.is_string()) fail(key, "is " + value.dump() + ", expected a text");
+  return value.get<std::string>();
+}
+
+std::string JsonObject::text_or(const std::string& key, const std::string& fallback) {
+  return has(key) ? text(key) : fallback;
+}
+
+bool JsonObject::flag(const std::string& key) {
+  const json& value = at(key);
+  if (!value.is_boolean()) fail(key, "is " + value.dump() + ", expected true or false");
+  return value.get<bool>();
+}
+
+std::vector<double> JsonObject::numbers(const std::string& key, std::size_t size) {
+  const json& list = at(key);
+  if (!list.is_array() || list.size() != size) {
+    fail(key, "expected a list of " + std::to_string(size) + " numbers, got " + list.dump());
+  }
+  std::vector<double> numbers;
+  for (const json& entry : list) {
+    if (!entry.is_number()) fail(key, "holds " + entry.dump() + ", expected a number");
+    numbers.push_back(entry.get<double>());
+  }
+  return numbers;
+}
+
+JsonObject JsonObject::object(const std::string& key) {
+  const json& value = at(key);
+  if (!value.is_object()) fail(key, "expected an object");
+  return {file_, where_ + key + ".", value};
+}
+
+std::vector<JsonObject> JsonObject::objects(const std::string& key) {
+  const json& list = at(key);
+  if (!list.is_array()) fail(key, "expected a list of objects");
+  std::vector<JsonObject> objects;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string place = key + "[" + std::to_string(i) + "]";
+    if (!list[i].is_object()) fail(place, "expected an object");
+    objects.push_back({file_, where_ + place + ".", list[i]});
+  }
+  return objects;
+}
+
+void JsonObject::done() const {
+  for (const auto& [key, value] : json_.items()) {
+    if (read_.count(key) == 0) fail(key, "is not a key of this file");
+  }
+}
+
+}  // namespace excavplan

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+/// @file
+/// Numbers as text, and checksums of text. Private to the project.
+
+namespace excavplan {
+
+/// The largest whole number of which JSON's double keeps this and all smaller ones, 2^53.
+constexpr std::uint64_t most_exact = 9007199254740992;
+
+/// Shortest text of a number that reads back the same, for messages and files.
+std::string number_text(double value);
+/// The number with so many digits after the point: "0.350".
+std::string decimals(double value, int digits);
+
+/// FNV-1a, 64 bit: against damage, not against intent. The text has 16 hexadecimal digits.
+std::uint64_t checksum(const std::string& text);
+std::string checksum_text(const std::string& text);
+
+}  // namespace excavplan

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <excavplan/error.hpp>
+#include <excavplan/optimisation/search.hpp>
+
+#include "base/text.hpp"
+#include "optimisation/search_methods.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::VectorXd;
+
+void require(bool holds, const std::string& rule, double value) {
+  if (!holds) {
+    throw Error(ErrorKind::bad_input, "search: " + rule + ", got " + number_text(value));
+  }
+}
+
+void check(const SearchProblem& problem) {
+  const SearchBox& box = problem.box;
+  require(box.lower.size() > 0 && box.lower.size() == box.upper.size(),
+          "the box needs as many lower as upper bounds, at least one",
+          static_cast<double>(box.lower.size()));
+  for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
+    require(
+        std::isfinite(box.lower(i)) && std::isfinite(box.upper(i)) && box.lower(i) <= box.upper(i),
+        "bounds must be finite and lower <= upper", box.lower(i));
+  }
+  require(problem.step.size() == 0 || problem.step.size() == box.lower.size(),
+          "there must be as many steps as bounds or none",
+          static_cast<double>(problem.step.size()));
+  for (const double step : problem.step) {
+    require(std::isfinite(step) && step >= 0.0, "steps must be finite and >= 0", step);
+  }
+  if (!problem.objective) throw Error(ErrorKind::bad_input, "search: the objective is empty");
+}
+
+void check(const GeneticAlgorithm& method, const SearchTask&) {
+  require(method.population >= 2, "population must be >= 2", method.population);
+  require(method.generations >= 1, "generations must be >= 1", method.generations);
+  require(method.tournament >= 1, "tournament must be >= 1", method.tournament);
+  require(method.crossover >= 0.0 && method.crossover <= 1.0, "crossover must be in 0 .. 1",
+          method.crossover);
+  require(method.mutation >= 0.0 && method.mutation <= 1.0, "mutation must be in 0 .. 1",
+          method.mutation);
+}
+
+void check(const MemeticSearch& method, const SearchTask& task) {
+  require(method.first_generation >= (task.start.empty() ? 1 : 0),
+          task.start.empty() ? "first_generation must be >= 1 without given points"
+                             : "first_generation must be >= 0",
+          method.first_generation);
+  require(method.generations >= 0, "generations must be >= 0", method.generations);
+  require(method.generation_size >= 1, "generation_size must be >= 1", method.generation_size);
+  require(method.immigrants >= 0.0 && method.immigrants <= 1.0, "immigrants must be in 0 .. 1",
+          method.immigrants);
+  require(method.basins >= 0, "basins must be >= 0", method.basins);
+  require(method.polish_evaluations >= 0, "polish_evaluations must be >= 0",
+          method.polish_evaluations);
+  require(method.basin_radius > 0.0, "basin_radius must be > 0", method.basin_radius);
+}
+
+void check(const SearchOptions& options) {
+  require(options.stop.evaluations >= 0, "stop.evaluations must be >= 0", options.stop.evaluations);
+  require(options.stop.stall >= 0, "stop.stall must be >= 0", options.stop.stall);
+  require(options.stop.seconds >= 0.0, "stop.seconds must be >= 0", options.stop.seconds);
+  require(!options.stop.target || std::isfinite(*options.stop.target), "stop.target must be finite",
+          options.stop.target.value_or(0.0));
+  require(options.checkpoint_interval >= 0.0, "checkpoint_interval must be >= 0",
+          options.checkpoint_interval);
+}
+
+std::vector<VectorXd> clipped(const std::vector<VectorXd>& points, const SearchBox& box) {
+  std::vector<VectorXd> inside;
+  for (const VectorXd& point : points) {
+    require(point.size() == box.lower.size(), "a start needs as many numbers as the box has bounds",
+            static_cast<double>(point.size()));
+    for (const double number : point)
+      require(std::isfinite(number), "a start must be finite", number);
+    inside.push_back(point.cwiseMax(box.lower).cwiseMin(box.upper));
+  }
+  return inside;
+}
+
+/// Evaluations a method makes at most; a double, for the products know no bounds.
+double planned_evaluations(const GeneticAlgorithm& method, const SearchTask& task) {
+  const double first = std::max<double>(method.population, static_cast<double>(task.start.size()));
+  return first + (method.generations - 1.0) * (method.population - 1.0);
+}
+
+double planned_evaluations(const MemeticSearch& method, const SearchTask&) {
+  const double polishes = method.basins > 0 ? 1.0 + method.basins + method.generations : 0.0;
+  return method.first_generation + polishes * method.polish_evaluations +
+         1.0 * method.generations * method.generation_size;
+}
+
+/// Rank of a status: feasible before infeasible before unknown.
+int rank(const Evaluation& outcome) {
+  using Status = Evaluation::Status;
+  return outcome.ok() ? 0 : outcome.status == Status::infeasible ? 1 : 2;
+}
+
+}  // namespace
+
+Evaluation::Evaluation(double value) {
+  if (std::isfinite(value)) {
+    status = Status::ok;
+    fitness = value;
+  } else {
+    reason = "the fitness is " + number_text(value);
+  }
+}
+
+Evaluation::Evaluation(std::optional<double> value)
+    : Evaluation(value ? Evaluation(*value) : infeasible(0.0)) {}
+
+Evaluation Evaluation::infeasible(double violation, std::string reason) {
+  if (!std::isfinite(violation)) {
+    return failed("the violation is " + number_text(violation));
+  }
+  Evaluation outcome;
+  outcome.status = Status::infeasible;
+  outcome.violation = std::fmax(violation, 0.0);
+  outcome.reason = std::move(reason);
+  return outcome;
+}
+
+Evaluation Evaluation::failed(std::string reason) {
+  Evaluation outcome;
+  outcome.reason = std::move(reason);
+  return outcome;
+}
+
+Evaluation Evaluation::timed_out(std::string reason) {
+  Evaluation outcome = failed(std::move(reason));
+  outcome.status = Status::timed_out;
+  return outcome;
+}
+
+const char* name(Evaluation::Status status) {
+  switch (status) {
+    case Evaluation::Status::ok:
+      return "ok";
+    case Evaluation::Status::infeasible:
+      return "infeasible";
+    case Evaluation::Status::failed:
+      return "failed";
+    case Evaluation::Status::timed_out:
+      return "timed out";
+  }
+  return "";
+}
+
+const char* name(StopReason reason) {
+  switch (reason) {
+    case StopReason::generations:
+      return "generations";
+    case StopReason::evaluations:
+      return "evaluations";
+    case StopReason::stall:
+      return "stall";
+    case StopReason::seconds:
+      return "seconds";
+    case StopReason::target:
+      return "target";
+    case StopReason::cancelled:
+      return "cancelled";
+  }
+  return "";
+}
+
+bool better(const Evaluation& a, const Evaluation& b) {
+  if (rank(a) != rank(b)) return rank(a) < rank(b);
+  if (a.ok()) return a.fitness > b.fitness;
+  return a.violation < b.violation;
+}
+
+SearchResult search(const SearchProblem& problem, const SearchOptions& options) {
+  check(problem);
+  check(options);
+  const SearchTask task{problem.box, options.seed, clipped(options.start, problem.box)};
+  return std::visit(
+      [&](const auto& method) {
+        check(method, task);
+        SearchLog log(problem, options, planned_evaluations(method, task));
+        run(method, task, log);
+        return log.finish();
+      },
+      options.method);
+}
+
+}  // namespace excavplan

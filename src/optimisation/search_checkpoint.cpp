@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "optimisation/search_checkpoint.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include <excavplan/error.hpp>
+
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+
+namespace excavplan {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* format = "excavplan-search";
+
+std::string text_of(const Eigen::VectorXd& numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : " ") + number_text(number);
+  return text;
+}
+
+std::string describe(const MemeticSearch& method) {
+  return "memetic, first generation " + std::to_string(method.first_generation) + ", generations " +
+         std::to_string(method.generations) + " of " + std::to_string(method.generation_size) +
+         ", immigrants " + number_text(method.immigrants) + ", basins " +
+         std::to_string(method.basins) + " of radius " + number_text(method.basin_radius) +
+         ", polish " + std::to_string(method.polish_evaluations);
+}
+
+/// All that decides the course of a search, stop rules and given points apart.
+std::string describe(const SearchOptions& options) {
+  return std::visit([](const auto& method) { return describe(method); }, options.method) +
+         ", seed " + std::to_string(options.seed);
+}
+
+std::string describe(const SearchProblem& problem) {
+  std::string text = problem.fingerprint + ", box " + text_of(problem.box.lower) + " to " +
+                     text_of(problem.box.upper);
+  if (problem.step.size() > 0) text += ", step " + text_of(problem.step);
+  return text;
+}
+
+ordered_json to_json(const PointKey& point, const Evaluation& outcome) {
+  ordered_json entry = {{"point", point}, {"status", name(outcome.status)}};
+  if (outcome.ok()) entry["fitness"] = outcome.fitness;
+  if (outcome.violation > 0.0) entry["violation"] = outcome.violation;
+  if (!outcome.reason.empty()) entry["reason"] = outcome.reason;
+  return entry;
+}
+
+Evaluation read_outcome(JsonObject& entry) {
+  using Status = Evaluation::Status;
+  const std::string status = entry.text("status");
+  if (status == name(Status::ok)) return {entry.number("fitness")};
+  const std::string reason = entry.text_or("reason", "");
+  if (status == name(Status::infeasible)) {
+    return Evaluation::infeasible(entry.number_or("violation", 0.0, 0.0), reason);
+  }
+  if (status == name(Status::failed)) return Evaluation::failed(reason);
+  if (status == name(Status::timed_out)) return Evaluation::timed_out(reason);
+  entry.fail("status", "is '" + status + "', expected ok, infeasible, failed or timed out");
+}
+
+/// Invalid UTF-8 has no place in JSON; what the file cannot hold, the search must not see.
+std::string sound(std::string reason) {
+  constexpr std::size_t longest = 500;
+  if (reason.size() > longest) reason = reason.substr(0, longest) + " ...";
+  return ordered_json::parse(
+             ordered_json(reason).dump(-1, ' ', false, ordered_json::error_handler_t::replace))
+      .get<std::string>();
+}
+
+}  // namespace
+
+std::string describe(const GeneticAlgorithm& method) {
+  return "genetic algorithm: population " + std::to_string(method.population) + ", generations " +
+         std::to_string(method.generations) + ", tournament " + std::to_string(method.tournament) +
+         ", crossover " + number_text(method.crossover) + ", mutation " +
+         number_text(method.mutation);
+}
+
+Evaluation sound(const Evaluation& outcome) {
+  using Status = Evaluation::Status;
+  switch (outcome.status) {
+    case Status::ok:
+      return {outcome.fitness};
+    case Status::infeasible:
+      return Evaluation::infeasible(outcome.violation, sound(outcome.reason));
+    case Status::failed:
+      return Evaluation::failed(sound(outcome.reason));
+    case Status::timed_out:
+      return Evaluation::timed_out(sound(outcome.reason));
+  }
+  return Evaluation::failed("the status is none");
+}
+
+SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOptions& options)
+    : file_(options.checkpoint), problem_(describe(problem)), search_(describe(options)) {
+  if (file_.empty()) return;
+  if (problem.fingerprint.empty()) {
+    throw Error(ErrorKind::bad_input,
+                "search: a checkpoint needs the fingerprint of the problem, it is empty");
+  }
+  require_folder_of(file_);
+  if (options.resume && std::filesystem::exists(file_)) {
+    load(static_cast<std::size_t>(problem.box.lower.size()));
+  }
+}
+
+const Evaluation* SearchCheckpoint::find(const Eigen::VectorXd& point) const {
+  if (earlier_.empty()) return nullptr;
+  const auto found = earlier_.find(key_of(point));
+  return found == earlier_.end() ? nullptr : &found->second;
+}
+
+void SearchCheckpoint::add(const Eigen::VectorXd& point, const Evaluation& outcome) {
+  if (file_.empty()) return;
+  fresh_.insert_or_assign(key_of(point), outcome);
+  changed_ = true;
+}
+
+void SearchCheckpoint::save() {
+  if (!changed_) return;
+  write_file(file_, text());
+  changed_ = false;
+}
+
+std::string SearchCheckpoint::text() const {
+  const ordered_json head = {
+      {"format", format}, {"version", 1}, {"problem", problem_}, {"search", search_}};
+  std::string text = head.dump(0);
+  text.resize(text.size() - 2);  // reopen the object
+  text += ",\n\"evaluations\": [";
+  Outcomes all = earlier_;
+  all.insert(fresh_.begin(), fresh_.end());
+  bool first = true;
+  for (const auto& [point, outcome] : all) {
+    text += (first ? "\n" : ",\n") + to_json(point, outcome).dump();
+    first = false;
+  }
+  return sealed(text + "\n]");
+}
+
+void SearchCheckpoint::load(std::size_t dimensions) {
+  JsonObject file = JsonObject::open_sealed(file_, read_file(file_), format);
+  for (const auto& [key, own] : {std::pair{"problem", problem_}, std::pair{"search", search_}}) {
+    if (const std::string text = file.text(key); text != own) {
+      file.fail(key, "is '" + text + "', which is another one than '" + own + "'");
+    }
+  }
+  for (JsonObject& entry : file.objects("evaluations")) {
+    const std::vector<double> point = entry.numbers("point", dimensions);
+    earlier_.emplace(point, read_outcome(entry));
+    entry.done();
+  }
+  file.done();
+}
+
+}  // namespace excavplan

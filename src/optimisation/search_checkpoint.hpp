@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/optimisation/search.hpp>
+
+#include "optimisation/search_points.hpp"
+
+namespace excavplan {
+
+/// All that decides the course of a method, in words.
+std::string describe(const GeneticAlgorithm& method);
+
+/// An outcome as the constructors of Evaluation make it, whoever filled its fields, which a file
+/// can hold: finite numbers, a violation only if infeasible, a reason only if not ok, in UTF-8 of
+/// limited length.
+Evaluation sound(const Evaluation& outcome);
+
+/// The outcomes of a search's evaluations, in memory and in a file
+/// (docs/formats.md#search-checkpoint). A search is determined by its options and these outcomes,
+/// so that nothing else need be kept.
+class SearchCheckpoint {
+ public:
+  /// Reads the file if the search is to be resumed and the file exists.
+  /// @throws Error (bad_file, bad_input)
+  SearchCheckpoint(const SearchProblem& problem, const SearchOptions& options);
+
+  /// The outcome an earlier run noted for a point.
+  const Evaluation* find(const Eigen::VectorXd& point) const;
+  void add(const Eigen::VectorXd& point, const Evaluation& outcome);
+  /// Writes the file, whole or not at all; does nothing if none was asked for or nothing is new.
+  void save();
+
+ private:
+  using Outcomes = std::map<PointKey, Evaluation>;
+
+  void load(std::size_t dimensions);
+  std::string text() const;
+
+  std::string file_;
+  std::string problem_;
+  std::string search_;  ///< what decides the search apart from the problem
+  Outcomes earlier_;    ///< of the file
+  Outcomes fresh_;
+  bool changed_ = false;
+};
+
+}  // namespace excavplan

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/simulation/calibration.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <variant>
+
+#include <excavplan/ground/bulking.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+
+namespace excavplan {
+namespace {
+
+/// Volumes do not depend on who pulls: no soil is too hard to calibrate for.
+Machine tireless(Machine machine) {
+  for (JointLimits& limits : machine.limits) {
+    limits.torque = std::numeric_limits<double>::infinity();
+  }
+  return machine;
+}
+
+DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
+                                   const CalibrationOptions& options) {
+  const Eigen::Vector2d dump_at = default_dump_point();
+  const Terrain ground =
+      undisturbed(flat_ground(scene_extent(machine, dump_at), options.cell_size));
+  const auto laid_out = make_dig_path_anywhere(machine, options.path, boom_plane_profile(ground));
+  if (const auto* infeasible = std::get_if<Infeasible>(&laid_out)) {
+    throw Error(ErrorKind::bad_input, "calibration: " + infeasible->message);
+  }
+  DigOptions dig;
+  dig.dump_at = dump_at;
+  const HeightMapSimulator simulator(tireless(machine), soil, density);
+  const DigResult result = simulator.dig(ground, std::get<DigPath>(laid_out), dig);
+
+  DensityCalibration::Sample sample;
+  sample.density_percent = density;
+  sample.bulking_factor_measured =
+      height_map_volumes(ground, result.after(ground), dump_at).bulking_factor;
+  sample.fallback_fraction = result.soil.fallback_fraction;
+  sample.bulking_factor =
+      free_of_fallback(sample.bulking_factor_measured, sample.fallback_fraction);
+  sample.bulking_factor_true = bulking_of_density(soil, density);
+  return sample;
+}
+
+std::vector<BulkingSample> pairs(const std::vector<DensityCalibration::Sample>& samples,
+                                 double DensityCalibration::Sample::*factor) {
+  std::vector<BulkingSample> pairs;
+  for (const auto& sample : samples) pairs.push_back({sample.*factor, sample.density_percent});
+  return pairs;
+}
+
+}  // namespace
+
+DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
+                                     const CalibrationOptions& options) {
+  DensityCalibration calibration;
+  std::vector<double> densities = options.densities_percent;
+  if (densities.empty()) {
+    for (int i = 0; i <= 20; ++i) densities.push_back(5.0 * i);
+  }
+  for (const double density : densities) {
+    calibration.samples.push_back(measure(machine, soil, density, options));
+  }
+  using Sample = DensityCalibration::Sample;
+  const auto freed = pairs(calibration.samples, &Sample::bulking_factor);
+  const auto measured = pairs(calibration.samples, &Sample::bulking_factor_measured);
+  calibration.name = machine.name + "-" + soil.name;
+  calibration.source = "digs of the built-in simulator, " + machine.name + " in " + soil.name;
+  calibration.soil = soil.name;
+  calibration.use = "closed_form_as_measured";
+  calibration.line = fit_line(freed);
+  calibration.closed_form = fit_closed_form(freed);
+  calibration.line_as_measured = fit_line(measured);
+  calibration.closed_form_as_measured = fit_closed_form(measured);
+  return calibration;
+}
+
+std::optional<BulkingDifference> bulking_difference(const DensityCalibration& calibration) {
+  using Sample = DensityCalibration::Sample;
+  const auto& samples = calibration.samples;
+  const auto known = [](const Sample& s) {
+    return s.bulking_factor_true > 0.0 && s.bulking_factor_measured > 0.0;
+  };
+  if (samples.empty() || !std::all_of(samples.begin(), samples.end(), known)) return std::nullopt;
+  const auto apart = [](const Sample& s) {
+    return std::abs(s.bulking_factor_measured - s.bulking_factor_true);
+  };
+  BulkingDifference difference;
+  difference.largest =
+      *std::max_element(samples.begin(), samples.end(),
+                        [&](const Sample& a, const Sample& b) { return apart(a) < apart(b); });
+  const auto density = [&](double k) { return density_of_bulking(calibration.closed_form, k); };
+  difference.density_points = density(difference.largest.bulking_factor_measured) -
+                              density(difference.largest.bulking_factor_true);
+  for (const Sample& s : samples) {
+    difference.unexplained =
+        std::max(difference.unexplained, std::abs(s.bulking_factor - s.bulking_factor_true));
+  }
+  return difference;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,665 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/ground/bulking.hpp>
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/random.hpp>
+
+#include "support/errors.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double degree = 0.017453292519943295;
+
+// ---------------------------------------------------------------------------------------------
+// The scene: pit, spill ridge and heap with closed-form volumes.
+
+constexpr double pit_volume = 0.559946;
+constexpr double ridge_volume = 0.077902;
+constexpr double heap_volume = 0.622030;
+const double heap_radius =
+    std::cbrt(3.0 * heap_volume / (3.141592653589793 * std::tan(35.0 * degree)));  // 0.9466 m
+const double scene_bulking = (ridge_volume + heap_volume) / pit_volume;            // 1.25
+
+using Shape = std::function<double(double x, double y)>;
+
+/// Place and heading of the pit, with the ridge beside it.
+struct PitFrame {
+  double u;
+  double v;
+  PitFrame(double x, double y) {
+    const double along = std::cos(17.0 * degree);
+    const double across = std::sin(17.0 * degree);
+    u = (x - 3.013) * along + (y - 2.293) * across;
+    v = -(x - 3.013) * across + (y - 2.293) * along;
+  }
+};
+
+double pit(double x, double y) {
+  const PitFrame p(x, y);
+  const double inside = std::min(1.1 - std::abs(p.u), 0.5 - std::abs(p.v));
+  return -std::clamp(inside * std::tan(70.0 * degree), 0.0, 0.3);
+}
+
+double ridge(double x, double y) {
+  const PitFrame p(x, y);
+  const double away = std::hypot(std::max(std::abs(p.u) - 1.1, 0.0), p.v - 0.85);
+  return std::max(0.0, 0.15 - away * std::tan(35.0 * degree));
+}
+
+double heap_at(double x, double y, double centre_x, double centre_y) {
+  const double away = std::hypot(x - centre_x, y - centre_y);
+  return std::max(0.0, (heap_radius - away) * std::tan(35.0 * degree));
+}
+
+double heap(double x, double y) { return heap_at(x, y, 8.479, 2.534); }
+
+double whole_dig(double x, double y) { return pit(x, y) + ridge(x, y) + heap(x, y); }
+
+constexpr Rectangle scene = {0.0, 0.0, 11.0, 5.0};
+
+/// Mean height of a shape over each cell.
+HeightMap map_of(const Shape& shape, const Rectangle& extent = scene, double cell = 0.05) {
+  constexpr int divisions = 8;
+  HeightMap map = flat_ground(extent, cell);
+  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+      double sum = 0.0;
+      for (int i = 0; i < divisions; ++i) {
+        for (int j = 0; j < divisions; ++j) {
+          sum += shape(map.x(col) + cell * ((i + 0.5) / divisions - 0.5),
+                       map.y(row) + cell * ((j + 0.5) / divisions - 0.5));
+        }
+      }
+      map.z(row, col) = sum / (divisions * divisions);
+    }
+  }
+  return map;
+}
+
+const HeightMap& dug_scene() {
+  static const HeightMap map = map_of(whole_dig);
+  return map;
+}
+
+/// Noise of a cell in a scan of 0.1 million points over 30 m^2: 8.3 points in 5 cm x 5 cm.
+double cell_noise(double point_noise) { return point_noise / std::sqrt(8.33); }
+
+HeightMap noisy(HeightMap map, double sd, std::uint64_t seed, std::uint64_t scan) {
+  Random random(seed, scan);
+  for (Eigen::Index i = 0; i < map.z.size(); ++i) map.z.data()[i] += sd * random.normal();
+  return map;
+}
+
+/// White noise smoothed by a Gaussian: height errors that neighbouring cells share.
+Eigen::ArrayXXd smooth_noise(const HeightMap& map, double sd, double length, std::uint64_t seed,
+                             std::uint64_t scan) {
+  const double width = length / map.cell_size / std::sqrt(2.0);
+  const int reach = static_cast<int>(std::ceil(3.0 * width));
+  Random random(seed, scan);
+  Eigen::ArrayXXd white(map.z.rows() + 2 * reach, map.z.cols() + 2 * reach);
+  for (Eigen::Index i = 0; i < white.size(); ++i) white.data()[i] = random.normal();
+  Eigen::ArrayXd weight(2 * reach + 1);
+  for (int i = -reach; i <= reach; ++i) weight(i + reach) = std::exp(-0.5 * i * i / width / width);
+  weight /= std::sqrt(weight.square().sum());
+  Eigen::ArrayXXd along = Eigen::ArrayXXd::Zero(map.z.rows(), white.cols());
+  for (int i = 0; i <= 2 * reach; ++i) along += weight(i) * white.middleRows(i, map.z.rows());
+  Eigen::ArrayXXd both = Eigen::ArrayXXd::Zero(map.z.rows(), map.z.cols());
+  for (int i = 0; i <= 2 * reach; ++i) both += weight(i) * along.middleCols(i, map.z.cols());
+  return sd * both;
+}
+
+/// Takes discs of 10 to 25 cm radius out of a map until the given share is unknown.
+void punch_holes(HeightMap& map, double share, std::uint64_t seed, std::uint64_t scan) {
+  Random random(seed, scan);
+  const Rectangle extent = map.extent();
+  double area = share * (extent.x_max - extent.x_min) * (extent.y_max - extent.y_min);
+  while (area > 0.0) {
+    const double radius = random.uniform(0.10, 0.25);
+    const double x = random.uniform(extent.x_min, extent.x_max);
+    const double y = random.uniform(extent.y_min, extent.y_max);
+    area -= 3.141592653589793 * radius * radius;
+    for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+      for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+        if (std::hypot(map.x(col) - x, map.y(row) - y) < radius) map.z(row, col) = nan;
+      }
+    }
+  }
+}
+
+int count_of(const VolumeChange& change, const std::string& code) {
+  return static_cast<int>(
+      std::count_if(change.warnings.begin(), change.warnings.end(),
+                    [&](const Warning& warning) { return warning.code == code; }));
+}
+
+std::string message_of(const VolumeChange& change, const std::string& code) {
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == code) return warning.message;
+  }
+  return "no warning " + code;
+}
+
+int zones_of(const VolumeChange& change, ZoneKind kind) {
+  return static_cast<int>(std::count_if(change.zones.begin(), change.zones.end(),
+                                        [&](const ChangeZone& zone) { return zone.kind == kind; }));
+}
+
+bool covers(const Measured& figure, double truth) {
+  return std::abs(figure.value - truth) <= 1.96 * figure.sd;
+}
+
+/// How often the 95 % interval held the truth, and the mean and spread of the error.
+struct Score {
+  int seeds = 0;
+  int covered = 0;
+  double sum = 0.0;
+  double squares = 0.0;
+
+  void add(const Measured& figure, double truth) {
+    const double error = figure.value / truth - 1.0;
+    ++seeds;
+    covered += covers(figure, truth) ? 1 : 0;
+    sum += error;
+    squares += error * error;
+  }
+  double bias() const { return sum / seeds; }
+  double rms() const { return std::sqrt(squares / seeds); }
+};
+
+struct Scores {
+  Score before, after, spilled, k;
+};
+
+/// Measures the scene in 40 pairs of scans.
+Scores score(const std::function<HeightMap(HeightMap, std::uint64_t, std::uint64_t)>& scan) {
+  const HeightMap ground = flat_ground(scene, 0.05);
+  Scores scores;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const VolumeChange change = measure_change(scan(ground, seed, 1), scan(dug_scene(), seed, 2));
+    scores.before.add(change.before, pit_volume);
+    scores.after.add(change.after, ridge_volume + heap_volume);
+    scores.spilled.add(change.spilled, ridge_volume);
+    scores.k.add(bulking_factor(change).value_or(Measured{}), scene_bulking);
+  }
+  return scores;
+}
+
+/// What the scores are, for the message of a test that fails.
+std::string text_of(const Scores& scores) {
+  std::string text;
+  const auto add = [&](const char* name, const Score& s) {
+    text += std::string(name) + ": bias " + std::to_string(100.0 * s.bias()) + " %, rms " +
+            std::to_string(100.0 * s.rms()) + " %, covered " + std::to_string(s.covered) + " of " +
+            std::to_string(s.seeds) + "\n";
+  };
+  add("before", scores.before);
+  add("after", scores.after);
+  add("spilled", scores.spilled);
+  add("k", scores.k);
+  return text;
+}
+
+// ---------------------------------------------------------------------------------------------
+
+TEST(HeightMap, FlatGroundCoversItsExtent) {
+  const HeightMap map = flat_ground({-1.0, 2.0, 2.0, 3.01}, 0.1, 0.5);
+  EXPECT_EQ(map.z.cols(), 30);
+  EXPECT_EQ(map.z.rows(), 11);
+  EXPECT_TRUE((map.z == 0.5).all());
+  EXPECT_NEAR(map.x(0), -0.95, 1e-12);
+  EXPECT_NEAR(map.y(10), 3.05, 1e-12);
+  EXPECT_NEAR(map.extent().x_max, 2.0, 1e-12);
+  EXPECT_NEAR(map.extent().y_max, 3.1, 1e-12);
+}
+
+TEST(HeightMap, ImpossibleGroundIsRefused) {
+  EXPECT_THROW(flat_ground({0, 0, 0, 1}, 0.1), Error);
+  EXPECT_THROW(flat_ground({0, 0, 1, -1}, 0.1), Error);
+  EXPECT_THROW(flat_ground({0, 0, nan, 1}, 0.1), Error);
+  EXPECT_THROW(flat_ground({0, 0, 1, 1}, 0.0), Error);
+  EXPECT_THROW(flat_ground({0, 0, 1, 1}, nan), Error);
+  EXPECT_EQ(test::error_of([] {
+              flat_ground({0, 0, 1000, 1001}, 0.1);
+            }),
+            "a map of 1000 m x 1001 m in cells of 0.1 m holds 100100000 cells, most are 1e+08");
+}
+
+TEST(HeightMap, HeightBetweenCentresIsExactOnPlanes) {
+  const auto plane = [](double x, double y) { return 0.3 + 0.2 * x - 0.7 * y; };
+  const HeightMap map = map_of(plane, {-1, -2, 3, 1}, 0.1);
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const double x = random.uniform(-0.95, 2.95);
+    const double y = random.uniform(-1.95, 0.95);
+    EXPECT_NEAR(height_at(map, x, y), plane(x, y), 1e-12);
+  }
+}
+
+TEST(HeightMap, HeightWithinHalfACellOfTheBorderIsThatOfTheNearestCentres) {
+  const HeightMap map = map_of([](double x, double) { return x; }, {0, 0, 1, 1}, 0.1);
+  EXPECT_NEAR(height_at(map, 0.0, 0.0), 0.05, 1e-12);
+  EXPECT_NEAR(height_at(map, 1.0, 1.0), 0.95, 1e-12);
+  EXPECT_TRUE(std::isnan(height_at(map, -0.001, 0.5)));
+  EXPECT_TRUE(std::isnan(height_at(map, 0.5, 1.001)));
+  EXPECT_TRUE(std::isnan(height_at(map, nan, 0.5)));
+  EXPECT_TRUE(std::isnan(height_at(HeightMap{}, 0.0, 0.0)));
+}
+
+TEST(HeightMap, HeightBesideAnUnknownCellIsUnknown) {
+  HeightMap map = flat_ground({0, 0, 1, 1}, 0.1, 2.0);
+  map.z(5, 5) = nan;
+  EXPECT_TRUE(std::isnan(height_at(map, 0.55, 0.55)));
+  EXPECT_TRUE(std::isnan(height_at(map, 0.51, 0.55)));
+  EXPECT_TRUE(std::isnan(height_at(map, 0.46, 0.46)));
+  EXPECT_EQ(height_at(map, map.x(4), map.y(5)), 2.0) << "a known cell's own centre";
+  EXPECT_EQ(height_at(map, 0.44, 0.55), 2.0);
+}
+
+TEST(HeightMap, ResamplingFillsNarrowGapsAndLeavesWideOnesUnknown) {
+  const HeightMap plane = map_of([](double x, double y) { return 0.2 * x - 0.1 * y; });
+  HeightMap seen = plane;
+  seen.z.block(20, 20, 40, 4).setConstant(nan);   // 0.2 m wide, 2 m long
+  seen.z.block(20, 60, 40, 10).setConstant(nan);  // 0.5 m wide
+  seen.z.block(0, 100, 4, 4).setConstant(nan);    // at the border
+  const Rectangle extent = {0.5, 0.0, 9.5, 4.0};
+  const HeightMap map = resampled(seen, extent, 0.04, 0.3);
+  EXPECT_NEAR(height_at(map, 1.1, 2.0), 0.2 * 1.1 - 0.1 * 2.0, 1e-6);
+  EXPECT_TRUE(std::isnan(height_at(map, 3.25, 2.0)));
+  EXPECT_TRUE(std::isnan(height_at(map, 5.1, 0.1)));
+  EXPECT_FALSE(std::isnan(height_at(resampled(seen, extent, 0.04, 0.5), 3.25, 2.0)));
+  EXPECT_NEAR(unseen_area(map), 0.5 * 2.0 + 0.2 * 0.2, 0.2) << "half a cell more around it";
+  EXPECT_EQ(unseen_area(plane), 0.0);
+}
+
+TEST(HeightMap, GridsAreTheSameOnlyInEveryPart) {
+  const HeightMap map = flat_ground({0, 0, 1, 2}, 0.1);
+  EXPECT_TRUE(same_grid(map, flat_ground({0, 0, 1, 2}, 0.1, 7.0)));
+  EXPECT_FALSE(same_grid(map, flat_ground({0, 0, 1.1, 2}, 0.1)));
+  EXPECT_FALSE(same_grid(map, flat_ground({1e-6, 0, 1, 2}, 0.1)));
+  HeightMap other = map;
+  other.cell_size = 0.1001;
+  EXPECT_FALSE(same_grid(map, other));
+  other.cell_size = 0.1 * (1.0 + 1e-12);
+  EXPECT_TRUE(same_grid(map, other));
+}
+
+// ---------------------------------------------------------------------------------------------
+
+TEST(VolumeChange, ExactMapsGiveTheClosedFormVolumes) {
+  const VolumeChange change = measure_change(flat_ground(scene, 0.05), dug_scene());
+  EXPECT_NEAR(change.excavated.value, pit_volume, 0.003 * pit_volume);
+  EXPECT_NEAR(change.spilled.value, ridge_volume, 0.003 * ridge_volume);
+  EXPECT_NEAR(change.dumped.value, heap_volume, 0.003 * heap_volume);
+  EXPECT_EQ(change.before.value, change.excavated.value);
+  EXPECT_NEAR(change.after.value, change.spilled.value + change.dumped.value, 1e-12);
+  EXPECT_EQ(change.zones.size(), 3u);
+  EXPECT_TRUE(change.warnings.empty()) << change.warnings[0].message;
+  const auto k = bulking_factor(change);
+  ASSERT_TRUE(k);
+  EXPECT_NEAR(k->value, scene_bulking, 0.001 * scene_bulking);
+}
+
+TEST(VolumeChange, ZonesAndDifferenceAreHandedOver) {
+  const HeightMap ground = flat_ground(scene, 0.05);
+  const VolumeChange change = measure_change(ground, dug_scene());
+  ASSERT_EQ(change.areas.size(), 1u);
+  const AreaChange& area = change.areas[0];
+  EXPECT_TRUE(same_grid(area.difference, ground));
+  const auto kind_at = [&](double x, double y) {
+    const int zone =
+        area.zone(static_cast<Eigen::Index>(y / 0.05), static_cast<Eigen::Index>(x / 0.05));
+    return zone < 0 ? std::string("stable")
+                    : std::to_string(
+                          static_cast<int>(change.zones[static_cast<std::size_t>(zone)].kind));
+  };
+  EXPECT_EQ(kind_at(3.013, 2.293), std::to_string(static_cast<int>(ZoneKind::dig)));
+  EXPECT_EQ(kind_at(2.76, 3.10), std::to_string(static_cast<int>(ZoneKind::spill)));
+  EXPECT_EQ(kind_at(8.479, 2.534), std::to_string(static_cast<int>(ZoneKind::dump)));
+  EXPECT_EQ(kind_at(6.0, 2.5), "stable");
+  for (const ChangeZone& zone : change.zones) {
+    EXPECT_EQ(zone.unknown_share, 0.0);
+    if (zone.kind != ZoneKind::dump) continue;
+    EXPECT_NEAR(zone.area, 3.1416 * std::pow(heap_radius + 0.10, 2), 0.1);
+    EXPECT_NEAR(zone.extent.x_min, 8.479 - heap_radius - 0.10, 0.05);
+    EXPECT_NEAR(zone.extent.x_max, 8.479 + heap_radius + 0.10, 0.05);
+  }
+}
+
+TEST(VolumeChange, NoisyScansGiveTheVolumesInsideTheirInterval) {
+  const Scores five = score([](HeightMap map, std::uint64_t seed, std::uint64_t scan) {
+    return noisy(std::move(map), cell_noise(0.005), seed, scan);
+  });
+  SCOPED_TRACE(text_of(five));
+  EXPECT_LT(std::abs(five.before.bias()), 0.001);
+  EXPECT_LT(std::abs(five.after.bias()), 0.001);
+  EXPECT_LT(five.k.rms(), 0.002);
+  for (const Score& s : {five.before, five.after, five.k}) EXPECT_GE(s.covered, 36);
+
+  const Scores twenty = score([](HeightMap map, std::uint64_t seed, std::uint64_t scan) {
+    return noisy(std::move(map), cell_noise(0.020), seed, scan);
+  });
+  SCOPED_TRACE(text_of(twenty));
+  EXPECT_LT(std::abs(twenty.before.bias()), 0.002);
+  EXPECT_LT(std::abs(twenty.after.bias()), 0.002);
+  EXPECT_LT(twenty.k.rms(), 0.006);
+  for (const Score& s : {twenty.before, twenty.after, twenty.k}) EXPECT_GE(s.covered, 36);
+}
+
+TEST(VolumeChange, CorrelatedNoiseWidensTheInterval) {
+  const Scores scores = score([](HeightMap map, std::uint64_t seed, std::uint64_t scan) {
+    map.z += smooth_noise(map, 0.005, 0.25, seed, scan);
+    return noisy(std::move(map), cell_noise(0.005), seed, scan + 10);
+  });
+  SCOPED_TRACE(text_of(scores));
+  EXPECT_LT(scores.k.rms(), 0.04);
+  for (const Score& s : {scores.before, scores.after, scores.k}) EXPECT_GE(s.covered, 36);
+}
+
+TEST(VolumeChange, HolesInTheScansAreFilledAndWidenTheInterval) {
+  const Scores scores = score([](HeightMap map, std::uint64_t seed, std::uint64_t scan) {
+    punch_holes(map, 0.05, seed, scan);
+    return noisy(std::move(map), cell_noise(0.005), seed, scan);
+  });
+  SCOPED_TRACE(text_of(scores));
+  EXPECT_LT(std::abs(scores.k.bias()), 0.005);
+  EXPECT_LT(scores.k.rms(), 0.02);
+  for (const Score& s : {scores.before, scores.after, scores.k}) EXPECT_GE(s.covered, 36);
+}
+
+TEST(VolumeChange, UnknownCellsInThePitAreFilledAndCounted) {
+  HeightMap after = dug_scene();
+  int unknown = 0;
+  for (Eigen::Index col = 56; col < 64; ++col) {
+    for (Eigen::Index row = 42; row < 48; ++row, ++unknown) after.z(row, col) = nan;
+  }
+  const VolumeChange change = measure_change(flat_ground(scene, 0.05), after);
+  EXPECT_NEAR(change.excavated.value, pit_volume, 0.003 * pit_volume);
+  ASSERT_EQ(zones_of(change, ZoneKind::dig), 1);
+  for (const ChangeZone& zone : change.zones) {
+    if (zone.kind != ZoneKind::dig) continue;
+    EXPECT_NEAR(zone.unknown_share, unknown * 0.0025 / zone.area, 1e-12);
+  }
+  EXPECT_TRUE(std::isnan(change.areas[0].difference.z(44, 60))) << "unknown stays unknown";
+  EXPECT_EQ(count_of(change, "zone_partly_unseen"), 0);
+  ChangeOptions strict;
+  strict.max_unknown_share = 0.01;
+  EXPECT_EQ(count_of(measure_change(flat_ground(scene, 0.05), after, strict), "zone_partly_unseen"),
+            1);
+}
+
+TEST(VolumeChange, UnknownCellsOutsideTheSurveyAreNotFilled) {
+  HeightMap after = dug_scene();
+  after.z.leftCols(20).setConstant(nan);
+  after.z.topRows(5).setConstant(nan);
+  const VolumeChange change = measure_change(flat_ground(scene, 0.05), after);
+  EXPECT_NEAR(change.excavated.value, pit_volume, 0.003 * pit_volume);
+  EXPECT_TRUE(change.warnings.empty());
+  EXPECT_TRUE((change.areas[0].zone.leftCols(20) == -1).all());
+}
+
+TEST(VolumeChange, FlatNoisyGroundHasNoZone) {
+  const HeightMap ground = flat_ground(scene, 0.05);
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const VolumeChange change =
+        measure_change(noisy(ground, 0.005, seed, 1), noisy(ground, 0.005, seed, 2));
+    EXPECT_TRUE(change.zones.empty()) << "seed " << seed;
+    EXPECT_EQ(change.before.value, 0.0);
+    EXPECT_EQ(change.after.value, 0.0);
+    EXPECT_EQ(count_of(change, "no_hole_found"), 1);
+    EXPECT_FALSE(bulking_factor(change));
+    EXPECT_NEAR(change.areas[0].noise_sd, 0.005 * std::sqrt(2.0), 0.0002);
+  }
+}
+
+TEST(VolumeChange, ExactFlatGroundHasNoZone) {
+  const HeightMap ground = flat_ground(scene, 0.05);
+  EXPECT_TRUE(measure_change(ground, ground).zones.empty());
+}
+
+TEST(VolumeChange, OffsetBetweenTheScansIsTakenOff) {
+  const HeightMap before = noisy(flat_ground(scene, 0.05), cell_noise(0.005), 5, 1);
+  HeightMap after = noisy(dug_scene(), cell_noise(0.005), 5, 2);
+  const VolumeChange level = measure_change(before, after);
+  after.z += 0.005;
+  const VolumeChange raised = measure_change(before, after);
+  EXPECT_NEAR(raised.areas[0].datum - level.areas[0].datum, 0.005, 1e-9);
+  EXPECT_NEAR(raised.before.value, level.before.value, 1e-9);
+  EXPECT_NEAR(raised.after.value, level.after.value, 1e-9);
+}
+
+TEST(VolumeChange, RoughTerrainUnderTheDigChangesNothing) {
+  const auto rough = [](double x, double y) {
+    return 0.14 * x - 0.05 * y + 0.02 * std::sin(5.0 * x) * std::cos(3.0 * y);
+  };
+  const HeightMap before = map_of(rough);
+  HeightMap after = before;
+  after.z += dug_scene().z;
+  const VolumeChange change = measure_change(before, after);
+  EXPECT_NEAR(change.before.value, pit_volume, 0.003 * pit_volume);
+  EXPECT_NEAR(change.after.value, ridge_volume + heap_volume, 0.002);
+}
+
+TEST(VolumeChange, StableGroundIsFoundWhereMostOfTheMapChanged) {
+  constexpr Rectangle tight = {1.9, 1.4, 4.1, 3.2};  // the pit and a rim about it
+  const HeightMap before = noisy(flat_ground(tight, 0.05), cell_noise(0.005), 9, 1);
+  const HeightMap after = noisy(map_of(pit, tight), cell_noise(0.005), 9, 2);
+  const VolumeChange change = measure_change(before, after);
+  const double dug = -0.0025 * map_of(pit, tight).z.sum();
+  EXPECT_NEAR(change.before.value, dug, 0.02 * dug);
+  EXPECT_EQ(count_of(change, "little_stable_ground"), 1);
+}
+
+TEST(VolumeChange, ScansThatDoNotFitAreSaid) {
+  const HeightMap tilted = map_of([](double x, double) { return 0.2 * x; });
+  EXPECT_EQ(count_of(measure_change(flat_ground(scene, 0.05), tilted), "scans_do_not_fit"), 1);
+}
+
+TEST(VolumeChange, FourMapsGiveTheSameVolumesAsTheWholeScene) {
+  constexpr Rectangle dig_area = {0.0, 0.0, 6.0, 5.0};
+  constexpr Rectangle dump_area = {6.0, 0.0, 11.0, 5.0};
+  const auto dig = HeightMapPair{flat_ground(dig_area, 0.05), map_of(whole_dig, dig_area)};
+  const auto dump = HeightMapPair{flat_ground(dump_area, 0.05), map_of(whole_dig, dump_area)};
+  const VolumeChange apart = measure_change(dig, dump);
+  const VolumeChange whole = measure_change(flat_ground(scene, 0.05), dug_scene());
+  EXPECT_NEAR(apart.excavated.value, whole.excavated.value, 1e-4);
+  EXPECT_NEAR(apart.spilled.value, whole.spilled.value, 1e-4);
+  EXPECT_NEAR(apart.dumped.value, whole.dumped.value, 1e-4);
+  ASSERT_EQ(apart.areas.size(), 2u);
+  const int dump_zone = apart.areas[1].zone(50, 50);
+  ASSERT_GE(dump_zone, 0);
+  EXPECT_EQ(apart.zones[static_cast<std::size_t>(dump_zone)].kind, ZoneKind::dump);
+  EXPECT_TRUE(apart.warnings.empty());
+}
+
+TEST(VolumeChange, DatumErrorMakesBeforeAndAfterErrAgainstEachOther) {
+  const VolumeChange change =
+      measure_change(noisy(flat_ground(scene, 0.05), 0.005, 3, 1), noisy(dug_scene(), 0.005, 3, 2));
+  EXPECT_LT(change.covariance_before_after, 0.0);
+  EXPECT_GT(change.covariance_before_after, -change.before.sd * change.after.sd);
+}
+
+TEST(VolumeChange, GivenAreasDecideWhatIsHoleAndHeap) {
+  const auto two_digs = [](double x, double y) {
+    return whole_dig(x, y) - heap_at(x, y, 6.0, 1.2) * 1.5;
+  };
+  const HeightMap before = flat_ground(scene, 0.05);
+  const HeightMap after = map_of(two_digs);
+  const VolumeChange free = measure_change(before, after);
+  EXPECT_NEAR(free.excavated.value, 1.5 * heap_volume, 0.003) << "the largest hole";
+  ChangeOptions options;
+  options.dig_area = Rectangle{1.0, 1.0, 5.0, 4.0};
+  options.dump_area = Rectangle{7.0, 1.0, 10.0, 4.0};
+  const VolumeChange chosen = measure_change(before, after, options);
+  EXPECT_NEAR(chosen.excavated.value, pit_volume, 0.002);
+  EXPECT_NEAR(chosen.spilled.value, ridge_volume, 0.001);
+  EXPECT_NEAR(chosen.dumped.value, heap_volume, 0.002);
+  EXPECT_EQ(count_of(chosen, "other_change"), 1);
+  EXPECT_EQ(zones_of(chosen, ZoneKind::other), 1);
+}
+
+TEST(VolumeChange, UnrelatedChangesAreLeftOutWithAWarning) {
+  const auto with_visitor = [](double x, double y) {
+    return whole_dig(x, y) + (x > 10.0 && x < 10.3 && y > 4.0 && y < 4.5 ? 0.4 : 0.0);
+  };
+  const VolumeChange change = measure_change(flat_ground(scene, 0.05), map_of(with_visitor));
+  EXPECT_NEAR(change.after.value, ridge_volume + heap_volume, 0.002);
+  ASSERT_EQ(change.warnings.size(), 1u);
+  EXPECT_EQ(change.warnings[0].code, "other_change");
+  EXPECT_EQ(change.warnings[0].message,
+            "ground that rose by 0.06 m^3 over 0.34 m^2 around (10.15, 4.25) m is neither hole, "
+            "spill nor heap: left out of every volume");
+}
+
+TEST(VolumeChange, HeapRightBesideTheHoleIsStillTheHeap) {
+  const auto close = [](double x, double y) { return pit(x, y) + heap_at(x, y, 2.5, 3.85); };
+  const VolumeChange change = measure_change(flat_ground(scene, 0.05), map_of(close));
+  EXPECT_NEAR(change.dumped.value, heap_volume, 0.02);
+  EXPECT_EQ(count_of(change, "no_dumped_soil"), 0);
+}
+
+TEST(VolumeChange, DumpedSoilOutsideTheScansIsSaid) {
+  const auto without_heap = [](double x, double y) { return pit(x, y) + ridge(x, y); };
+  const VolumeChange change = measure_change(flat_ground(scene, 0.05), map_of(without_heap));
+  EXPECT_NEAR(change.excavated.value, pit_volume, 0.002);
+  EXPECT_NEAR(change.spilled.value, ridge_volume, 0.001);
+  EXPECT_EQ(change.dumped.value, 0.0);
+  EXPECT_EQ(message_of(change, "no_dumped_soil"),
+            "the hole is 0.56 m^3, but only 0 m^3 rose away from it and 0.078 m^3 beside it: the "
+            "dumped soil is not in the scans, so the bulking factor is unknown");
+  EXPECT_FALSE(bulking_factor(change));
+}
+
+TEST(VolumeChange, SmallRiseAwayFromTheHoleIsNotTakenForTheHeap) {
+  const auto bump = [](double x, double y) {
+    return pit(x, y) + 4.0 * ridge(x, y) + 0.1 * heap(x, y);
+  };
+  const VolumeChange change = measure_change(flat_ground(scene, 0.05), map_of(bump));
+  EXPECT_GT(change.after.value, 0.5 * change.before.value);
+  EXPECT_EQ(count_of(change, "no_dumped_soil"), 1);
+  EXPECT_FALSE(bulking_factor(change));
+}
+
+TEST(VolumeChange, SwappedScansAreSaid) {
+  const VolumeChange change = measure_change(dug_scene(), flat_ground(scene, 0.05));
+  EXPECT_NE(message_of(change, "looks_swapped").find("before and after look swapped: 0.62"),
+            std::string::npos)
+      << message_of(change, "looks_swapped");
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const HeightMap before = noisy(flat_ground(scene, 0.05), cell_noise(0.02), seed, 1);
+    const HeightMap after = noisy(dug_scene(), cell_noise(0.02), seed, 2);
+    EXPECT_EQ(count_of(measure_change(after, before), "looks_swapped"), 1);
+    EXPECT_EQ(count_of(measure_change(before, after), "looks_swapped"), 0);
+  }
+}
+
+TEST(VolumeChange, ZoneThatTheSurveyCutsOffIsSaid) {
+  constexpr Rectangle cut = {0.0, 0.0, 8.4, 5.0};
+  const VolumeChange change = measure_change(flat_ground(cut, 0.05), map_of(whole_dig, cut));
+  EXPECT_EQ(count_of(change, "zone_at_border"), 1);
+}
+
+TEST(VolumeChange, MapsThatDoNotFitAreRefused) {
+  const auto message = [](const HeightMap& before, const HeightMap& after,
+                          const ChangeOptions& options = {}) {
+    return test::error_of([&] { measure_change(before, after, options); });
+  };
+  const HeightMap ground = flat_ground(scene, 0.05);
+  EXPECT_EQ(message(ground, flat_ground(scene, 0.1)),
+            "the maps before and after must be on one grid: same origin, cell and size");
+  HeightMap unseen = ground;
+  unseen.z.setConstant(nan);
+  unseen.z.topLeftCorner(3, 3).setZero();
+  EXPECT_EQ(message(ground, unseen),
+            "the maps before and after share 9 known cells, at least 100 are needed: do the scans "
+            "overlap?");
+  ChangeOptions options;
+  options.growth = 6.0;
+  EXPECT_EQ(message(ground, ground, options),
+            "growth is 6, must be positive and not above detection (5)");
+  options = {};
+  options.margin = -1.0;
+  EXPECT_EQ(message(ground, ground, options), "margin is -1, must be 0 or more");
+  options = {};
+  options.dig_area = Rectangle{1, 1, 0, 2};
+  EXPECT_EQ(message(ground, ground, options),
+            "dig_area is empty: x from 1 to 0, y from 1 to 2; each must grow");
+}
+
+// ---------------------------------------------------------------------------------------------
+
+VolumeChange volumes(Measured before, Measured after, double covariance) {
+  VolumeChange change;
+  change.before = before;
+  change.after = after;
+  change.covariance_before_after = covariance;
+  return change;
+}
+
+TEST(Bulking, FactorAndItsErrorFollowTheDeltaMethod) {
+  const auto k = bulking_factor(volumes({0.5, 0.01}, {0.6, 0.006}, 0.0));
+  ASSERT_TRUE(k);
+  EXPECT_NEAR(k->value, 1.2, 1e-12);
+  EXPECT_NEAR(k->sd, 1.2 * std::hypot(0.02, 0.01), 1e-12);
+}
+
+TEST(Bulking, ErrorsAgainstEachOtherAddUp) {
+  // Fully opposed errors: the relative errors add.
+  const auto opposed = bulking_factor(volumes({0.5, 0.01}, {0.6, 0.006}, -0.01 * 0.006));
+  EXPECT_NEAR(opposed->sd, 1.2 * 0.03, 1e-12);
+  // Common ones: their difference is left.
+  const auto common = bulking_factor(volumes({0.5, 0.01}, {0.6, 0.006}, 0.01 * 0.006));
+  EXPECT_NEAR(common->sd, 1.2 * 0.01, 1e-12);
+}
+
+TEST(Bulking, ErrorAgreesWithRepeatedMeasurement) {
+  Random random(11);
+  double sum = 0.0;
+  double squares = 0.0;
+  constexpr int trials = 20000;
+  for (int i = 0; i < trials; ++i) {
+    const double shared = random.normal();
+    const double before = 0.5 + 0.004 * random.normal() + 0.003 * shared;
+    const double after = 0.6 + 0.003 * random.normal() - 0.004 * shared;
+    const double k = bulking_factor(volumes({before, 0.0}, {after, 0.0}, 0.0))->value;
+    sum += k;
+    squares += k * k;
+  }
+  const double sd = std::sqrt(squares / trials - std::pow(sum / trials, 2));
+  const auto k = bulking_factor(volumes({0.5, 0.005}, {0.6, 0.005}, -0.003 * 0.004));
+  EXPECT_NEAR(k->sd, sd, 0.02 * sd);
+}
+
+TEST(Bulking, NoHoleOrNoHeapGivesNoFactor) {
+  EXPECT_FALSE(bulking_factor(volumes({0.0, 0.1}, {0.6, 0.1}, 0.0)));
+  EXPECT_FALSE(bulking_factor(volumes({0.5, 0.1}, {0.0, 0.1}, 0.0)));
+  VolumeChange change = volumes({0.5, 0.1}, {0.6, 0.1}, 0.0);
+  change.warnings.push_back({"no_dumped_soil", ""});
+  EXPECT_FALSE(bulking_factor(change));
+}
+
+TEST(Bulking, FallbackIsTakenOutOfTheMeasuredFactor) {
+  // A share f of the cut lies in the pit as loose soil: k_measured = (k - f) / (1 - f).
+  for (const double k : {1.0, 1.25, 1.6}) {
+    for (const double f : {0.0, 0.1, 0.3}) {
+      EXPECT_NEAR(free_of_fallback((k - f) / (1.0 - f), f), k, 1e-12);
+    }
+  }
+  EXPECT_THROW(free_of_fallback(1.2, 1.0), Error);
+  EXPECT_THROW(free_of_fallback(1.2, -0.1), Error);
+  EXPECT_THROW(free_of_fallback(1.2, nan), Error);
+}
+
+}  // namespace
+}  // namespace excavplan

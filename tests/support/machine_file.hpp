@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/machine/machine.hpp>
+
+#include "support/errors.hpp"
+
+namespace excavplan::test {
+
+inline std::string zx120_path() { return find_data_file("machines/zx120.json"); }
+
+/// The shipped machine.
+inline const Machine& zx120() {
+  static const Machine machine = load_machine(zx120_path());
+  return machine;
+}
+
+/// What load_machine says about a machine file, without the file's name; "no error" if nothing.
+inline std::string complaint_about_file(const nlohmann::json& file) {
+  const std::string path = testing::TempDir() + "machine" + std::to_string(::getpid()) + ".json";
+  std::ofstream(path) << file;
+  const std::string complaint = error_about([&] { load_machine(path); }, path);
+  std::remove(path.c_str());
+  return complaint;
+}
+
+}  // namespace excavplan::test

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/survey/scan_pose.hpp>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <excavplan/random.hpp>
+
+#include "support/errors.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double degree = 0.017453292519943295;
+
+/// Ground seen from a camera 2.5 m above it that looks down by `tilt` from the vertical, with a
+/// heap on a part of it, noise and stray points.
+Cloud tilted_view(double tilt, double noise, std::uint64_t seed) {
+  Random random(seed);
+  const Eigen::Matrix3d scan_from_site = (Eigen::Matrix3d() << 0, -1, 0, -std::cos(tilt), 0,
+                                          -std::sin(tilt), std::sin(tilt), 0, -std::cos(tilt))
+                                             .finished();
+  Cloud cloud;
+  for (int i = 0; i < 4000; ++i) {
+    Eigen::Vector3d p(random.uniform(-1.0, 2.5), random.uniform(-1.5, 1.5), 0.0);
+    if (i % 4 == 0) p.z() = random.uniform(0.05, 0.6);  // heap
+    if (i % 50 == 0) p.z() = random.uniform(-1.0, 1.0);
+    p.z() += noise * random.normal();
+    cloud.points.push_back(scan_from_site * (p - Eigen::Vector3d(0, 0, 2.5)));
+  }
+  cloud.points.push_back(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  return cloud;
+}
+
+TEST(LevelOnGround, FindsUpAndHeightUnderAHeapAndOutliers) {
+  for (const double tilt : {0.0, 10.0 * degree, 45.0 * degree}) {
+    const LevelPose pose = level_on_ground(tilted_view(tilt, 0.005, 3));
+    EXPECT_NEAR(pose.height, 2.5, 0.002) << tilt;
+    EXPECT_NEAR(pose.tilt, tilt, 0.1 * degree);
+    EXPECT_NEAR(pose.residual_sd, 0.005, 0.001);
+    EXPECT_NEAR(pose.ground_share, 0.735, 0.04);
+    const Eigen::Matrix3d rotation = pose.site_from_scan.topLeftCorner<3, 3>();
+    EXPECT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_NEAR(rotation.determinant(), 1.0, 1e-12);
+    // x ahead: site x of the scene
+    const Eigen::Matrix3d truth = (Eigen::Matrix3d() << 0, -std::cos(tilt), std::sin(tilt), -1, 0,
+                                   0, 0, -std::sin(tilt), -std::cos(tilt))
+                                      .finished();
+    EXPECT_LT((rotation - truth).norm(), 0.3 * degree) << tilt;
+  }
+}
+
+TEST(LevelOnGround, ErrorStaysSmallOverManyNoisyScans) {
+  double squares = 0.0;
+  constexpr int scans = 20;
+  for (int seed = 1; seed <= scans; ++seed) {
+    const LevelPose pose =
+        level_on_ground(tilted_view(20.0 * degree, 0.02, static_cast<std::uint64_t>(seed)));
+    squares += std::pow(pose.tilt - 20.0 * degree, 2);
+  }
+  EXPECT_LT(std::sqrt(squares / scans), 0.2 * degree);
+}
+
+TEST(LevelOnGround, SameSeedSamePose) {
+  const Cloud scan = tilted_view(0.3, 0.01, 5);
+  EXPECT_EQ(level_on_ground(scan, 2).site_from_scan, level_on_ground(scan, 2).site_from_scan);
+}
+
+std::string level_error(const Cloud& scan) {
+  return test::error_of([&] { level_on_ground(scan); });
+}
+
+TEST(LevelOnGround, RefusesWhatHasNoGround) {
+  Cloud scan;
+  EXPECT_EQ(level_error(scan), "pose of a scan: 0 finite points, must be 100 or more to level it");
+  Random random(1);
+  for (int i = 0; i < 2000; ++i) {
+    scan.points.emplace_back(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(1, 3));
+  }
+  EXPECT_NE(level_error(scan).find("of its points lie on one plane, less than 20 %"),
+            std::string::npos);
+  for (Eigen::Vector3d& p : scan.points) p.y() = 0.01;
+  EXPECT_NE(level_error(scan).find("nearer than 0.05 m: that is not the ground"),
+            std::string::npos);
+}
+
+Eigen::Isometry3d some_pose() {
+  return Eigen::Translation3d(3.0, -2.0, 1.5) *
+         Eigen::AngleAxisd(2.3, Eigen::Vector3d(1, -2, 0.5).normalized());
+}
+
+const std::vector<Eigen::Vector3d> targets = {{0, 0, 0}, {2, 0.1, 0}, {0.3, 1.7, 0.2}, {1, 1, 1}};
+
+TEST(PoseOfPoints, FindsTheExactMotionOfThreePointsAndMore) {
+  for (const std::size_t count : {3U, 4U}) {
+    std::vector<Eigen::Vector3d> scan;
+    const std::vector<Eigen::Vector3d> site(targets.begin(),
+                                            targets.begin() + static_cast<std::ptrdiff_t>(count));
+    for (const Eigen::Vector3d& p : site) scan.push_back(some_pose().inverse() * p);
+    const PointPose pose = pose_of_points(scan, site);
+    EXPECT_LT((pose.site_from_scan - some_pose().matrix()).norm(), 1e-12);
+    EXPECT_LT(pose.rms, 1e-12);
+    EXPECT_EQ(pose.residuals.size(), count);
+  }
+}
+
+TEST(PoseOfPoints, ResidualsTellTheErrorAndTheBadPoint) {
+  std::vector<Eigen::Vector3d> scan;
+  for (const Eigen::Vector3d& p : targets) scan.push_back(some_pose().inverse() * p);
+  scan[3] += Eigen::Vector3d(0.1, 0.0, 0.0);
+  const PointPose pose = pose_of_points(scan, targets);
+  EXPECT_GT(pose.rms, 0.02);
+  EXPECT_LT(pose.rms, 0.05);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(pose.residuals[i], pose.residuals[3]);
+  // Least squares: no small motion does better.
+  const auto rms_of = [&](const Eigen::Matrix4d& motion) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      sum += ((motion * scan[i].homogeneous()).head<3>() - targets[i]).squaredNorm();
+    }
+    return std::sqrt(sum / 4.0);
+  };
+  EXPECT_NEAR(rms_of(pose.site_from_scan), pose.rms, 1e-12);
+  Random random(4);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d axis(random.normal(), random.normal(), random.normal());
+    const Eigen::Isometry3d nudge =
+        Eigen::Translation3d(1e-3 * random.normal(), 1e-3 * random.normal(), 1e-3) *
+        Eigen::AngleAxisd(1e-3, axis.normalized());
+    EXPECT_GE(rms_of(nudge.matrix() * pose.site_from_scan), pose.rms - 1e-12);
+  }
+}
+
+TEST(PoseOfPoints, NeverMirrors) {
+  std::vector<Eigen::Vector3d> mirrored = targets;
+  for (Eigen::Vector3d& p : mirrored) p.x() = -p.x();
+  const PointPose pose = pose_of_points(mirrored, targets);
+  EXPECT_NEAR((pose.site_from_scan.topLeftCorner<3, 3>().determinant()), 1.0, 1e-12);
+}
+
+TEST(PoseOfPoints, RefusesWhatLeavesItFree) {
+  const auto error = [](const std::vector<Eigen::Vector3d>& scan,
+                        const std::vector<Eigen::Vector3d>& site) {
+    return test::error_of([&] { pose_of_points(scan, site); });
+  };
+  EXPECT_EQ(error({{0, 0, 0}}, {{0, 0, 0}}), "pose of a scan: 1 known points, must be 3 or more");
+  EXPECT_NE(error({{0, 0, 0}}, {}).find("1 points of the scan, but 0 known places"),
+            std::string::npos);
+  const std::vector<Eigen::Vector3d> line = {{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {5, 5, 0}};
+  EXPECT_EQ(error(line, line),
+            "pose of a scan: the known points lie on one line, about which it could turn freely");
+  EXPECT_NE(error({{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})
+                .find("known point 3 has a coordinate that is not finite"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace excavplan

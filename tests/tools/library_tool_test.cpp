@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include <excavplan/random.hpp>
+
+#include "support/run_program.hpp"
+
+/// @file
+/// build-path-library as jobs of a cluster use it: in shards, killed, resumed, under mpirun.
+
+namespace excavplan::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+Words operator+(Words first, const Words& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+const Words grid = {"--densities", "10,20,35,70", "--cell", "0.1",         "--points",
+                    "8",           "--polish",    "8",      "--inherited", "8"};
+
+ProgramResult build(const Words& words) { return run_program("build-path-library", words); }
+
+/// A run that is killed after a while, unless it has ended.
+void killed(const Words& words, std::chrono::microseconds after) {
+  const pid_t child = started("build-path-library", words, [] {});
+  std::this_thread::sleep_for(after);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+}
+
+class LibraryTool : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(build(grid + Words{"--out", folder_.file("whole.json")}).code, 0);
+    whole_ = content_of(folder_.file("whole.json"));
+  }
+  const TemporaryFolder folder_;
+  const std::string out_ = folder_.file("library.json");
+  std::string whole_;
+};
+
+TEST_F(LibraryTool, LeavesNothingButTheLibrary) {
+  for (const auto& file : fs::directory_iterator(fs::path(out_).parent_path())) {
+    EXPECT_EQ(file.path().filename(), "whole.json");
+  }
+}
+
+TEST_F(LibraryTool, ShardsMergeToTheSameBytes) {
+  const std::string cells = folder_.file("cells");
+  for (const char* shard : {"2/3", "1/3", "3/3"}) {
+    const ProgramResult result = build(grid + Words{"--cells", cells, "--shard", shard});
+    EXPECT_EQ(result.code, 0) << result.err;
+  }
+  const ProgramResult result = build({"--merge", cells, "--out", out_});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(content_of(out_), whole_);
+}
+
+TEST_F(LibraryTool, AMergeAddsTheDensitiesOfARefinement) {
+  const Words refined = grid + Words{"--refine", "0.5"};
+  ASSERT_EQ(build(refined + Words{"--out", folder_.file("refined.json")}).code, 0);
+  const std::string cells = folder_.file("cells");
+  for (const char* shard : {"2/2", "1/2"}) {
+    EXPECT_EQ(build(refined + Words{"--cells", cells, "--shard", shard}).code, 0);
+  }
+  const ProgramResult result = build({"--merge", cells, "--out", out_});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(content_of(out_), content_of(folder_.file("refined.json")));
+  EXPECT_GT(content_of(out_).size(), whole_.size());
+}
+
+TEST_F(LibraryTool, AMergeRefusesOptionsThatItsCellsDoNotHave) {
+  const std::string cells = folder_.file("cells");
+  build(grid + Words{"--cells", cells, "--shard", "1/1"});
+  const ProgramResult sand = build({"--merge", cells, "--soil", "sand", "--out", out_});
+  EXPECT_EQ(sand.code, 2);
+  EXPECT_NE(sand.err.find("soil is \"loam\", \"sand\" is asked for"), std::string::npos)
+      << sand.err;
+  EXPECT_FALSE(fs::exists(out_));
+  EXPECT_EQ(build(grid + Words{"--merge", cells, "--out", out_}).code, 0);
+  EXPECT_EQ(content_of(out_), whole_);
+}
+
+TEST_F(LibraryTool, LibrariesThatCannotBeToldApartAreRefused) {
+  auto soil =
+      nlohmann::json::parse(content_of(std::string(EXCAVPLAN_DATA_SOURCE) + "/soils/loam.json"));
+  const std::string mine = folder_.write("mine.json", soil.dump());
+  const ProgramResult alike = build(grid + Words{"--soil", "loam," + mine, "--out", out_});
+  EXPECT_EQ(alike.code, 2);
+  EXPECT_NE(alike.err.find("two of the soils are named 'loam'"), std::string::npos) << alike.err;
+  soil["name"] = "loam of site a/b";
+  folder_.write("mine.json", soil.dump());
+  const std::string libraries = folder_.file("libraries");
+  const ProgramResult odd = build(grid + Words{"--soil", "sand," + mine, "--out", libraries});
+  EXPECT_EQ(odd.code, 0) << odd.err;
+  EXPECT_TRUE(fs::exists(libraries + "/zx120-loam_of_site_a_b.json"));
+}
+
+TEST_F(LibraryTool, WhereItWritesIsCheckedBeforeTheSearch) {
+  const std::string file = folder_.write("file", "mine");
+  const ProgramResult several = build(grid + Words{"--soil", "loam,sand", "--out", file});
+  EXPECT_EQ(several.code, 3);
+  EXPECT_NE(several.err.find("is a file, several libraries need a folder"), std::string::npos);
+  const std::string folder = folder_.file("folder");
+  fs::create_directory(folder);
+  const ProgramResult one = build(grid + Words{"--out", folder});
+  EXPECT_EQ(one.code, 3);
+  EXPECT_NE(one.err.find("is a folder, the library needs a file"), std::string::npos) << one.err;
+  EXPECT_EQ(content_of(file), "mine");
+}
+
+TEST_F(LibraryTool, LeavesFilesOfOthersAlone) {
+  const std::string cells = out_ + ".cells";
+  fs::create_directory(cells);
+  const std::string thesis = folder_.write("library.json.cells/thesis.txt", "years of work");
+  const ProgramResult foreign = build(grid + Words{"--out", out_});
+  EXPECT_EQ(foreign.code, 3);
+  EXPECT_NE(foreign.err.find("is no folder of cells"), std::string::npos) << foreign.err;
+  build(grid + Words{"--cells", cells, "--shard", "1/4"});  // now it is one
+  EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);
+  EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_EQ(content_of(thesis), "years of work");
+  EXPECT_FALSE(fs::exists(cells + "/job.json"));
+}
+
+TEST_F(LibraryTool, SeedsThatAFileCannotKeepAndOptionsWithoutEffectAreTold) {
+  const ProgramResult seed = build(grid + Words{"--seed", "18446744073709551615", "--out", out_});
+  EXPECT_EQ(seed.code, 2);
+  EXPECT_NE(seed.err.find("must be at most 9007199254740992"), std::string::npos) << seed.err;
+  const ProgramResult population = build(grid + Words{"--population", "6", "--out", out_});
+  EXPECT_EQ(population.code, 0);
+  EXPECT_NE(population.err.find("without effect: --population"), std::string::npos);
+  EXPECT_EQ(content_of(out_), whole_);
+}
+
+TEST_F(LibraryTool, ShardsOfAnotherRunAreRefused) {
+  const std::string cells = folder_.file("cells");
+  build(grid + Words{"--cells", cells, "--shard", "1/3"});
+  const ProgramResult other =
+      build(grid + Words{"--cells", cells, "--shard", "2/3", "--seed", "2"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.err.find("is of another run"), std::string::npos) << other.err;
+  const ProgramResult early = build({"--merge", cells, "--out", out_});
+  EXPECT_EQ(early.code, 3);
+  EXPECT_NE(early.err.find("is missing: the shard"), std::string::npos) << early.err;
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+TEST_F(LibraryTool, KilledAtRandomMomentsItGoesOnToTheSameBytes) {
+  Random random(5);
+  for (int i = 0; i < 8; ++i) {
+    const auto after = std::chrono::microseconds(random.index(80000));
+    killed(grid + Words{"--out", out_, "--resume", "--quiet"}, after);
+  }
+  const ProgramResult result = build(grid + Words{"--out", out_, "--resume"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_FALSE(fs::exists(out_ + ".cells"));
+}
+
+TEST_F(LibraryTool, AnInterruptLeavesWhatResumes) {
+  const Words large = {"--densities", "0:2:100", "--out", out_};
+  EXPECT_EQ(interrupted("build-path-library", large, " densities, ").code, 75);
+  EXPECT_TRUE(fs::exists(out_ + ".cells/job.json"));
+  EXPECT_FALSE(fs::exists(out_));
+  const ProgramResult other = build(grid + Words{"--out", out_, "--resume"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.err.find("is of another run"), std::string::npos) << other.err;
+  EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);  // begins anew
+  EXPECT_EQ(content_of(out_), whole_);
+}
+
+TEST_F(LibraryTool, SeveralSoilsMakeAFolderOfLibraries) {
+  const std::string libraries = folder_.file("libraries");
+  const ProgramResult result =
+      build(Words{"--densities", "20", "--soil", "loam,sand", "--slopes=-5deg,0", "--cell", "0.1",
+                  "--points", "8", "--polish", "8", "--out", libraries, "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  ASSERT_EQ(json.at("libraries").size(), 2U);
+  EXPECT_EQ(json["libraries"][1].at("file"), libraries + "/zx120-sand.json");
+  const ProgramResult plan = run_program(
+      "plan-path",
+      {"--density", "20", "--soil", "sand", "--library", libraries + "/zx120-sand.json"});
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  const ProgramResult wrong =
+      run_program("plan-path", {"--density", "20", "--library", libraries + "/zx120-sand.json"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("its soil is sand, not loam"), std::string::npos) << wrong.err;
+}
+
+TEST_F(LibraryTool, OptionsThatDoNotGoTogetherAreRefused) {
+  const auto refusal = [](const Words& words) {
+    const ProgramResult result = build(words);
+    EXPECT_EQ(result.code, 2);
+    return result.err;
+  };
+  EXPECT_NE(refusal({}).find("--out is missing"), std::string::npos);
+  EXPECT_NE(refusal({"--shard", "1/2"}).find("--shard goes with --cells"), std::string::npos);
+  const std::string cells = folder_.file("cells");
+  EXPECT_NE(refusal({"--shard", "3/2", "--cells", cells}).find("is not one of 1/N .. N/N"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(cells)) << "refused before anything is made";
+  EXPECT_NE(refusal({"--merge", cells, "--cells", cells, "--out", out_}).find("--merge goes"),
+            std::string::npos);
+}
+
+#ifdef EXCAVPLAN_MPIRUN
+/// Runs mpirun with these words. @return its exit code
+int run_ranks(const std::string& words, const std::string& said) {
+  ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  ::setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
+  const std::string command = EXCAVPLAN_MPIRUN + (" " + words) + " > " + said + " 2>&1";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+#endif
+
+TEST_F(LibraryTool, SameBytesForOneToFourRanks) {
+#ifndef EXCAVPLAN_MPIRUN
+  GTEST_SKIP() << "no mpirun, or built without MPI";
+#else
+  for (const int ranks : {1, 2, 4}) {
+    std::string words =
+        "-n " + std::to_string(ranks) + " " + EXCAVPLAN_BIN + "/build-path-library --out " + out_;
+    for (const std::string& word : grid) words += " " + word;
+    ASSERT_EQ(run_ranks(words, folder_.file("said")), 0) << content_of(folder_.file("said"));
+    EXPECT_EQ(content_of(out_), whole_) << ranks;
+    const std::string said = content_of(folder_.file("said"));
+    EXPECT_EQ(said.find(out_), said.rfind(out_)) << said;  // one rank speaks
+    fs::remove(out_);
+  }
+#endif
+}
+
+TEST_F(LibraryTool, ARankThatFailsAloneSaysWhyAndOneSpeaksForSeveral) {
+#ifndef EXCAVPLAN_MPIRUN
+  GTEST_SKIP() << "no mpirun, or built without MPI";
+#else
+  const auto ranks = [&](int count, const std::string& machine) {
+    return "-n " + std::to_string(count) + " " + EXCAVPLAN_BIN + "/build-path-library --out " +
+           out_ + " --machine " + machine;
+  };
+  const std::string reason =
+      "build-path-library: 'nowhere' is neither a file nor one of the machines";
+  const auto times = [](const std::string& text, const std::string& part) {
+    int count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+  };
+  for (const int others : {1, 3}) {
+    EXPECT_EQ(run_ranks(ranks(1, "zx120") + " : " + ranks(others, "nowhere"), folder_.file("said")),
+              2);
+    const std::string said = "\n" + content_of(folder_.file("said"));
+    EXPECT_EQ(times(said, reason), 1) << said;
+    // mpirun's own words on the end of a rank may come before the rank's.
+    int speakers = 0;
+    for (int rank = 1; rank <= others; ++rank) {
+      speakers += times(said, "\nrank " + std::to_string(rank) + ": " + reason);
+    }
+    EXPECT_EQ(speakers, 1) << said;
+  }
+  EXPECT_EQ(run_ranks(ranks(3, "nowhere"), folder_.file("said")), 2);
+  const std::string said = content_of(folder_.file("said"));
+  EXPECT_GE(times(said, reason), 1) << said;
+  EXPECT_LT(times(said, reason), 3) << said;  // where the first rank is late another speaks too
+  const std::string cells = " --densities 20 --cells " + folder_.file("cells") + " --shard ";
+  const std::string program = std::string(EXCAVPLAN_BIN) + "/build-path-library";
+  EXPECT_EQ(run_ranks("-n 1 " + program + cells + "1/2 : -n 1 " + program + cells + "2/2",
+                      folder_.file("said")),
+            2);
+  EXPECT_NE(content_of(folder_.file("said")).find("give all of them the same options"),
+            std::string::npos);
+#endif
+}
+
+}  // namespace
+}  // namespace excavplan::test

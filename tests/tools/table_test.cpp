@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <excavplan/error.hpp>
+
+#include "shared/quantity.hpp"
+#include "shared/results.hpp"
+#include "support/errors.hpp"
+#include "support/run_program.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+using test::error_of;
+using test::TemporaryFolder;
+
+Table table_of(const std::string& content) {
+  const TemporaryFolder folder;
+  return Table::read(folder.write("t.csv", content));
+}
+
+/// What is said of such a file, without the folder it lies in.
+std::string refusal(const std::string& content) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("t.csv", content);
+  const std::string message = error_of([&] { Table::read(path).column("k"); }, ErrorKind::bad_file);
+  return message.rfind(path, 0) == 0 ? "t.csv" + message.substr(path.size()) : message;
+}
+
+using Column = std::vector<double>;
+
+TEST(Table, ColumnsAreFoundByName) {
+  const Table table = table_of("k,density_percent\n1.2,40\n-1e-3,50.5\n");
+  EXPECT_EQ(table.names(), (std::vector<std::string>{"k", "density_percent"}));
+  EXPECT_EQ(table.rows(), 2U);
+  EXPECT_EQ(table.column("k"), (Column{1.2, -1e-3}));
+  EXPECT_EQ(table.column("density_percent"), (Column{40.0, 50.5}));
+  EXPECT_TRUE(table.has("k"));
+  EXPECT_FALSE(table.has("K"));
+}
+
+TEST(Table, BlanksQuotesCommentsAndLineEndsOfOtherSystemsDoNotMatter) {
+  const Table table = table_of("# made by hand\r\n\"k\" , d\r\n\r\n 1 ,\t2 # first\r\n3,4");
+  EXPECT_EQ(table.column("k"), (Column{1.0, 3.0}));
+  EXPECT_EQ(table.column("d"), (Column{2.0, 4.0}));
+}
+
+TEST(Table, BadRowsAreNamedByLineAndColumn) {
+  EXPECT_EQ(refusal("k,d\n1,2\n\n1,x\n"), "t.csv: line 4: d is 'x', expected a number");
+  EXPECT_EQ(refusal("k,d\n1,2\n1\n"), "t.csv: line 3: found 1 fields, expected 2");
+  EXPECT_EQ(refusal("k,d\n1,2,\n"), "t.csv: line 2: found 3 fields, expected 2");
+  EXPECT_EQ(refusal("d\n1\n"), "t.csv: has no column 'k', its columns are: d");
+}
+
+TEST(Table, OnlyWholeFiniteNumbersAreNumbers) {
+  for (const char* word : {"nan", "inf", "1e999", "0x10", "1 2", "1m", "", "--1", "1.2.3"}) {
+    EXPECT_EQ(refusal(std::string("k,d\n") + word + ",1\n"),
+              std::string("t.csv: line 2: k is '") + word + "', expected a number");
+  }
+}
+
+TEST(Table, FilesWithoutRowsAreRefused) {
+  for (const char* content : {"", "\n\n", "# only a comment\n", "k,d\n"}) {
+    EXPECT_EQ(refusal(content), "t.csv: expected a line of column names and lines of numbers");
+  }
+  EXPECT_EQ(error_of([] { Table::read("/no/such.csv"); }, ErrorKind::bad_file),
+            "/no/such.csv: no such file, or not readable");
+}
+
+Column densities(const std::string& text) { return parse_densities("--densities", text); }
+
+TEST(DensityList, IsOneANumberSomeOrARange) {
+  EXPECT_EQ(densities("40"), (Column{40.0}));
+  EXPECT_EQ(densities("10,40%,80"), (Column{10.0, 40.0, 80.0}));
+  EXPECT_EQ(densities("0:25:100"), (Column{0.0, 25.0, 50.0, 75.0, 100.0}));
+  EXPECT_EQ(densities("0:30:100"), (Column{0.0, 30.0, 60.0, 90.0}));
+  EXPECT_EQ(densities("40:5:40"), (Column{40.0}));
+}
+
+TEST(DensityList, RangesReachTheirEndThoughStepsAreNotExact) {
+  const Column list = densities("0:0.1:100");
+  ASSERT_EQ(list.size(), 1001U);
+  EXPECT_DOUBLE_EQ(list.back(), 100.0);
+  EXPECT_DOUBLE_EQ(list[3], 0.3);
+}
+
+TEST(SlopeList, HoldsZeroExactly) {
+  const std::vector<double> slopes =
+      parse_series("--slopes", "-15deg:2.5deg:15deg", Quantity::angle);
+  ASSERT_EQ(slopes.size(), 13U);
+  EXPECT_EQ(slopes[6], 0.0);
+  EXPECT_NEAR(slopes[12], -slopes[0], 1e-15);
+}
+
+TEST(DensityList, JunkIsRefused) {
+  const auto message = [](const char* text) { return error_of([&] { densities(text); }); };
+  for (const char* text : {"0:0:100", "0:100", "0:-5:100", "0:1e-9:100"}) {
+    EXPECT_EQ(message(text), "--densities: '" + std::string(text) +
+                                 "' is not first:step:last with a step above 0 and at most 10000 "
+                                 "of them");
+  }
+  EXPECT_EQ(message("100:5:0"), "--densities: '100:5:0' holds no number");
+  EXPECT_EQ(message("90:5:110"), "--densities: 105 % is outside 0 .. 100");
+  EXPECT_EQ(message("40,-1"), "--densities: -1 % is outside 0 .. 100");
+  for (const char* text : {"", ",", "10,,20", "a:5:100", "0:5:100:5", "0:nan:100", "40m"}) {
+    EXPECT_NE(message(text), "no error") << text;
+  }
+}
+
+}  // namespace
+}  // namespace excavplan::tools

@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/tool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "support/errors.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+using test::error_of;
+
+TEST(Quantity, BareNumbersAreSi) {
+  EXPECT_EQ(parse_quantity("--cell", "0.05", Quantity::length), 0.05);
+  EXPECT_EQ(parse_quantity("--angle", "-1.5e-1", Quantity::angle), -0.15);
+  EXPECT_EQ(parse_quantity("--start", "+3", Quantity::length), 3.0);
+}
+
+TEST(Quantity, UnitsAreConverted) {
+  EXPECT_DOUBLE_EQ(parse_quantity("", "45deg", Quantity::angle), std::atan(1.0));
+  EXPECT_DOUBLE_EQ(parse_quantity("", "5cm", Quantity::length), 0.05);
+  EXPECT_DOUBLE_EQ(parse_quantity("", "50 mm", Quantity::length), 0.05);
+  EXPECT_DOUBLE_EQ(parse_quantity("", "400L", Quantity::volume), 0.4);
+  EXPECT_DOUBLE_EQ(parse_quantity("", "40%", Quantity::percent), 40.0);
+  EXPECT_DOUBLE_EQ(parse_quantity("", "1.5min", Quantity::time), 90.0);
+}
+
+TEST(Quantity, JunkAndWrongKindsAreRefused) {
+  EXPECT_EQ(error_of([] { parse_quantity("--cell", "5deg", Quantity::length); }),
+            "--cell: '5deg' is an angle, expected a length such as 0.05, 5cm or 50mm");
+  EXPECT_EQ(error_of([] { parse_quantity("--density", "4x", Quantity::percent); }),
+            "--density: '4x' ends in 'x', which is no unit known here, expected a percentage such "
+            "as 40 or 40%");
+  for (const char* junk :
+       {"", "x", "nan", "inf", "-", "+", "+-3", "1e999", "0,5", "5cm cm", "--3"}) {
+    EXPECT_NE(error_of([&] { parse_quantity("--cell", junk, Quantity::length); }), "no error")
+        << junk;
+  }
+}
+
+TEST(DigPathText, TakesThreeQuantities) {
+  const DigParameters path = parse_dig_path("--path", "45deg,35cm,1.5");
+  EXPECT_DOUBLE_EQ(path.penetration_angle, std::atan(1.0));
+  EXPECT_DOUBLE_EQ(path.penetration_length, 0.35);
+  EXPECT_EQ(path.drag_length, 1.5);
+  for (const char* bad : {"45deg,1m", "45deg,1m,1m,1m", "45deg,1m,1m,", "1m,1m,1m", ",,", ""}) {
+    EXPECT_NE(error_of([&] { parse_dig_path("--path", bad); }), "no error") << bad;
+  }
+}
+
+TEST(RectangleText, NeedsAnExtent) {
+  const Rectangle area = parse_rectangle("--dig-area", "4,-1,7,100cm");
+  EXPECT_EQ(area.x_min, 4.0);
+  EXPECT_EQ(area.y_max, 1.0);
+  EXPECT_EQ(error_of([] { parse_rectangle("--dig-area", "1,0,1,2"); }),
+            "--dig-area: '1,0,1,2' is empty: XMIN must be below XMAX, YMIN below YMAX");
+}
+
+TEST(Readable, KeepsDigitsWithoutExponents) {
+  EXPECT_EQ(readable(0.4512), "0.451");
+  EXPECT_EQ(readable(12345.6), "12346");
+  EXPECT_EQ(readable(0.0), "0.00");
+  EXPECT_EQ(readable(std::numeric_limits<double>::quiet_NaN()), "unknown");
+  EXPECT_EQ(readable(0.45123, 0.0123), "0.451 ± 0.012");
+  EXPECT_EQ(readable(46.4, 7.3), "46.4 ± 7.3");
+}
+
+/// A tool that takes a bit of everything, run in this process.
+struct Probe {
+  int code = -1;
+  std::string out;
+  std::string err;
+  std::string before;
+  double cell_size = 0.05;
+  std::optional<double> density;
+  bool worked = false;
+};
+
+Probe run(std::vector<const char*> words, const Outcome& outcome = {}) {
+  Probe result;
+  std::optional<std::string> plot;
+  std::string method = "surface";
+  std::uint64_t seed = 1;
+  words.insert(words.begin(), "probe");
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  result.code = run_tool(
+      static_cast<int>(words.size()), words.data(),
+      {"probe", "Probes.", {{"probe a.pcd", "the example"}}, true, false},
+      [&](Arguments& arguments) {
+        arguments.positional("BEFORE", result.before, "a scan");
+        arguments.option("density", result.density, Quantity::percent, "density of the ground");
+        arguments.require("density");
+        arguments.option("cell", result.cell_size, Quantity::length, "edge of a cell");
+        arguments.option("seed", seed, "start of the random numbers");
+        arguments.choice("method", method, {"surface", "paper"}, "how");
+        arguments.plot(plot, "the change");
+      },
+      [&](Console& console) {
+        result.worked = true;
+        console.note("working");
+        return outcome;
+      });
+  result.out = testing::internal::GetCapturedStdout();
+  result.err = testing::internal::GetCapturedStderr();
+  return result;
+}
+
+TEST(Tool, OptionsMayStandBeforeAndAfterPositionals) {
+  for (const auto& words : {std::vector<const char*>{"--cell", "5mm", "a.pcd", "--density", "40"},
+                            std::vector<const char*>{"a.pcd", "--density=40%", "--cell=0.005"}}) {
+    const Probe probe = run(words);
+    EXPECT_EQ(probe.code, 0) << probe.err;
+    EXPECT_EQ(probe.before, "a.pcd");
+    EXPECT_EQ(probe.cell_size, 0.005);
+    EXPECT_EQ(probe.density, 40.0);
+  }
+}
+
+TEST(Tool, MisspeltOptionIsToldBeforeTheMissingOne) {
+  for (const char* misspelt : {"--denisty", "--densty", "-density", "--dens", "--Density"}) {
+    const Probe probe = run({"a.pcd", misspelt, "40"});
+    EXPECT_EQ(probe.code, 2);
+    EXPECT_EQ(probe.err, "probe: unknown option " + std::string(misspelt) +
+                             ", did you mean --density?\nSee probe --help\n");
+    EXPECT_FALSE(probe.worked);
+  }
+  EXPECT_EQ(run({"a.pcd", "--xyzzy"}).err, "probe: unknown option --xyzzy\nSee probe --help\n");
+}
+
+TEST(Tool, WrongUsageEndsWithTwoAndSaysWhy) {
+  const std::vector<std::pair<std::vector<const char*>, std::string>> cases = {
+      {{"a.pcd"}, "--density is missing: density of the ground [%]"},
+      {{"--density", "4"}, "BEFORE is missing: a scan"},
+      {{"a", "b", "--density", "4"}, "'b' is one argument too many"},
+      {{"a", "--density", "4", "--density", "5"}, "--density is given more than once"},
+      {{"a", "--density", "--json"}, "--density needs a value, got --json"},
+      {{"a", "--density", "4", "--seed", "-1"}, "--seed: '-1' is not a whole number, 0 or more"},
+      {{"a", "--density", "4", "--seed", "99999999999999999999"},
+       "--seed: 99999999999999999999 is too large"},
+      {{"a", "--density", "4", "--method", "papr"},
+       "--method: 'papr' is not one of surface, paper"},
+      {{"a", "--density", "4", "--plot", "x.png"},
+       "--plot: 'x.png' must end in .svg, plots are written as SVG only"}};
+  for (const auto& [words, message] : cases) {
+    const Probe probe = run(words);
+    EXPECT_EQ(probe.code, 2);
+    EXPECT_EQ(probe.err, "probe: " + message + "\nSee probe --help\n");
+    EXPECT_EQ(probe.out, "");
+  }
+}
+
+TEST(Tool, JsonIsOneObjectAndNanIsNull) {
+  Outcome outcome;
+  outcome.json = {{"bulking_factor", std::numeric_limits<double>::quiet_NaN()}, {"points", 3}};
+  outcome.lines = {"for people"};
+  outcome.warnings = {{"no_heap", "no dumped soil is in the scans"}};
+  const Probe probe = run({"a", "--density", "4", "--json"}, outcome);
+  const auto json = nlohmann::ordered_json::parse(probe.out);
+  EXPECT_TRUE(json.at("bulking_factor").is_null());
+  EXPECT_EQ(json.at("points"), 3);
+  EXPECT_EQ(json.at("tool"), "probe");
+  EXPECT_EQ(json.at("warnings").at(0).at("code"), "no_heap");
+  EXPECT_EQ(probe.err, "working\nprobe: warning: no dumped soil is in the scans\n");
+}
+
+TEST(Tool, PeopleGetLinesAndQuietNone) {
+  Outcome outcome;
+  outcome.lines = {"density 40 %"};
+  EXPECT_EQ(run({"a", "--density", "4"}, outcome).out, "density 40 %\n");
+  const Probe quiet = run({"a", "--density", "4", "--quiet"}, outcome);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+TEST(Tool, OnlyStrictTurnsMistrustIntoACode) {
+  Outcome outcome;
+  outcome.trustworthy = false;
+  EXPECT_EQ(run({"a", "--density", "4"}, outcome).code, 0);
+  EXPECT_EQ(run({"a", "--density", "4", "--strict"}, outcome).code, 4);
+  EXPECT_EQ(run({"a", "--density", "4", "--strict"}).code, 0);
+  outcome.stopped_early = true;
+  EXPECT_EQ(run({"a", "--density", "4"}, outcome).code, 75);
+}
+
+TEST(Tool, HelpAndVersionNeedNothingElse) {
+  const Probe help = run({"--help"});
+  EXPECT_EQ(help.code, 0);
+  for (const char* part : {"Usage: probe BEFORE [OPTIONS]", "--density PERCENT", "[%] (required)",
+                           "edge of a cell [m] (default: 0.05)", "probe a.pcd", "--strict"}) {
+    EXPECT_NE(help.out.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(run({"--version"}).out.rfind("probe (excavplan) ", 0), 0U);
+}
+
+TEST(Tool, ErrorsOfTheLibraryHaveTheirCodes) {
+  const auto code_of = [](const std::function<void()>& fail) {
+    const std::array<const char*, 1> words = {"probe"};
+    testing::internal::CaptureStderr();
+    const int code = run_tool(
+        1, words.data(), {"probe", "Probes.", {}}, [](Arguments&) {},
+        [&](Console&) -> Outcome {
+          fail();
+          return {};
+        });
+    testing::internal::GetCapturedStderr();
+    return code;
+  };
+  EXPECT_EQ(code_of([] { throw Error(ErrorKind::bad_input, "cell must be > 0"); }), 2);
+  EXPECT_EQ(code_of([] { throw Error(ErrorKind::bad_file, "a.pcd: no such file"); }), 3);
+  EXPECT_EQ(code_of([] { throw std::logic_error("cannot be"); }), 1);
+}
+
+TEST(ShippedFiles, AreFoundByNameAndFilesByPath) {
+  EXPECT_EQ(soil_named("loam").name, "loam");
+  EXPECT_EQ(shipped_or_file("soils", "./my.json"), "./my.json");
+  EXPECT_EQ(error_of([] { shipped_or_file("soils", "lom"); }),
+            "'lom' is neither a file nor one of the soils that excavplan ships");
+}
+
+}  // namespace
+}  // namespace excavplan::tools

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/quantity.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include <excavplan/error.hpp>
+
+#include "base/angles.hpp"
+#include "base/text.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+struct QuantityInfo {
+  Quantity quantity;
+  const char* placeholder;
+  const char* unit;
+  const char* kind;
+  const char* examples;
+};
+constexpr std::array<QuantityInfo, 10> quantities = {{
+    {Quantity::length, "LENGTH", "m", "a length", "0.05, 5cm or 50mm"},
+    {Quantity::angle, "ANGLE", "rad", "an angle", "0.785 or 45deg"},
+    {Quantity::area, "AREA", "m^2", "an area", "0.03 or 300cm2"},
+    {Quantity::volume, "VOLUME", "m^3", "a volume", "0.4 or 400L"},
+    {Quantity::mass, "MASS", "kg", "a mass", "800 or 0.8t"},
+    {Quantity::time, "TIME", "s", "a time", "90, 90s or 1.5min"},
+    {Quantity::energy, "ENERGY", "J", "an energy", "80000 or 80kJ"},
+    {Quantity::density, "DENSITY", "kg/m^3", "a density", "1500 or 1.5t/m3"},
+    {Quantity::percent, "PERCENT", "%", "a percentage", "40 or 40%"},
+    {Quantity::ratio, "NUMBER", "-", "a number without a unit", "1.2"},
+}};
+
+struct Unit {
+  const char* text;
+  Quantity quantity;
+  double factor;
+};
+constexpr std::array<Unit, 27> units = {{
+    {"m", Quantity::length, 1.0},         {"cm", Quantity::length, 0.01},
+    {"mm", Quantity::length, 0.001},      {"rad", Quantity::angle, 1.0},
+    {"deg", Quantity::angle, pi / 180.0}, {"m2", Quantity::area, 1.0},
+    {"m^2", Quantity::area, 1.0},         {"cm2", Quantity::area, 1e-4},
+    {"m3", Quantity::volume, 1.0},        {"m^3", Quantity::volume, 1.0},
+    {"L", Quantity::volume, 0.001},       {"l", Quantity::volume, 0.001},
+    {"kg", Quantity::mass, 1.0},          {"t", Quantity::mass, 1000.0},
+    {"s", Quantity::time, 1.0},           {"ms", Quantity::time, 0.001},
+    {"min", Quantity::time, 60.0},        {"h", Quantity::time, 3600.0},
+    {"J", Quantity::energy, 1.0},         {"kJ", Quantity::energy, 1e3},
+    {"MJ", Quantity::energy, 1e6},        {"kg/m3", Quantity::density, 1.0},
+    {"kg/m^3", Quantity::density, 1.0},   {"t/m3", Quantity::density, 1e3},
+    {"t/m^3", Quantity::density, 1e3},    {"g/cm3", Quantity::density, 1e3},
+    {"%", Quantity::percent, 1.0},
+}};
+
+const QuantityInfo& info(Quantity quantity) {
+  return *std::find_if(quantities.begin(), quantities.end(),
+                       [&](const QuantityInfo& row) { return row.quantity == quantity; });
+}
+
+/// @throws Error (bad_input) unless there are `count` parts between commas
+std::vector<std::string> parts_of(const std::string& what, const std::string& text,
+                                  std::size_t count, const std::string& form) {
+  std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != count || parts.back().empty()) {
+    throw Error(ErrorKind::bad_input, what + ": '" + text + "' is not " + form);
+  }
+  return parts;
+}
+
+}  // namespace
+
+const char* placeholder(Quantity quantity) { return info(quantity).placeholder; }
+const char* unit(Quantity quantity) { return info(quantity).unit; }
+
+double parse_quantity(const std::string& what, const std::string& text, Quantity quantity) {
+  const QuantityInfo& wanted = info(quantity);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::bad_input, what + ": '" + text + "' " + why + ", expected " +
+                                          wanted.kind + " such as " + wanted.examples);
+  };
+  const bool plus = text.rfind('+', 0) == 0 && text.rfind("+-", 0) != 0;
+  const char* const begin = text.data() + (plus ? 1 : 0);
+  const char* const end = text.data() + text.size();
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc{} || !std::isfinite(value)) refuse("is not a number");
+  std::string suffix(stop, end);
+  suffix.erase(0, suffix.find_first_not_of(' '));
+  if (suffix.empty()) return value;
+  const auto known =
+      std::find_if(units.begin(), units.end(), [&](const Unit& row) { return suffix == row.text; });
+  if (known == units.end()) {
+    refuse("ends in '" + suffix + "', which is no unit known here");
+  } else if (known->quantity != quantity) {
+    refuse(std::string("is ") + info(known->quantity).kind);
+  }
+  return value * known->factor;
+}
+
+DigParameters parse_dig_path(const std::string& what, const std::string& text) {
+  const auto parts = parts_of(what, text, 3,
+                              "a path ANGLE,LENGTH,LENGTH (penetration angle, penetration length, "
+                              "drag length) such as 45deg,0.35m,1.5m");
+  return {parse_quantity(what, parts[0], Quantity::angle),
+          parse_quantity(what, parts[1], Quantity::length),
+          parse_quantity(what, parts[2], Quantity::length)};
+}
+
+Rectangle parse_rectangle(const std::string& what, const std::string& text) {
+  const auto parts = parts_of(what, text, 4, "an area XMIN,YMIN,XMAX,YMAX such as 4,-1,7,1");
+  std::array<double, 4> corner{};
+  for (std::size_t i = 0; i < 4; ++i) corner[i] = parse_quantity(what, parts[i], Quantity::length);
+  if (corner[0] >= corner[2] || corner[1] >= corner[3]) {
+    throw Error(ErrorKind::bad_input,
+                what + ": '" + text + "' is empty: XMIN must be below XMAX, YMIN below YMAX");
+  }
+  return {corner[0], corner[1], corner[2], corner[3]};
+}
+
+Eigen::Vector2d parse_point(const std::string& what, const std::string& text) {
+  const auto parts = parts_of(what, text, 2, "a point X,Y such as 5,2.5");
+  return {parse_quantity(what, parts[0], Quantity::length),
+          parse_quantity(what, parts[1], Quantity::length)};
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+std::vector<double> parse_series(const std::string& what, const std::string& text,
+                                 Quantity quantity) {
+  std::vector<double> series;
+  const auto number = [&](const std::string& word) { return parse_quantity(what, word, quantity); };
+  const std::vector<std::string> range = split(text, ':');
+  if (range.size() == 1) {
+    for (const std::string& word : split(text, ',')) series.push_back(number(word));
+    return series;
+  }
+  constexpr double most = 1e4;
+  const double step = range.size() == 3 ? number(range[1]) : 0.0;
+  const double steps = step > 0.0 ? (number(range[2]) - number(range[0])) / step : HUGE_VAL;
+  if (!(steps < most)) {
+    throw Error(ErrorKind::bad_input, what + ": '" + text +
+                                          "' is not first:step:last with a step above 0 and at "
+                                          "most 10000 of them");
+  }
+  for (int i = 0; i <= std::floor(steps + 1e-9); ++i) {
+    const double value = number(range[0]) + i * step;
+    series.push_back(std::abs(value) < 1e-9 * step ? 0.0 : value);
+  }
+  if (series.empty()) throw Error(ErrorKind::bad_input, what + ": '" + text + "' holds no number");
+  return series;
+}
+
+std::string readable(double value, int digits) {
+  if (!std::isfinite(value)) return "unknown";
+  const double magnitude = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)));
+  int places = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
+  const double rounding = 0.5 * std::pow(10.0, -places);
+  const double carried = std::pow(10.0, magnitude + 1.0);  // 9.9996 is 10.0, not 10.00
+  if (places > 0 && std::abs(value) + rounding >= carried) --places;
+  return decimals(value, places);
+}
+
+std::string readable(double value, double sd) {
+  if (!std::isfinite(sd) || sd <= 0.0) return readable(value);
+  const std::string deviation = readable(sd, 2);
+  const std::size_t point = deviation.find('.');
+  const int places =
+      point == std::string::npos ? 0 : static_cast<int>(deviation.size() - point - 1);
+  return decimals(value, places) + " ± " + deviation;
+}
+
+}  // namespace excavplan::tools

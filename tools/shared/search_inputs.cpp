@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/search_inputs.hpp"
+
+#include <utility>
+#include <variant>
+
+#include <excavplan/error.hpp>
+
+#include "shared/quantity.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+/// Generations of the default method, which its evaluations end long before; ours.
+constexpr int enough_for_the_evaluations = 20;
+
+[[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
+
+DigObjective objective_of(const SearchInputs& inputs) {
+  DigObjective objective;
+  objective.rest_of_cycle = inputs.rest_of_cycle;
+  const std::string priced = "priced:";
+  if (inputs.goal == "time") {
+    objective.goal = DigObjective::Goal::mass_per_time;
+  } else if (inputs.goal.compare(0, priced.size(), priced) == 0) {
+    objective.goal = DigObjective::Goal::priced;
+    objective.time_price =
+        parse_quantity("--goal priced", inputs.goal.substr(priced.size()), Quantity::ratio);
+  } else if (inputs.goal != "energy") {
+    refuse("--goal: '" + inputs.goal + "' is none of energy, time, priced:WATT");
+  }
+  return objective;
+}
+
+DigBounds bounds_of(const SearchInputs& inputs) {
+  DigBounds bounds;
+  const std::array<std::pair<const char*, Quantity>, 3> options = {
+      {{"--angle-range", Quantity::angle},
+       {"--penetration-range", Quantity::length},
+       {"--drag-range", Quantity::length}}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!inputs.ranges[i]) continue;
+    const auto& [option, quantity] = options[i];
+    const std::string& text = *inputs.ranges[i];
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos) {
+      refuse(std::string(option) + ": '" + text + "' is not FROM,TO");
+    }
+    const auto field = dig_parameter_table()[i].field;
+    bounds.lower.*field = parse_quantity(option, text.substr(0, comma), quantity);
+    bounds.upper.*field = parse_quantity(option, text.substr(comma + 1), quantity);
+  }
+  return bounds;
+}
+
+std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inputs) {
+  if (inputs.method == "default") {
+    MemeticSearch memetic;
+    memetic.generations = inputs.generations != 0 ? inputs.generations : enough_for_the_evaluations;
+    return memetic;
+  }
+  GeneticAlgorithm paper;
+  paper.population = inputs.population.value_or(paper.population);
+  if (inputs.generations != 0) paper.generations = inputs.generations;
+  return paper;
+}
+
+}  // namespace
+
+void declare_search(Arguments& arguments, SearchInputs& inputs) {
+  arguments.text("goal", "GOAL", inputs.goal,
+                 "energy: mass per energy; time: mass per time; priced:WATT: mass per energy, a "
+                 "second costing so much");
+  arguments.option("rest-of-cycle", inputs.rest_of_cycle, Quantity::time,
+                   "swing, dump and return, added to the time of the dig");
+  arguments.text("start", "RULE|LENGTH", inputs.start,
+                 "where the dig begins: work (least work of the links), margin (farthest from the "
+                 "joint limits), search (with the path), or x");
+  arguments.text("angle-range", "FROM,TO", inputs.ranges[0], "penetration angles searched");
+  arguments.text("penetration-range", "FROM,TO", inputs.ranges[1], "penetration lengths searched");
+  arguments.text("drag-range", "FROM,TO", inputs.ranges[2], "drag lengths searched");
+  arguments.choice("method", inputs.method, {"default", "paper"},
+                   "of the search; paper: the paper's genetic algorithm");
+  arguments.option("population", inputs.population,
+                   "individuals, --method paper (default: " +
+                       std::to_string(GeneticAlgorithm{}.population) + ")");
+  arguments.option("generations", inputs.generations,
+                   "of the search, 0 for as many as the evaluations allow, or the paper's");
+  arguments.option("evaluations", inputs.evaluations,
+                   "digs simulated at most in one search, 0 for the method's own: 400 (100 for "
+                   "each of several densities, 200 without a library's dig to begin with), or all "
+                   "the paper's generations");
+  arguments.file("checkpoint", inputs.checkpoint,
+                 "keep the digs simulated in this file, those of a search for each of several "
+                 "densities in FILE.soil1, FILE.soil2, ...");
+  arguments.flag("resume", inputs.resume, "go on from the checkpoint if it exists");
+  arguments.option("seed", inputs.seed, "seed of the search");
+  arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
+}
+
+StartRule start_rule_of(const SearchInputs& inputs) {
+  if (inputs.start == "work") return StartRule::Kind::least_work;
+  if (inputs.start == "margin") return StartRule::Kind::largest_margin;
+  if (inputs.start == "search") return StartRule::Kind::searched;
+  return parse_quantity("--start", inputs.start, Quantity::length);
+}
+
+DigSearchOptions search_options(const SearchInputs& inputs, int evaluations, Console& console) {
+  if (inputs.evaluations < 0) {
+    refuse("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
+  }
+  DigSearchOptions options;
+  options.method = method_of(inputs);
+  options.stop.evaluations = inputs.evaluations;
+  if (inputs.evaluations == 0 && inputs.method == "default") {
+    options.stop.evaluations = evaluations;
+  }
+  options.seed = inputs.seed;
+  options.threads = static_cast<unsigned>(inputs.threads);
+  options.objective = objective_of(inputs);
+  options.bounds = bounds_of(inputs);
+  options.start_rule = start_rule_of(inputs);
+  options.checkpoint = inputs.checkpoint.value_or("");
+  options.resume = inputs.resume;
+  const bool per_time = options.objective.goal == DigObjective::Goal::mass_per_time;
+  options.progress = [&console, per_time](const SearchProgress& p) {
+    const double scale = per_time ? 1.0 : 1000.0;
+    console.progress(static_cast<double>(p.evaluations) / p.planned,
+                     "generation " + std::to_string(p.generation) + ": best " +
+                         readable(scale * p.best) + ", mean " + readable(scale * p.mean) +
+                         (per_time ? " kg/s, " : " kg/kJ, ") + std::to_string(p.evaluations) +
+                         " digs, " + readable(p.seconds_left) + " s left");
+    return !console.stop_requested();
+  };
+  return options;
+}
+
+void check(const SearchInputs& inputs) {
+  if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
+  objective_of(inputs);
+  bounds_of(inputs);
+}
+
+std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use) {
+  const bool searches = use == SearchUse::all;
+  const SearchInputs usual;
+  IgnoredOptions ignored;
+  ignored.add(inputs.population && !(searches && inputs.method == "paper"), "--population");
+  ignored.add(inputs.start != usual.start && use == SearchUse::none, "--start");
+  if (!searches) {
+    ignored.add(inputs.goal != usual.goal, "--goal");
+    ignored.add(inputs.rest_of_cycle != usual.rest_of_cycle, "--rest-of-cycle");
+    ignored.add(inputs.ranges[0].has_value(), "--angle-range");
+    ignored.add(inputs.ranges[1].has_value(), "--penetration-range");
+    ignored.add(inputs.ranges[2].has_value(), "--drag-range");
+    ignored.add(inputs.method != usual.method, "--method");
+    ignored.add(inputs.generations != usual.generations, "--generations");
+    ignored.add(inputs.evaluations != usual.evaluations, "--evaluations");
+    ignored.add(inputs.checkpoint.has_value(), "--checkpoint");
+    ignored.add(inputs.seed != usual.seed, "--seed");
+  }
+  return ignored.warnings(searches ? "the default method has none, --method paper has"
+                                   : "nothing is searched without --search");
+}
+
+}  // namespace excavplan::tools

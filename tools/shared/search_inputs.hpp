@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/planning/planner.hpp>
+
+#include "shared/tool.hpp"
+
+namespace excavplan::tools {
+
+/// How a dig is searched, as said on the command line.
+struct SearchInputs {
+  std::string goal = "energy";
+  double rest_of_cycle = 0.0;
+  std::string start = "work";
+  std::array<std::optional<std::string>, 3> ranges;
+  std::string method = "default";
+  std::optional<int> population;
+  int generations = 0;
+  int evaluations = 0;
+  std::optional<std::string> checkpoint;
+  bool resume = false;
+  std::uint64_t seed = DigSearchOptions{}.seed;
+  std::uint64_t threads = 0;
+};
+
+void declare_search(Arguments& arguments, SearchInputs& inputs);
+
+/// What can be told to be wrong before anything is read. @throws Error (bad_input)
+void check(const SearchInputs& inputs);
+
+/// What is done with the options of a search.
+enum class SearchUse {
+  none,
+  start_only,  ///< a path that is known is dug by its rule for the start
+  all,
+};
+
+/// Of options that have no effect.
+std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use);
+
+StartRule start_rule_of(const SearchInputs& inputs);
+
+/// With progress on the console, which also stops the search.
+/// @param evaluations  of the default method, unless the inputs say how many
+DigSearchOptions search_options(const SearchInputs& inputs, int evaluations, Console& console);
+
+}  // namespace excavplan::tools

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/survey_planning.hpp"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include <excavplan/survey/survey_plan.hpp>
+
+#include "shared/quantity.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+struct Request {
+  SurveyPlan plan;
+  double target = 5.0;  ///< standard deviation of the density asked for [points]
+};
+
+struct Key {
+  const char* name;
+  Quantity quantity;
+  double SurveyPlan::*field;
+  const char* help;
+};
+
+constexpr std::array<Key, 6> keys = {{
+    {"height", Quantity::length, &SurveyPlan::height, "of the sensor above the ground"},
+    {"offset", Quantity::length, &SurveyPlan::offset, "of the sensor from the middle of the area"},
+    {"volume", Quantity::volume, &SurveyPlan::dig_volume, "that is dug"},
+    {"depth", Quantity::length, &SurveyPlan::dig_depth, "of the dig"},
+    {"area", Quantity::area, &SurveyPlan::surveyed_area, "around dig and heap, each"},
+    {"k", Quantity::ratio, &SurveyPlan::bulking_factor, "bulking factor expected"},
+}};
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorKind::bad_input, "--plan-survey: " + what);
+}
+
+void set(Request& request, const std::string& name, const std::string& value) {
+  const std::string what = "--plan-survey " + name;
+  for (const Key& key : keys) {
+    if (name != key.name) continue;
+    request.plan.*key.field = parse_quantity(what, value, key.quantity);
+    return;
+  }
+  if (name == "sensor") {
+    if (value == "d435i") {
+      request.plan.sensor = d435i_sensor();
+    } else if (value == "lidar") {
+      request.plan.sensor = lidar_sensor();
+    } else {
+      refuse("sensor is '" + value + "', must be d435i or lidar");
+    }
+  } else if (name == "frames") {
+    const double frames = parse_quantity(what, value, Quantity::ratio);
+    if (frames != std::floor(frames) || !(frames >= 1.0 && frames <= 1e6)) {
+      refuse("frames is " + value + ", must be a whole number of at least 1");
+    }
+    request.plan.frames = static_cast<int>(frames);
+  } else if (name == "moved") {
+    if (value != "yes" && value != "no") refuse("moved is '" + value + "', must be yes or no");
+    request.plan.registered = value == "yes";
+  } else if (name == "target") {
+    request.target = parse_quantity(what, value, Quantity::percent);
+  } else {
+    refuse("'" + name + "' is not understood; it takes " + survey_keys());
+  }
+}
+
+Request parse(const std::string& text) {
+  Request request;
+  std::istringstream stream(text);
+  for (std::string pair; std::getline(stream, pair, ',');) {
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string::npos) refuse("'" + pair + "' must be KEY=VALUE");
+    set(request, pair.substr(0, equals), pair.substr(equals + 1));
+  }
+  return request;
+}
+
+std::string text_of(const std::optional<double>& value, const std::string& unit) {
+  return value ? readable(*value, 2) + unit : "not by this alone";
+}
+
+}  // namespace
+
+std::string survey_keys() {
+  std::string text = "no scans: how well a survey will tell the density. Keys: sensor=d435i|lidar";
+  for (const Key& key : keys) text += std::string(", ") + key.name + " (" + key.help + ")";
+  return text +
+         ", frames (averaged), moved=yes|no (the sensor moves between the scans), target "
+         "(points of density)";
+}
+
+Outcome planned_survey(const std::string& text, const DensityLaw& law) {
+  Request request = parse(text);
+  request.plan.density_slope = density_slope(law.form, request.plan.bulking_factor);
+  const SurveyForecast f = plan_survey(request.plan);
+  const SurveyNeeds needs = survey_needs(request.plan, request.target);
+  const auto json_of = [](const auto& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  };
+  Outcome outcome;
+  outcome.json = {{"sensor", request.plan.sensor.name},
+                  {"range_m", f.range},
+                  {"ray_spacing_m", f.ray_spacing},
+                  {"excavated_sd_m3", f.excavated_sd},
+                  {"after_sd_m3", f.after_sd},
+                  {"bulking_factor_sd", f.bulking_sd},
+                  {"density_sd_percent", f.density_sd_percent},
+                  {"datum_sd_m", f.datum_sd},
+                  {"variance_shares",
+                   {{"white", f.white_share},
+                    {"correlated", f.correlated_share},
+                    {"datum", f.datum_share},
+                    {"occlusion", f.occlusion_share}}},
+                  {"hidden_share", f.hidden_share},
+                  {"in_view", f.in_view},
+                  {"target_sd_percent", request.target},
+                  {"needs",
+                   {{"range_at_most_m", json_of(needs.range)},
+                    {"range_at_least_m", needs.nearest_range},
+                    {"frames_at_least", json_of(needs.frames)},
+                    {"noise_factor_at_most", json_of(needs.noise)}}},
+                  {"law", law.name}};
+  const auto percent = [](double share) { return readable(100.0 * share, 2) + " %"; };
+  outcome.lines = {"sensor     " + request.plan.sensor.name + ", " + readable(f.range, 3) +
+                       " m from the middle of the area, a ray every " +
+                       readable(1000.0 * f.ray_spacing, 2) + " mm",
+                   "bulking    sd " + readable(f.bulking_sd, 2),
+                   "density    sd " + readable(f.density_sd_percent, 2) +
+                       " points, one standard deviation, the law's own scatter not in it",
+                   "  of which " + percent(f.white_share) + " noise, " +
+                       percent(f.correlated_share) + " pattern, " + percent(f.datum_share) +
+                       " datum, " + percent(f.occlusion_share) + " hidden ground",
+                   "for " + readable(request.target, 2) + " points, either",
+                   "  range    at most " + text_of(needs.range, " m at this angle of view"),
+                   "  frames   at least " + (needs.frames ? std::to_string(*needs.frames)
+                                                          : std::string("not by this alone")),
+                   "  noise    at most " + text_of(needs.noise, " times that of this sensor")};
+  if (!f.in_view) {
+    outcome.warnings.push_back({"not_in_view",
+                                "pit, spill and heap do not fit into the field of view from there; "
+                                "at this angle they do from " +
+                                    readable(needs.nearest_range, 3) + " m"});
+  }
+  return outcome;
+}
+
+}  // namespace excavplan::tools

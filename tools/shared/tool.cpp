@@ -1,0 +1,546 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/tool.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+#include <excavplan/data_files.hpp>
+
+#include "base/json.hpp"
+#include "base/text.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+[[noreturn]] void usage_error(const std::string& message) {
+  throw Error(ErrorKind::bad_input, message);
+}
+
+template <typename Integer>
+Integer parse_integer(const std::string& what, const std::string& text) {
+  Integer value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc::result_out_of_range) usage_error(what + ": " + text + " is too large");
+  if (error != std::errc{} || stop != end) {
+    const char* kind = std::is_signed_v<Integer> ? "a whole number" : "a whole number, 0 or more";
+    usage_error(what + ": '" + text + "' is not " + kind);
+  }
+  return value;
+}
+
+// ---- Suggestions ------------------------------------------------------------------------------
+
+/// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other
+/// (optimal string alignment).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+/// The word that was probably meant, or nothing.
+std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& words) {
+  std::optional<std::string> best;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : words) {
+    const bool abbreviated = word.size() >= 2 && candidate.rfind(word, 0) == 0;
+    const std::size_t distance = abbreviated ? 1 : edit_distance(word, candidate);
+    if (distance < least && distance < candidate.size()) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+// ---- Help -------------------------------------------------------------------------------------
+
+constexpr std::size_t help_width = 96;
+
+/// `text` broken at blanks, the lines after the first indented.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::istringstream words(text);
+  std::string result;
+  std::size_t column = indent;
+  for (std::string word; words >> word;) {
+    if (column > indent && column + 1 + word.size() > help_width) {
+      result += '\n' + std::string(indent, ' ');
+      column = indent;
+    } else if (column > indent) {
+      result += ' ';
+      ++column;
+    }
+    result += word;
+    column += word.size();
+  }
+  return result;
+}
+
+std::string help_row(const std::string& left, const std::string& right) {
+  constexpr std::size_t indent = 30;
+  const std::string start = "  " + left;
+  const std::string gap = start.size() + 2 > indent ? '\n' + std::string(indent, ' ')
+                                                    : std::string(indent - start.size(), ' ');
+  return start + gap + wrapped(right, indent) + '\n';
+}
+
+std::string help_text(const About& about, const std::vector<Arguments::Entry>& entries) {
+  std::string usage = "Usage: " + about.name;
+  std::string positionals;
+  std::string options;
+  for (const Arguments::Entry& entry : entries) {
+    if (entry.positional) {
+      usage += entry.required ? " " + entry.name : " [" + entry.name + "]";
+      positionals += help_row(entry.name, entry.help);
+      continue;
+    }
+    std::string help = entry.help;
+    if (entry.required) {
+      help += " (required)";
+    } else if (!entry.default_text.empty()) {
+      help += " (default: " + entry.default_text + ")";
+    }
+    const std::string value = entry.placeholder.empty() ? "" : " " + entry.placeholder;
+    options += help_row((entry.name == "help" ? "-h, --" : "--") + entry.name + value, help);
+  }
+  std::string text =
+      wrapped(about.name + ": " + about.summary, 0) + "\n\n" + usage + " [OPTIONS]\n";
+  if (!positionals.empty()) text += '\n' + positionals;
+  text += "\nOptions:\n" + options;
+  text += "\nA bare number is in the unit in brackets; 45deg, 5cm, 50mm are understood as well.\n";
+  if (!about.examples.empty()) text += "\nExamples:\n";
+  for (const Example& example : about.examples) {
+    text += "  " + example.command + "\n      " + wrapped(example.meaning, 6) + '\n';
+  }
+  std::string codes =
+      "Exit codes: 0 done; 1 internal error; 2 wrong usage; 3 a file cannot be read or written, or "
+      "is not what it claims";
+  if (about.can_be_untrustworthy) codes += "; 4 result not trustworthy, with --strict";
+  if (about.can_stop_early) codes += "; 75 stopped early, can be resumed";
+  return text + '\n' + wrapped(codes + ".", 0) + '\n';
+}
+
+// ---- Parsing ----------------------------------------------------------------------------------
+
+struct Common {
+  bool help = false;
+  bool version = false;
+  bool json = false;
+  bool quiet = false;
+  bool strict = false;
+};
+
+void declare_common(Arguments& arguments, const About& about, Common& common) {
+  arguments.flag("json", common.json, "print one JSON object on standard output, nothing else");
+  if (about.can_be_untrustworthy) {
+    arguments.flag("strict", common.strict, "exit with 4 if the result should not be trusted");
+  }
+  arguments.flag("quiet", common.quiet, "no summary, notes, progress or warnings; errors stay");
+  arguments.flag("version", common.version, "print the version and exit");
+  arguments.flag("help", common.help, "print this help and exit");
+}
+
+/// Words of the command line by the entry they belong to.
+struct ParsedWords {
+  struct Given {
+    std::size_t times = 0;
+    std::string text;
+  };
+  std::vector<Given> of_entry;
+  std::vector<std::string> left_over;
+};
+
+/// CLI11 only sorts the words. Conversion and missing options come after the check for unknown
+/// ones, so that "--denisty 40" is told to be misspelt rather than --density to be missing.
+ParsedWords sort_words(int argc, const char* const* argv,
+                       const std::vector<Arguments::Entry>& entries) {
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  ParsedWords words;
+  words.of_entry.resize(entries.size());
+  std::vector<const CLI::Option*> options;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Arguments::Entry& entry = entries[i];
+    const std::string name =
+        entry.positional ? entry.name : (entry.name == "help" ? "-h,--help" : "--" + entry.name);
+    const bool is_flag = entry.placeholder.empty();
+    CLI::Option* option =
+        is_flag ? app.add_flag(name) : app.add_option(name, words.of_entry[i].text);
+    if (is_flag) option->disable_flag_override();
+    option->type_name(entry.placeholder)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    options.push_back(option);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    usage_error(error.what());
+  }
+  for (std::size_t i = 0; i < entries.size(); ++i) words.of_entry[i].times = options[i]->count();
+  words.left_over = app.remaining();
+  return words;
+}
+
+void refuse_left_over(const std::vector<std::string>& left_over,
+                      const std::vector<Arguments::Entry>& entries) {
+  std::vector<std::string> names;
+  for (const Arguments::Entry& entry : entries) {
+    if (!entry.positional) names.push_back(entry.name);
+  }
+  for (const std::string& word : left_over) {
+    const std::size_t start = word.find_first_not_of('-');
+    if (start == std::string::npos) continue;
+    if (start == 0) usage_error("'" + word + "' is one argument too many");
+    const std::string option = word.substr(0, word.find('='));
+    const auto meant = nearest(option.substr(start), names);
+    usage_error("unknown option " + option + (meant ? ", did you mean --" + *meant + "?" : ""));
+  }
+}
+
+std::string shown_name(const Arguments::Entry& entry) {
+  return entry.positional ? entry.name : "--" + entry.name;
+}
+
+void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Arguments::Entry& entry = entries[i];
+    const auto& [times, text] = words.of_entry[i];
+    const std::string name = shown_name(entry);
+    if (times == 0) continue;
+    if (!entry.placeholder.empty()) {
+      if (times > 1) usage_error(name + " is given more than once");
+      if (text.empty()) usage_error(name + " is empty");
+      if (!entry.positional && text.rfind("--", 0) == 0) {
+        usage_error(name + " needs a value, got " + text);
+      }
+    }
+    entry.assign(text);
+  }
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].required && words.of_entry[i].times == 0) {
+      usage_error(shown_name(entries[i]) + " is missing: " + entries[i].help);
+    }
+  }
+}
+
+// ---- Running ----------------------------------------------------------------------------------
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+void on_stop_signal(int signal) {
+  stop_signal = signal;
+  std::signal(SIGINT, SIG_DFL);  // a second one, of either kind, ends the program at once
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+void print_outcome(const About& about, const Common& common, const Outcome& outcome) {
+  if (!common.quiet) {
+    for (const Warning& warning : outcome.warnings) {
+      std::cerr << about.name << ": warning: " << warning.message << '\n';
+    }
+  }
+  if (common.json) {
+    nlohmann::ordered_json json = {{"tool", about.name}, {"version", EXCAVPLAN_VERSION}};
+    json.update(outcome.json);
+    json["warnings"] = nlohmann::ordered_json::array();
+    for (const Warning& warning : outcome.warnings) {
+      json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
+    }
+    std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  } else if (!common.quiet) {
+    for (const std::string& line : outcome.lines) std::cout << line << '\n';
+  }
+  if (!std::cout.flush()) {
+    throw Error(ErrorKind::bad_file, "standard output: cannot be written");
+  }
+}
+
+int run(int argc, const char* const* argv, const About& about,
+        const std::function<void(Arguments&)>& declare,
+        const std::function<Outcome(Console&)>& work) {
+  Arguments arguments;
+  Common common;
+  declare(arguments);
+  declare_common(arguments, about, common);
+
+  const ParsedWords words = sort_words(argc, argv, arguments.entries());
+  const auto given = [&](const std::string& name) {
+    const auto& entries = arguments.entries();
+    const auto at = std::find_if(entries.begin(), entries.end(),
+                                 [&](const auto& entry) { return entry.name == name; });
+    return words.of_entry[static_cast<std::size_t>(at - entries.begin())].times > 0;
+  };
+  if (given("help")) {
+    std::cout << help_text(about, arguments.entries());
+    return 0;
+  }
+  if (given("version")) {
+    std::cout << about.name << " (excavplan) " << EXCAVPLAN_VERSION << '\n';
+    return 0;
+  }
+  refuse_left_over(words.left_over, arguments.entries());
+  assign(arguments.entries(), words);
+
+  if (about.can_stop_early) {
+    std::signal(SIGINT, on_stop_signal);
+    std::signal(SIGTERM, on_stop_signal);
+  }
+  Console console(common.quiet, ::isatty(STDERR_FILENO) == 1);
+  const Outcome outcome = work(console);
+  console.clear();
+  print_outcome(about, common, outcome);
+  if (outcome.stopped_early) return 75;
+  return common.strict && !outcome.trustworthy ? 4 : 0;
+}
+
+}  // namespace
+
+// ---- Arguments --------------------------------------------------------------------------------
+
+void Arguments::add(Entry entry) { entries_.push_back(std::move(entry)); }
+
+void Arguments::positional(const std::string& name, std::string& value, const std::string& help) {
+  add({name, name, help, "", true, true, [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::positional(const std::string& name, std::optional<std::string>& value,
+                           const std::string& help) {
+  add({name, name, help, "", true, false, [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::flag(const std::string& name, bool& value, const std::string& help) {
+  add({name, "", help, "", false, false, [&value](const std::string&) { value = true; }});
+}
+
+void Arguments::option(const std::string& name, double& value, Quantity quantity,
+                       const std::string& help) {
+  add({name, placeholder(quantity), help + " [" + unit(quantity) + "]", number_text(value), false,
+       false, [&value, name, quantity](const std::string& text) {
+         value = parse_quantity("--" + name, text, quantity);
+       }});
+}
+
+void Arguments::option(const std::string& name, std::optional<double>& value, Quantity quantity,
+                       const std::string& help) {
+  add({name, placeholder(quantity), help + " [" + unit(quantity) + "]",
+       value ? number_text(*value) : "", false, false,
+       [&value, name, quantity](const std::string& text) {
+         value = parse_quantity("--" + name, text, quantity);
+       }});
+}
+
+void Arguments::option(const std::string& name, int& value, const std::string& help) {
+  add({name, "N", help, std::to_string(value), false, false,
+       [&value, name](const std::string& text) { value = parse_integer<int>("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, std::optional<int>& value,
+                       const std::string& help) {
+  add({name, "N", help, value ? std::to_string(*value) : "", false, false,
+       [&value, name](const std::string& text) { value = parse_integer<int>("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, std::uint64_t& value, const std::string& help) {
+  add({name, "N", help, std::to_string(value), false, false,
+       [&value, name](const std::string& text) {
+         value = parse_integer<std::uint64_t>("--" + name, text);
+         if (value > most_exact) {
+           usage_error("--" + name + ": " + text + " must be at most " +
+                       std::to_string(most_exact));
+         }
+       }});
+}
+
+void Arguments::option(const std::string& name, std::optional<Rectangle>& value,
+                       const std::string& help) {
+  add({name, "XMIN,YMIN,XMAX,YMAX", help + " [m]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_rectangle("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, std::optional<DigParameters>& value,
+                       const std::string& help) {
+  add({name, "ANGLE,LENGTH,LENGTH", help + " [rad,m,m]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_dig_path("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, std::optional<Eigen::Vector2d>& value,
+                       const std::string& help) {
+  add({name, "X,Y", help + " [m]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_point("--" + name, text); }});
+}
+
+void Arguments::choice(const std::string& name, std::string& value,
+                       const std::vector<std::string>& words, const std::string& help) {
+  add({name, "WORD", help + ": " + joined(words), value, false, false,
+       [&value, name, words](const std::string& text) {
+         if (std::find(words.begin(), words.end(), text) == words.end()) {
+           usage_error("--" + name + ": '" + text + "' is not one of " + joined(words));
+         }
+         value = text;
+       }});
+}
+
+void Arguments::file(const std::string& name, std::string& value, const std::string& help) {
+  add({name, "FILE", help, value, false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::file(const std::string& name, std::optional<std::string>& value,
+                     const std::string& help) {
+  add({name, "FILE", help, value.value_or(""), false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::text(const std::string& name, const std::string& placeholder, std::string& value,
+                     const std::string& help) {
+  add({name, placeholder, help, value, false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::text(const std::string& name, const std::string& placeholder,
+                     std::optional<std::string>& value, const std::string& help) {
+  add({name, placeholder, help, value.value_or(""), false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::soil(std::string& name) {
+  text("soil", "NAME|FILE", name, "kind of soil: loam, sand, clay, gravel, or a soil file");
+}
+
+void Arguments::machine(std::string& name) {
+  text("machine", "NAME|FILE", name, "excavator: zx120, or a machine file");
+}
+
+void Arguments::plot(std::optional<std::string>& path, const std::string& shows) {
+  add({"plot", "FILE.svg", "draw " + shows + " into this file", "", false, false,
+       [&path](const std::string& text) {
+         if (std::filesystem::path(text).extension() != ".svg") {
+           usage_error("--plot: '" + text + "' must end in .svg, plots are written as SVG only");
+         }
+         path = text;
+       }});
+}
+
+void Arguments::require(const std::string& name) {
+  std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return entry.name == name;
+  })->required = true;
+}
+
+// ---- Console ----------------------------------------------------------------------------------
+
+void Console::progress(double done, const std::string& what) {
+  if (quiet_ || !terminal_) return;
+  std::cerr << "\r\033[K" << static_cast<int>(std::floor(100.0 * done)) << " %  " << what
+            << std::flush;
+  line_open_ = true;
+}
+
+void Console::note(const std::string& line) {
+  if (quiet_) return;
+  clear();
+  std::cerr << line << '\n';
+}
+
+bool Console::stop_requested() const { return stop_signal != 0; }
+
+void Console::clear() {
+  if (line_open_) std::cerr << "\r\033[K" << std::flush;
+  line_open_ = false;
+}
+
+// ---- Free functions ---------------------------------------------------------------------------
+
+int run_tool(int argc, const char* const* argv, const About& about,
+             const std::function<void(Arguments&)>& declare,
+             const std::function<Outcome(Console&)>& work) {
+  const auto report = [&](const std::string& message) {
+    std::cerr << about.name << ": " << message << '\n';
+  };
+  try {
+    return run(argc, argv, about, declare, work);
+  } catch (const Error& error) {
+    report(error.what());
+    if (error.kind() == ErrorKind::bad_file) return 3;
+    std::cerr << "See " << about.name << " --help\n";
+    return 2;
+  } catch (const std::bad_alloc&) {
+    report("out of memory");
+  } catch (const std::exception& error) {
+    report(std::string("internal error: ") + error.what());
+  }
+  return 1;
+}
+
+std::string shipped_or_file(const std::string& folder, const std::string& name_or_path) {
+  namespace fs = std::filesystem;
+  if (name_or_path.find_first_of("/.") != std::string::npos || fs::exists(name_or_path)) {
+    return name_or_path;
+  }
+  try {
+    return find_data_file(folder + "/" + name_or_path + ".json");
+  } catch (const Error&) {
+    usage_error("'" + name_or_path + "' is neither a file nor one of the " + folder +
+                " that excavplan ships");
+  }
+}
+
+SoilKind soil_named(const std::string& name_or_path) {
+  return load_soil(shipped_or_file("soils", name_or_path));
+}
+
+Machine machine_named(const std::string& name_or_path) {
+  return load_machine(shipped_or_file("machines", name_or_path));
+}
+
+PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
+                       const SoilKind& soil) {
+  const std::string shipped = "libraries/" + machine.name + "-" + soil.name + ".json";
+  std::string name;
+  try {
+    name = file ? *file : find_data_file(shipped);
+  } catch (const Error&) {
+    throw Error(ErrorKind::bad_input, "no library of " + machine.name + " in " + soil.name +
+                                          " is shipped: --search needs none, build-path-library "
+                                          "makes one");
+  }
+  PathLibrary library = load_path_library(name);
+  require_fit(library, machine, soil, name);
+  return library;
+}
+
+nlohmann::ordered_json to_json(const DigParameters& parameters) {
+  return {{"penetration_angle_rad", parameters.penetration_angle},
+          {"penetration_length_m", parameters.penetration_length},
+          {"drag_length_m", parameters.drag_length}};
+}
+
+}  // namespace excavplan::tools

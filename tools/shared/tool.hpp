@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <excavplan/error.hpp>
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/library/path_library.hpp>
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/soil/soil.hpp>
+
+#include "shared/quantity.hpp"
+
+/// @file
+/// What all command line tools share: options, help, output, exit codes. A tool is a struct of
+/// inputs with their defaults, a function that binds the options to it, one that does the work, and
+///
+///     int main(int argc, char** argv) {
+///       using namespace excavplan::tools;
+///       return tool_main(argc, argv, about, declare, work);
+///     }
+///
+/// Exit codes: 0 done; 1 internal; 2 usage, Error bad_input; 3 Error bad_file; 4 not trustworthy,
+/// with --strict; 75 stopped early.
+
+namespace excavplan::tools {
+
+struct Example {
+  std::string command;
+  std::string meaning;
+};
+
+struct About {
+  std::string name;
+  std::string summary;  ///< a sentence or a few; wrapped in the help
+  std::vector<Example> examples;
+  bool can_be_untrustworthy = false;  ///< adds --strict
+  bool can_stop_early = false;        ///< an interrupt sets Console::stop_requested() instead
+};
+
+/// What a tool takes. Each option is bound to a variable that holds its default; help shows it.
+/// Names are without the dashes.
+class Arguments {
+ public:
+  using Assign = std::function<void(const std::string& text)>;
+  struct Entry {
+    std::string name;
+    std::string placeholder;  ///< "LENGTH"; empty for a flag
+    std::string help;
+    std::string default_text;
+    bool positional = false;
+    bool required = false;
+    Assign assign;
+  };
+
+  void positional(const std::string& name, std::string& value, const std::string& help);
+  void positional(const std::string& name, std::optional<std::string>& value,
+                  const std::string& help);
+
+  void flag(const std::string& name, bool& value, const std::string& help);
+  void option(const std::string& name, double& value, Quantity quantity, const std::string& help);
+  void option(const std::string& name, std::optional<double>& value, Quantity quantity,
+              const std::string& help);
+  void option(const std::string& name, int& value, const std::string& help);
+  void option(const std::string& name, std::optional<int>& value, const std::string& help);
+  void option(const std::string& name, std::uint64_t& value, const std::string& help);
+  void option(const std::string& name, std::optional<Rectangle>& value, const std::string& help);
+  void option(const std::string& name, std::optional<DigParameters>& value,
+              const std::string& help);
+  /// "x,y"
+  void option(const std::string& name, std::optional<Eigen::Vector2d>& value,
+              const std::string& help);
+  /// One of a few words.
+  void choice(const std::string& name, std::string& value, const std::vector<std::string>& words,
+              const std::string& help);
+  void file(const std::string& name, std::string& value, const std::string& help);
+  void file(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  /// A text that is not a file: a name, a list of its own syntax.
+  void text(const std::string& name, const std::string& placeholder, std::string& value,
+            const std::string& help);
+  void text(const std::string& name, const std::string& placeholder,
+            std::optional<std::string>& value, const std::string& help);
+
+  /// --soil, --machine and --plot are the same in every tool; see soil_named(), machine_named().
+  void soil(std::string& name);
+  void machine(std::string& name);
+  void plot(std::optional<std::string>& path, const std::string& shows);
+
+  /// The option must be given.
+  void require(const std::string& name);
+
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  void add(Entry entry);
+  std::vector<Entry> entries_;
+};
+
+/// What a tool hands back.
+struct Outcome {
+  /// Printed with --json, "tool" and "version" before it, "warnings" after it. NaN becomes null.
+  nlohmann::ordered_json json;
+  std::vector<std::string> lines;  ///< for people, without --json
+  std::vector<Warning> warnings;
+  bool trustworthy = true;
+  bool stopped_early = false;
+};
+
+/// The way to the user while a tool works: standard error.
+class Console {
+ public:
+  Console(bool quiet, bool terminal) : quiet_(quiet), terminal_(terminal) {}
+
+  /// One line that is overwritten by the next; only on a terminal. `done` is in 0 .. 1.
+  void progress(double done, const std::string& what);
+  /// A line for people. Not for warnings, which belong into the outcome.
+  void note(const std::string& line);
+  /// True once the user or the system asked a tool that can stop early to stop.
+  bool stop_requested() const;
+  /// Removes the progress line.
+  void clear();
+
+ private:
+  bool quiet_;
+  bool terminal_;
+  bool line_open_ = false;
+};
+
+/// Options that were given and have no effect.
+class IgnoredOptions {
+ public:
+  void add(bool given, const std::string& option) {
+    if (given) text_ += (text_.empty() ? "" : ", ") + option;
+  }
+  /// One (options_ignored), or none.
+  std::vector<Warning> warnings(const std::string& reason) const {
+    if (text_.empty()) return {};
+    return {{"options_ignored", "without effect: " + text_ + "; " + reason}};
+  }
+
+ private:
+  std::string text_;
+};
+
+/// Runs a tool: parses, works, prints. @return the exit code
+int run_tool(int argc, const char* const* argv, const About& about,
+             const std::function<void(Arguments&)>& declare,
+             const std::function<Outcome(Console&)>& work);
+
+/// The whole main() of a tool: `declare(arguments, inputs)` binds the options to a struct of
+/// inputs, which `work(inputs)` or `work(inputs, console)` then gets.
+template <typename Inputs, typename Work>
+int tool_main(int argc, const char* const* argv, const About& about,
+              void (*declare)(Arguments&, Inputs&), const Work& work) {
+  Inputs inputs;
+  return run_tool(
+      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
+      [&](Console& console) -> Outcome {
+        if constexpr (std::is_invocable_v<Work, const Inputs&, Console&>) {
+          return work(inputs, console);
+        } else {
+          return work(inputs);
+        }
+      });
+}
+
+/// Reads the soil or machine that a name or path means. @throws Error (bad_input) or (bad_file)
+SoilKind soil_named(const std::string& name_or_path);
+Machine machine_named(const std::string& name_or_path);
+
+/// The path library of this file, or the shipped one of the machine and the soil.
+/// @throws Error if it cannot be read, does not fit, or none is shipped
+PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
+                       const SoilKind& soil);
+
+/// Path of the file in data/`folder` of that name, or the path itself if it is one.
+/// @throws Error (bad_input) if it looks like a name but none of that name is shipped
+std::string shipped_or_file(const std::string& folder, const std::string& name_or_path);
+
+/// penetration_angle_rad, penetration_length_m, drag_length_m.
+nlohmann::ordered_json to_json(const DigParameters& parameters);
+
+}  // namespace excavplan::tools
