@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/simulation/simulators.hpp>
 
 #include "base/json.hpp"
 #include "base/text.hpp"
@@ -433,6 +434,12 @@ void Arguments::text(const std::string& name, const std::string& placeholder,
 
 void Arguments::soil(std::string& name) {
   text("soil", "NAME|FILE", name, "kind of soil: loam, sand, clay, gravel, or a soil file");
+}
+
+void Arguments::simulator(std::string& word) {
+  std::vector<std::string> words;
+  for (const SimulatorKind& kind : simulator_kinds()) words.push_back(kind.word);
+  choice("simulator", word, words, "engine that digs; section: quick, in the boom plane alone");
 }
 
 void Arguments::machine(std::string& name) {

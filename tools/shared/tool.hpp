@@ -92,6 +92,8 @@ class Arguments {
   /// --soil, --machine and --plot are the same in every tool; see soil_named(), machine_named().
   void soil(std::string& name);
   void machine(std::string& name);
+  /// --simulator; see simulator_of_word().
+  void simulator(std::string& word);
   void plot(std::optional<std::string>& path, const std::string& shows);
 
   /// The option must be given.

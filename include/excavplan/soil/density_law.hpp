@@ -88,6 +88,16 @@ struct RelativeDensity {
 /// @throws Error (bad_input) unless the bulking factor is finite and positive and its sd is >= 0
 RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_factor);
 
+/// The relative density of the ground, as far as it is known, for planning a dig.
+struct GroundDensity {
+  double percent = 0.0;     ///< 0 .. 100
+  double sd_percent = 0.0;  ///< standard deviation, >= 0; 0: taken as known
+  bool trustworthy = true;  ///< false: who estimated it does not trust it
+  std::string soil = {};    ///< name of the soil whose law gave it; empty: not told
+
+  GroundDensity(double d, double sd = 0.0) : percent(d), sd_percent(sd) {}  // NOLINT: is a density
+};
+
 /// Least-squares line of d on k.
 /// @throws Error (bad_input) with fewer than 3 different factors, a factor that is not positive, a
 /// density outside 0 .. 100, or where none fits (k must grow with d)
