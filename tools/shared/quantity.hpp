@@ -8,6 +8,8 @@
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_path.hpp>
 
+#include "base/text.hpp"
+
 /// @file
 /// Numbers with units, from people and for people. `what` names the option in messages.
 
@@ -38,11 +40,5 @@ Rectangle parse_rectangle(const std::string& what, const std::string& text);
 
 /// "x,y". @throws Error (bad_input)
 Eigen::Vector2d parse_point(const std::string& what, const std::string& text);
-
-/// A number for people: at least `digits` significant ones, never an exponent.
-std::string readable(double value, int digits = 3);
-
-/// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
-std::string readable(double value, double sd);
 
 }  // namespace excavplan::tools
