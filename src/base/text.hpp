@@ -22,12 +22,6 @@ std::string readable(double value, int digits = 3);
 /// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
 std::string readable(double value, double sd);
 
-/// A number for people: at least `digits` significant ones, never an exponent.
-std::string readable(double value, int digits = 3);
-
-/// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
-std::string readable(double value, double sd);
-
 /// FNV-1a, 64 bit: against damage, not against intent. The text has 16 hexadecimal digits.
 std::uint64_t checksum(const std::string& text);
 std::string checksum_text(const std::string& text);
