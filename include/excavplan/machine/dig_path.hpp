@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/kinematics.hpp>
 
 /// @file
 /// One dig as three numbers, and as the poses and postures that follow from them.
