@@ -242,6 +242,19 @@ DensityLaw load_density_law(const std::string& path) {
   return law;
 }
 
+DensityLaw density_law_of(const SoilKind& soil) {
+  DensityClosedForm form;
+  form.A = (1.0 + soil.void_ratio_loose) / (1.0 + soil.void_ratio_max);
+  form.r = (soil.void_ratio_max - soil.void_ratio_min) / (1.0 + soil.void_ratio_max);
+  form.r2 = 1.0;
+  DensityLaw law;
+  law.name = soil.name + ", solids conserved";
+  law.source = "void ratios of the soil";
+  law.form = law.freed_form = form;
+  law.soil = soil.name;
+  return law;
+}
+
 double density_of_bulking(const DensityForm& form, double bulking_factor) {
   if (const auto* line = std::get_if<DensityLine>(&form)) {
     return line->a * bulking_factor + line->b;
