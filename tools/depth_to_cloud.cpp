@@ -11,8 +11,8 @@
 
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/table.hpp"
 #include "base/text.hpp"
-#include "shared/table.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
