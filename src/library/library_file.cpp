@@ -3,11 +3,13 @@
 #include "library/library_file.hpp"
 
 #include <cctype>
+#include <tuple>
 
 #include <excavplan/library/path_library.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "machine/dig_path_text.hpp"
 
 namespace excavplan {
 namespace {
@@ -73,12 +75,7 @@ std::string file_name_part(const std::string& name) {
 }
 
 nlohmann::ordered_json dig_json(const PlannedDig& dig) {
-  nlohmann::ordered_json path;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    path[info.name] = dig.parameters.*info.field;
-  }
-  path["start_x_m"] = dig.start_x;
-  return {{"path", path},
+  return {{"path", path_json(dig.parameters, dig.start_x)},
           {"payload_mass_kg", dig.payload_mass},
           {"payload_volume_m3", dig.payload_volume},
           {"energy_kj", dig.energy / 1000.0},
@@ -88,12 +85,7 @@ nlohmann::ordered_json dig_json(const PlannedDig& dig) {
 
 PlannedDig read_dig(JsonObject& object) {
   PlannedDig dig;
-  JsonObject path = object.object("path");
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    dig.parameters.*info.field = path.number(info.name, info.lower, info.upper);
-  }
-  dig.start_x = path.number("start_x_m");
-  path.done();
+  std::tie(dig.parameters, dig.start_x) = read_path(object.object("path"));
   dig.payload_mass = object.number("payload_mass_kg", 0.0);
   dig.payload_volume = object.number("payload_volume_m3", 0.0);
   dig.energy = 1000.0 * object.number("energy_kj", 0.0);
