@@ -7,8 +7,8 @@
 
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/table.hpp"
 #include "shared/results.hpp"
-#include "shared/table.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -28,7 +28,7 @@ struct Inputs {
   std::string soil = "loam";
   std::string machine = "zx120";
   std::string densities = "0:5:100";
-  std::optional<DigParameters> path;
+  DigParameters path = paper_fixed_path();
   double cell_size = 0.05;
   std::optional<std::string> out;
 };
@@ -40,7 +40,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.machine(inputs.machine);
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities to dig [%], or a list a,b,c");
-  arguments.option("path", inputs.path, "dig path (default: the paper's 45deg,0.35m,1.5m)");
+  arguments.option("path", inputs.path, "dig path");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
   arguments.file("out", inputs.out, "law file to write, for estimate-density --law");
 }
@@ -73,7 +73,7 @@ DensityCalibration from_simulator(const Inputs& inputs) {
   CalibrationOptions options;
   options.densities_percent = parse_densities("--densities", inputs.densities);
   options.cell_size = inputs.cell_size;
-  if (inputs.path) options.path = *inputs.path;
+  options.path = inputs.path;
   return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);
 }
 

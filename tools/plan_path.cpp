@@ -288,7 +288,7 @@ void add_search(const DigSearchResult& found, const DigObjective& objective, Pla
   plan.details["refused"] = found.refused;
   plan.details["worth"] = (per_time ? 1.0 : 1000.0) * found.worth;
   plan.details["worth_unit"] = per_time ? "kg/s" : "kg/kJ";
-  for (std::size_t i = 0; i < 3 && i < found.insight.seen.size(); ++i) {
+  for (std::size_t i = 0; i < dig_parameter_table().size() && i < found.insight.seen.size(); ++i) {
     const ParameterRange& range = found.insight.seen[i];
     plan.details["ranges_98_percent"][dig_parameter_table()[i].name] = {range.low, range.high};
   }

@@ -29,14 +29,6 @@ void require(bool holds, const std::string& what, double value, const char* rule
   throw Error(ErrorKind::bad_input, what + " is " + number_text(value) + ", must be " + rule);
 }
 
-DigParameters parameters_of(const VectorXd& point) {
-  DigParameters parameters;
-  for (Index i = 0; i < 3; ++i) {
-    parameters.*dig_parameter_table()[static_cast<std::size_t>(i)].field = point(i);
-  }
-  return parameters;
-}
-
 void check(const std::vector<PossibleSoil>& soils) {
   double sum = 0.0;
   for (const PossibleSoil& soil : soils) {
@@ -125,6 +117,14 @@ DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& 
   return digs;
 }
 
+/// The start, where it is searched, follows the numbers of the table.
+double start_in(const VectorXd& point) { return point(point.size() - 1); }
+
+void append(VectorXd& point, double number) {
+  point.conservativeResize(point.size() + 1);
+  point(point.size() - 1) = number;
+}
+
 /// The search for a dig as a search of a box.
 class DigProblem {
  public:
@@ -146,7 +146,7 @@ class DigProblem {
   /// @return nothing if nothing was looked at
   std::optional<NearestDig> nearest_of(const SearchResult& found) const {
     if (found.history.empty()) return std::nullopt;
-    return NearestDig{parameters_of(found.best), start_of(found.best), found.outcome.violation,
+    return NearestDig{to_dig_parameters(found.best), start_of(found.best), found.outcome.violation,
                       found.outcome.reason};
   }
 
@@ -171,38 +171,30 @@ class DigProblem {
 
   SearchBox box() const {
     const Machine& machine = layout_.machine();
-    const Index size = start_is_searched() ? 4 : 3;
-    SearchBox box{VectorXd(size), VectorXd(size)};
-    for (Index i = 0; i < 3; ++i) {
-      const auto field = dig_parameter_table()[static_cast<std::size_t>(i)].field;
-      box.lower(i) = options_.bounds.lower.*field;
-      box.upper(i) = options_.bounds.upper.*field;
-    }
+    SearchBox box{to_vector(options_.bounds.lower), to_vector(options_.bounds.upper)};
     if (start_is_searched()) {
-      box.lower(3) = machine.track_front;
-      box.upper(3) = machine.boom_pin.x() + machine.full_length();
+      append(box.lower, machine.track_front);
+      append(box.upper, machine.boom_pin.x() + machine.full_length());
     }
     return box;
   }
 
   VectorXd point_of(const DigParameters& dig) const {
-    VectorXd point(start_is_searched() ? 4 : 3);
-    for (Index i = 0; i < 3; ++i) {
-      point(i) = dig.*dig_parameter_table()[static_cast<std::size_t>(i)].field;
-    }
+    VectorXd point = to_vector(dig);
     if (start_is_searched()) {
       const auto path = layout_.path(dig, StartRule::Kind::least_work);
       const auto* drivable = std::get_if<DigPath>(&path);
-      point(3) = drivable ? drivable->start_x : 0.5 * (box().lower(3) + box().upper(3));
+      append(point,
+             drivable ? drivable->start_x : 0.5 * (start_in(box().lower) + start_in(box().upper)));
     }
     return point;
   }
 
   /// The repair: an undrivable path is refused, the start of a drivable one is kept for later.
   std::variant<VectorXd, Evaluation> lay_out(const VectorXd& point) {
-    const DigParameters parameters = parameters_of(point);
-    const auto path =
-        layout_.path(parameters, start_is_searched() ? StartRule(point(3)) : options_.start_rule);
+    const DigParameters parameters = to_dig_parameters(point);
+    const auto path = layout_.path(
+        parameters, start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
     if (const auto* stop = std::get_if<Infeasible>(&path)) {
       return Evaluation::infeasible(violation(*stop, parameters), stop->message);
     }
@@ -252,7 +244,7 @@ class DigProblem {
 
   /// Nothing for a path that was not laid out, unless its start is no matter of the path.
   std::optional<double> start_of(const VectorXd& point) const {
-    if (start_is_searched()) return point(3);
+    if (start_is_searched()) return start_in(point);
     if (options_.start_rule.kind == StartRule::Kind::given) return options_.start_rule.x;
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto known = starts_.find(key_of(point));
@@ -262,7 +254,7 @@ class DigProblem {
   DigPath path_of(const VectorXd& point) const {
     const std::optional<double> start_x = start_of(point);
     const auto path =
-        layout_.path(parameters_of(point), start_x ? StartRule(*start_x) : options_.start_rule);
+        layout_.path(to_dig_parameters(point), start_x ? StartRule(*start_x) : options_.start_rule);
     return std::get<DigPath>(path);
   }
 

@@ -33,23 +33,20 @@ DigObjective objective_of(const SearchInputs& inputs) {
   return objective;
 }
 
+std::string range_option(const DigParameterInfo& info) {
+  return std::string(info.option) + "-range";
+}
+
 DigBounds bounds_of(const SearchInputs& inputs) {
   DigBounds bounds;
-  const std::array<std::pair<const char*, Quantity>, 3> options = {
-      {{"--angle-range", Quantity::angle},
-       {"--penetration-range", Quantity::length},
-       {"--drag-range", Quantity::length}}};
-  for (std::size_t i = 0; i < 3; ++i) {
+  const auto& table = dig_parameter_table();
+  for (std::size_t i = 0; i < table.size(); ++i) {
     if (!inputs.ranges[i]) continue;
-    const auto& [option, quantity] = options[i];
-    const std::string& text = *inputs.ranges[i];
-    const std::size_t comma = text.find(',');
-    if (comma == std::string::npos) {
-      refuse(std::string(option) + ": '" + text + "' is not FROM,TO");
-    }
-    const auto field = dig_parameter_table()[i].field;
-    bounds.lower.*field = parse_quantity(option, text.substr(0, comma), quantity);
-    bounds.upper.*field = parse_quantity(option, text.substr(comma + 1), quantity);
+    const std::string option = "--" + range_option(table[i]);
+    const std::vector<std::string> ends = split(*inputs.ranges[i], ',');
+    if (ends.size() != 2) refuse(option + ": '" + *inputs.ranges[i] + "' is not FROM,TO");
+    bounds.lower.*table[i].field = parse_quantity(option, ends[0], quantity_of(table[i]));
+    bounds.upper.*table[i].field = parse_quantity(option, ends[1], quantity_of(table[i]));
   }
   return bounds;
 }
@@ -77,9 +74,11 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.text("start", "RULE|LENGTH", inputs.start,
                  "where the dig begins: work (least work of the links), margin (farthest from the "
                  "joint limits), search (with the path), or x");
-  arguments.text("angle-range", "FROM,TO", inputs.ranges[0], "penetration angles searched");
-  arguments.text("penetration-range", "FROM,TO", inputs.ranges[1], "penetration lengths searched");
-  arguments.text("drag-range", "FROM,TO", inputs.ranges[2], "drag lengths searched");
+  for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
+    const DigParameterInfo& info = dig_parameter_table()[i];
+    arguments.text(range_option(info), "FROM,TO", inputs.ranges[i],
+                   std::string(info.text) + "s searched");
+  }
   arguments.choice("method", inputs.method, {"default", "paper"},
                    "of the search; paper: the paper's genetic algorithm");
   arguments.option("population", inputs.population,
@@ -151,9 +150,9 @@ std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use) {
   if (!searches) {
     ignored.add(inputs.goal != usual.goal, "--goal");
     ignored.add(inputs.rest_of_cycle != usual.rest_of_cycle, "--rest-of-cycle");
-    ignored.add(inputs.ranges[0].has_value(), "--angle-range");
-    ignored.add(inputs.ranges[1].has_value(), "--penetration-range");
-    ignored.add(inputs.ranges[2].has_value(), "--drag-range");
+    for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
+      ignored.add(inputs.ranges[i].has_value(), "--" + range_option(dig_parameter_table()[i]));
+    }
     ignored.add(inputs.method != usual.method, "--method");
     ignored.add(inputs.generations != usual.generations, "--generations");
     ignored.add(inputs.evaluations != usual.evaluations, "--evaluations");

@@ -19,7 +19,9 @@ struct SearchInputs {
   std::string goal = "energy";
   double rest_of_cycle = 0.0;
   std::string start = "work";
-  std::array<std::optional<std::string>, 3> ranges;
+  /// FROM,TO of each number of dig_parameter_table().
+  std::vector<std::optional<std::string>> ranges =
+      std::vector<std::optional<std::string>>(dig_parameter_table().size());
   std::string method = "default";
   std::optional<int> population;
   int generations = 0;
