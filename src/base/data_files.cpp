@@ -30,4 +30,17 @@ std::string find_data_file(const std::string& relative_path) {
   throw Error(ErrorKind::bad_file, relative_path + ": not found in any of" + searched);
 }
 
+std::string shipped_or_file(const std::string& folder, const std::string& name_or_path) {
+  if (name_or_path.find_first_of("/.") != std::string::npos ||
+      std::filesystem::exists(name_or_path)) {
+    return name_or_path;
+  }
+  try {
+    return find_data_file(folder + "/" + name_or_path + ".json");
+  } catch (const Error&) {
+    throw Error(ErrorKind::bad_input, "'" + name_or_path + "' is neither a file nor one of the " +
+                                          folder + " that excavplan ships");
+  }
+}
+
 }  // namespace excavplan
