@@ -7,8 +7,8 @@
 
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/table.hpp"
 #include "shared/results.hpp"
-#include "shared/table.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {

@@ -10,7 +10,6 @@
 #include <excavplan/error.hpp>
 
 #include "base/angles.hpp"
-#include "base/text.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -10,6 +10,8 @@
 
 #include "base/text.hpp"
 
+#include "base/text.hpp"
+
 /// @file
 /// Numbers with units, from people and for people. `what` names the option in messages.
 

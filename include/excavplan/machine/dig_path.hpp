@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <excavplan/machine/dig_parameters.hpp>
-#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/kinematics.hpp>
 
 /// @file
 /// The poses and postures of one dig, as its parameters ask for.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/soil_layers.hpp"
+#include "simulation/slump.hpp"
 
 #include <cmath>
 #include <string>
