@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/text.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace excavplan {
 
@@ -17,6 +19,25 @@ std::string decimals(double value, int digits) {
   const auto end =
       std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr;
   return {text, end};
+}
+
+std::string readable(double value, int digits) {
+  if (!std::isfinite(value)) return "unknown";
+  const double magnitude = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)));
+  int places = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
+  const double rounding = 0.5 * std::pow(10.0, -places);
+  const double carried = std::pow(10.0, magnitude + 1.0);  // 9.9996 is 10.0, not 10.00
+  if (places > 0 && std::abs(value) + rounding >= carried) --places;
+  return decimals(value, places);
+}
+
+std::string readable(double value, double sd) {
+  if (!std::isfinite(sd) || sd <= 0.0) return readable(value);
+  const std::string deviation = readable(sd, 2);
+  const std::size_t point = deviation.find('.');
+  const int places =
+      point == std::string::npos ? 0 : static_cast<int>(deviation.size() - point - 1);
+  return decimals(value, places) + " ± " + deviation;
 }
 
 std::uint64_t checksum(const std::string& text) {

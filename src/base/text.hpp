@@ -17,6 +17,10 @@ constexpr std::uint64_t most_exact = 9007199254740992;
 std::string number_text(double value);
 /// The number with so many digits after the point: "0.350".
 std::string decimals(double value, int digits);
+/// A number for people: at least so many significant digits, never an exponent; "unknown" if NaN.
+std::string readable(double value, int digits = 3);
+/// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
+std::string readable(double value, double sd);
 
 /// FNV-1a, 64 bit: against damage, not against intent. The text has 16 hexadecimal digits.
 std::uint64_t checksum(const std::string& text);
