@@ -10,18 +10,11 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
-#include "base/check.hpp"
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"
 
 namespace excavplan {
 namespace {
-
-// Digs of one search unless told otherwise, and generations that they end long before; ours.
-constexpr int evaluations_alone = 400;
-constexpr int evaluations_each = 100;
-constexpr int evaluations_each_from_nothing = 200;
-constexpr int enough_generations = 20;
 
 constexpr double much_steeper = 0.04;  // than the library's slopes [rad]; ours, docs/libraries.md
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
@@ -34,17 +27,10 @@ struct Task {
   const Terrain& ground;
   bool level;  ///< no ground was given
   const PlanOptions& options;
+  PossibleGround soils{options.simulator, machine, soil, density};
 
   bool uncertain() const { return density.sd_percent > 0.0; }
 };
-
-void check(const Task& task) {
-  const GroundDensity& density = task.density;
-  require(density.percent >= 0.0 && density.percent <= 100.0, "the density", density.percent,
-          "in 0 .. 100 %");
-  require(density.sd_percent >= 0.0 && std::isfinite(density.sd_percent),
-          "the standard deviation of the density", density.sd_percent, "at least 0 and finite");
-}
 
 void distrust(DigPlan& plan, const char* code, const std::string& message) {
   plan.warnings.push_back({code, message});
@@ -96,19 +82,12 @@ std::variant<PlannedDig, std::string> known_dig(const PathLibrary& library, cons
   }
 }
 
-/// On level ground from the dig's own start, or from that of largest margin; else by the start rule.
-std::variant<DigPath, Infeasible> lay_out(const Task& task, const PlannedDig& known) {
-  const DigLayout layout(task.machine, task.ground);
-  if (!task.level) return layout.path(known.parameters, task.options.search.start_rule);
-  auto path = layout.path_from(known.parameters, known.start_x);
-  if (std::holds_alternative<DigPath>(path)) return path;
-  return layout.path(known.parameters, StartRule::Kind::largest_margin);
-}
-
 /// A dig of the library where it is needed, in the simulator if that is needed too.
 std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrary& library,
                                               const PlannedDig& known, DigPlan& plan) {
-  auto path = lay_out(task, known);
+  const DigLayout layout(task.machine, task.ground);
+  auto path = task.level ? layout.path_near(known.parameters, known.start_x)
+                         : layout.path(known.parameters, task.options.search.start_rule);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
   plan.path = std::get<DigPath>(std::move(path));
   const SimulatorKind& kind = task.options.simulator;
@@ -167,27 +146,6 @@ void look_up_plan(const Task& task, DigPlan& plan) {
 
 // ---- Searching --------------------------------------------------------------------------------
 
-/// The soils that the ground may be.
-class PossibleGround {
- public:
-  explicit PossibleGround(const Task& task) {
-    std::vector<PossibleDensity> densities = {{task.density.percent, 1.0}};
-    if (task.uncertain()) {
-      densities = possible_densities(task.density.percent, task.density.sd_percent);
-    }
-    for (const auto& [percent, probability] : densities) {
-      simulators_.push_back(task.options.simulator.make(task.machine, task.soil, percent));
-      soils_.push_back({simulators_.back().get(), probability});
-    }
-  }
-
-  const std::vector<PossibleSoil>& soils() const { return soils_; }
-
- private:
-  std::vector<std::unique_ptr<const SoilSimulator>> simulators_;
-  std::vector<PossibleSoil> soils_;
-};
-
 /// The library's dig to begin with, if there is one.
 std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
   try {
@@ -213,9 +171,7 @@ DigSearchOptions search_options(const Task& task, DigPlan& plan) {
     options.start = known_start(task, plan);
   }
   if (options.stop.evaluations == 0 && std::holds_alternative<MemeticSearch>(options.method)) {
-    options.stop.evaluations = !task.uncertain()       ? evaluations_alone
-                               : options.start.empty() ? evaluations_each_from_nothing
-                                                       : evaluations_each;
+    options.stop.evaluations = evaluation_budget(task.uncertain(), !options.start.empty());
   }
   return options;
 }
@@ -236,16 +192,16 @@ void take(const DigSearchResult& found, DigPlan& plan) {
   plan.search = PlanSearch{found.worth, found.stopped_by, found.refused, found.insight.seen, {}};
 }
 
-void search_plan(const Task& task, const PossibleGround& possible, DigPlan& plan) {
+void search_plan(const Task& task, DigPlan& plan) {
   const DigSearchOptions options = search_options(task, plan);
   plan.start_rule = describe(options.start_rule);
   if (!task.uncertain()) {
-    const SoilSimulator& simulator = *possible.soils().front().simulator;
+    const SoilSimulator& simulator = *task.soils.soils().front().simulator;
     const auto found = search_dig(task.machine, simulator, task.ground, options);
     if (!found) return note_failure(found, plan);
     return take(*found, plan);
   }
-  const auto found = search_dig(task.machine, possible.soils(), task.ground, options);
+  const auto found = search_dig(task.machine, task.soils.soils(), task.ground, options);
   if (!found) return note_failure(found, plan);
   take(found->expected, plan);
   plan.evaluations = found->evaluations;
@@ -254,9 +210,9 @@ void search_plan(const Task& task, const PossibleGround& possible, DigPlan& plan
 
 // ---- What every plan gets ---------------------------------------------------------------------
 
-void add_spread(const Task& task, const PossibleGround& possible, DigPlan& plan) {
-  plan.spread = dig_spread(task.machine, possible.soils(), task.ground, *plan.dig, plan.path);
-  plan.evaluations += static_cast<int>(possible.soils().size());
+void add_spread(const Task& task, DigPlan& plan) {
+  plan.spread = dig_spread(task.machine, task.soils.soils(), task.ground, *plan.dig, plan.path);
+  plan.evaluations += static_cast<int>(task.soils.soils().size());
   if (plan.spread.stall_probability <= likely_stall) return;
   distrust(plan, "may_stall",
            "the machine stalls with a probability of " +
@@ -277,18 +233,16 @@ void add_trajectory(const Task& task, DigPlan& plan) {
 }
 
 DigPlan plan_dig(const Task& task) {
-  check(task);
   DigPlan plan;
   plan.method = task.options.method;
   judge_density(task, plan);
-  const PossibleGround possible(task);
   if (plan.method == PlanMethod::library) {
     look_up_plan(task, plan);
   } else {
-    search_plan(task, possible, plan);
+    search_plan(task, plan);
   }
   if (!plan.dig) return plan;
-  if (task.uncertain()) add_spread(task, possible, plan);
+  if (task.uncertain()) add_spread(task, plan);
   add_trajectory(task, plan);
   return plan;
 }
@@ -311,12 +265,6 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil) {
   PathLibrary library = load_path_library(file);
   require_fit(library, machine, soil, file);
   return library;
-}
-
-DigSearchOptions plan_search_options() {
-  DigSearchOptions options;
-  std::get<MemeticSearch>(options.method).generations = enough_generations;
-  return options;
 }
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,

@@ -71,6 +71,12 @@ std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& para
   return known(make_dig_path(machine_, parameters, start_x, ground_, options));
 }
 
+std::variant<DigPath, Infeasible> DigLayout::path_near(const DigParameters& parameters,
+                                                       double start_x) const {
+  auto path = path_from(parameters, start_x);
+  return std::holds_alternative<DigPath>(path) ? path : path_of_largest_margin(parameters);
+}
+
 std::variant<DigPath, Infeasible> DigLayout::path_of_largest_margin(
     const DigParameters& parameters) const {
   return known(make_dig_path_anywhere(machine_, parameters, ground_));

@@ -33,6 +33,9 @@ class DigLayout {
                                          const StartRule& start) const;
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
                                               const DigPathOptions& options = {}) const;
+  /// From this start, or if it cannot be from that of the largest margin.
+  std::variant<DigPath, Infeasible> path_near(const DigParameters& parameters,
+                                              double start_x) const;
 
   const Machine& machine() const { return machine_; }
   const GroundProfile& ground() const { return ground_; }

@@ -13,6 +13,17 @@ DigBounds::DigBounds() {
   }
 }
 
+DigSearchOptions budget_search() {
+  DigSearchOptions options;
+  std::get<MemeticSearch>(options.method).generations = 20;  // the budget ends it long before
+  return options;
+}
+
+int evaluation_budget(bool uncertain, bool from_known) {
+  if (!uncertain) return 400;
+  return from_known ? 100 : 200;
+}
+
 Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
                                   const Terrain& terrain, const DigSearchOptions& options) {
   const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};

@@ -6,7 +6,6 @@
 #include <variant>
 
 #include <excavplan/error.hpp>
-#include <excavplan/library/plan_dig.hpp>
 
 #include "shared/quantity.hpp"
 
@@ -67,7 +66,7 @@ DigBounds bounds_of(const SearchInputs& inputs) {
 
 std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inputs) {
   if (inputs.method == "default") {
-    auto memetic = std::get<MemeticSearch>(plan_search_options().method);
+    auto memetic = std::get<MemeticSearch>(budget_search().method);
     if (inputs.generations != 0) memetic.generations = inputs.generations;
     return memetic;
   }

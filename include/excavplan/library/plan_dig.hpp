@@ -29,9 +29,6 @@ const char* name(PlanMethod method);
 /// @throws Error (bad_input) if none is shipped or it does not fit, (bad_file) if it cannot be read
 PathLibrary shipped_library(const Machine& machine, const SoilKind& soil);
 
-/// Settings for as many generations as the evaluations of plan_dig() allow.
-DigSearchOptions plan_search_options();
-
 struct PlanOptions {
   PlanMethod method = PlanMethod::library;
   /// Null: shipped_library(), read anew by every call.
@@ -39,9 +36,8 @@ struct PlanOptions {
   /// `progress` reports and cancels, the seed fixes the result for any number of `threads`, and
   /// `start_rule` also places a dig looked up for given ground. Without `start` a search for most
   /// mass per energy begins with the library's dig. Where `stop.evaluations` is 0 the default
-  /// method makes at most 400, and for an uncertain density 100 in each search, or 200 without a
-  /// dig to begin with: 99 % of the optimum from any seed (docs/methods.md#planning).
-  DigSearchOptions search = plan_search_options();
+  /// method makes evaluation_budget() digs.
+  DigSearchOptions search = budget_search();
   SimulatorKind simulator = default_simulator();
   TrajectoryOptions trajectory = {};
   double cell_size = 0.05;  ///< of the level ground, if none is given [m]

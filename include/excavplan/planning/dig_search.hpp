@@ -31,6 +31,14 @@ struct DigSearchOptions : SearchSettings {
   StartRule start_rule = StartRule::Kind::least_work;
 };
 
+/// Settings for as many generations as a budget of evaluations allows.
+DigSearchOptions budget_search();
+
+/// Digs of one search that reach 99 % of the optimum from any seed (docs/methods.md#planning): 400;
+/// for each soil that uncertain ground may be, and for all together, 100 from a known good dig on
+/// and 200 from nothing. Ours.
+int evaluation_budget(bool uncertain, bool from_known);
+
 struct DigSearchResult {
   PlannedDig dig;
   DigPath path;        ///< of the dig, without an approach

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <excavplan/planning/dig_search.hpp>
+#include <excavplan/simulation/simulators.hpp>
+#include <excavplan/soil/density_law.hpp>
 
 /// @file
 /// Digs in soil that is known only with a probability (docs/methods.md#uncertain-density).
@@ -71,5 +74,21 @@ struct PossibleDensity {
 /// @throws Error (bad_input) unless 0 <= mean <= 100, 0 < sd < infinity, 1 <= count <= 20
 std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent,
                                                 int count = 3);
+
+/// The soils that ground of a density may be, each with its simulator.
+class PossibleGround {
+ public:
+  /// At the possible_densities(), or at the one density if that is taken as known.
+  /// @throws Error (bad_input) unless the density is in 0 .. 100 % and its sd finite and >= 0
+  PossibleGround(const SimulatorKind& simulator, const Machine& machine, const SoilKind& soil,
+                 const GroundDensity& density);
+
+  /// Valid as long as this is.
+  const std::vector<PossibleSoil>& soils() const { return soils_; }
+
+ private:
+  std::vector<std::unique_ptr<const SoilSimulator>> simulators_;
+  std::vector<PossibleSoil> soils_;
+};
 
 }  // namespace excavplan
