@@ -121,7 +121,8 @@ Points camera_scan(const Survey& survey, Part part, bool after) {
   camera.position = {0.0, -0.5 * survey.kind.camera_height, survey.kind.camera_height};
   camera.target = {0.0, -0.15, 0.0};
   const std::uint64_t scan = static_cast<std::uint64_t>(part) * 2 + (after ? 1 : 0);
-  return scan_surface(surface_of(survey.dig, part, after), d435i(camera), survey.seed * 8 + scan);
+  return scan_surface(surface_of(survey.dig, part, after),
+                      with_errors_of(sensor_of_word("d435i"), camera), survey.seed * 8 + scan);
 }
 
 std::string write_scan(const std::string& folder, const Survey& survey, Part part, bool after) {
@@ -134,7 +135,7 @@ std::string write_scan(const std::string& folder, const Survey& survey, Part par
   cloud.width = cloud.points.size();
   std::string file = folder + "/" + parts[static_cast<std::size_t>(part)];
   file += after ? "_after.ply" : "_before.ply";
-  write_cloud(file, cloud, CloudFormat::ply_binary);
+  write_cloud(file, cloud, CloudFormat{"ply"});
   return file;
 }
 

@@ -38,12 +38,9 @@ struct Site {
   }
 
   static DigParameters at(const VectorXd& u) {
-    DigParameters dig;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const DigParameterInfo& info = dig_parameter_table()[static_cast<std::size_t>(i)];
-      dig.*info.field = info.lower + u(i) * (info.upper - info.lower);
-    }
-    return dig;
+    const VectorXd lower = to_vector(DigBounds{}.lower);
+    const VectorXd upper = to_vector(DigBounds{}.upper);
+    return to_dig_parameters(lower + u.cwiseProduct(upper - lower));
   }
 
   /// 0 for what cannot be dug.

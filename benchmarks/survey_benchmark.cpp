@@ -33,7 +33,7 @@ class ScanFiles {
       cloud.width = points;
       Scan scan;
       scan.files = {(folder_ / (std::to_string(i) + ".pcd")).string()};
-      write_cloud(scan.files.front(), cloud, CloudFormat::pcd_binary);
+      write_cloud(scan.files.front(), cloud, CloudFormat{"pcd"});
       scans_.push_back(scan);
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include <excavplan/simulation/calibration.hpp>
@@ -27,7 +28,7 @@ struct Inputs {
   std::string soil = "loam";
   std::string machine = "zx120";
   std::string densities = "0:5:100";
-  std::optional<DigParameters> path;
+  DigParameters path = paper_fixed_path();
   double cell_size = 0.05;
   std::optional<std::string> out;
 };
@@ -39,7 +40,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.machine(inputs.machine);
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities to dig [%], or a list a,b,c");
-  arguments.option("path", inputs.path, "dig path (default: the paper's 45deg,0.35m,1.5m)");
+  arguments.option("path", inputs.path, "dig path");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
   arguments.file("out", inputs.out, "law file to write, for estimate-density --law");
 }
@@ -61,8 +62,7 @@ DensityCalibration from_samples(const std::string& file) {
   calibration.source = std::to_string(samples.size()) + " measured samples";
   calibration.use = "closed_form";
   try {
-    calibration.line = fit_line(samples);
-    calibration.closed_form = fit_closed_form(samples);
+    calibration.forms = fit_density_forms(samples);
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, file + ": " + error.what());
   }
@@ -73,21 +73,18 @@ DensityCalibration from_simulator(const Inputs& inputs) {
   CalibrationOptions options;
   options.densities_percent = parse_densities("--densities", inputs.densities);
   options.cell_size = inputs.cell_size;
-  if (inputs.path) options.path = *inputs.path;
+  options.path = inputs.path;
   return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);
 }
 
-std::string text(const DensityLine& line) {
-  return "d = " + readable(line.a, 5) + " k " + (line.b < 0 ? "- " : "+ ") +
-         readable(std::abs(line.b), 5) + " %, R2 " + readable(line.r2, 4) + ", scatter " +
-         readable(line.residual_sd, 2) + " points";
-}
-
-std::string text(const DensityClosedForm& form) {
-  const double B = std::abs(form.B) < 1e-9 ? 0.0 : form.B;  // rounding of an exact fit
-  return "k = " + readable(B, 4) + " + " + readable(form.A, 4) + " / (1 - " + readable(form.r, 4) +
-         " d), R2 " + readable(form.r2, 5) + ", scatter " +
-         (form.residual_sd < 0.01 ? "below 0.01" : readable(form.residual_sd, 2)) + " points";
+/// The formula of a form with its numbers, which the law file holds under the form's key.
+std::string text(const DensityFit& fit, const nlohmann::ordered_json& file) {
+  std::string text = formula(fit.form);
+  for (const auto& [key, value] : file.at(fit.key).items()) {
+    const double number = std::abs(value.get<double>()) < 1e-9 ? 0.0 : value.get<double>();
+    text += ", " + key + " " + readable(number, 5);
+  }
+  return text;
 }
 
 nlohmann::ordered_json difference_json(const BulkingDifference& difference) {
@@ -127,12 +124,10 @@ Outcome work(const Inputs& inputs) {
   outcome.json = nlohmann::ordered_json::parse(file);
   outcome.json.erase("format");
   outcome.json.erase("version");
-  outcome.lines = {"line                     " + text(calibration.line),
-                   "closed form              " + text(calibration.closed_form)};
-  if (calibration.line_as_measured && calibration.closed_form_as_measured) {
-    outcome.lines.push_back("line, as measured        " + text(*calibration.line_as_measured));
-    outcome.lines.push_back("closed form, as measured " +
-                            text(*calibration.closed_form_as_measured));
+  for (const DensityFit& fit : calibration.forms) {
+    std::string name = fit.key + std::string(25, ' ');
+    std::replace(name.begin(), name.end(), '_', ' ');
+    outcome.lines.push_back(name.substr(0, 25) + text(fit, outcome.json));
   }
   if (const auto difference = bulking_difference(calibration)) {
     outcome.json["largest_difference"] = difference_json(*difference);

@@ -65,7 +65,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "CSV of 3 or more known points: u_px,v_px (or camera_x_m,camera_y_m,camera_z_m) "
                  "and x_m,y_m,z_m in the site");
   arguments.file("pose-out", inputs.pose_out, "write the pose found, for --pose of the next scan");
-  arguments.file("out", inputs.out, "cloud to write: .pcd, .ply, .xyz, .txt or .asc");
+  arguments.file("out", inputs.out, "cloud to write: " + cloud_endings());
   arguments.require("out");
 }
 

@@ -28,16 +28,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("FILE", inputs.file, "scan to look at");
   arguments.file("frame", inputs.frame,
                  "4 x 4 text matrix that takes the scan into the site frame; applied first");
-  arguments.file("out", inputs.out, "write the cloud here: .pcd, .ply, .xyz, .txt or .asc");
+  arguments.file("out", inputs.out, "write the cloud here: " + cloud_endings());
   arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text with every digit");
-}
-
-CloudFormat format_of(const std::string& path, bool ascii) {
-  const CloudFormat format = cloud_format_of_name(path);
-  if (!ascii) return format;
-  if (format == CloudFormat::pcd_binary) return CloudFormat::pcd_ascii;
-  if (format == CloudFormat::ply_binary) return CloudFormat::ply_ascii;
-  return format;
 }
 
 nlohmann::ordered_json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -70,15 +62,16 @@ std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& clo
 }
 
 Outcome inspect(const Inputs& inputs) {
-  const auto format =
-      inputs.out ? std::optional(format_of(*inputs.out, inputs.ascii)) : std::nullopt;
   if (inputs.ascii && !inputs.out) {
     throw Error(ErrorKind::bad_input, "--ascii says how to write --out, which is missing");
   }
+  CloudFormat format;
+  if (inputs.out) format = cloud_format_of_name(*inputs.out);
+  format.text = inputs.ascii;
   Cloud cloud = read_cloud(inputs.file);
   if (inputs.frame) transform(cloud, read_frame(*inputs.frame));
   const CloudSummary summary = summarise(cloud);
-  if (format) write_cloud(*inputs.out, cloud, *format);
+  if (inputs.out) write_cloud(*inputs.out, cloud, format);
 
   Outcome outcome;
   outcome.json = {{"file", inputs.file},

@@ -126,9 +126,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   const SoilKind soil = soil_named(inputs.soil);
   const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
   const PlanOptions options = options_of(inputs, machine, soil, console);
-  const DigPlan plan = inputs.terrain.cloud
-                           ? plan_dig(machine, soil, density, site.ground, options)
-                           : plan_dig(machine, soil, density, options);
+  const DigPlan plan = inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
+                                            : plan_dig(machine, soil, density, options);
   if (!plan.dig && !plan.stopped) refuse(plan.reason + nearest_text(plan.nearest));
 
   Outcome outcome;

@@ -24,7 +24,7 @@ const About about = {
 
 struct Inputs {
   std::string densities = "paper";
-  std::optional<DigParameters> path;
+  DigParameters path = paper_fixed_path();
   std::string soil = "loam";
   std::string machine = "zx120";
   std::optional<std::string> library;
@@ -44,7 +44,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
       "law", "NAME|FILE", inputs.law,
       "density law: default (the shipped one of the machine and the soil), paper, or a law file");
   arguments.flag("search", inputs.search, "search each path instead of looking it up");
-  arguments.option("path", inputs.path, "fixed path (default: the paper's 45deg,0.35m,1.5m)");
+  arguments.option("path", inputs.path, "fixed path");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
@@ -188,7 +188,7 @@ Setting setting_of(const Inputs& inputs) {
   if (!inputs.search) {
     setting.library = library_of(inputs.library, setting.machine, setting.soil);
   }
-  setting.fixed = inputs.path.value_or(paper_fixed_path());
+  setting.fixed = inputs.path;
   setting.ground = level_planning_ground(setting.machine, inputs.cell_size);
   return setting;
 }

@@ -15,6 +15,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "machine/dig_path_text.hpp"
 #include "shared/figures.hpp"
 #include "shared/joint_loads.hpp"
 #include "shared/results.hpp"
@@ -56,8 +57,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("density", inputs.density, Quantity::percent, "relative density of the ground");
   arguments.require("density");
   arguments.option("path", inputs.path,
-                   "penetration angle and length, drag length (default: the paper's "
-                   "45deg,0.35m,1.5m)");
+                   dig_path_form().names + " (default: the paper's " +
+                       dig_path_argument(paper_fixed_path()) + ")");
   arguments.option("start", inputs.start, Quantity::length,
                    "x where the tip meets the ground (default: planned)");
   arguments.file("path-from", inputs.path_from,
@@ -104,7 +105,7 @@ Inputs with_path(Inputs inputs) {
   if (inputs.path || inputs.start) {
     throw Error(ErrorKind::bad_input, "--path-from goes without --path and --start");
   }
-  std::tie(inputs.path, inputs.start) = read_dig_path(*inputs.path_from);
+  std::tie(inputs.path, inputs.start) = read_planned_path(*inputs.path_from);
   return inputs;
 }
 
@@ -252,11 +253,9 @@ nlohmann::ordered_json dug_json(const Inputs& inputs, const Machine& machine, co
   exact.dumped.value = dug.volumes.dumped;
   exact.before.value = dug.volumes.excavated;
   exact.after.value = dug.volumes.spilled + dug.volumes.dumped;
-  nlohmann::ordered_json path = to_json(dug.path.parameters);
-  path["start_x_m"] = dug.path.start_x;
   return {{"density_percent", inputs.density},
           {"soil", soil.name},
-          {"path", path},
+          {"path", path_json(dug.path.parameters, dug.path.start_x)},
           {"payload_mass_kg", result.payload_mass},
           {"payload_volume_m3", result.payload_volume},
           {"energy_kj", result.energy.total / 1000.0},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <excavplan/error.hpp>
 
@@ -14,9 +15,10 @@
 namespace excavplan {
 
 /// @throws Error (bad_input) "WHAT is VALUE, must be RULE" unless it holds
-inline void require(bool holds, const std::string& what, double value, const std::string& rule) {
+inline void require(bool holds, std::string_view what, double value, std::string_view rule) {
   if (holds) return;
-  throw Error(ErrorKind::bad_input, what + " is " + number_text(value) + ", must be " + rule);
+  throw Error(ErrorKind::bad_input,
+              std::string(what) + " is " + number_text(value) + ", must be " + std::string(rule));
 }
 
 }  // namespace excavplan

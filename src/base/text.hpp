@@ -6,7 +6,7 @@
 #include <string>
 
 /// @file
-/// Numbers as text, and checksums of text. Private to the project.
+/// Numbers as text, for files and for people, and checksums of text. Private to the project.
 
 namespace excavplan {
 

@@ -6,11 +6,13 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "library/library_midway.hpp"
+#include "machine/dig_path_text.hpp"
 #include "optimisation/search_checkpoint.hpp"
 
 namespace excavplan {
@@ -263,14 +265,9 @@ CellOutcome read_cell(const std::string& name, const std::string& text, const Li
 }
 
 nlohmann::ordered_json library_entry_json(const PathLibraryEntry& entry) {
-  nlohmann::ordered_json path;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    path[info.name] = entry.dig.parameters.*info.field;
-  }
-  path["start_x_m"] = entry.dig.start_x;
   return {{"density_percent", entry.density_percent},
           {"slope_rad", entry.slope},
-          {"path", path},
+          {"path", path_json(entry.dig.parameters, entry.dig.start_x)},
           {"payload_mass_kg", entry.dig.payload_mass},
           {"payload_volume_m3", entry.dig.payload_volume},
           {"energy_kj", entry.dig.energy / 1000.0},
@@ -289,12 +286,7 @@ PathLibraryEntry read_library_entry(JsonObject object) {
   PathLibraryEntry entry;
   entry.density_percent = object.number("density_percent", 0.0, 100.0);
   entry.slope = object.number("slope_rad", -1.0, 1.0);
-  JsonObject path = object.object("path");
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    entry.dig.parameters.*info.field = path.number(info.name, info.lower, info.upper);
-  }
-  entry.dig.start_x = path.number("start_x_m");
-  path.done();
+  std::tie(entry.dig.parameters, entry.dig.start_x) = read_path(object.object("path"));
   entry.dig.payload_mass = object.number("payload_mass_kg", 0.0);
   entry.dig.payload_volume = object.number("payload_volume_m3", 0.0);
   entry.dig.energy = 1000.0 * object.number("energy_kj", 0.0);

@@ -133,8 +133,8 @@ void look_up_plan(const Task& task, DigPlan& plan) {
   plan.start_rule = task.level ? "of the library" : describe(task.options.search.start_rule);
   const auto outcome = dig_here(task, *library, expected, plan);
   if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
-    plan.reason = "the library's path does not work here (a search may find one): " +
-                  describe(*failure);
+    plan.reason =
+        "the library's path does not work here (a search may find one): " + describe(*failure);
     return;
   }
   plan.dig = std::get<PlannedDig>(outcome);
@@ -249,9 +249,7 @@ DigPlan plan_dig(const Task& task) {
 
 }  // namespace
 
-const char* name(PlanMethod method) {
-  return method == PlanMethod::library ? "library" : "search";
-}
+const char* name(PlanMethod method) { return method == PlanMethod::library ? "library" : "search"; }
 
 PathLibrary shipped_library(const Machine& machine, const SoilKind& soil) {
   std::string file;

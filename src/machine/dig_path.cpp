@@ -3,14 +3,17 @@
 #include <excavplan/machine/dig_path.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include <excavplan/error.hpp>
 
 #include "base/angles.hpp"
+#include "base/check.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -74,21 +77,16 @@ std::string explain(const Infeasible& stop) {
 
 // ---- rules for the input ------------------------------------------------------------------------
 
-void require(bool holds, const char* option, double value, const char* rule) {
-  if (holds) return;
-  throw Error(ErrorKind::bad_input, std::string("DigPathOptions::") + option + " is " +
-                                        number_text(value) + ", must be " + rule);
-}
-
 void check(const DigPathOptions& options) {
-  require(options.step > 0.0 && std::isfinite(options.step), "step", options.step,
+  require(options.step > 0.0 && std::isfinite(options.step), "DigPathOptions::step", options.step,
           "above 0 m and finite");
   require(options.min_heel_clearance >= 0.0 && options.min_heel_clearance < pi / 2.0,
-          "min_heel_clearance", options.min_heel_clearance, "in 0 .. pi/2 rad");
-  require(options.max_depth > 0.0, "max_depth", options.max_depth, "above 0 m");
-  require(std::isfinite(options.track_margin), "track_margin", options.track_margin, "finite");
-  require(options.lift_clearance >= 0.0 && std::isfinite(options.lift_clearance), "lift_clearance",
-          options.lift_clearance, "at least 0 m and finite");
+          "DigPathOptions::min_heel_clearance", options.min_heel_clearance, "in 0 .. pi/2 rad");
+  require(options.max_depth > 0.0, "DigPathOptions::max_depth", options.max_depth, "above 0 m");
+  require(std::isfinite(options.track_margin), "DigPathOptions::track_margin", options.track_margin,
+          "finite");
+  require(options.lift_clearance >= 0.0 && std::isfinite(options.lift_clearance),
+          "DigPathOptions::lift_clearance", options.lift_clearance, "at least 0 m and finite");
 }
 
 Infeasible bad_parameter(DigPhase phase, double value, double limit, const std::string& message) {
@@ -217,7 +215,7 @@ class Layout {
 int Layout::steps(double tip_travel) const {
   const double needed = std::max(1.0, std::ceil(tip_travel / options_.step));
   if (sampling_ != Sampling::full) return static_cast<int>(std::min<double>(needed, scan_poses));
-  require(needed <= most_poses, "step", options_.step,
+  require(needed <= most_poses, "DigPathOptions::step", options_.step,
           "so large that no phase has more than 10000 poses");
   return static_cast<int>(needed);
 }
@@ -354,7 +352,7 @@ std::optional<Infeasible> Layout::raise(DigPose pose) {
   double height = height_above_ground(pose.joints);
   while (height < options_.lift_clearance) {
     const double travelled = (boom_start - pose.joints[0]) * radius;
-    require(travelled < most_poses * step, "step", options_.step,
+    require(travelled < most_poses * step, "DigPathOptions::step", options_.step,
             "so large that no phase has more than 10000 poses");
     const double boom = std::max(pose.joints[0] - step / radius, machine_.limits[0].lower);
     const double bucket = pose.joints[2] + pose.joints[0] - boom;
@@ -474,17 +472,6 @@ class DrivableStarts {
 };
 
 }  // namespace
-
-DigParameters paper_fixed_path() { return {pi / 4.0, 0.35, 1.5}; }
-
-const std::array<DigParameterInfo, 3>& dig_parameter_table() {
-  static const std::array<DigParameterInfo, 3> table = {{
-      {"penetration_angle_rad", "rad", &DigParameters::penetration_angle, 0.2, 1.4},
-      {"penetration_length_m", "m", &DigParameters::penetration_length, 0.1, 0.9},
-      {"drag_length_m", "m", &DigParameters::drag_length, 0.3, 3.0},
-  }};
-  return table;
-}
 
 const char* name(DigPhase phase) {
   switch (phase) {

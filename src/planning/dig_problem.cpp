@@ -17,14 +17,12 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// How many numbers a dig has; the place of the start in a point, where that is searched too.
-Index numbers_of_a_dig() { return static_cast<Index>(dig_parameter_table().size()); }
+/// The start, where it is searched, follows the numbers of the table.
+double start_in(const VectorXd& point) { return point(point.size() - 1); }
 
-DigParameters parameters_of(const VectorXd& point) {
-  DigParameters parameters;
-  Index i = 0;
-  for (const DigParameterInfo& info : dig_parameter_table()) parameters.*info.field = point(i++);
-  return parameters;
+void append(VectorXd& point, double number) {
+  point.conservativeResize(point.size() + 1);
+  point(point.size() - 1) = number;
 }
 
 /// The checksum of numbers, byte by byte.
@@ -156,46 +154,36 @@ DigProblem::Best DigProblem::best_of(const SearchResult& found) const {
 
 std::optional<NearestDig> DigProblem::nearest_of(const SearchResult& found) const {
   if (found.history.empty()) return std::nullopt;
-  return NearestDig{parameters_of(found.best), start_of(found.best), found.outcome.violation,
+  return NearestDig{to_dig_parameters(found.best), start_of(found.best), found.outcome.violation,
                     found.outcome.reason};
 }
 
 SearchBox DigProblem::box() const {
   const Machine& machine = layout_.machine();
-  const Index numbers = numbers_of_a_dig();
-  const Index size = numbers + (start_is_searched() ? 1 : 0);
-  SearchBox box{VectorXd(size), VectorXd(size)};
-  Index i = 0;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    box.lower(i) = options_.bounds.lower.*info.field;
-    box.upper(i++) = options_.bounds.upper.*info.field;
-  }
+  SearchBox box{to_vector(options_.bounds.lower), to_vector(options_.bounds.upper)};
   if (start_is_searched()) {
-    box.lower(numbers) = machine.track_front;
-    box.upper(numbers) = machine.boom_pin.x() + machine.full_length();
+    append(box.lower, machine.track_front);
+    append(box.upper, machine.boom_pin.x() + machine.full_length());
   }
   return box;
 }
 
 VectorXd DigProblem::point_of(const DigParameters& dig) const {
-  const SearchBox range = box();
-  VectorXd point(range.lower.size());
-  Index i = 0;
-  for (const DigParameterInfo& info : dig_parameter_table()) point(i++) = dig.*info.field;
+  VectorXd point = to_vector(dig);
   if (start_is_searched()) {
     const auto path = layout_.path(dig, StartRule::Kind::least_work);
     const auto* drivable = std::get_if<DigPath>(&path);
-    point(i) = drivable ? drivable->start_x : 0.5 * (range.lower(i) + range.upper(i));
+    append(point,
+           drivable ? drivable->start_x : 0.5 * (start_in(box().lower) + start_in(box().upper)));
   }
   return point;
 }
 
 /// The repair: an undrivable path is refused, the start of a drivable one is kept for later.
 std::variant<VectorXd, Evaluation> DigProblem::lay_out(const VectorXd& point) {
-  const DigParameters parameters = parameters_of(point);
-  const auto path = layout_.path(parameters, start_is_searched()
-                                                 ? StartRule(point(numbers_of_a_dig()))
-                                                 : options_.start_rule);
+  const DigParameters parameters = to_dig_parameters(point);
+  const auto path = layout_.path(
+      parameters, start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
   if (const auto* stop = std::get_if<Infeasible>(&path)) {
     return Evaluation::infeasible(violation(*stop, parameters), stop->message);
   }
@@ -241,7 +229,7 @@ PlannedDig DigProblem::mean_dig(const DigsInEach& digs) const {
 
 /// Nothing for a path that was not laid out, unless its start does not depend on the path.
 std::optional<double> DigProblem::start_of(const VectorXd& point) const {
-  if (start_is_searched()) return point(numbers_of_a_dig());
+  if (start_is_searched()) return start_in(point);
   if (options_.start_rule.kind == StartRule::Kind::given) return options_.start_rule.x;
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto known = starts_.find(key_of(point));
@@ -251,7 +239,7 @@ std::optional<double> DigProblem::start_of(const VectorXd& point) const {
 DigPath DigProblem::path_of(const VectorXd& point) const {
   const std::optional<double> start_x = start_of(point);
   auto path =
-      layout_.path(parameters_of(point), start_x ? StartRule(*start_x) : options_.start_rule);
+      layout_.path(to_dig_parameters(point), start_x ? StartRule(*start_x) : options_.start_rule);
   return std::get<DigPath>(std::move(path));
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include <excavplan/ground/bulking.hpp>
@@ -73,11 +74,11 @@ DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soi
   calibration.name = machine.name + "-" + soil.name;
   calibration.source = "digs of the built-in simulator, " + machine.name + " in " + soil.name;
   calibration.soil = soil.name;
-  calibration.use = "closed_form_as_measured";
-  calibration.line = fit_line(freed);
-  calibration.closed_form = fit_closed_form(freed);
-  calibration.line_as_measured = fit_line(measured);
-  calibration.closed_form_as_measured = fit_closed_form(measured);
+  calibration.use = std::string("closed_form") + as_measured;
+  calibration.forms = fit_density_forms(freed);
+  for (DensityFit& fit : fit_density_forms(measured, as_measured)) {
+    calibration.forms.push_back(std::move(fit));
+  }
   return calibration;
 }
 
@@ -95,7 +96,8 @@ std::optional<BulkingDifference> bulking_difference(const DensityCalibration& ca
   difference.largest =
       *std::max_element(samples.begin(), samples.end(),
                         [&](const Sample& a, const Sample& b) { return apart(a) < apart(b); });
-  const auto density = [&](double k) { return density_of_bulking(calibration.closed_form, k); };
+  const DensityForm& law = calibration.form("closed_form");
+  const auto density = [&](double k) { return density_of_bulking(law, k); };
   difference.density_points = density(difference.largest.bulking_factor_measured) -
                               density(difference.largest.bulking_factor_true);
   for (const Sample& s : samples) {

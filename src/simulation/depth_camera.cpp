@@ -10,8 +10,10 @@
 
 #include <Eigen/Geometry>
 
-#include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
+
+#include "base/angles.hpp"
+#include "base/check.hpp"
 
 namespace excavplan {
 namespace {
@@ -23,47 +25,32 @@ constexpr double edge_share = 0.02;  // ours: neighbours that differ by more lie
 constexpr std::uint64_t pattern_stream = 1000000;
 constexpr std::uint64_t edge_stream = 2000000;
 
-/// Refuses what breaks a rule, in the name of the sensor.
-class Rules {
- public:
-  explicit Rules(const char* sensor) : sensor_(sensor) {}
-  void require(bool holds, const char* rule, double value) const {
-    if (!holds) {
-      throw Error(ErrorKind::bad_input,
-                  std::string(sensor_) + ": " + rule + ", got " + std::to_string(value));
-    }
-  }
-  void require_share(const char* name, double value) const {
-    require(value >= 0.0 && value < 1.0, (std::string(name) + " must be in 0 .. 1").c_str(), value);
-  }
+void require_share(const std::string& what, double value) {
+  require(value >= 0.0 && value < 1.0, what, value, "in 0 .. 1");
+}
 
- private:
-  const char* sensor_;
-};
+void require_count(const std::string& what, int value) {
+  require(value > 0 && value <= 10000, what, value, "in 1 .. 10000");
+}
 
 void check(const DepthCamera& camera) {
-  const Rules rules("depth camera");
-  rules.require(camera.width > 0 && camera.width <= 10000, "width must be in 1 .. 10000",
-                camera.width);
-  rules.require(camera.height > 0 && camera.height <= 10000, "height must be in 1 .. 10000",
-                camera.height);
-  rules.require(camera.horizontal_view > 0.0 && camera.horizontal_view < 3.0,
-                "horizontal view must be in 0 .. 3 rad", camera.horizontal_view);
-  rules.require(camera.noise >= 0.0, "noise must be >= 0 m", camera.noise);
-  rules.require_share("dropouts", camera.dropouts);
-  rules.require(camera.max_range > 0.0, "range must be > 0 m", camera.max_range);
-  rules.require(camera.frames > 0 && camera.frames <= 10000, "frames must be in 1 .. 10000",
-                camera.frames);
-  rules.require(camera.pattern_noise >= 0.0, "pattern noise must be >= 0 m", camera.pattern_noise);
-  rules.require(camera.pattern_length >= 0.0 && camera.pattern_length <= 1000.0,
-                "pattern length must be in 0 .. 1000 pixels", camera.pattern_length);
-  rules.require(camera.disparity_step >= 0.0, "disparity step must be >= 0 per m",
-                camera.disparity_step);
-  rules.require(camera.flying_pixels >= 0.0 && camera.flying_pixels <= 1.0,
-                "flying pixels must be in 0 .. 1", camera.flying_pixels);
-  rules.require((camera.target - camera.position).norm() > 1e-6,
-                "distance from position to target must be > 0 m",
-                (camera.target - camera.position).norm());
+  const std::string of = "depth camera: ";
+  require_count(of + "width", camera.width);
+  require_count(of + "height", camera.height);
+  require_count(of + "frames", camera.frames);
+  require(camera.horizontal_view > 0.0 && camera.horizontal_view < 3.0, of + "horizontal view",
+          camera.horizontal_view, "in 0 .. 3 rad");
+  require(camera.noise >= 0.0, of + "noise", camera.noise, ">= 0 m");
+  require_share(of + "dropouts", camera.dropouts);
+  require(camera.max_range > 0.0, of + "range", camera.max_range, "> 0 m");
+  require(camera.pattern_noise >= 0.0, of + "pattern noise", camera.pattern_noise, ">= 0 m");
+  require(camera.pattern_length >= 0.0 && camera.pattern_length <= 1000.0, of + "pattern length",
+          camera.pattern_length, "in 0 .. 1000 pixels");
+  require(camera.disparity_step >= 0.0, of + "disparity step", camera.disparity_step, ">= 0 per m");
+  require(camera.flying_pixels >= 0.0 && camera.flying_pixels <= 1.0, of + "flying pixels",
+          camera.flying_pixels, "in 0 .. 1");
+  const double distance = (camera.target - camera.position).norm();
+  require(distance > 1e-6, of + "distance from position to target", distance, "> 0 m");
 }
 
 /// Columns: right, down, forward in the site frame. A camera that looks straight down has the
@@ -222,22 +209,22 @@ Eigen::ArrayXXd measured(Eigen::ArrayXXd depth, const DepthCamera& camera, std::
 }
 
 void check(const Lidar& lidar) {
-  const Rules rules("lidar");
+  const std::string of = "lidar: ";
   for (const auto* window : {&lidar.azimuth, &lidar.elevation}) {
-    rules.require((*window)(1) >= (*window)(0), "a window must not end before it starts, rad",
-                  (*window)(1) - (*window)(0));
+    const double width = (*window)(1) - (*window)(0);
+    require(width >= 0.0, of + "width of a window", width, ">= 0 rad");
   }
-  rules.require(lidar.angle_step.minCoeff() > 0.0, "angle step must be > 0 rad",
-                lidar.angle_step.minCoeff());
-  rules.require(lidar.range_noise >= 0.0, "range noise must be >= 0 m", lidar.range_noise);
-  rules.require(lidar.divergence >= 0.0 && lidar.divergence < 0.5,
-                "divergence must be in 0 .. 0.5 rad", lidar.divergence);
-  rules.require(lidar.pulse_length >= 0.0, "pulse length must be >= 0 m", lidar.pulse_length);
-  rules.require_share("dropouts", lidar.dropouts);
-  rules.require(lidar.max_range > 0.0, "range must be > 0 m", lidar.max_range);
+  require(lidar.angle_step.minCoeff() > 0.0, of + "angle step", lidar.angle_step.minCoeff(),
+          "> 0 rad");
+  require(lidar.range_noise >= 0.0, of + "range noise", lidar.range_noise, ">= 0 m");
+  require(lidar.divergence >= 0.0 && lidar.divergence < 0.5, of + "divergence", lidar.divergence,
+          "in 0 .. 0.5 rad");
+  require(lidar.pulse_length >= 0.0, of + "pulse length", lidar.pulse_length, ">= 0 m");
+  require_share(of + "dropouts", lidar.dropouts);
+  require(lidar.max_range > 0.0, of + "range", lidar.max_range, "> 0 m");
   const double beams = (1.0 + (lidar.azimuth(1) - lidar.azimuth(0)) / lidar.angle_step(0)) *
                        (1.0 + (lidar.elevation(1) - lidar.elevation(0)) / lidar.angle_step(1));
-  rules.require(beams <= 1e8, "beams must be at most 100 million", beams);
+  require(beams <= 1e8, of + "number of beams", beams, "at most 100 million");
 }
 
 struct Beam {
@@ -259,7 +246,7 @@ double mixed_range(const HeightMap& surface, double top, const Lidar& lidar, con
   constexpr int ring = 6;
   constexpr double centre_weight = 0.25;
   constexpr double ring_weight = 0.125;
-  constexpr double turn = 6.283185307179586;
+  constexpr double turn = 2.0 * pi;
   const double radius = std::sqrt(2.0 / 3.0) * std::tan(0.5 * lidar.divergence);
   std::array<double, ring + 1> range{};
   for (int i = 0; i <= ring; ++i) {
@@ -296,14 +283,16 @@ DepthCamera camera_above(const Eigen::Vector2d& ground_point, double ground_z) {
   return camera;
 }
 
-DepthCamera d435i(DepthCamera camera) {
-  constexpr double focal_times_baseline = 22.35;  // [px m], at 848 x 480
-  camera.width = 848;
-  camera.height = 480;
-  camera.noise = 0.05 / focal_times_baseline;
-  camera.pattern_noise = 0.06 / focal_times_baseline;
-  camera.disparity_step = 1.0 / 32.0 / focal_times_baseline;
-  camera.flying_pixels = 0.5;
+DepthCamera with_errors_of(const Sensor& sensor, DepthCamera camera) {
+  require(sensor.width > 0, "image of the sensor '" + sensor.name + "'", sensor.width,
+          "1 pixel wide or more: scans of others are simulated by a lidar");
+  camera.width = sensor.width;
+  camera.height = sensor.height;
+  camera.noise = sensor.noise;
+  camera.pattern_noise = sensor.pattern;
+  camera.pattern_length = sensor.pattern_rays;
+  camera.disparity_step = sensor.disparity_step;
+  camera.flying_pixels = sensor.flying_pixels;
   return camera;
 }
 

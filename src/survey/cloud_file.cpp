@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
-#include <limits>
 
 #include <Eigen/LU>
 
@@ -11,7 +9,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "survey/cloud_format.hpp"
+#include "survey/cloud_formats.hpp"
 
 namespace excavplan {
 namespace {
@@ -27,54 +25,30 @@ std::string ending_of(const std::string& path) {
   return ending;
 }
 
-bool looks_like_ply(std::string_view text) {
-  return text.substr(0, 4) == "ply\n" || text.substr(0, 5) == "ply\r\n";
-}
-
-/// A file that is neither text nor one of ours is named, where people are likely to try it.
-void require_text(FileStream& file) {
-  struct Signature {
-    std::string_view bytes;
-    const char* name;
-  };
-  constexpr Signature known[] = {{"LASF", "a LAS or LAZ file"},
-                                 {"SQLite format 3", "a database, such as a ROS 2 bag"},
-                                 {"#ROSBAG", "a ROS bag"},
-                                 {"\x89PNG", "a PNG image"}};
-  const std::string expected = "a cloud as PCD, PLY or XYZ text";
-  for (const Signature& signature : known) {
-    if (file.peek(signature.bytes.size()) == signature.bytes) {
-      file.fail("byte 0", signature.name, expected);
-    }
+/// "a, b or c"
+std::string alternatives(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
   }
-  const std::string_view start = file.peek(longest_line);
-  const auto odd = std::find_if(start.begin(), start.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\n' && c != '\r';
-  });
-  if (odd != start.end()) {
-    file.fail("byte " + std::to_string(odd - start.begin()),
-              "the byte " + std::to_string(static_cast<unsigned char>(*odd)), expected);
-  }
+  return text;
 }
 
 CloudShape stream(FileStream& file, PointSink& sink) {
-  if (looks_like_ply(file.peek(5))) return stream_ply(file, sink);
-  if (looks_like_pcd(file)) return stream_pcd(file, sink);
-  require_text(file);
-  return stream_xyz(file, sink);
-}
-
-std::string gibibytes(std::uint64_t bytes) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, static_cast<double>(bytes) / (1 << 30),
-                                 std::chars_format::fixed, 3)
-                       .ptr;
-  return {text, end};
+  std::vector<std::string> titles;
+  for (const CloudFileFormat& format : cloud_file_formats()) {
+    if (format.holds(file)) return format.stream(file, sink);
+    titles.push_back(format.title);
+  }
+  const auto foreign = foreign_content(file);
+  file.fail(foreign ? foreign->place : "byte 0", foreign ? foreign->found : "text",
+            "a cloud as " + alternatives(titles));
 }
 
 [[noreturn]] void refuse_size(const FileStream& file, std::uint64_t points, std::uint64_t limit) {
   file.refuse("found " + std::to_string(file.size()) + " bytes for " + std::to_string(points) +
-              " points, expected what fits into " + gibibytes(limit) + " GiB of memory");
+              " points, expected what fits into " +
+              decimals(static_cast<double>(limit) / (1 << 30), 3) + " GiB of memory");
 }
 
 /// Keeps all points. The limit counts them and the file.
@@ -125,81 +99,6 @@ class Passage : public PointSink {
   const PointVisitor& visit_;
 };
 
-/// Appends the shortest text of a number that reads back the same.
-void append_number(std::string& text, double value) {
-  char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-}
-
-std::string text_rows(const Cloud& cloud) {
-  std::string rows;
-  rows.reserve(cloud.points.size() * 30);
-  for (const Eigen::Vector3d& point : cloud.points) {
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      append_number(rows, point[axis]);
-      rows += axis < 2 ? ' ' : '\n';
-    }
-  }
-  return rows;
-}
-
-/// True if float32 would move a point by more than 0.1 mm.
-bool needs_double(const Cloud& cloud) {
-  constexpr double farthest = 1e-4;
-  return std::any_of(cloud.points.begin(), cloud.points.end(), [](const Eigen::Vector3d& point) {
-    if (!point.allFinite()) return false;
-    if (point.cwiseAbs().maxCoeff() > std::numeric_limits<float>::max()) return true;
-    const Eigen::Vector3f rounded = point.cast<float>();
-    return (point - rounded.cast<double>()).norm() > farthest;
-  });
-}
-
-template <typename T>
-std::string binary_rows(const Cloud& cloud) {
-  std::string rows;
-  rows.reserve(cloud.points.size() * 3 * sizeof(T));
-  for (const Eigen::Vector3d& point : cloud.points) {
-    const Eigen::Matrix<T, 3, 1> row = point.cast<T>();
-    rows.append(reinterpret_cast<const char*>(row.data()), 3 * sizeof(T));
-  }
-  return rows;
-}
-
-std::string pcd_header(const Cloud& cloud, bool is_double, const std::string& encoding) {
-  const std::string size = is_double ? "8" : "4";
-  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE " + size +
-         " " + size + " " + size + "\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
-         std::to_string(cloud.width) + "\nHEIGHT " + std::to_string(cloud.height) +
-         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(cloud.points.size()) + "\nDATA " +
-         encoding + "\n";
-}
-
-std::string ply_header(const Cloud& cloud, bool is_double, const std::string& encoding) {
-  const std::string type = is_double ? "double" : "float";
-  return "ply\nformat " + encoding + " 1.0\nelement vertex " + std::to_string(cloud.points.size()) +
-         "\nproperty " + type + " x\nproperty " + type + " y\nproperty " + type +
-         " z\nend_header\n";
-}
-
-std::string content_of(const Cloud& cloud, CloudFormat format) {
-  switch (format) {
-    case CloudFormat::pcd_ascii:
-      return pcd_header(cloud, true, "ascii") + text_rows(cloud);
-    case CloudFormat::ply_ascii:
-      return ply_header(cloud, true, "ascii") + text_rows(cloud);
-    case CloudFormat::xyz:
-      return "# x y z [m]\n" + text_rows(cloud);
-    case CloudFormat::pcd_binary:
-    case CloudFormat::ply_binary:
-      break;
-  }
-  const bool is_double = needs_double(cloud);
-  return (format == CloudFormat::pcd_binary
-              ? pcd_header(cloud, is_double, "binary")
-              : ply_header(cloud, is_double, "binary_little_endian")) +
-         (is_double ? binary_rows<double>(cloud) : binary_rows<float>(cloud));
-}
-
 }  // namespace
 
 Cloud read_cloud(const std::string& path, std::uint64_t memory_limit) {
@@ -226,16 +125,31 @@ void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format
                                           std::to_string(cloud.width) + " x " +
                                           std::to_string(cloud.height));
   }
-  write_file(path, content_of(cloud, format));
+  const auto& formats = cloud_file_formats();
+  const auto known = std::find_if(formats.begin(), formats.end(),
+                                  [&](const CloudFileFormat& f) { return f.name == format.name; });
+  if (known == formats.end()) {
+    throw Error(ErrorKind::bad_input,
+                path + ": '" + format.name + "' is no format that clouds are written in");
+  }
+  write_file(path, known->content(cloud, format.text));
 }
 
 CloudFormat cloud_format_of_name(const std::string& path) {
   const std::string ending = ending_of(path);
-  if (ending == ".pcd") return CloudFormat::pcd_binary;
-  if (ending == ".ply") return CloudFormat::ply_binary;
-  if (ending == ".xyz" || ending == ".txt" || ending == ".asc") return CloudFormat::xyz;
-  throw Error(ErrorKind::bad_input,
-              path + ": the name of a cloud must end in .pcd, .ply, .xyz, .txt or .asc");
+  for (const CloudFileFormat& format : cloud_file_formats()) {
+    const auto& own = format.endings;
+    if (std::find(own.begin(), own.end(), ending) != own.end()) return {format.name};
+  }
+  throw Error(ErrorKind::bad_input, path + ": the name of a cloud must end in " + cloud_endings());
+}
+
+std::string cloud_endings() {
+  std::vector<std::string> endings;
+  for (const CloudFileFormat& format : cloud_file_formats()) {
+    endings.insert(endings.end(), format.endings.begin(), format.endings.end());
+  }
+  return alternatives(endings);
 }
 
 Eigen::Matrix4d read_frame(const std::string& path) {

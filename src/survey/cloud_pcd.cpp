@@ -4,12 +4,14 @@
 #include <array>
 #include <string>
 
-#include "survey/cloud_format.hpp"
+#include "survey/cloud_formats.hpp"
 
 // PCD as the Point Cloud Library documents it (versions 0.5 to 0.7).
 
 namespace excavplan {
 namespace {
+
+constexpr std::size_t longest_row = 4096;  // of a binary point [byte]
 
 enum class Encoding { ascii, binary, compressed };
 
@@ -410,9 +412,8 @@ void stream_compressed(FileStream& file, const Header& header, PointSink& sink) 
   stream_block(fields.data(), header.points, fields.columns(), sink);
 }
 
-}  // namespace
-
-bool looks_like_pcd(FileStream& file) {
+/// True if the first words of a file are those of a PCD header.
+bool holds_pcd(FileStream& file) {
   std::string_view text = file.peek(longest_header);
   if (text.substr(0, 6) == "# .PCD") return true;
   while (!text.empty()) {
@@ -441,6 +442,27 @@ CloudShape stream_pcd(FileStream& file, PointSink& sink) {
       break;
   }
   return {header.width, header.height};
+}
+
+std::string header_of(const Cloud& cloud, bool is_double, const std::string& encoding) {
+  const std::string size = is_double ? "8" : "4";
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE " + size +
+         " " + size + " " + size + "\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+         std::to_string(cloud.width) + "\nHEIGHT " + std::to_string(cloud.height) +
+         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(cloud.points.size()) + "\nDATA " +
+         encoding + "\n";
+}
+
+std::string pcd_content(const Cloud& cloud, bool text) {
+  if (text) return header_of(cloud, true, "ascii") + text_rows(cloud.points);
+  const bool is_double = needs_double(cloud.points);
+  return header_of(cloud, is_double, "binary") + binary_rows(cloud.points, is_double);
+}
+
+}  // namespace
+
+CloudFileFormat pcd_format() {
+  return {"pcd", "PCD", {".pcd"}, holds_pcd, stream_pcd, pcd_content};
 }
 
 }  // namespace excavplan

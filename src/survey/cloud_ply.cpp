@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "survey/cloud_format.hpp"
+#include "survey/cloud_formats.hpp"
 
 // PLY 1.0 as Greg Turk describes it (Stanford, 1994), with the type names int8 ... float64 that
 // later programs write.
@@ -288,7 +288,10 @@ class BinaryBody {
   PointSink& sink_;
 };
 
-}  // namespace
+bool holds_ply(FileStream& file) {
+  const std::string_view text = file.peek(5);
+  return text.substr(0, 4) == "ply\n" || text == "ply\r\n";
+}
 
 CloudShape stream_ply(FileStream& file, PointSink& sink) {
   LineReader lines(file);
@@ -301,6 +304,25 @@ CloudShape stream_ply(FileStream& file, PointSink& sink) {
   const auto vertices = std::find_if(header.elements.begin(), header.elements.end(),
                                      [](const Element& e) { return e.name == "vertex"; });
   return {vertices->count, 1};
+}
+
+std::string header_of(const Cloud& cloud, bool is_double, const std::string& encoding) {
+  const std::string type = is_double ? "double" : "float";
+  return "ply\nformat " + encoding + " 1.0\nelement vertex " + std::to_string(cloud.points.size()) +
+         "\nproperty " + type + " x\nproperty " + type + " y\nproperty " + type +
+         " z\nend_header\n";
+}
+
+std::string ply_content(const Cloud& cloud, bool text) {
+  if (text) return header_of(cloud, true, "ascii") + text_rows(cloud.points);
+  const bool is_double = needs_double(cloud.points);
+  return header_of(cloud, is_double, "binary_little_endian") + binary_rows(cloud.points, is_double);
+}
+
+}  // namespace
+
+CloudFileFormat ply_format() {
+  return {"ply", "PLY", {".ply"}, holds_ply, stream_ply, ply_content};
 }
 
 }  // namespace excavplan

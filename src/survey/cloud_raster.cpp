@@ -307,7 +307,7 @@ Surface surface_of(const PointSource& source, HeightMap map, const RasterOptions
     if (const auto ceiling = ceilings.find(cell); ceiling != ceilings.end()) {
       band.high = std::min(band.high, ceiling->second);
     }
-    const CellHeight result = CellMean(in_cell, band, level, levels.noise).result(around.slope);
+    const CellHeight result = mean_height(in_cell, band, level, levels.noise, around.slope);
     surface.height.z(cell) = points.base() + (level + result.height);
     surface.variance(cell) = result.variance;
     surface.points(cell) = result.points;

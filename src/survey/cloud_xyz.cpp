@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "survey/cloud_format.hpp"
+#include "survey/cloud_formats.hpp"
 
 namespace excavplan {
 namespace {
@@ -62,8 +62,6 @@ std::optional<std::array<std::size_t, 3>> columns_by_name(const Words& names) {
   return columns;
 }
 
-}  // namespace
-
 CloudShape stream_xyz(FileStream& file, PointSink& sink) {
   PointBatch batch(sink);
   std::uint64_t points = 0;
@@ -92,6 +90,18 @@ CloudShape stream_xyz(FileStream& file, PointSink& sink) {
   if (points == 0) lines.fail("no row of numbers", "x y z");
   batch.hand_on();
   return {points, 1};
+}
+
+bool holds_xyz(FileStream& file) { return !foreign_content(file); }
+
+std::string xyz_content(const Cloud& cloud, bool) {
+  return "# x y z [m]\n" + text_rows(cloud.points);
+}
+
+}  // namespace
+
+CloudFileFormat xyz_format() {
+  return {"xyz", "XYZ text", {".xyz", ".txt", ".asc"}, holds_xyz, stream_xyz, xyz_content};
 }
 
 }  // namespace excavplan

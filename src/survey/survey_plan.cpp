@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/error.hpp>
-
 #include "base/angles.hpp"
-#include "base/text.hpp"
+#include "base/check.hpp"
 
 namespace excavplan {
 namespace {
@@ -26,12 +24,11 @@ constexpr double farthest = 1000.0;  // [m]
 constexpr int most_frames = 1000;
 
 void require(bool holds, const char* name, double value, const char* rule) {
-  if (holds && std::isfinite(value)) return;
-  throw Error(ErrorKind::bad_input, std::string("survey plan: ") + name + " is " +
-                                        number_text(value) + ", must be " + rule);
+  excavplan::require(holds && std::isfinite(value), std::string("survey plan: ") + name, value,
+                     rule);
 }
 
-void check(const SurveySensor& sensor) {
+void check(const Sensor& sensor) {
   require(sensor.noise >= 0.0, "noise of the sensor", sensor.noise, ">= 0 m");
   require(sensor.pattern >= 0.0, "pattern of the sensor", sensor.pattern, ">= 0 m");
   require(sensor.pattern_rays >= 0.0, "width of the pattern", sensor.pattern_rays, ">= 0 rays");
@@ -243,33 +240,6 @@ double last_that(double low, double high, const Holds& holds) {
 }
 
 }  // namespace
-
-SurveySensor d435i_sensor() {
-  constexpr double focal = 446.8;                 // 848 px over 87 deg [px]
-  constexpr double focal_times_baseline = 22.35;  // [px m]
-  SurveySensor sensor;
-  sensor.name = "d435i";
-  sensor.noise = 0.05 / focal_times_baseline;
-  sensor.pattern = 0.06 / focal_times_baseline;
-  sensor.pattern_rays = 3.0;
-  sensor.range_power = 2.0;
-  sensor.ray_angle = 1.0 / focal;
-  sensor.view_across = 87.0 * degree;
-  sensor.view_along = 58.0 * degree;
-  return sensor;
-}
-
-SurveySensor lidar_sensor() {
-  SurveySensor sensor;
-  sensor.name = "lidar";
-  sensor.noise = 0.020;
-  sensor.pattern = 0.003;
-  sensor.pattern_rays = 5.0;
-  sensor.ray_angle = 0.2 * degree;
-  sensor.view_across = 70.0 * degree;
-  sensor.view_along = 70.0 * degree;
-  return sensor;
-}
 
 SurveyForecast plan_survey(const SurveyPlan& plan) {
   check(plan);

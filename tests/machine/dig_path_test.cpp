@@ -13,6 +13,8 @@
 #include <excavplan/random.hpp>
 
 #include "base/angles.hpp"
+#include "base/files.hpp"
+#include "machine/dig_path_text.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {
@@ -97,6 +99,37 @@ TEST(DigPath, TableNamesTheThreeNumbersInOrder) {
     EXPECT_GE(fixed.*info.field, info.lower);
     EXPECT_LE(fixed.*info.field, info.upper);
   }
+}
+
+TEST(DigParameters, AreAVectorInTheOrderOfTheTable) {
+  const DigParameters dig{0.7, 0.2, 2.5};
+  const Eigen::VectorXd numbers = to_vector(dig);
+  ASSERT_EQ(numbers.size(), 3);
+  EXPECT_EQ(numbers, Eigen::Vector3d(0.7, 0.2, 2.5));
+  const DigParameters back = to_dig_parameters(Eigen::Vector4d(0.7, 0.2, 2.5, 6.0));
+  EXPECT_EQ(to_vector(back), numbers);
+}
+
+TEST(DigParameters, OfAPlanComeBackFromItsJson) {
+  const std::string file = testing::TempDir() + "dig_path_test_plan.json";
+  const DigParameters dig{1.45, 0.05, 1.0 / 3.0};  // the first two outside their search ranges
+  const nlohmann::ordered_json path = path_json(dig, 6.05);
+  EXPECT_EQ(path.dump(), R"({"penetration_angle_rad":1.45,"penetration_length_m":0.05,)"
+                         R"("drag_length_m":0.3333333333333333,"start_x_m":6.05})");
+  write_file(file, nlohmann::ordered_json{{"path", path}}.dump());
+  const auto [parameters, start_x] = read_planned_path(file);
+  EXPECT_EQ(to_vector(parameters), to_vector(dig));
+  EXPECT_EQ(start_x, 6.05);
+  write_file(file, R"({"path": {"penetration_angle_rad": "steep"}})");
+  EXPECT_EQ(test::error_of([&] { read_planned_path(file); }, ErrorKind::bad_file),
+            file +
+                ": path.penetration_angle_rad must be a number, it is \"steep\"; expected a "
+                "result of plan-path --json");
+}
+
+TEST(DigParameters, AsTextHaveTheirUnits) {
+  EXPECT_EQ(path_text(paper_fixed_path()), "45.0 deg, 0.350 m, 1.50 m");
+  EXPECT_EQ(path_text(paper_fixed_path(), 6.05), "45.0 deg, 0.350 m, 1.50 m from x = 6.05 m");
 }
 
 TEST(DigPath, PaperFixedPathKeepsItsHeelClear) {

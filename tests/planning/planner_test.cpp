@@ -741,12 +741,14 @@ TEST(Calibration, SimulatorFreedOfFallbackGivesThePapersLine) {
   const SoilKind loam = load_soil(find_data_file("soils/loam.json"));
   const DensityCalibration calibration = calibrate_density(machine, loam);
   EXPECT_EQ(calibration.samples.size(), 21U);
-  EXPECT_NEAR(calibration.line.a, 161.57, 0.05 * 161.57);
-  EXPECT_NEAR(calibration.line.b, -152.87, 0.05 * 152.87);
-  EXPECT_GT(calibration.line.r2, 0.975);
-  EXPECT_LT(calibration.line.r2, 0.990);
-  EXPECT_GE(calibration.closed_form.r2, 0.999);
-  EXPECT_GE(calibration.closed_form_as_measured->r2, 0.999);
+  const auto line = std::get<DensityLine>(calibration.form("line"));
+  EXPECT_NEAR(line.a, 161.57, 0.05 * 161.57);
+  EXPECT_NEAR(line.b, -152.87, 0.05 * 152.87);
+  EXPECT_GT(line.r2, 0.975);
+  EXPECT_LT(line.r2, 0.990);
+  for (const char* key : {"closed_form", "closed_form_as_measured"}) {
+    EXPECT_GE(std::get<DensityClosedForm>(calibration.form(key)).r2, 0.999);
+  }
   for (const auto& sample : calibration.samples) {
     EXPECT_NEAR(sample.bulking_factor, sample.bulking_factor_true, 1e-3);
     EXPECT_GE(sample.bulking_factor_measured, sample.bulking_factor_true - 1e-3);
@@ -759,10 +761,10 @@ TEST(Calibration, TheShippedLawIsWhatTheSimulatorGives) {
   const DensityCalibration calibration = calibrate_density(machine, loam);
   const DensityLaw law = load_density_law(find_data_file("laws/zx120-loam.json"));
   for (const auto& sample : calibration.samples) {
-    EXPECT_NEAR(
-        density_of_bulking(law.form, sample.bulking_factor_measured),
-        density_of_bulking(*calibration.closed_form_as_measured, sample.bulking_factor_measured),
-        0.01);
+    EXPECT_NEAR(density_of_bulking(law.form, sample.bulking_factor_measured),
+                density_of_bulking(calibration.form("closed_form_as_measured"),
+                                   sample.bulking_factor_measured),
+                0.01);
   }
 }
 

@@ -52,7 +52,7 @@ class Folder : public test::TemporaryFolder {
  public:
   /// @return the file's path
   std::string write(const std::string& name, const Points& points,
-                    CloudFormat format = CloudFormat::pcd_binary) const {
+                    CloudFormat format = CloudFormat{"pcd"}) const {
     Cloud cloud;
     cloud.points = points;
     cloud.width = points.size();
@@ -99,9 +99,9 @@ TEST(ScanSurface, IsThatOfTheWholeCloudToTheByteHoweverItIsRead) {
   Cloud cloud;
   cloud.points = points;
   folder.write("all.pcd", points);
-  folder.write("all.ply", points, CloudFormat::ply_ascii);
-  folder.write("a.xyz", {points.begin(), points.begin() + 12345}, CloudFormat::xyz);
-  folder.write("b.ply", {points.begin() + 12345, points.end()}, CloudFormat::ply_ascii);
+  folder.write("all.ply", points, CloudFormat{"ply", true});
+  folder.write("a.xyz", {points.begin(), points.begin() + 12345}, CloudFormat{"xyz"});
+  folder.write("b.ply", {points.begin() + 12345, points.end()}, CloudFormat{"ply", true});
   const Surface whole = survey_surface(scan_of({folder.file("all.ply")}), field);
   EXPECT_TRUE(same_bytes(whole.height.z, rasterise(cloud, field).z));
   EXPECT_TRUE(same_surface(
@@ -138,7 +138,7 @@ TEST(ScanSurface, FrameAndAreaHoldWhileItIsRead) {
   site_from_scan.translation() = Eigen::Vector3d(30.0, -7.0, 2.0);
   Points moved;
   for (const auto& p : points) moved.push_back(site_from_scan.inverse() * p);
-  Scan scan = scan_of({folder.write("moved.ply", moved, CloudFormat::ply_ascii)});
+  Scan scan = scan_of({folder.write("moved.ply", moved, CloudFormat{"ply", true})});
   scan.site_from_scan = site_from_scan.matrix();
   const Surface straight = surface_of(points, field, 0.1);
   RasterOptions options;
@@ -385,7 +385,7 @@ TEST(ScanOutline, OfASmallScanIsThatOfTheCloud) {
   cloud.points = sampled(level, field, 20000, 0.01, 1);
   cloud.points.push_back({nan, 0.0, 0.0});
   const ScanOutline seen =
-      outline(scan_of({folder.write("a.ply", cloud.points, CloudFormat::ply_ascii)}));
+      outline(scan_of({folder.write("a.ply", cloud.points, CloudFormat{"ply", true})}));
   const Rectangle extent = plan_extent(cloud);
   EXPECT_EQ(seen.points, 20001u);
   EXPECT_EQ(seen.finite_points, 20000u);

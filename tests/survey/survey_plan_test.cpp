@@ -52,7 +52,7 @@ HeightMap surface_of(const scenes::Dig& dig, scenes::Part part, bool after) {
 /// A D435i of half the resolution whose errors are as large and as wide on the ground; 30 frames
 /// are one of less noise.
 DepthCamera half_camera(double height, double offset) {
-  DepthCamera camera = d435i({});
+  DepthCamera camera = with_errors_of(sensor_of_word("d435i"), {});
   camera.position = {0.0, -offset, height};
   camera.target = {0.0, 0.0, 0.0};
   camera.width /= 2;
@@ -218,7 +218,7 @@ TEST(SurveyPlan, ErrorGrowsWithTheCubeOfTheRangeOfAStereoCamera) {
   const double near = plan_survey(plan).bulking_sd;
   plan.height = 6.0;
   EXPECT_NEAR(plan_survey(plan).bulking_sd / near, 8.0, 1e-9);
-  plan.sensor = lidar_sensor();
+  plan.sensor = sensor_of_word("lidar");
   plan.sensor.view_across = plan.sensor.view_along = 2.5;
   const double lidar = plan_survey(plan).bulking_sd;
   plan.height = 12.0;

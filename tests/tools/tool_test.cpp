@@ -48,6 +48,10 @@ TEST(DigPathText, TakesThreeQuantities) {
   EXPECT_DOUBLE_EQ(path.penetration_angle, std::atan(1.0));
   EXPECT_DOUBLE_EQ(path.penetration_length, 0.35);
   EXPECT_EQ(path.drag_length, 1.5);
+  EXPECT_EQ(dig_path_argument(paper_fixed_path()), "45deg,0.35m,1.5m");
+  EXPECT_EQ(dig_path_form().placeholder, "ANGLE,LENGTH,LENGTH");
+  EXPECT_EQ(dig_path_form().units, "rad,m,m");
+  EXPECT_EQ(dig_path_form().names, "penetration angle, penetration length, drag length");
   for (const char* bad : {"45deg,1m", "45deg,1m,1m,1m", "45deg,1m,1m,", "1m,1m,1m", ",,", ""}) {
     EXPECT_NE(error_of([&] { parse_dig_path("--path", bad); }), "no error") << bad;
   }

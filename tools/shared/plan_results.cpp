@@ -62,8 +62,8 @@ std::string expected_line(const PlanSearch& search, const DigGoalInfo& goal, dou
   std::string line = "expected     " + readable(goal.per_si * search.worth) + " " + goal.unit +
                      " on average over " + readable(density_sd) + " points of standard deviation";
   if (!search.value_of_knowing) return line;
-  return line + "; knowing the density would add " +
-         readable(100.0 * *search.value_of_knowing, 2) + " %";
+  return line + "; knowing the density would add " + readable(100.0 * *search.value_of_knowing, 2) +
+         " %";
 }
 
 /// Empty where the dig is that of an entry on level ground.
@@ -72,15 +72,13 @@ std::string look_up_line(const PlanLookUp& look_up) {
   std::string line = "looked up    ";
   if (look_up.slope != 0.0) line += "on a slope of " + readable(look_up.slope, 2) + " rad";
   if (look_up.error->loss == 0.0) return line;
-  return line + (look_up.slope != 0.0 ? ", " : "") +
-         "between entries, which loses up to " + readable(100.0 * look_up.error->loss, 2) +
-         " % of the best efficiency";
+  return line + (look_up.slope != 0.0 ? ", " : "") + "between entries, which loses up to " +
+         readable(100.0 * look_up.error->loss, 2) + " % of the best efficiency";
 }
 
 std::string source_line(const DigPlan& plan) {
-  const std::string digs = plan.evaluations > 0
-                               ? ", " + std::to_string(plan.evaluations) + " digs simulated"
-                               : "";
+  const std::string digs =
+      plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : "";
   return "source       " + std::string(name(plan.method)) + digs + "; start: " + plan.start_rule;
 }
 
@@ -128,9 +126,8 @@ std::vector<std::string> plan_lines(const DigPlan& plan, const GroundDensity& de
                                     const std::string& soil, const DigObjective& objective) {
   if (!plan.dig) return {"stopped before any dig was found"};
   const DigGoalInfo& goal = info_of(objective.goal);
-  std::vector<std::string> lines = {"density      " +
-                                    readable(density.percent, density.sd_percent) + " % in " +
-                                    soil};
+  std::vector<std::string> lines = {
+      "density      " + readable(density.percent, density.sd_percent) + " % in " + soil};
   for (const std::string& line : dig_lines(*plan.dig, plan.spread)) lines.push_back(line);
   if (plan.search && objective.goal != DigObjective::Goal::mass_per_energy) {
     lines.push_back("worth        " + readable(goal.per_si * plan.search->worth) + " " + goal.unit +

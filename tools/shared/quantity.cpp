@@ -10,7 +10,6 @@
 #include <excavplan/error.hpp>
 
 #include "base/angles.hpp"
-#include "base/text.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -72,6 +71,10 @@ std::vector<std::string> parts_of(const std::string& what, const std::string& te
   return parts;
 }
 
+void append(std::string& list, const char* separator, const std::string& word) {
+  list += (list.empty() ? "" : separator) + word;
+}
+
 }  // namespace
 
 const char* placeholder(Quantity quantity) { return info(quantity).placeholder; }
@@ -102,13 +105,43 @@ double parse_quantity(const std::string& what, const std::string& text, Quantity
   return value * known->factor;
 }
 
+Quantity quantity_of(const DigParameterInfo& info) {
+  return std::find_if(quantities.begin(), quantities.end(),
+                      [&](const QuantityInfo& row) { return info.unit == std::string(row.unit); })
+      ->quantity;
+}
+
+DigPathForm dig_path_form() {
+  DigPathForm form;
+  for (const DigParameterInfo& row : dig_parameter_table()) {
+    append(form.placeholder, ",", placeholder(quantity_of(row)));
+    append(form.units, ",", row.unit);
+    append(form.names, ", ", row.text);
+  }
+  return form;
+}
+
+std::string dig_path_argument(const DigParameters& parameters) {
+  std::string text;
+  for (const DigParameterInfo& row : dig_parameter_table()) {
+    const bool angle = quantity_of(row) == Quantity::angle;
+    const double value = parameters.*row.field * (angle ? 180.0 / pi : 1.0);
+    append(text, ",", number_text(std::round(1e9 * value) / 1e9) + (angle ? "deg" : row.unit));
+  }
+  return text;
+}
+
 DigParameters parse_dig_path(const std::string& what, const std::string& text) {
-  const auto parts = parts_of(what, text, 3,
-                              "a path ANGLE,LENGTH,LENGTH (penetration angle, penetration length, "
-                              "drag length) such as 45deg,0.35m,1.5m");
-  return {parse_quantity(what, parts[0], Quantity::angle),
-          parse_quantity(what, parts[1], Quantity::length),
-          parse_quantity(what, parts[2], Quantity::length)};
+  const auto& table = dig_parameter_table();
+  const DigPathForm form = dig_path_form();
+  const auto parts = parts_of(what, text, table.size(),
+                              "a path " + form.placeholder + " (" + form.names + ") such as " +
+                                  dig_path_argument(paper_fixed_path()));
+  DigParameters parameters;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    parameters.*table[i].field = parse_quantity(what, parts[i], quantity_of(table[i]));
+  }
+  return parameters;
 }
 
 Rectangle parse_rectangle(const std::string& what, const std::string& text) {
@@ -163,25 +196,6 @@ std::vector<double> parse_series(const std::string& what, const std::string& tex
   }
   if (series.empty()) throw Error(ErrorKind::bad_input, what + ": '" + text + "' holds no number");
   return series;
-}
-
-std::string readable(double value, int digits) {
-  if (!std::isfinite(value)) return "unknown";
-  const double magnitude = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)));
-  int places = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
-  const double rounding = 0.5 * std::pow(10.0, -places);
-  const double carried = std::pow(10.0, magnitude + 1.0);  // 9.9996 is 10.0, not 10.00
-  if (places > 0 && std::abs(value) + rounding >= carried) --places;
-  return decimals(value, places);
-}
-
-std::string readable(double value, double sd) {
-  if (!std::isfinite(sd) || sd <= 0.0) return readable(value);
-  const std::string deviation = readable(sd, 2);
-  const std::size_t point = deviation.find('.');
-  const int places =
-      point == std::string::npos ? 0 : static_cast<int>(deviation.size() - point - 1);
-  return decimals(value, places) + " ± " + deviation;
 }
 
 }  // namespace excavplan::tools

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include <excavplan/ground/height_map.hpp>
-#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/dig_parameters.hpp>
+
+#include "base/text.hpp"
 
 /// @file
 /// Numbers with units, from people and for people. `what` names the option in messages.
@@ -30,7 +32,19 @@ std::vector<std::string> split(const std::string& text, char separator);
 std::vector<double> parse_series(const std::string& what, const std::string& text,
                                  Quantity quantity);
 
-/// "45deg,0.35m,1.5m". @throws Error (bad_input)
+/// What a parameter of a dig measures.
+Quantity quantity_of(const DigParameterInfo& info);
+
+/// A dig path on the command line, from dig_parameter_table().
+struct DigPathForm {
+  std::string placeholder;  ///< "ANGLE,LENGTH,LENGTH"
+  std::string units;        ///< "rad,m,m"
+  std::string names;        ///< "penetration angle, penetration length, drag length"
+};
+DigPathForm dig_path_form();
+/// "45deg,0.35m,1.5m"
+std::string dig_path_argument(const DigParameters& parameters);
+/// The inverse. @throws Error (bad_input)
 DigParameters parse_dig_path(const std::string& what, const std::string& text);
 
 /// "xmin,ymin,xmax,ymax". @throws Error (bad_input)
@@ -38,11 +52,5 @@ Rectangle parse_rectangle(const std::string& what, const std::string& text);
 
 /// "x,y". @throws Error (bad_input)
 Eigen::Vector2d parse_point(const std::string& what, const std::string& text);
-
-/// A number for people: at least `digits` significant ones, never an exponent.
-std::string readable(double value, int digits = 3);
-
-/// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
-std::string readable(double value, double sd);
 
 }  // namespace excavplan::tools

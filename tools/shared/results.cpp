@@ -2,24 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/results.hpp"
 
-#include <cmath>
-
 #include <excavplan/error.hpp>
 
-#include "base/files.hpp"
-#include "base/json.hpp"
 #include "base/text.hpp"
+#include "machine/dig_path_text.hpp"
 #include "shared/plot.hpp"
 #include "shared/quantity.hpp"
-#include "shared/tool.hpp"
 
 namespace excavplan::tools {
-namespace {
-
-constexpr double degrees = 57.29577951308232;
-
-}  // namespace
-
 nlohmann::ordered_json volumes_json(const VolumeChange& change) {
   nlohmann::ordered_json json;
   const auto add = [&](const char* name, const Measured& volume) {
@@ -34,49 +24,20 @@ nlohmann::ordered_json volumes_json(const VolumeChange& change) {
   return json;
 }
 
-nlohmann::ordered_json path_json(const PlannedDig& dig) {
-  nlohmann::ordered_json json = to_json(dig.parameters);
-  json["start_x_m"] = dig.start_x;
-  return json;
-}
-
 nlohmann::ordered_json dig_json(const PlannedDig& dig) {
-  return {{"path", path_json(dig)},
-          {"payload_mass_kg", dig.payload_mass},
-          {"payload_volume_m3", dig.payload_volume},
-          {"energy_kj", dig.energy / 1000.0},
-          {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()},
-          {"duration_s", dig.duration}};
+  return {
+      {"path", path_json(dig.parameters, dig.start_x)},    {"payload_mass_kg", dig.payload_mass},
+      {"payload_volume_m3", dig.payload_volume},           {"energy_kj", dig.energy / 1000.0},
+      {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()}, {"duration_s", dig.duration}};
 }
 
-std::string path_text(const DigParameters& parameters, const std::optional<double>& start_x) {
-  return readable(degrees * parameters.penetration_angle) + " deg, " +
-         readable(parameters.penetration_length) + " m, " + readable(parameters.drag_length) +
-         " m" + (start_x ? " from x = " + readable(*start_x) + " m" : "");
+std::string path_text(const PlannedDig& dig) {
+  return excavplan::path_text(dig.parameters, dig.start_x);
 }
-
-std::pair<DigParameters, double> read_dig_path(const std::string& file) {
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
-  const auto number = [&](const std::string& key) {
-    const nlohmann::json::json_pointer place("/path/" + key);
-    const bool there = json.is_object() && json.contains(place);
-    if (there && json.at(place).is_number()) return json.at(place).get<double>();
-    throw Error(ErrorKind::bad_file, file + ": path." + key + " must be a number, it is " +
-                                         (there ? json.at(place).dump() : "missing") +
-                                         "; expected a result of plan-path --json");
-  };
-  DigParameters parameters;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    parameters.*info.field = number(info.name);
-  }
-  return {parameters, number("start_x_m")};
-}
-
-std::string path_text(const PlannedDig& dig) { return path_text(dig.parameters, dig.start_x); }
 
 std::string nearest_text(const std::optional<NearestDig>& nearest) {
   if (!nearest) return "";
-  return "; the nearest, " + path_text(nearest->parameters, nearest->start_x) + ": " +
+  return "; the nearest, " + excavplan::path_text(nearest->parameters, nearest->start_x) + ": " +
          nearest->reason;
 }
 

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -22,11 +21,6 @@ nlohmann::ordered_json volumes_json(const VolumeChange& change);
 
 /// "path" with start_x_m, payload, energy, efficiency, duration.
 nlohmann::ordered_json dig_json(const PlannedDig& dig);
-nlohmann::ordered_json path_json(const PlannedDig& dig);
-
-/// Three numbers of a dig and where it starts, from a result as plan-path --json prints it.
-/// @throws Error (bad_file) naming file, key, value and rule
-std::pair<DigParameters, double> read_dig_path(const std::string& file);
 
 /// "45.0 deg, 0.350 m, 1.500 m from x = 6.05 m"
 std::string path_text(const PlannedDig& dig);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/search_inputs.hpp"
 
-#include <array>
 #include <variant>
 
 #include <excavplan/error.hpp>
@@ -44,22 +43,20 @@ DigObjective objective_of(const SearchInputs& inputs) {
   refuse("--goal: '" + inputs.goal + "' is none of " + goals_text(", ", usage));
 }
 
-std::string range_option(std::size_t i) {
-  return std::array<std::string, 3>{"angle", "penetration", "drag"}[i] + "-range";
+std::string range_option(const DigParameterInfo& info) {
+  return std::string(info.option) + "-range";
 }
 
 DigBounds bounds_of(const SearchInputs& inputs) {
   DigBounds bounds;
   for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
     if (!inputs.ranges[i]) continue;
-    const std::string option = "--" + range_option(i);
-    const std::string& text = *inputs.ranges[i];
-    const std::size_t comma = text.find(',');
-    if (comma == std::string::npos) refuse(option + ": '" + text + "' is not FROM,TO");
-    const Quantity quantity = i == 0 ? Quantity::angle : Quantity::length;
-    const auto field = dig_parameter_table()[i].field;
-    bounds.lower.*field = parse_quantity(option, text.substr(0, comma), quantity);
-    bounds.upper.*field = parse_quantity(option, text.substr(comma + 1), quantity);
+    const DigParameterInfo& info = dig_parameter_table()[i];
+    const std::string option = "--" + range_option(info);
+    const std::vector<std::string> ends = split(*inputs.ranges[i], ',');
+    if (ends.size() != 2) refuse(option + ": '" + *inputs.ranges[i] + "' is not FROM,TO");
+    bounds.lower.*info.field = parse_quantity(option, ends[0], quantity_of(info));
+    bounds.upper.*info.field = parse_quantity(option, ends[1], quantity_of(info));
   }
   return bounds;
 }
@@ -98,8 +95,9 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
                  "where the dig begins: work (least work of the links), margin (farthest from the "
                  "joint limits), search (with the path), or x");
   for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
-    arguments.text(range_option(i), "FROM,TO", inputs.ranges[i],
-                   std::string(dig_parameter_table()[i].name) + " searched");
+    const DigParameterInfo& info = dig_parameter_table()[i];
+    arguments.text(range_option(info), "FROM,TO", inputs.ranges[i],
+                   std::string(info.text) + "s searched");
   }
   arguments.choice("method", inputs.method, {"default", "paper"},
                    "of the search; paper: the paper's genetic algorithm");
@@ -162,7 +160,7 @@ std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use) {
     ignored.add(inputs.goal != usual.goal, "--goal");
     ignored.add(inputs.rest_of_cycle != usual.rest_of_cycle, "--rest-of-cycle");
     for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
-      ignored.add(inputs.ranges[i].has_value(), "--" + range_option(i));
+      ignored.add(inputs.ranges[i].has_value(), "--" + range_option(dig_parameter_table()[i]));
     }
     ignored.add(inputs.method != usual.method, "--method");
     ignored.add(inputs.generations != usual.generations, "--generations");

@@ -47,12 +47,10 @@ void set(Request& request, const std::string& name, const std::string& value) {
     return;
   }
   if (name == "sensor") {
-    if (value == "d435i") {
-      request.plan.sensor = d435i_sensor();
-    } else if (value == "lidar") {
-      request.plan.sensor = lidar_sensor();
-    } else {
-      refuse("sensor is '" + value + "', must be d435i or lidar");
+    try {
+      request.plan.sensor = sensor_of_word(value);
+    } catch (const Error& error) {
+      refuse(error.what());
     }
   } else if (name == "frames") {
     const double frames = parse_quantity(what, value, Quantity::ratio);
@@ -88,7 +86,10 @@ std::string text_of(const std::optional<double>& value, const std::string& unit)
 }  // namespace
 
 std::string survey_keys() {
-  std::string text = "no scans: how well a survey will tell the density. Keys: sensor=d435i|lidar";
+  std::string text = "no scans: how well a survey will tell the density. Keys: sensor=";
+  for (const Sensor& sensor : sensors()) {
+    text += (&sensor == &default_sensor() ? "" : "|") + sensor.name;
+  }
   for (const Key& key : keys) text += std::string(", ") + key.name + " (" + key.help + ")";
   return text +
          ", frames (averaged), moved=yes|no (the sensor moves between the scans), target "

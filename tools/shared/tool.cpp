@@ -389,7 +389,15 @@ void Arguments::option(const std::string& name, std::optional<Rectangle>& value,
 
 void Arguments::option(const std::string& name, std::optional<DigParameters>& value,
                        const std::string& help) {
-  add({name, "ANGLE,LENGTH,LENGTH", help + " [rad,m,m]", "", false, false,
+  const DigPathForm form = dig_path_form();
+  add({name, form.placeholder, help + " [" + form.units + "]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_dig_path("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, DigParameters& value, const std::string& help) {
+  const DigPathForm form = dig_path_form();
+  add({name, form.placeholder, help + ": " + form.names + " [" + form.units + "]",
+       dig_path_argument(value), false, false,
        [&value, name](const std::string& text) { value = parse_dig_path("--" + name, text); }});
 }
 
@@ -535,12 +543,6 @@ PathLibrary library_of(const std::optional<std::string>& file, const Machine& ma
   PathLibrary library = load_path_library(*file);
   require_fit(library, machine, soil, *file);
   return library;
-}
-
-nlohmann::ordered_json to_json(const DigParameters& parameters) {
-  return {{"penetration_angle_rad", parameters.penetration_angle},
-          {"penetration_length_m", parameters.penetration_length},
-          {"drag_length_m", parameters.drag_length}};
 }
 
 }  // namespace excavplan::tools

@@ -73,8 +73,10 @@ class Arguments {
   void option(const std::string& name, std::optional<int>& value, const std::string& help);
   void option(const std::string& name, std::uint64_t& value, const std::string& help);
   void option(const std::string& name, std::optional<Rectangle>& value, const std::string& help);
+  /// The help of the second tells the numbers of a path too.
   void option(const std::string& name, std::optional<DigParameters>& value,
               const std::string& help);
+  void option(const std::string& name, DigParameters& value, const std::string& help);
   /// "x,y"
   void option(const std::string& name, std::optional<Eigen::Vector2d>& value,
               const std::string& help);
@@ -186,8 +188,5 @@ PathLibrary library_of(const std::optional<std::string>& file, const Machine& ma
 /// Path of the file in data/`folder` of that name, or the path itself if it is one.
 /// @throws Error (bad_input) if it looks like a name but none of that name is shipped
 std::string shipped_or_file(const std::string& folder, const std::string& name_or_path);
-
-/// penetration_angle_rad, penetration_length_m, drag_length_m.
-nlohmann::ordered_json to_json(const DigParameters& parameters);
 
 }  // namespace excavplan::tools

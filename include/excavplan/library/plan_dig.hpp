@@ -58,26 +58,26 @@ struct PlanSearch {
 
 /// How the dig was looked up.
 struct PlanLookUp {
-  double slope = 0.0;  ///< of the ground, as far as the library goes [rad]
+  double slope = 0.0;                ///< of the ground, as far as the library goes [rad]
   std::optional<MidwayError> error;  ///< look_up_error(); nothing on ground unlike the library's
 };
 
 struct DigPlan {
   /// Expected figures: the library's on level ground in the simulator that it was computed with,
-  /// else those of the dig in `simulator`, their means if searched for an uncertain density. Nothing
-  /// if no dig can be done, or if the search was cancelled before it found one.
+  /// else those of the dig in `simulator`, their means if searched for an uncertain density.
+  /// Nothing if no dig can be done, or if the search was cancelled before it found one.
   std::optional<PlannedDig> dig;
   DigSpread spread;       ///< from the density's standard deviation; zero if that is 0
   DigPath path;           ///< of the dig, with its approach
   Trajectory trajectory;  ///< of that path
   PlanMethod method = PlanMethod::library;
-  std::string start_rule;            ///< where the dig begins, for people
-  int evaluations = 0;               ///< digs simulated for the plan
-  std::optional<PlanSearch> search;  ///< if searched
+  std::string start_rule;             ///< where the dig begins, for people
+  int evaluations = 0;                ///< digs simulated for the plan
+  std::optional<PlanSearch> search;   ///< if searched
   std::optional<PlanLookUp> look_up;  ///< if looked up
 
-  bool stopped = false;      ///< the search was cancelled; the dig is the best until then
-  bool trustworthy = true;   ///< false after a warning marked * below
+  bool stopped = false;     ///< the search was cancelled; the dig is the best until then
+  bool trustworthy = true;  ///< false after a warning marked * below
   /// density_not_trustworthy *, law_of_other_soil, library_unreadable (the search began with
   /// nothing), slope_outside_library *, ground_unlike_library *, may_stall *, approach_blocked (the
   /// trajectory begins on the ground).

@@ -2,52 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <functional>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include <excavplan/machine/dig_parameters.hpp>
 #include <excavplan/machine/machine.hpp>
 
 /// @file
-/// One dig as three numbers, and as the poses and postures that follow from them.
+/// The poses and postures of one dig, as its parameters ask for.
 ///
 ///     DigParameters -> DigPath -> Trajectory (trajectory.hpp)
 ///
 /// Path rules: the paper, section 2.3.2; geometry: docs/methods.md#path.
 
 namespace excavplan {
-
-/// The paper's three numbers.
-///
-///     machine              start
-///       |<----- start_x ----->*
-///     --+--------------------/------ ground
-///          scoop   drag     /  penetrate
-///            (____<--------/
-struct DigParameters {
-  double penetration_angle = 0.0;   ///< of the line of penetration below the horizontal [rad]
-  double penetration_length = 0.0;  ///< along that line [m]
-  double drag_length = 0.0;         ///< horizontal, towards the machine [m]
-};
-
-/// The paper's fixed path of its simulation experiments: [pi/4, 0.35 m, 1.5 m] (section 3.1).
-DigParameters paper_fixed_path();
-
-/// Ties one number of DigParameters to its name and its search range.
-struct DigParameterInfo {
-  const char* name;  ///< as in the JSON of the tools
-  const char* unit;
-  double DigParameters::*field;
-  double lower;  ///< of the search
-  double upper;
-};
-
-/// One row per number, in order. The bounds (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m) are ours: the
-/// paper's own search range is in its Table 3, which is not published as text.
-const std::array<DigParameterInfo, 3>& dig_parameter_table();
 
 enum class DigPhase { approach, penetrate, drag, scoop, lift };
 const char* name(DigPhase phase);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <excavplan/ground/height_map.hpp>
+#include <excavplan/simulation/sensors.hpp>
 
 /// @file
 /// What a depth camera or a scanning lidar sees of a surface, errors included
@@ -18,19 +19,17 @@ namespace excavplan {
 /// A depth camera in the site frame.
 ///
 /// By default depth has white noise and dropouts only. The other errors of a stereo camera are off
-/// until asked for: d435i() sets them all.
+/// until asked for: with_errors_of() sets them all.
 struct DepthCamera {
   Eigen::Vector3d position = {0.0, 0.0, 2.5};  ///< [m]
   Eigen::Vector3d target = {0.0, 0.0, 0.0};    ///< point on the optical axis [m]
   int width = 256;                             ///< pixels; the image's x axis is level
   int height = 144;
-  double horizontal_view =
-      1.5184;  ///< field of view [rad]; 87 deg: D435i (docs/methods.md#sensors)
-  double noise =
-      0.0027;  ///< sd of the depth at 1 m, grows with range squared [m]; 0.06 px of a D435i
-  double dropouts = 0.02;       ///< share of pixels without depth [-]
-  double max_range = 6.0;       ///< [m]; ours
-  int frames = 1;               ///< averaged; noise and dropouts differ from frame to frame
+  double horizontal_view = 1.5184;  ///< field of view [rad]; ours: 87 deg
+  double noise = 0.0027;            ///< sd of the depth at 1 m, grows with range squared [m]; ours
+  double dropouts = 0.02;           ///< share of pixels without depth [-]
+  double max_range = 6.0;           ///< [m]; ours
+  int frames = 1;                   ///< averaged; noise and dropouts differ from frame to frame
   double pattern_noise = 0.0;   ///< sd at 1 m of what all frames of a scan share, grows with range
                                 ///< squared [m]
   double pattern_length = 3.0;  ///< its covariance falls as exp(-d^2 / (2 length^2)) [pixel]
@@ -42,10 +41,10 @@ struct DepthCamera {
 /// axis along x; ours: near enough for 1 % of bulking factor, high enough to see a dig whole.
 DepthCamera camera_above(const Eigen::Vector2d& ground_point, double ground_z);
 
-/// The same camera with the errors of an Intel D435i at 848 x 480 (f B = 22.35 px m): 0.05 px of
-/// noise, 0.06 px of fixed pattern, disparities in steps of 1/32 px, half of all pixels at edges
-/// flying.
-DepthCamera d435i(DepthCamera camera);
+/// The same camera with the pixels and the errors of a sensor of the table, which must be a camera;
+/// its place, field of view, range, dropouts and frames stay.
+/// @throws Error (bad_input) if the sensor has no image
+DepthCamera with_errors_of(const Sensor& sensor, DepthCamera camera);
 
 /// The points that the camera sees of a surface, in the site frame [m].
 ///
@@ -61,12 +60,12 @@ std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const DepthC
 /// A lidar that stands upright and sweeps a window of directions. The defaults are ours, of the
 /// size that data sheets of construction scanners state.
 struct Lidar {
-  Eigen::Vector3d position = {0.0, 0.0, 3.0};     ///< [m]
-  Eigen::Vector2d azimuth = {-0.8, 0.8};          ///< first and last, from the x axis [rad]
-  Eigen::Vector2d elevation = {-1.2, -0.2};       ///< first and last, up is positive [rad]
-  Eigen::Vector2d angle_step = {0.0035, 0.0035};  ///< of azimuth and elevation [rad]
-  double range_noise = 0.02;                      ///< sd of one range, at any distance [m]
-  double divergence = 0.003;                      ///< full angle of the beam [rad]
+  Eigen::Vector3d position = {0.0, 0.0, 3.0};          ///< [m]
+  Eigen::Vector2d azimuth = {-0.8, 0.8};               ///< first and last, from the x axis [rad]
+  Eigen::Vector2d elevation = {-1.2, -0.2};            ///< first and last, up is positive [rad]
+  Eigen::Vector2d angle_step = {0.0035, 0.0035};       ///< of azimuth and elevation [rad]
+  double range_noise = sensor_of_word("lidar").noise;  ///< sd of one range, at any distance [m]
+  double divergence = 0.003;                           ///< full angle of the beam [rad]
   double pulse_length = 0.6;  ///< returns nearer to each other than this mix into one [m]
   double dropouts = 0.02;     ///< share of beams without a return [-]
   double max_range = 40.0;    ///< [m]

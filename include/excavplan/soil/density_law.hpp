@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -45,6 +44,7 @@ struct DensityClosedForm {
   double residual_sd = 0.0;  ///< [%]
 };
 
+/// The forms a law can have. Law files and fits go by this list.
 using DensityForm = std::variant<DensityLine, DensityClosedForm>;
 
 /// A law with its origin. `form` is what relative_density() uses.
@@ -71,6 +71,9 @@ double density_of_bulking(const DensityForm& form, double bulking_factor);
 double bulking_of_density(const DensityForm& form, double density_percent);
 
 double density_slope(const DensityForm& form, double bulking_factor);  ///< dd/dk [%]
+
+/// The formula of a form in the letters of its parameters: "d = a k + b".
+std::string formula(const DensityForm& form);
 
 /// Relative density [%] with what is known about its error.
 struct RelativeDensity {
@@ -107,16 +110,29 @@ DensityLine fit_line(const std::vector<BulkingSample>& samples);
 /// @throws Error (bad_input) as fit_line(), with fewer than 4 different densities
 DensityClosedForm fit_closed_form(const std::vector<BulkingSample>& samples);
 
+/// A fitted form and its key in a law file.
+struct DensityFit {
+  std::string key;
+  DensityForm form;
+};
+
+/// Fits every form. Their keys are "line" and "closed_form", followed by `key_ending`.
+/// @throws Error (bad_input) as the fits
+std::vector<DensityFit> fit_density_forms(const std::vector<BulkingSample>& samples,
+                                          const std::string& key_ending = "");
+
+/// Ends the key of a form fitted to k as height maps give it, not freed of fallback.
+inline constexpr const char* as_measured = "_as_measured";
+
 /// What calibrate-density finds, and what a law file holds.
 struct DensityCalibration {
   std::string name;
   std::string source;
   std::string soil;  ///< name of the soil; empty: not known
-  std::string use;   ///< key of the form that serves: "line", "closed_form", "..._as_measured"
-  DensityLine line;  ///< on k freed of fallback where it is known
-  DensityClosedForm closed_form;
-  std::optional<DensityLine> line_as_measured;  ///< on k as height maps give it
-  std::optional<DensityClosedForm> closed_form_as_measured;
+  std::string use;   ///< key of the form that serves
+  /// On k freed of fallback where it is known; the keys of those on k as height maps give it end in
+  /// `as_measured`.
+  std::vector<DensityFit> forms;
   struct Sample {
     double density_percent = 0.0;
     double bulking_factor = 0.0;           ///< freed of fallback
@@ -125,6 +141,9 @@ struct DensityCalibration {
     double fallback_fraction = 0.0;
   };
   std::vector<Sample> samples;
+
+  /// The form of this key. @throws Error (bad_input) if there is none
+  const DensityForm& form(const std::string& key) const;
 };
 
 /// The text of a law file. @throws nothing

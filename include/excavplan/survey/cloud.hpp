@@ -22,7 +22,11 @@ struct Cloud {
   std::size_t height = 1;  ///< 1 unless organised
 };
 
-enum class CloudFormat { pcd_ascii, pcd_binary, ply_ascii, ply_binary, xyz };
+/// How a cloud is written.
+struct CloudFormat {
+  std::string name;   ///< "pcd", "ply" or "xyz"
+  bool text = false;  ///< every number with all its digits; else binary, where the format has it
+};
 
 /// Reads PCD (ascii, binary, binary_compressed), PLY (ascii, binary little and big endian) or XYZ
 /// text; the format is told from the content, not from the name.
@@ -49,12 +53,14 @@ void stream_cloud(const std::string& path, const PointVisitor& visit);
 ///
 /// The file appears whole or not at all (written beside, then renamed).
 /// @throws Error (bad_file) if the file cannot be written; (bad_input) if the cloud's width and
-/// height do not fit its points
+/// height do not fit its points, or the format is none
 void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format);
 
 /// The format a file name asks for: .pcd and .ply binary, .xyz .txt .asc text.
 /// @throws Error (bad_input) for any other ending
 CloudFormat cloud_format_of_name(const std::string& path);
+/// The endings it knows, for help: ".pcd, .ply, .xyz, .txt or .asc".
+std::string cloud_endings();
 
 /// Reads a 4 x 4 matrix of text that takes a scan into the site frame.
 /// @throws Error (bad_file) if it is not 16 numbers, the last row is not 0 0 0 1, or it is not

@@ -3,31 +3,14 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <vector>
+
+#include <excavplan/simulation/sensors.hpp>
 
 /// @file
 /// How well a survey will tell the density, before anybody goes out: from the size of the dig, the
 /// errors of the sensor and where it stands (docs/methods.md#survey-planning).
 
 namespace excavplan {
-
-/// Errors of a sensor that sends rays at equal angles.
-struct SurveySensor {
-  std::string name;
-  double noise = 0.0;         ///< sd of one range at 1 m that differs from frame to frame [m]
-  double pattern = 0.0;       ///< sd at 1 m of what all frames of a scan share [m]
-  double pattern_rays = 0.0;  ///< rays over which it is shared: covariance exp(-n^2 / (2 rays^2))
-  double range_power = 0.0;   ///< both grow with range to this power: 2 for stereo, 0 for lidar
-  double ray_angle = 0.0;     ///< between neighbouring rays [rad]
-  double view_across = 0.0;   ///< field of view [rad]
-  double view_along = 0.0;    ///< in the direction in which it is tilted [rad]
-};
-
-/// Intel D435i at 848 x 480: 0.05 px of noise and 0.06 px of pattern 3 px wide (f B = 22.35 px m).
-SurveySensor d435i_sensor();
-/// A scanning lidar: 20 mm of noise, 3 mm that 5 neighbouring rays share (ours), 0.2 degrees.
-SurveySensor lidar_sensor();
 
 /// What is to be surveyed, and how. Dig area and dump area are each seen from one such place,
 /// before and after.
@@ -39,7 +22,7 @@ struct SurveyPlan {
   double wall_angle = 1.22;       ///< of the pit [rad]
   double angle_of_repose = 0.61;  ///< of heap and spill [rad]
   double surveyed_area = 25.0;    ///< around the dig and around the heap, each [m^2]
-  SurveySensor sensor = d435i_sensor();
+  Sensor sensor = default_sensor();
   double height = 2.5;            ///< of the sensor above the ground [m]
   double offset = 1.0;            ///< from the middle of the area, in plan [m]
   int frames = 30;                ///< averaged

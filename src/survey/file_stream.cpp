@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "survey/cloud_format.hpp"
+#include "survey/file_stream.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -16,81 +17,8 @@
 namespace excavplan {
 namespace {
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "binary PCD is read and written as is");
-
 constexpr std::string_view blanks = " \t";
-
-/// Calls `body` with a value of the C++ type that `type` stands for.
-template <typename Body>
-auto with_type(ScalarType type, Body body) {
-  switch (type) {
-    case ScalarType::int8:
-      return body(std::int8_t{});
-    case ScalarType::uint8:
-      return body(std::uint8_t{});
-    case ScalarType::int16:
-      return body(std::int16_t{});
-    case ScalarType::uint16:
-      return body(std::uint16_t{});
-    case ScalarType::int32:
-      return body(std::int32_t{});
-    case ScalarType::uint32:
-      return body(std::uint32_t{});
-    case ScalarType::int64:
-      return body(std::int64_t{});
-    case ScalarType::uint64:
-      return body(std::uint64_t{});
-    case ScalarType::float32:
-      return body(float{});
-    case ScalarType::float64:
-      break;
-  }
-  return body(double{});
-}
-
-template <typename T>
-double load(const char* bytes, bool swapped) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes, raw.size());
-  if (swapped) std::reverse(raw.begin(), raw.end());
-  T value;
-  std::memcpy(&value, raw.data(), raw.size());
-  return static_cast<double>(value);
-}
-
-/// True if every point is three float32 of this machine and nothing else, as most are.
-bool are_plain_floats(const Columns& columns, bool swapped) {
-  constexpr std::size_t size = sizeof(float);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (columns.type[axis] != ScalarType::float32 || columns.stride[axis] != 3 * size ||
-        columns.offset[axis] != columns.offset[0] + axis * size) {
-      return false;
-    }
-  }
-  return !swapped;
-}
-
-void copy_points(const char* block, const Columns& columns, bool swapped,
-                 std::vector<Eigen::Vector3d>& points) {
-  if (are_plain_floats(columns, swapped)) {
-    std::array<float, 3 * points_at_a_time> raw;
-    std::memcpy(raw.data(), block + columns.offset[0], points.size() * 3 * sizeof(float));
-    const auto count = static_cast<Eigen::Index>(3 * points.size());
-    Eigen::Map<Eigen::ArrayXd>(points.data()->data(), count) =
-        Eigen::Map<const Eigen::ArrayXf>(raw.data(), count).cast<double>();
-    return;
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const char* const column = block + columns.offset[axis];
-    const std::size_t stride = columns.stride[axis];
-    with_type(columns.type[axis], [&](auto value) {
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        points[i][static_cast<Eigen::Index>(axis)] =
-            load<decltype(value)>(column + i * stride, swapped);
-      }
-    });
-  }
-}
+constexpr std::size_t longest_surplus = 4096;  // blanks or zeros after the last point [byte]
 
 }  // namespace
 
@@ -254,40 +182,6 @@ std::uint64_t count_of(std::string_view word, const LineReader& lines) {
   const auto value = parse_count(word);
   if (!value) lines.fail(quoted(word), "a whole number, not negative and below 2^64");
   return *value;
-}
-
-std::size_t size_of(ScalarType type) {
-  return with_type(type, [](auto value) { return sizeof value; });
-}
-
-double load_scalar(ScalarType type, const char* bytes, bool swapped) {
-  return with_type(type, [&](auto value) { return load<decltype(value)>(bytes, swapped); });
-}
-
-void stream_block(const char* block, std::uint64_t count, const Columns& columns, PointSink& sink) {
-  std::vector<Eigen::Vector3d> points;
-  Columns part = columns;
-  for (std::uint64_t begin = 0; begin < count; begin += points.size()) {
-    points.resize(std::min<std::uint64_t>(points_at_a_time, count - begin));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      part.offset[axis] = columns.offset[axis] + begin * columns.stride[axis];
-    }
-    copy_points(block, part, false, points);
-    sink.take(points);
-  }
-}
-
-void stream_rows(FileStream& file, std::uint64_t count, const Columns& columns, bool swapped,
-                 PointSink& sink) {
-  std::vector<Eigen::Vector3d> points;
-  const std::size_t row = columns.stride[0];
-  while (count > 0) {
-    points.resize(std::min<std::uint64_t>(points_at_a_time, count));
-    copy_points(file.peek(points.size() * row).data(), columns, swapped, points);
-    file.skip(points.size() * row);
-    sink.take(points);
-    count -= points.size();
-  }
 }
 
 }  // namespace excavplan

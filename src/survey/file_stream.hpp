@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -12,18 +10,12 @@
 #include <string_view>
 #include <vector>
 
-#include <excavplan/survey/cloud.hpp>
-
-/// @file What the readers of cloud files share: the bytes of a file, its lines, numbers of any
-/// type, the way points go on, and errors that name the place. Private to the library.
+/// @file The bytes of a file that may be larger than memory, its lines and the numbers in them, and
+/// errors that name the place. Private to the library.
 
 namespace excavplan {
 
-constexpr std::size_t longest_header = 65536;  ///< of a PCD or PLY file [byte]
-constexpr std::size_t longest_line = 4096;     ///< without its end [byte]
-constexpr std::size_t most_fields = 64;        ///< of a point
-constexpr std::size_t longest_row = 4096;      ///< of a binary point [byte]
-constexpr std::size_t longest_surplus = 4096;  ///< blanks or zeros after the last point [byte]
+constexpr std::size_t longest_line = 4096;  ///< without its end [byte]
 
 /// A regular file read from front to back through a window that slides over it, so that it may be
 /// larger than memory. Not mapped: a mapped file that another program cuts short would end ours
@@ -73,43 +65,6 @@ class FileStream {
   std::size_t capacity_ = 0;
 };
 
-/// Where a reader puts the points of a file, in their order.
-class PointSink {
- public:
-  virtual ~PointSink() = default;
-  /// Asked before the points come, where a file says how many there are at most, and before more
-  /// than the points at hand is held for them. @throws Error (bad_file) if that is too much
-  virtual void require_memory(std::uint64_t points, std::uint64_t more_bytes) = 0;
-  virtual void take(const std::vector<Eigen::Vector3d>& points) = 0;
-};
-
-constexpr std::size_t points_at_a_time = 2048;  ///< stay in the second cache
-
-/// Hands on points that come one by one.
-class PointBatch {
- public:
-  explicit PointBatch(PointSink& sink) : sink_(sink) { points_.reserve(points_at_a_time); }
-  void add(const Eigen::Vector3d& point) {
-    points_.push_back(point);
-    if (points_.size() == points_at_a_time) hand_on();
-  }
-  /// To be called after the last one.
-  void hand_on() {
-    if (!points_.empty()) sink_.take(points_);
-    points_.clear();
-  }
-
- private:
-  PointSink& sink_;
-  std::vector<Eigen::Vector3d> points_;
-};
-
-/// What a file says of the order of its points.
-struct CloudShape {
-  std::uint64_t width = 0;
-  std::uint64_t height = 1;
-};
-
 /// The lines of a file, ended by LF or CRLF.
 class LineReader {
  public:
@@ -144,41 +99,5 @@ std::optional<std::uint64_t> parse_count(std::string_view word);
 /// @throws Error (bad_file) naming the line
 double number_of(std::string_view word, const LineReader& lines);
 std::uint64_t count_of(std::string_view word, const LineReader& lines);
-
-enum class ScalarType {
-  int8,
-  uint8,
-  int16,
-  uint16,
-  int32,
-  uint32,
-  int64,
-  uint64,
-  float32,
-  float64
-};
-std::size_t size_of(ScalarType type);
-inline bool is_integer(ScalarType type) { return type < ScalarType::float32; }
-/// The number at `bytes`, of the machine's byte order or, with `swapped`, the other one.
-double load_scalar(ScalarType type, const char* bytes, bool swapped);
-
-/// Where x, y and z of the points stand in a block of memory.
-struct Columns {
-  std::array<ScalarType, 3> type{};
-  std::array<std::size_t, 3> offset{};  ///< of the first point [byte]
-  std::array<std::size_t, 3> stride{};  ///< from point to point [byte]
-};
-/// Hands on `count` points that stand one behind the other in a file.
-void stream_rows(FileStream& file, std::uint64_t count, const Columns& columns, bool swapped,
-                 PointSink& sink);
-/// Hands on points that stand in memory.
-void stream_block(const char* block, std::uint64_t count, const Columns& columns, PointSink& sink);
-
-CloudShape stream_pcd(FileStream& file, PointSink& sink);
-CloudShape stream_ply(FileStream& file, PointSink& sink);
-CloudShape stream_xyz(FileStream& file, PointSink& sink);
-
-/// True if the first words of a file are those of a PCD header.
-bool looks_like_pcd(FileStream& file);
 
 }  // namespace excavplan

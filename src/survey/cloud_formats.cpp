@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "survey/cloud_formats.hpp"
+
+#include <algorithm>
+
+namespace excavplan {
+
+CloudFileFormat pcd_format();  // each in a file of its own: cloud_pcd.cpp
+CloudFileFormat ply_format();
+CloudFileFormat xyz_format();
+
+const std::vector<CloudFileFormat>& cloud_file_formats() {
+  // xyz last: it takes every text.
+  static const std::vector<CloudFileFormat> formats = {pcd_format(), ply_format(), xyz_format()};
+  return formats;
+}
+
+std::optional<ForeignContent> foreign_content(FileStream& file) {
+  struct Signature {
+    std::string_view bytes;
+    const char* name;
+  };
+  constexpr Signature known[] = {{"LASF", "a LAS or LAZ file"},
+                                 {"SQLite format 3", "a database, such as a ROS 2 bag"},
+                                 {"#ROSBAG", "a ROS bag"},
+                                 {"\x89PNG", "a PNG image"}};
+  for (const Signature& signature : known) {
+    if (file.peek(signature.bytes.size()) == signature.bytes) {
+      return ForeignContent{"byte 0", signature.name};
+    }
+  }
+  const std::string_view start = file.peek(longest_line);
+  const auto odd = std::find_if(start.begin(), start.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\n' && c != '\r';
+  });
+  if (odd == start.end()) return std::nullopt;
+  return ForeignContent{"byte " + std::to_string(odd - start.begin()),
+                        "the byte " + std::to_string(static_cast<unsigned char>(*odd))};
+}
+
+}  // namespace excavplan

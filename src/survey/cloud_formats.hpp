@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/survey/cloud.hpp>
+
+#include "survey/point_stream.hpp"
+
+/// @file The table of cloud formats: a new one is a file of its own and a line in
+/// cloud_formats.cpp. Private to the library.
+
+namespace excavplan {
+
+constexpr std::size_t longest_header = 65536;  ///< of a PCD or PLY file [byte]
+constexpr std::size_t most_fields = 64;        ///< of a point
+
+/// What a file says of the order of its points.
+struct CloudShape {
+  std::uint64_t width = 0;
+  std::uint64_t height = 1;
+};
+
+/// A format of cloud files.
+struct CloudFileFormat {
+  std::string name;                  ///< CloudFormat::name
+  std::string title;                 ///< for people: "XYZ text"
+  std::vector<std::string> endings;  ///< of file names, in small letters; at least one
+  /// True if a file is of this format, told from its first bytes without going past them.
+  bool (*holds)(FileStream& file);
+  /// Reads a file of this format. @throws Error (bad_file)
+  CloudShape (*stream)(FileStream& file, PointSink& sink);
+  /// The content of a file; text with every digit or, where the format has it, binary.
+  std::string (*content)(const Cloud& cloud, bool text);
+};
+
+/// In the order in which a file's content is tried.
+const std::vector<CloudFileFormat>& cloud_file_formats();
+
+/// What shows that a file is no text.
+struct ForeignContent {
+  std::string place;
+  std::string found;
+};
+std::optional<ForeignContent> foreign_content(FileStream& file);
+
+}  // namespace excavplan

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "support/run_program.hpp"
+
+/// @file
+/// Runs the tools and reads their answers: what the tests of several tools share.
+
+namespace excavplan::test {
+namespace fs = std::filesystem;
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+inline Words operator+(Words first, const Words& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+inline std::string shipped(const std::string& file) {
+  return std::string(EXCAVPLAN_DATA_SOURCE) + "/" + file;
+}
+inline std::string shared(const std::string& file) {
+  return std::string(EXCAVPLAN_SHARED_DATA) + "/" + file;
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// What a tool answers with --json; nothing but one object may stand on standard output.
+inline json answer(const std::string& tool, const Words& words, int code = 0) {
+  const ProgramResult result = run_program(tool, words + Words{"--json"});
+  EXPECT_EQ(result.code, code) << tool << ": " << result.err;
+  json object = json::parse(result.out, nullptr, false);
+  EXPECT_TRUE(object.is_object()) << tool << ": " << result.out;
+  return object;
+}
+
+inline double number(const json& object, const std::string& pointer) {
+  return object.at(json::json_pointer(pointer)).get<double>();
+}
+
+inline Words warning_codes(const json& object) {
+  Words codes;
+  for (const json& warning : object.at("warnings")) codes.push_back(warning.at("code"));
+  return codes;
+}
+
+inline bool warns(const json& object, const std::string& code) {
+  const Words codes = warning_codes(object);
+  return std::find(codes.begin(), codes.end(), code) != codes.end();
+}
+
+/// Every key is there and of the type that nlohmann calls by this name.
+inline void expect_keys(const json& object, const std::string& type, const Words& pointers) {
+  for (const std::string& pointer : pointers) {
+    const json::json_pointer at("/" + pointer);
+    if (!object.contains(at)) {
+      ADD_FAILURE() << pointer << " is missing";
+      continue;
+    }
+    EXPECT_EQ(object.at(at).type_name(), type) << pointer << " is " << object.at(at).dump();
+  }
+}
+
+inline const Words volume_keys = {
+    "volume/excavated_m3", "volume/excavated_sd_m3", "volume/spilled_m3", "volume/spilled_sd_m3",
+    "volume/dumped_m3",    "volume/dumped_sd_m3",    "volume/before_m3",  "volume/before_sd_m3",
+    "volume/after_m3",     "volume/after_sd_m3"};
+inline const Words path_keys = {"path/penetration_angle_rad", "path/penetration_length_m",
+                                "path/drag_length_m", "path/start_x_m"};
+inline const Words cost_keys = {"payload_mass_kg", "energy_kj", "efficiency_kg_per_kj"};
+
+inline const Words small_library = {"--points", "8", "--polish", "8", "--inherited", "8"};
+
+inline Words quickstart(const TemporaryFolder&) {
+  return {shipped("quickstart/before.pcd"), shipped("quickstart/after.pcd")};
+}
+
+/// Two scans of the whole scene and what really happened.
+struct ScanPair {
+  std::string before;
+  std::string after;
+  json truth;
+};
+
+inline ScanPair scan_pair(const TemporaryFolder& folder, int density, int seed) {
+  ScanPair scans{folder.file("before.pcd"), folder.file("after.pcd"), {}};
+  scans.truth =
+      answer("simulate-dig", {"--density", std::to_string(density), "--seed", std::to_string(seed),
+                              "--before", scans.before, "--after", scans.after});
+  return scans;
+}
+
+class Tools : public testing::Test {
+ protected:
+  TemporaryFolder folder;
+};
+
+class BadInput : public Tools {
+ protected:
+  /// The tool refuses with this code, gives this reason and leaves no file behind.
+  void refused(int code, const std::string& reason, const std::string& tool, const Words& words) {
+    const Words before = files();
+    const ProgramResult result = run_program(tool, words);
+    std::string command = tool;
+    for (const std::string& word : words) command += " " + word;
+    EXPECT_EQ(result.code, code) << command << '\n' << result.err;
+    EXPECT_EQ(result.out, "") << command;
+    EXPECT_EQ(result.err.rfind(tool + ": ", 0), 0U) << command << '\n' << result.err;
+    EXPECT_TRUE(contains(result.err, reason)) << command << '\n' << result.err;
+    EXPECT_EQ(files(), before) << command;
+  }
+
+  Words files() const {
+    Words names;
+    for (const auto& entry : fs::directory_iterator(folder.file(""))) {
+      names.push_back(entry.path().filename());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  const std::string scan = shipped("quickstart/before.pcd");
+  const std::string later_scan = shipped("quickstart/after.pcd");
+  const std::string letter = folder.write("letter.txt", "Dear reader,\nthis is not a cloud.\n");
+  const std::string plot = folder.file("plot.svg");
+};
+
+class RealScans : public Tools {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(shared("README.md"))) {
+      GTEST_SKIP() << EXCAVPLAN_SHARED_DATA << ": real scans are not here";
+    }
+  }
+  const std::string terrain = shared("site-terrain/terrain.pcd");
+};
+
+}  // namespace excavplan::test

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/tool_answers.hpp"
+
+/// @file
+/// calibrate-density: the law it fits to digs of the simulator or to samples.
+
+namespace excavplan::test {
+namespace {
+
+TEST_F(Tools, CalibrateDensityGivesTheKeysOfTheContract) {
+  const json result = answer("calibrate-density", {});
+  expect_keys(result, "number",
+              {"line/a", "line/b", "line/r2", "closed_form/r2", "line_as_measured/a",
+               "line_as_measured/b", "line_as_measured/r2"});
+  ASSERT_EQ(result.at("samples").size(), 21U);
+  for (std::size_t i = 0; i < 21; ++i) {
+    const json& sample = result["samples"][i];
+    expect_keys(
+        sample, "number",
+        {"bulking_factor", "bulking_factor_measured", "bulking_factor_true", "fallback_fraction"});
+    EXPECT_DOUBLE_EQ(number(sample, "/density_percent"), 5.0 * static_cast<double>(i));
+  }
+  EXPECT_GT(number(result, "/closed_form/r2"), number(result, "/line/r2"));
+}
+
+TEST_F(Tools, CalibrateDensitySaysHowFarTrueAndMeasuredFactorsPartAndWhy) {
+  const Words overfills = {"--path", "45deg,0.35m,2m"};
+  const json result = answer("calibrate-density", overfills);
+  const json& difference = result.at("largest_difference");
+  const double percent = number(difference, "/density_percent");
+  const double fallback = number(difference, "/fallback_fraction");
+  const double k = number(difference, "/bulking_factor_true");
+  double largest = 0.0;
+  for (const json& sample : result["samples"]) {
+    largest = std::max(largest, std::abs(number(sample, "/bulking_factor_measured") -
+                                         number(sample, "/bulking_factor_true")));
+  }
+  EXPECT_NEAR(std::abs(number(difference, "/bulking_factor_measured") - k), largest, 1e-12);
+  EXPECT_NEAR(number(difference, "/bulking_factor_measured"), (k - fallback) / (1.0 - fallback),
+              1e-6 + number(difference, "/unexplained"));
+  const std::string text = run_program("calibrate-density", overfills).out;
+  for (const std::string& part :
+       {"part most at " + std::to_string(static_cast<int>(percent)), std::string(" by dry mass, "),
+        std::string(" points of density too "), std::string(" % of the cut lay in the hole")}) {
+    EXPECT_TRUE(contains(text, part)) << part << '\n' << text;
+  }
+}
+
+TEST_F(BadInput, TablesThatHoldNoSamplesAreRefused) {
+  refused(3, "letter.txt: ", "calibrate-density", {"--samples", letter});
+  const std::string one = folder.write("one.csv", "bulking_factor,density_percent\n1.1,20\n");
+  refused(3, "one.csv: ", "calibrate-density", {"--samples", one, "--out", folder.file("law")});
+}
+
+}  // namespace
+}  // namespace excavplan::test

@@ -1,0 +1,410 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/machine/trajectory.hpp>
+
+#include "support/svg_figure.hpp"
+#include "support/tool_answers.hpp"
+
+/// @file
+/// plan-path: look-up and search, what it warns of, and the trajectory it writes.
+
+namespace excavplan::test {
+namespace {
+
+TEST_F(Tools, PlanPathGivesTheKeysOfTheContract) {
+  const json result = answer("plan-path", {"--density", "40"});
+  expect_keys(result, "number", path_keys + cost_keys);
+  expect_keys(result, "number",
+              {"density_percent", "payload_volume_m3", "duration_s", "wall_time_s"});
+  expect_keys(result, "string", {"source"});
+  EXPECT_TRUE(result.at("evaluations").is_number_integer());
+}
+
+TEST_F(Tools, TrajectoryIsTheTableOfTheContract) {
+  const std::string file = folder.file("dig.csv");
+  answer("plan-path", {"--density", "40", "--trajectory", file});
+  std::istringstream lines(content_of(file));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(
+      line.rfind("time_s,phase,boom_rad,arm_rad,bucket_rad,tip_x_m,tip_z_m,bucket_angle_rad,", 0),
+      0U);
+  const auto commas = std::count(line.begin(), line.end(), ',');
+  double last = -1.0;
+  Words phases;
+  while (std::getline(lines, line)) {
+    ASSERT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
+    const double time = std::stod(line);
+    EXPECT_GT(time, last);
+    last = time;
+    const std::size_t start = line.find(',') + 1;
+    const std::string phase = line.substr(start, line.find(',', start) - start);
+    if (phases.empty() || phases.back() != phase) phases.push_back(phase);
+  }
+  EXPECT_EQ(phases, Words({"approach", "penetrate", "drag", "scoop", "lift"}));
+}
+
+TEST_F(Tools, TrajectoryIsJsonIfItsFileIsCalledSo) {
+  const std::string file = folder.file("dig.json");
+  answer("plan-path", {"--density", "40", "--trajectory", file});
+  const Trajectory trajectory = load_trajectory(file);
+  EXPECT_EQ(trajectory.machine, "zx120");
+  EXPECT_EQ(trajectory.points.front().phase, DigPhase::approach);
+  EXPECT_GT(trajectory.points.front().bucket.z, 0.3);
+  EXPECT_EQ(trajectory.points.back().phase, DigPhase::lift);
+}
+
+TEST_F(Tools, ALinkIsWrittenThrough) {
+  const std::string target = folder.write("target.csv", "old");
+  const std::string link = folder.file("link.csv");
+  fs::create_symlink(target, link);
+  answer("plan-path", {"--density", "40", "--trajectory", link});
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(content_of(target).rfind("time_s,phase,", 0), 0U);
+}
+
+TEST_F(Tools, LibraryAnswersWithoutASingleDig) {
+  const json plan = answer("plan-path", {"--density", "40"});
+  EXPECT_EQ(plan["source"], "library");
+  EXPECT_EQ(plan["evaluations"], 0);
+  std::cout << "  " << 1000.0 * number(plan, "/wall_time_s") << " ms\n";
+  EXPECT_NEAR(number(plan, "/efficiency_kg_per_kj"),
+              number(plan, "/payload_mass_kg") / number(plan, "/energy_kj"), 1e-9);
+}
+
+TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
+  const std::string file = folder.file("library.json");
+  const json library =
+      answer("build-path-library",
+             Words{"--soil", "sand", "--densities", "30,50", "--out", file} + small_library);
+  const json plan = answer("plan-path", {"--soil", "sand", "--density", "50", "--library", file});
+  EXPECT_EQ(plan.at("path"), library.at("entries").at(1).at("path"));
+  EXPECT_EQ(plan.at("energy_kj"), library["entries"][1].at("energy_kj"));
+}
+
+TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
+  const std::string library = folder.file("library.json");
+  answer("build-path-library",
+         Words{"--densities", "40", "--slopes=-0.1,0,0.1", "--out", library} + small_library);
+  const auto plan = [&](double rise) {
+    std::string points;
+    for (double x = 1.0; x < 11.0; x += 0.04) {
+      for (double y = -2.0; y < 2.0; y += 0.04) {
+        points += std::to_string(x) + " " + std::to_string(y) + " " +
+                  std::to_string(rise * (x - 2.0)) + "\n";
+      }
+    }
+    return answer("plan-path", {"--density", "40", "--library", library, "--terrain",
+                                folder.write("ground.xyz", points)});
+  };
+  const json gentle = plan(0.05);
+  EXPECT_NEAR(gentle.at("look_up_slope_rad"), std::atan(0.05), 1e-4);
+  EXPECT_GT(gentle.at("look_up_loss"), 0.0);
+  EXPECT_FALSE(warns(gentle, "slope_outside_library"));
+  const json steep = plan(0.5);
+  EXPECT_NEAR(steep.at("look_up_slope_rad"), 0.1, 1e-12) << "as far as the library goes";
+  EXPECT_TRUE(warns(steep, "slope_outside_library"));
+  const json level = answer("plan-path", {"--density", "40", "--library", library});
+  EXPECT_EQ(level.at("look_up_slope_rad"), 0.0);
+  EXPECT_EQ(level.at("look_up_loss"), 0.0);
+}
+
+TEST_F(Tools, ALookUpSaysWhereTheGroundIsNotThatOfTheLibrary) {
+  const std::string terrain = shipped("quickstart/after.pcd");
+  const json pit = answer("plan-path", {"--density", "40", "--terrain", terrain});
+  EXPECT_TRUE(warns(pit, "ground_unlike_library"));
+  EXPECT_EQ(pit.at("look_up_loss"), nullptr);
+  EXPECT_EQ(run_program("plan-path", {"--density", "40", "--terrain", terrain, "--strict"}).code,
+            4);
+  const json even = answer(
+      "plan-path", {"--density", "40", "--terrain", shipped("quickstart/before.pcd"), "--strict"});
+  EXPECT_FALSE(warns(even, "ground_unlike_library"));
+  EXPECT_LT(number(even, "/look_up_loss"), 0.05);
+}
+
+TEST_F(Tools, SearchIsAtLeastAsGoodAsTheLibrary) {
+  const json library = answer("plan-path", {"--density", "40"});
+  const json search = answer("plan-path", {"--density", "40", "--search"});
+  std::cout << "  library " << library.at("efficiency_kg_per_kj") << ", search "
+            << search.at("efficiency_kg_per_kj") << " kg/kJ after " << search.at("evaluations")
+            << " digs\n";
+  EXPECT_EQ(search["source"], "search");
+  EXPECT_LE(search["evaluations"].get<int>(), 400);
+  EXPECT_GE(number(search, "/efficiency_kg_per_kj"), number(library, "/efficiency_kg_per_kj"));
+  EXPECT_EQ(number(search, "/worth"), number(search, "/efficiency_kg_per_kj"));
+  EXPECT_EQ(search.at("start_rule"), "least work of the links' own weight");
+  const json range = search.at("/ranges_98_percent/drag_length_m"_json_pointer);
+  EXPECT_LE(range.at(0), search.at("/path/drag_length_m"_json_pointer));
+  EXPECT_GE(range.at(1), search.at("/path/drag_length_m"_json_pointer));
+}
+
+TEST_F(Tools, SearchTakesGoalRangesStartAndMethod) {
+  const Words few = {"--density", "40", "--search", "--evaluations", "20"};
+  const json by_time =
+      answer("plan-path", few + Words{"--goal", "time", "--rest-of-cycle", "12s", "--drag-range",
+                                      "1m,1.5m", "--start", "6.1"});
+  EXPECT_EQ(by_time.at("worth_unit"), "kg/s");
+  EXPECT_NEAR(number(by_time, "/worth"),
+              number(by_time, "/payload_mass_kg") / (number(by_time, "/duration_s") + 12.0), 1e-9);
+  EXPECT_LE(number(by_time, "/path/drag_length_m"), 1.5);
+  EXPECT_EQ(number(by_time, "/path/start_x_m"), 6.1);
+  const json priced = answer("plan-path", few + Words{"--goal", "priced:3000"});
+  EXPECT_NEAR(number(priced, "/worth"),
+              number(priced, "/payload_mass_kg") /
+                  (number(priced, "/energy_kj") + 3.0 * number(priced, "/duration_s")),
+              1e-9);
+  const json paper = answer("plan-path", {"--density", "40", "--search", "--method", "paper",
+                                          "--population", "6", "--generations", "2"});
+  EXPECT_LE(paper.at("evaluations").get<int>(), 12);
+  EXPECT_EQ(paper.at("stopped_by"), "generations");
+}
+
+TEST_F(Tools, SearchIsTheSameForAnyNumberOfThreads) {
+  const auto plan = [](const char* threads) {
+    json result = answer(
+        "plan-path", {"--density", "30", "--search", "--evaluations", "40", "--threads", threads});
+    result.erase("wall_time_s");
+    return result.dump();
+  };
+  const std::string one = plan("1");
+  EXPECT_EQ(one, plan("2"));
+  EXPECT_EQ(one, plan("8"));
+}
+
+TEST_F(Tools, SearchWarnsOfADamagedShippedLibraryAndGoesOn) {
+  const std::string data = folder.file("data");
+  fs::copy(EXCAVPLAN_DATA_SOURCE, data, fs::copy_options::recursive);
+  folder.write("data/libraries/zx120-loam.json", R"({"format": "excavplan-path-library")");
+  fs::remove(data + "/libraries/zx120-sand.json");
+  ::setenv("EXCAVPLAN_DATA", data.c_str(), 1);
+  const Words few = {"--density", "40", "--search", "--evaluations", "10"};
+  const json loam = answer("plan-path", few);
+  const json sand = answer("plan-path", few + Words{"--soil", "sand"});  // has none
+  ::unsetenv("EXCAVPLAN_DATA");
+  EXPECT_TRUE(warns(loam, "library_unreadable"));
+  EXPECT_EQ(sand.at("warnings"), json::array());
+}
+
+TEST_F(Tools, InterruptedSearchSaysSoAndGoesOn) {
+  const std::string plot = folder.file("best_so_far.svg");
+  const Words words = {"--density",     "40", "--search",     "--evaluations",         "500",
+                       "--generations", "20", "--checkpoint", folder.file("digs.json")};
+  const ProgramResult stopped =
+      interrupted("plan-path", words + Words{"--plot", plot}, "generation 0:");
+  EXPECT_EQ(stopped.code, 75) << stopped.err;
+  EXPECT_TRUE(fs::exists(plot));
+  const json resumed = answer("plan-path", words + Words{"--resume"});
+  json at_once = answer("plan-path", Words(words.begin(), words.end() - 2));
+  at_once["wall_time_s"] = resumed.at("wall_time_s");
+  EXPECT_EQ(resumed, at_once);
+}
+
+TEST_F(Tools, InterruptedSearchForAnUncertainDensityGoesOn) {
+  const Words words = {"--density",
+                       "40",
+                       "--density-sd",
+                       "8",
+                       "--search",
+                       "--evaluations",
+                       "150",
+                       "--generations",
+                       "20",
+                       "--checkpoint",
+                       folder.file("digs.json")};
+  const ProgramResult stopped = interrupted("plan-path", words, "generation 0:");
+  EXPECT_EQ(stopped.code, 75) << stopped.err;
+  EXPECT_FALSE(fs::exists(folder.file("digs.json")));
+  EXPECT_TRUE(fs::exists(folder.file("digs.json.soil1")));
+  const json resumed = answer("plan-path", words + Words{"--resume"});
+  json at_once = answer("plan-path", Words(words.begin(), words.end() - 2));
+  at_once["wall_time_s"] = resumed.at("wall_time_s");
+  EXPECT_EQ(resumed, at_once);
+}
+
+/// Level ground, 2500 points per m2, but for a part of it.
+std::string ground_without(const Rectangle& part) {
+  std::string points;
+  for (int i = 50; i < 500; ++i) {
+    for (int j = -90; j < 90; ++j) {
+      const double x = 0.02 * i, y = 0.02 * j;
+      if (!part.contains(x, y)) points += std::to_string(x) + " " + std::to_string(y) + " 0\n";
+    }
+  }
+  return points;
+}
+
+TEST_F(Tools, NoDigGoesWhereTheScanDoesNotSee) {
+  const auto cloud = [&](const Rectangle& part) {
+    return folder.write("unseen.xyz", ground_without(part));
+  };
+  const Words plan = {"--density", "40", "--search", "--terrain"};
+  const json narrow = answer("plan-path", plan + Words{cloud({5.0, -1.0, 5.2, 1.0})});
+  EXPECT_FALSE(warns(narrow, "unseen_ground"));
+  const json far = answer("plan-path", plan + Words{cloud({6.0, -1.0, 8.0, 1.0})});
+  EXPECT_TRUE(warns(far, "unseen_ground"));
+  EXPECT_LT(number(far, "/path/start_x_m"), 6.0);
+  EXPECT_LT(number(far, "/efficiency_kg_per_kj"), number(narrow, "/efficiency_kg_per_kj"));
+  const ProgramResult all = run_program("plan-path", plan + Words{cloud({2.2, -1.4, 8.8, 1.4})});
+  EXPECT_EQ(all.code, 2);
+  EXPECT_NE(all.err.find("is not known"), std::string::npos) << all.err;
+}
+
+TEST_F(Tools, APlanThatMayStallIsNotTrusted) {
+  const Words plan = {"--density",
+                      "90",
+                      "--soil",
+                      "clay",
+                      "--density-sd",
+                      "10",
+                      "--search",
+                      "--penetration-range",
+                      "0.5,0.9",
+                      "--angle-range",
+                      "60deg,80deg",
+                      "--evaluations",
+                      "30"};
+  const json risky = answer("plan-path", plan);
+  EXPECT_GT(number(risky, "/stall_probability"), 0.05);
+  EXPECT_TRUE(warns(risky, "may_stall"));
+  EXPECT_EQ(run_program("plan-path", plan + Words{"--strict"}).code, 4);
+}
+
+TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {
+  const Words few = {"--density", "40", "--population", "6", "--evaluations", "6"};
+  const json looked_up = answer("plan-path", few + Words{"--goal", "time"});
+  ASSERT_TRUE(warns(looked_up, "options_ignored"));
+  EXPECT_EQ(looked_up["warnings"][0]["message"],
+            "without effect: --population, --goal, --evaluations; nothing is searched without "
+            "--search");
+  const json started = answer("plan-path", {"--density", "40", "--start", "5.7"});
+  ASSERT_TRUE(warns(started, "options_ignored"));
+  const json searched = answer("plan-path", few + Words{"--search"});
+  ASSERT_TRUE(warns(searched, "options_ignored"));
+  EXPECT_EQ(searched["warnings"][0]["message"],
+            "without effect: --population; the default method has none, --method paper has");
+  const json paper = answer("plan-path", few + Words{"--search", "--method", "paper"});
+  EXPECT_FALSE(warns(paper, "options_ignored"));
+  EXPECT_FALSE(warns(answer("plan-path", {"--density", "40"}), "options_ignored"));
+}
+
+TEST_F(Tools, PlanForAnUncertainDensitySaysWhatKnowingItIsWorth) {
+  const Words few = {"--search", "--evaluations", "30"};
+  const json plan = answer("plan-path", few + Words{"--density", "40", "--density-sd", "8"});
+  EXPECT_EQ(plan.at("expected_efficiency_kg_per_kj"), plan.at("worth"));
+  EXPECT_GE(number(plan, "/value_of_knowing_percent"), 0.0);
+  EXPECT_LT(number(plan, "/value_of_knowing_percent"), 5.0);
+  const std::string file = folder.write(
+      "result.json", R"({"density_percent": 40, "density_sd_percent": 8, "trustworthy": true})");
+  const json from = answer("plan-path", few + Words{"--density-from", file});
+  EXPECT_EQ(from.at("path"), plan.at("path"));
+}
+
+TEST_F(Tools, FiguresOfAPlanScatterWithTheDensity) {
+  const json sure = answer("plan-path", {"--density", "40"});
+  const json plan = answer("plan-path", {"--density", "40", "--density-sd", "8"});
+  EXPECT_EQ(plan.at("path"), sure.at("path"));
+  EXPECT_FALSE(sure.contains("efficiency_sd_kg_per_kj"));
+  EXPECT_EQ(plan.at("density_sd_percent"), 8.0);
+  EXPECT_EQ(plan.at("evaluations"), 3);
+  EXPECT_EQ(plan.at("stall_probability"), 0.0);
+  // As the best efficiency falls over density, so does that of one path, in first order.
+  const double soft = answer("plan-path", {"--density", "32"}).at("efficiency_kg_per_kj");
+  const double firm = answer("plan-path", {"--density", "48"}).at("efficiency_kg_per_kj");
+  EXPECT_NEAR(plan.at("efficiency_sd_kg_per_kj"), 0.5 * (soft - firm), 0.1 * (soft - firm));
+  EXPECT_GT(plan.at("energy_sd_kj"), 0.0);
+}
+
+TEST_F(Tools, ADensityByTheLawOfAnotherSoilIsWarnedOf) {
+  const std::string result =
+      folder.write("result.json", R"({"density_percent": 40, "law_soil": "sand"})");
+  EXPECT_TRUE(warns(answer("plan-path", {"--density-from", result}), "law_of_other_soil"));
+  EXPECT_FALSE(warns(answer("plan-path", {"--density-from", result, "--soil", "sand"}),
+                     "law_of_other_soil"));
+}
+
+TEST_F(Tools, PlanGoesOnFromAnEstimate) {
+  const ProgramResult estimate =
+      run_program("estimate-density", quickstart(folder) + Words{"--json"});
+  const std::string file = folder.write("result.json", estimate.out);
+  const json plan = answer("plan-path", {"--density-from", file, "--strict"});
+  EXPECT_EQ(plan.at("density_percent"), json::parse(estimate.out).at("density_percent"));
+  EXPECT_EQ(plan.at("warnings"), json::array());
+}
+
+TEST_F(Tools, PlanWarnsOfAnEstimateThatShouldNotBeTrusted) {
+  const std::string file =
+      folder.write("result.json", R"({"density_percent": 100, "trustworthy": false})");
+  EXPECT_TRUE(warns(answer("plan-path", {"--density-from", file}), "density_not_trustworthy"));
+  answer("plan-path", {"--density-from", file, "--strict"}, 4);
+}
+
+TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
+  const std::string file = folder.file("result.json");
+  for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"density_percent": null})", "it is null"},
+           {R"({"density_percent": "40"})", "it is \"40\""},
+           {R"({"density_percent": 140})", "it is 140"},
+           {R"({"bulking_factor": 1.2})", "it is missing"},
+           {"[40]", "it is missing"},
+           {"", "it is missing"}}) {
+    folder.write("result.json", text);
+    refused(3, reason, "plan-path", {"--density-from", file, "--plot", plot});
+  }
+  refused(3, "none.json: ", "plan-path", {"--density-from", folder.file("none.json")});
+  refused(2, "one of the two", "plan-path", {});
+  refused(2, "one of the two", "plan-path", {"--density", "40", "--density-from", file});
+}
+
+TEST_F(BadInput, APlanDoesNotTrustAResultWhoseTrustIsNoTruthValue) {
+  const std::string file =
+      folder.write("result.json", R"({"density_percent": 40, "trustworthy": "yes"})");
+  answer("plan-path", {"--density-from", file, "--strict"}, 4);
+}
+
+TEST_F(BadInput, SearchOptionsAreRefusedByName) {
+  const Words search = {"--density", "40", "--search"};
+  refused(2, "--goal: 'speed'", "plan-path", search + Words{"--goal", "speed"});
+  refused(2, "--drag-range: '2' is not FROM,TO", "plan-path", search + Words{"--drag-range", "2"});
+  refused(2, "drag_length_m", "plan-path", search + Words{"--drag-range", "2,1"});
+  refused(2, "--resume needs --checkpoint", "plan-path", search + Words{"--resume"});
+  refused(2, "--start search needs --search", "plan-path",
+          {"--density", "40", "--start", "search"});
+}
+
+TEST_F(BadInput, SearchWithoutADigSaysWhichCameNearestAndWhatStoodInItsWay) {
+  const Words steep = {"--search",      "--evaluations", "5",
+                       "--angle-range", "1.4,1.4",       "--penetration-range",
+                       "0.9,0.9",       "--drag-range",  "3,3"};
+  const std::string nearest =
+      "no dig inside the search ranges can be done on this ground; the nearest, 80.2 deg, 0.900 m, "
+      "3.00 m from x = 6.54 m: the arm stalls in the phase drag after 0.9";
+  refused(2, nearest, "plan-path", steep + Words{"--density", "40"});
+  refused(2, nearest, "plan-path", steep + Words{"--density", "40", "--density-sd", "8"});
+}
+
+TEST_F(RealScans, OfASiteAreGroundToPlanOn) {
+  const json library = answer("plan-path", {"--density", "40", "--terrain", terrain});
+  EXPECT_EQ(library.at("source"), "library");
+  EXPECT_TRUE(warns(library, "sparse_terrain"));
+  const std::string csv = folder.file("dig.csv");
+  const std::string plot = folder.file("dig.svg");
+  const json search = answer("plan-path", {"--density", "40", "--terrain", terrain, "--search",
+                                           "--trajectory", csv, "--plot", plot});
+  std::cout << "  library " << library.at("efficiency_kg_per_kj") << ", search "
+            << search.at("efficiency_kg_per_kj") << " kg/kJ\n";
+  EXPECT_GE(number(search, "/efficiency_kg_per_kj"), number(library, "/efficiency_kg_per_kj"));
+  EXPECT_EQ(content_of(csv).rfind("time_s,phase,", 0), 0U);
+  expect_figure(plot, {"scoop"});
+}
+
+}  // namespace
+}  // namespace excavplan::test

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "support/tool_answers.hpp"
+
+/// @file
+/// run-experiment: fixed path against planned path.
+
+namespace excavplan::test {
+namespace {
+
+TEST_F(Tools, RunExperimentGivesTheKeysOfTheContract) {
+  const json result = answer("run-experiment", {"--densities", "40"});
+  ASSERT_EQ(result.at("conditions").size(), 1U);
+  const json& condition = result["conditions"][0];
+  expect_keys(condition, "string", {"name"});
+  expect_keys(condition, "number",
+              {"density_percent", "bulking_factor", "density_estimated_percent", "gain_percent"});
+  for (const char* dig : {"fixed", "planned"}) {
+    expect_keys(condition.at(dig), "number", path_keys + cost_keys);
+  }
+}
+
+TEST_F(Tools, ExperimentSplitsItsGainIntoPathAndStart) {
+  const json result = answer("run-experiment", {"--search", "--densities", "10"});
+  const json condition = result.at("conditions").at(0);
+  EXPECT_EQ(condition.at("start_rule"), "least work of the links' own weight");
+  EXPECT_NEAR((1.0 + number(condition, "/gain_path_percent") / 100.0) *
+                  (1.0 + number(condition, "/gain_start_percent") / 100.0),
+              1.0 + number(condition, "/gain_percent") / 100.0, 1e-9);
+  EXPECT_GT(number(condition, "/gain_path_percent"), 10.0);
+  EXPECT_GT(number(condition, "/gain_start_percent"), 5.0);
+}
+
+TEST_F(Tools, PlannedPathBeatsTheFixedOneInEverySoil) {
+  const json result = answer("run-experiment", {});
+  ASSERT_EQ(result.at("conditions").size(), 3U);
+  const std::vector<std::pair<std::string, double>> expected = {
+      {"soft", 10.0}, {"medium", 40.0}, {"hard", 80.0}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& condition = result["conditions"][i];
+    EXPECT_EQ(condition.at("name"), expected[i].first);
+    EXPECT_EQ(condition.at("density_percent"), expected[i].second);
+    const double fixed = number(condition, "/fixed/efficiency_kg_per_kj");
+    const double planned = number(condition, "/planned/efficiency_kg_per_kj");
+    const double gain = number(condition, "/gain_percent");
+    std::cout << "  " << expected[i].first << ": " << fixed << " to " << planned << " kg/kJ, gain "
+              << gain << " %\n";
+    EXPECT_GT(gain, 0.0);
+    EXPECT_NEAR(gain, 100.0 * (planned / fixed - 1.0), 1e-9);
+    EXPECT_NEAR(number(condition, "/fixed/path/penetration_angle_rad"), std::atan(1.0), 1e-12);
+    EXPECT_NEAR(number(condition, "/fixed/path/penetration_length_m"), 0.35, 1e-12);
+    EXPECT_NEAR(number(condition, "/fixed/path/drag_length_m"), 1.5, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace excavplan::test
