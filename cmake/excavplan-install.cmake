@@ -2,19 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Installs the libraries as components of find_package(excavplan), the pkg-config files and the data.
+# Of cmake --install, the component Runtime is what programs need (tools, data, shared libraries),
+# Development what compiling against the libraries needs beside it.
 
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/excavplan)
 set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-file(RELATIVE_PATH pkgconfig_prefix /${pkgconfig_dir} /)
+file(RELATIVE_PATH pkgconfig_prefix ${CMAKE_INSTALL_PREFIX}/${pkgconfig_dir} ${CMAKE_INSTALL_PREFIX})
 
 # excavplan_install(NAME SUMMARY text REQUIRES_PUBLIC packages... REQUIRES packages... LINKS flags...):
 # library, headers, CMake targets and pkg-config file of one component. Compiling against it needs
 # the pkg-config packages REQUIRES_PUBLIC, linking also REQUIRES and LINKS.
 function(excavplan_install name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "SUMMARY" "REQUIRES_PUBLIC;REQUIRES;LINKS")
-  install(TARGETS excavplan_${name} EXPORT excavplan-${name}-targets FILE_SET HEADERS)
-  install(EXPORT excavplan-${name}-targets NAMESPACE excavplan:: DESTINATION ${package_dir})
+  install(TARGETS excavplan_${name} EXPORT excavplan-${name}-targets
+    LIBRARY COMPONENT Runtime NAMELINK_COMPONENT Development
+    ARCHIVE COMPONENT Development
+    FILE_SET HEADERS COMPONENT Development)
+  install(EXPORT excavplan-${name}-targets NAMESPACE excavplan:: DESTINATION ${package_dir}
+    COMPONENT Development)
 
   set(library excavplan_${name})
   set(summary ${arg_SUMMARY})
@@ -29,12 +35,13 @@ function(excavplan_install name)
     set(links_private "")
   endif()
   configure_file(${PROJECT_SOURCE_DIR}/cmake/excavplan.pc.in excavplan-${name}.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/excavplan-${name}.pc DESTINATION ${pkgconfig_dir})
+  install(FILES ${PROJECT_BINARY_DIR}/excavplan-${name}.pc DESTINATION ${pkgconfig_dir}
+    COMPONENT Development)
 endfunction()
 
 excavplan_install(planning
   SUMMARY "Soil, machine, simulation and planning of digs"
-  REQUIRES_PUBLIC eigen3 REQUIRES nlopt LINKS -lpthread)
+  REQUIRES_PUBLIC eigen3 REQUIRES nlopt LINKS -lpthread -ldl)
 excavplan_install(clouds
   SUMMARY "Point clouds in and out, and height maps from them"
   REQUIRES_PUBLIC excavplan-planning)
@@ -54,6 +61,6 @@ install(
     ${PROJECT_BINARY_DIR}/excavplan-config.cmake
     ${PROJECT_BINARY_DIR}/excavplan-config-version.cmake
     cmake/excavplan-opencv.cmake
-  DESTINATION ${package_dir})
-install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/excavplan)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  DESTINATION ${package_dir} COMPONENT Development)
+install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/excavplan COMPONENT Runtime)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT Runtime)

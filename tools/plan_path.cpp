@@ -100,12 +100,11 @@ GroundDensity density_of(const Inputs& inputs) {
   return density;
 }
 
-PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
-                       Console& console) {
+PlanOptions options_of(const Inputs& inputs, Console& console) {
   PlanOptions options;
   options.method = inputs.search ? PlanMethod::search : PlanMethod::library;
   if (inputs.library) {
-    options.library = std::make_shared<PathLibrary>(library_of(inputs.library, machine, soil));
+    options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
   }
   options.search = search_options(inputs.dig_search, console);
   options.simulator = simulator_of_word(inputs.simulator);
@@ -125,7 +124,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
-  const PlanOptions options = options_of(inputs, machine, soil, console);
+  const PlanOptions options = options_of(inputs, console);
   const DigPlan plan = inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
                                             : plan_dig(machine, soil, density, options);
   if (!plan.dig && !plan.stopped) refuse(plan.reason + nearest_text(plan.nearest));

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/data_files.hpp>
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -10,24 +12,64 @@
 #include <excavplan/error.hpp>
 
 namespace excavplan {
+namespace {
 
-std::string find_data_file(const std::string& relative_path) {
-  namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+/// The file of the running program; empty if the system does not tell.
+fs::path program_file() {
+  std::error_code none;
+  return fs::read_symlink("/proc/self/exe", none);
+}
+
+/// The shared library that this code is part of; empty if it is part of the program itself.
+fs::path shared_library_file() {
+  static const char here = 0;
+  Dl_info info;
+  if (::dladdr(&here, &info) == 0 || info.dli_fname == nullptr) return {};
+  std::error_code none;
+  const fs::path file = fs::canonical(info.dli_fname, none);
+  return none || file == program_file() ? fs::path() : file;
+}
+
+std::vector<fs::path> data_folders(const std::string& package_folder) {
   std::vector<fs::path> folders;
   if (const char* named = std::getenv("EXCAVPLAN_DATA")) folders.emplace_back(named);
-  std::error_code none;
-  const fs::path program = fs::read_symlink("/proc/self/exe", none);
-  if (!none) folders.push_back(program.parent_path().parent_path() / "share" / "excavplan");
-  folders.emplace_back(EXCAVPLAN_INSTALLED_DATA);
-  folders.emplace_back(EXCAVPLAN_SOURCE_DATA);
+  if (const fs::path library = shared_library_file(); !library.empty()) {
+    folders.push_back(library.parent_path() / EXCAVPLAN_DATA_FROM_LIBRARY);
+  }
+  if (!package_folder.empty()) folders.emplace_back(package_folder);
+  if (const fs::path program = program_file(); !program.empty()) {
+    folders.push_back(program.parent_path() / EXCAVPLAN_DATA_FROM_PROGRAM);
+  }
+  return folders;
+}
 
+}  // namespace
+
+std::string find_data_file(const std::string& relative_path, const std::string& package_folder) {
   std::string searched;
-  for (const fs::path& folder : folders) {
+  for (const fs::path& place : data_folders(package_folder)) {
+    std::error_code none;
+    const fs::path folder = place.lexically_normal();
     const fs::path file = folder / relative_path;
     if (fs::is_regular_file(file, none)) return file.string();
     searched += "\n  " + folder.string();
   }
   throw Error(ErrorKind::bad_file, relative_path + ": not found in any of" + searched);
+}
+
+std::string shipped_or_file(const std::string& folder, const std::string& name_or_path,
+                            const std::string& package_folder) {
+  if (name_or_path.find_first_of("/.") != std::string::npos || fs::exists(name_or_path)) {
+    return name_or_path;
+  }
+  try {
+    return find_data_file(folder + "/" + name_or_path + ".json", package_folder);
+  } catch (const Error&) {
+    throw Error(ErrorKind::bad_input, "'" + name_or_path + "' is neither a file nor one of the " +
+                                          folder + " that excavplan ships");
+  }
 }
 
 }  // namespace excavplan

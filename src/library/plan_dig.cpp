@@ -55,8 +55,11 @@ std::shared_ptr<const PathLibrary> library_of(const Task& task) {
   if (!task.options.library) {
     return std::make_shared<PathLibrary>(shipped_library(task.machine, task.soil));
   }
-  require_fit(*task.options.library, task.machine, task.soil, "the library");
-  return task.options.library;
+  const auto& library = task.options.library;
+  const std::string& own = task.options.simulator.name;
+  require_fit(*library, task.machine, task.soil, "the library",
+              library->simulator == own ? own : default_simulator().name);
+  return library;
 }
 
 /// The slope of the ground, and as much of it as the library covers.

@@ -11,6 +11,7 @@
 
 #include "base/angles.hpp"
 #include "base/text.hpp"
+#include "machine/plane.hpp"
 
 namespace excavplan {
 namespace {
@@ -24,8 +25,6 @@ constexpr int proof_steps = 1000;
 
 /// Everything below is seen from the joint: its pin is the origin, +x the link before.
 const Vector2d joint_pin(0.0, 0.0);
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 Vector2d quarter_turn(const Vector2d& v) { return {-v.y(), v.x()}; }
 

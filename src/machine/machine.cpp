@@ -4,38 +4,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <excavplan/error.hpp>
 
 #include "base/angles.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "machine/plane.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double standard_gravity = 9.80665;  // [m/s^2], ISO 80000-3
 constexpr double rounding = 1e-12;
 constexpr double longest = 100.0;  // a length beyond this is a mistake of units [m]
 constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
-
-Vector2d direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 double double_area(const std::vector<Vector2d>& polygon) {
   double sum = cross(polygon.back(), polygon.front());
   for (std::size_t i = 1; i < polygon.size(); ++i) sum += cross(polygon[i - 1], polygon[i]);
   return sum;
-}
-
-/// The same direction within half a turn of `center`.
-double wrap_near(double angle, double center) {
-  const double away = angle - center;
-  return std::abs(away) <= pi ? angle : center + std::remainder(away, 2.0 * pi);
 }
 
 // ---- reading ------------------------------------------------------------------------------------
@@ -252,55 +241,6 @@ void read_cylinders(JsonObject file, Machine& machine) {
   file.done();
 }
 
-// ---- inverse kinematics -------------------------------------------------------------------------
-
-/// Directions of two links that bridge a vector, the second turned clockwise from the first.
-struct TwoLinks {
-  double first = 0.0;  ///< direction of the first [rad]
-  double bend = 0.0;   ///< from the first to the second, -pi .. 0 [rad]
-};
-
-std::variant<TwoLinks, Unreachable> bridge(const Vector2d& to, double first, double second) {
-  const double distance = std::hypot(to.x(), to.y());
-  const double cosine =
-      (distance * distance - first * first - second * second) / (2.0 * first * second);
-  if (std::isnan(cosine)) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    return Unreachable{Unreachable::Reason::too_far, Joint::boom, infinity, first, infinity};
-  }
-  if (cosine > 1.0 + rounding) {
-    const double reach = first + second;
-    return Unreachable{Unreachable::Reason::too_far, Joint::boom, distance, reach,
-                       distance - reach};
-  }
-  if (cosine < -1.0 - rounding) {
-    const double hole = std::abs(first - second);
-    return Unreachable{Unreachable::Reason::too_near, Joint::boom, distance, hole, hole - distance};
-  }
-  TwoLinks links;
-  links.bend = -std::acos(std::clamp(cosine, -1.0, 1.0));
-  links.first = std::atan2(to.y(), to.x()) -
-                std::atan2(second * std::sin(links.bend), first + second * std::cos(links.bend));
-  return links;
-}
-
-/// The joints as the machine counts them, or the one that is furthest outside its limits.
-std::variant<JointAngles, Unreachable> within_limits(const Machine& machine, JointAngles joints) {
-  Unreachable worst;
-  for (int i = 0; i < 3; ++i) {
-    const JointLimits& limits = machine.limits[static_cast<std::size_t>(i)];
-    const double angle = wrap_near(joints[i], 0.5 * (limits.lower + limits.upper));
-    joints[i] = std::clamp(angle, limits.lower, limits.upper);
-    const double excess = std::abs(angle - joints[i]);
-    if (excess > worst.excess) {
-      worst = {Unreachable::Reason::joint_limit, all_joints[static_cast<std::size_t>(i)], angle,
-               joints[i], excess};
-    }
-  }
-  if (worst.excess > rounding) return worst;
-  return joints;
-}
-
 }  // namespace
 
 const char* name(Joint joint) {
@@ -340,84 +280,6 @@ Machine load_machine(const std::string& path) {
     object->done();
   }
   return machine;
-}
-
-LinkPositions link_positions(const Machine& machine, const JointAngles& joints) {
-  LinkPositions at;
-  at.phi1 = -joints[0];
-  at.phi2 = at.phi1 - joints[1];
-  at.phi3 = at.phi2 - joints[2];
-  at.arm_pin = machine.boom_pin + machine.boom_length * direction(at.phi1);
-  at.bucket_pin = at.arm_pin + machine.arm_length * direction(at.phi2);
-  at.tip = at.bucket_pin + machine.bucket_length * direction(at.phi3);
-  return at;
-}
-
-BucketPose forward_kinematics(const Machine& machine, const JointAngles& joints) {
-  const LinkPositions at = link_positions(machine, joints);
-  return {at.tip.x(), at.tip.y(), wrap_near(at.phi3 + pi - machine.beta(), 0.0)};
-}
-
-std::variant<JointAngles, Unreachable> inverse_kinematics(const Machine& machine,
-                                                          const BucketPose& pose) {
-  const double phi3 = pose.floor_angle - pi + machine.beta();
-  const Vector2d to_bucket_pin =
-      Vector2d(pose.x, pose.z) - machine.bucket_length * direction(phi3) - machine.boom_pin;
-  const auto links = bridge(to_bucket_pin, machine.boom_length, machine.arm_length);
-  if (const auto* unreachable = std::get_if<Unreachable>(&links)) return *unreachable;
-  const auto& [phi1, bend] = std::get<TwoLinks>(links);
-  return within_limits(machine, {-phi1, -bend, phi1 + bend - phi3});
-}
-
-std::variant<JointAngles, Unreachable> inverse_kinematics_fixed_bucket(const Machine& machine,
-                                                                       double x, double z,
-                                                                       double bucket) {
-  const Vector2d arm_to_tip =
-      Vector2d(machine.arm_length, 0.0) + machine.bucket_length * direction(-bucket);
-  const auto links =
-      bridge(Vector2d(x, z) - machine.boom_pin, machine.boom_length, arm_to_tip.norm());
-  if (const auto* unreachable = std::get_if<Unreachable>(&links)) return *unreachable;
-  const auto& [phi1, bend] = std::get<TwoLinks>(links);
-  const double tip_off_arm = std::atan2(arm_to_tip.y(), arm_to_tip.x());
-  return within_limits(machine, {-phi1, tip_off_arm - bend, bucket});
-}
-
-LimitMargin limit_margin(const Machine& machine, const JointAngles& joints) {
-  LimitMargin smallest{std::numeric_limits<double>::infinity(), Joint::boom};
-  for (std::size_t i = 0; i < all_joints.size(); ++i) {
-    const double angle = joints[static_cast<int>(i)];
-    const double margin =
-        std::min(angle - machine.limits[i].lower, machine.limits[i].upper - angle);
-    if (margin < smallest.margin) smallest = {margin, all_joints[i]};
-  }
-  return smallest;
-}
-
-JointAngles torque_against_force(const Machine& machine, const LinkPositions& at,
-                                 const Vector2d& point, const Vector2d& force) {
-  return {cross(point - machine.boom_pin, force), cross(point - at.arm_pin, force),
-          cross(point - at.bucket_pin, force)};
-}
-
-JointAngles torque_against_link_weight(const Machine& machine, const LinkPositions& at) {
-  const std::array<Vector2d, 3> pins = {machine.boom_pin, at.arm_pin, at.bucket_pin};
-  const std::array<double, 3> angles = {at.phi1, at.phi2, at.phi3};
-  JointAngles torque = JointAngles::Zero();
-  for (std::size_t i = 0; i < pins.size(); ++i) {
-    const LinkMass& link = machine.links[i];
-    const Vector2d along = direction(angles[i]);
-    const double center_x = pins[i].x() + link.along * along.x() - link.across * along.y();
-    for (std::size_t j = 0; j <= i; ++j) {
-      torque[static_cast<int>(j)] -= link.mass * standard_gravity * (center_x - pins[j].x());
-    }
-  }
-  return torque;
-}
-
-Vector2d bucket_point(const LinkPositions& at, const Vector2d& along_across) {
-  const Vector2d along = direction(at.phi3);
-  return at.bucket_pin + along_across.x() * along +
-         along_across.y() * Vector2d(-along.y(), along.x());
 }
 
 double struck_capacity(const Machine& machine) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/angles.hpp"
+#include "machine/plane.hpp"
 
 namespace excavplan {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double steepest_face = 80.0 * pi / 180.0;  // of soil, however cohesive; ours
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 Vector2d turned(const Vector2d& v, double angle) {
   return {v.x() * std::cos(angle) - v.y() * std::sin(angle),

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
-
-#include <excavplan/error.hpp>
 
 #include "base/angles.hpp"
 
@@ -52,8 +49,6 @@ SoilState dug_state(const SoilKind& soil) {
 
 }  // namespace
 
-// ---- Model and swath ----------------------------------------------------------------------------
-
 HeightMapModel::HeightMapModel(const Machine& machine_, const SoilKind& soil_,
                                double density_percent_)
     : machine(machine_),
@@ -81,36 +76,6 @@ EarthmovingFactors HeightMapModel::factors(double rake, double slope, const Soil
     uneven_on_packed_.emplace(low, high, 1.0);
   });
   return (packed ? *uneven_on_packed_ : *uneven_on_steel_).at(rake, slope, state.friction_angle);
-}
-
-Swath::Swath(const HeightMap& map, double width) : map_(map) {
-  const double half = 0.5 * width;
-  const double first = (-half - map.origin.y()) / map.cell_size;
-  const double last = (half - map.origin.y()) / map.cell_size;
-  if (!(first >= 0.0 && last <= static_cast<double>(map.z.rows()))) {
-    throw Error(ErrorKind::bad_input,
-                "dig: the map must hold the bucket's width, y = " + std::to_string(-half) + " .. " +
-                    std::to_string(half) + " m");
-  }
-  first_row_ = static_cast<Index>(std::floor(first));
-  const auto end = std::min(map.z.rows(), static_cast<Index>(std::ceil(last)));
-  cover_.resize(end - first_row_);
-  for (Index i = 0; i < cover_.size(); ++i) {
-    const auto row = static_cast<double>(first_row_ + i);
-    cover_(i) = std::min(last, row + 1.0) - std::max(first, row);
-  }
-}
-
-Index Swath::column(double x) const {
-  const double col = std::floor((x - map_.origin.x()) / map_.cell_size);
-  if (!(col >= 0.0 && col < static_cast<double>(map_.z.cols()))) {
-    const Rectangle extent = map_.extent();
-    throw Error(ErrorKind::bad_input, "dig: the path leaves the map at x = " + std::to_string(x) +
-                                          " m; the map reaches from " +
-                                          std::to_string(extent.x_min) + " to " +
-                                          std::to_string(extent.x_max) + " m");
-  }
-  return static_cast<Index>(col);
 }
 
 // ---- Forces -------------------------------------------------------------------------------------

@@ -14,7 +14,8 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "simulation/bucket_cavity.hpp"
-#include "simulation/soil_layers.hpp"
+#include "simulation/ground_window.hpp"
+#include "simulation/swath.hpp"
 
 namespace excavplan {
 
@@ -39,35 +40,6 @@ struct HeightMapModel {
   mutable std::once_flag uneven_made_;
   mutable std::optional<FrictionWedges> uneven_on_steel_;
   mutable std::optional<FrictionWedges> uneven_on_packed_;
-};
-
-/// The rows of a map that the bucket covers.
-class Swath {
- public:
-  /// @throws Error (bad_input) if the map does not hold the bucket's width
-  Swath(const HeightMap& map, double width);
-
-  Eigen::Index first_row() const { return first_row_; }
-  Eigen::Index rows() const { return cover_.size(); }
-  Eigen::Index end_row() const { return first_row_ + cover_.size(); }
-  double cover(Eigen::Index i) const { return cover_(i); }  ///< of row first_row() + i, 0 .. 1
-  double cover_sum() const { return cover_.sum(); }
-
-  /// @throws Error (bad_input) if x is off the map
-  Eigen::Index column(double x) const;
-
-  /// Mean over the width of what a function gives for each row.
-  template <typename OfRow>
-  double mean(OfRow&& of_row) const {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < cover_.size(); ++i) sum += cover_(i) * of_row(first_row_ + i);
-    return sum / cover_.sum();
-  }
-
- private:
-  const HeightMap& map_;
-  Eigen::Index first_row_ = 0;
-  Eigen::ArrayXd cover_;
 };
 
 /// One stretch of the path: the tip goes from `from` to `to` while the joints turn by `turn`.

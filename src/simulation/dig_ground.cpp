@@ -12,8 +12,9 @@ namespace {
 using Eigen::Index;
 
 constexpr double heap_room = 2.0;  // around a dump point [m]; ours: a bucketful spreads about 1 m
-constexpr double half_width =
-    1.5;  // of the ground planned on [m]; ours: the bucket and its windrows
+/// Of the ground planned on [m]; ours: the bucket and its windrows.
+constexpr double half_width = 1.5;
+constexpr double mean_over = 0.15;  // of a scanned profile, to both sides [m]; ours
 
 /// The two rows of cells on either side of the boom plane.
 struct BoomPlaneRows {
@@ -40,8 +41,8 @@ Rectangle planning_extent(const Machine& machine) {
           machine.boom_pin.x() + machine.full_length() + 0.5, half_width};
 }
 
-Terrain level_planning_ground(const Machine& machine, double cell) {
-  return undisturbed(flat_ground(planning_extent(machine), cell));
+Terrain level_planning_ground(const Machine& machine, double cell_size) {
+  return undisturbed(flat_ground(planning_extent(machine), cell_size));
 }
 
 GroundProfile boom_plane_profile(const HeightMap& surface) {
@@ -55,6 +56,47 @@ GroundProfile boom_plane_profile(const Terrain& terrain) {
                     terrain.bank.z.middleRows(rows.first, rows.count) +
                         terrain.loose.middleRows(rows.first, rows.count),
                     rows.first);
+}
+
+GroundProfile profile_under_bucket(const HeightMap& surface, const Machine& machine) {
+  return [&surface, half = 0.5 * machine.bucket.width_outside](double x) {
+    double sum = 0.0;
+    int count = 0;
+    for (Index col = 0; col < surface.z.cols(); ++col) {
+      if (std::abs(surface.x(col) - x) > mean_over) continue;
+      for (Index row = 0; row < surface.z.rows(); ++row) {
+        if (std::abs(surface.y(row)) > half || std::isnan(surface.z(row, col))) continue;
+        sum += surface.z(row, col);
+        ++count;
+      }
+    }
+    return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+  };
+}
+
+Rectangle swept_strip(const Machine& machine, const DigPath& path) {
+  const double half = 0.5 * machine.bucket.width_outside;
+  const double start = path.poses.front().bucket.x;
+  Rectangle strip{start, -half, start, half};
+  for (const DigPose& pose : path.poses) {
+    if (pose.phase == DigPhase::lift) break;
+    strip.x_min = std::min(strip.x_min, pose.bucket.x);
+    strip.x_max = std::max(strip.x_max, pose.bucket.x);
+  }
+  return strip;
+}
+
+double swept_height(const DigPath& path, double x) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < path.poses.size(); ++i) {
+    if (path.poses[i].phase == DigPhase::lift) break;
+    const BucketPose& from = path.poses[i - 1].bucket;
+    const BucketPose& to = path.poses[i].bucket;
+    if (x < std::min(from.x, to.x) || x > std::max(from.x, to.x) || from.x == to.x) continue;
+    const double share = (x - from.x) / (to.x - from.x);
+    lowest = std::min(lowest, from.z + share * (to.z - from.z));
+  }
+  return std::isinf(lowest) ? std::numeric_limits<double>::quiet_NaN() : lowest;
 }
 
 double boom_plane_slope(const Terrain& terrain, double from_x) {
@@ -75,10 +117,10 @@ double boom_plane_slope(const Terrain& terrain, double from_x) {
   return std::atan2(count * xz - x_sum * z_sum, count * xx - x_sum * x_sum);
 }
 
-Terrain sloped_planning_ground(const Machine& machine, double slope, double cell) {
-  HeightMap ground = flat_ground(planning_extent(machine), cell);
+Terrain sloped_planning_ground(const Machine& machine, double slope, double cell_size) {
+  HeightMap ground = flat_ground(planning_extent(machine), cell_size);
   for (Eigen::Index col = 0; col < ground.z.cols(); ++col) {
-    const double x = ground.origin.x() + cell * (static_cast<double>(col) + 0.5);
+    const double x = ground.x(col);
     ground.z.col(col) += std::tan(slope) * std::max(0.0, x - machine.track_front);
   }
   return undisturbed(ground);

@@ -4,30 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <excavplan/error.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 namespace excavplan {
 namespace {
 
 constexpr double least_seen = 0.5;
 constexpr int samples_per_cell = 8;  // of the tip's line
-
-/// Height of the tip's line where it digs, the lowest if it passes twice; NaN elsewhere.
-double swept_to(const DigPath& path, double x) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < path.poses.size(); ++i) {
-    if (path.poses[i].phase == DigPhase::lift) break;
-    const BucketPose& from = path.poses[i - 1].bucket;
-    const BucketPose& to = path.poses[i].bucket;
-    if (x < std::min(from.x, to.x) || x > std::max(from.x, to.x) || from.x == to.x) continue;
-    const double share = (x - from.x) / (to.x - from.x);
-    lowest = std::min(lowest, from.z + share * (to.z - from.z));
-  }
-  return std::isinf(lowest) ? std::nan("") : lowest;
-}
 
 /// Sums over the swept ground.
 struct Swept {
@@ -66,7 +52,7 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
   for (Eigen::Index col = 0; col < before.z.cols(); ++col) {
     for (int i = 0; i < samples_per_cell; ++i) {
       const double x = before.x(col) + before.cell_size * ((i + 0.5) / samples_per_cell - 0.5);
-      const double floor = swept_to(path, x);
+      const double floor = swept_height(path, x);
       if (std::isnan(floor)) continue;
       for (Eigen::Index row = 0; row < before.z.rows(); ++row) {
         const double low = before.y(row) - 0.5 * before.cell_size;

@@ -9,12 +9,14 @@
 #include <vector>
 
 #include <excavplan/error.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/angles.hpp"
 #include "base/text.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/bucket_resistance.hpp"
-#include "simulation/soil_layers.hpp"
+#include "simulation/dig_account.hpp"
+#include "simulation/slump.hpp"
 
 namespace excavplan {
 namespace {
@@ -32,45 +34,41 @@ constexpr double room_around = 0.5;      // of the ground looked at first, aroun
 /// One dig from its first pose to its end.
 class Dig {
  public:
-  Dig(const HeightMapModel& model, const Terrain& terrain, const DigPath& path)
+  Dig(const HeightMapModel& model, const Terrain& terrain, const DigPath& path,
+      const DigOptions& options)
       : model_(model),
         path_(path),
+        options_(options),
         swath_(terrain.bank, model.machine.bucket.width_outside),
         ground_(terrain, {model.soil, model.bank, model.loose}, cells_around(terrain, path)),
         cavity_(model.machine.bucket),
-        resistance_(model, ground_, swath_, path) {
+        resistance_(model, ground_, swath_, path),
+        account_(model.machine, path, options) {
     sweeps_ = static_cast<int>(
         std::ceil(sweeps_per_step * std::max(1.0, std::pow(0.05 / terrain.bank.cell_size, 2))));
   }
 
-  DigResult run(const DigOptions& options) {
+  DigResult run() {
     const std::vector<DigPose>& poses = path_.poses;
-    if (options.history) result_.history.reserve(poses.size());
-    const double energy_worth = energy_worth_spending(poses.back(), options.give_up_below);
-    for (std::size_t i = 0; i + 1 < poses.size() && !result_.stall && !result_.given_up; ++i) {
-      advance(stretch(i), options.history);
-      result_.given_up = result_.energy.total > energy_worth;
+    DigResult& result = account_.result;
+    const double energy_worth = energy_worth_spending(poses.back(), options_.give_up_below);
+    for (std::size_t i = 0; i + 1 < poses.size() && !result.stall && !result.given_up; ++i) {
+      advance(stretch(i));
+      result.given_up = result.energy.total > energy_worth;
     }
     come_clear(poses.back());
-    if (options.settle) slump(ground_, moving_, {model_.slopes.heap, false}, sweeps_at_the_end);
-    settle_accounts();
-    if (options.dump_at) {
-      pour(ground_, *options.dump_at, fill_, model_.slopes.heap);
-    }
-    note_solids(options.dump_at ? 0.0 : fill_);
-    result_.patch = ground_.patch();
-    return std::move(result_);
+    if (options_.settle) slump(ground_, moving_, {model_.slopes.heap, false}, sweeps_at_the_end);
+    sum_loose_soil(result.soil);
+    account_.close(ground_, fill_, model_.slopes.heap);
+    return std::move(result);
   }
 
  private:
   /// The cells of the path while it digs, and room around them.
   CellBlock cells_around(const Terrain& terrain, const DigPath& path) const {
-    CellBlock cells;
-    for (const DigPose& pose : path.poses) {
-      if (pose.phase == DigPhase::lift) break;
-      const Index col = swath_.column(pose.bucket.x);
-      cells.include({swath_.first_row(), swath_.end_row(), col, col + 1});
-    }
+    const Rectangle strip = swept_strip(model_.machine, path);
+    const CellBlock cells = {swath_.first_row(), swath_.end_row(), swath_.column(strip.x_min),
+                             swath_.column(strip.x_max) + 1};
     const auto room = static_cast<Index>(std::ceil(room_around / terrain.bank.cell_size));
     return cells.widened(room, terrain.loose.rows(), terrain.loose.cols());
   }
@@ -90,14 +88,14 @@ class Dig {
     return s;
   }
 
-  void advance(const Stretch& s, bool history) {
+  void advance(const Stretch& s) {
     cavity_.turn_to(s.at.phi3);
     const bool digs = s.phase != DigPhase::lift;
     const Resistance resistance =
         digs && s.length > 0.0 ? resistance_.at(s, cavity_, fill_) : Resistance{};
-    account(s, resistance, history);
-    if (result_.stall) return;
-    travelled_ += s.length;
+    account(s, resistance);
+    if (account_.result.stall) return;
+    account_.travel(s.length);
     if (!digs) return;
     cut(s);
     const Index ahead = swath_.column(s.to.x() - ground_.cell_size());
@@ -157,8 +155,8 @@ class Dig {
       const double top = map.z(row, col);  // of what is still uncut
       if (std::isnan(top)) {
         throw Error(ErrorKind::bad_input,
-                    "dig: the path runs over unknown ground at x = " + std::to_string(x0) +
-                        " m, y = " + std::to_string(map.y(row)) + " m");
+                    "dig: the path crosses unknown ground at x = " + number_text(x0) +
+                        " m, y = " + number_text(map.y(row)) + " m");
       }
       const double cover = share * swath_.cover(i);
       const double bank = cover * mean_above(top, z0, z1);
@@ -172,8 +170,8 @@ class Dig {
           area * (ground_.swollen_bank(row, col, bank) + ground_.swollen_loose(row, col, loose));
       ground_.lower_bank(row, col, bank);
       ground_.lower_loose(row, col, loose);
-      result_.soil.bank_cut += bank * area;
-      result_.soil.loose_cut += loose * area;
+      account_.result.soil.bank_cut += bank * area;
+      account_.result.soil.loose_cut += loose * area;
     }
     const CellBlock column = {swath_.first_row(), swath_.end_row(), col, col + 1};
     moving_.include(column);
@@ -209,55 +207,25 @@ class Dig {
 
   // ---- energy ----------------------------------------------------------------------------------
 
-  void account(const Stretch& s, const Resistance& resistance, bool history) {
+  void account(const Stretch& s, const Resistance& resistance) {
     const double payload_weight =
         std::max(0.0, fill_ * model_.loose.unit_weight - resistance.borne_weight);
     const Machine& machine = model_.machine;
-    const JointAngles soil =
+    DigStep step;
+    step.phase = s.phase;
+    step.length = s.length;
+    step.joints = s.joints;
+    step.turn = s.turn;
+    step.by_soil =
         torque_against_force(machine, s.at, resistance.face_point, resistance.face_force) +
         torque_against_force(machine, s.at, s.at.tip, resistance.lip_force) +
         torque_against_force(machine, s.at, resistance.heel_point, resistance.heel_force);
-    const JointAngles payload =
+    step.by_payload =
         torque_against_force(machine, s.at, s.at.tip + cavity_.centroid(), {0.0, -payload_weight});
-    const JointAngles links = torque_against_link_weight(machine, s.at);
-    const JointAngles torque = soil + payload + links;
-    note_force(s, resistance, torque, history);
-    for (int j = 0; j < 3; ++j) {
-      const double work = torque(j) * s.turn(j);
-      if (work <= 0.0) continue;
-      const auto joint = static_cast<Joint>(j);
-      if (std::abs(torque(j)) > machine.limits[static_cast<std::size_t>(j)].torque) {
-        result_.stall = Stall{s.phase, joint, travelled_, torque(j)};
-        return;
-      }
-      spend(s, j, work, {soil(j) * s.turn(j), payload(j) * s.turn(j), links(j) * s.turn(j)});
-    }
-  }
-
-  void spend(const Stretch& s, int joint, double work, const std::array<double, 3>& causes) {
-    EnergyLedger& energy = result_.energy;
-    if (s.phase == DigPhase::lift) {
-      energy.lift += work;
-      return;
-    }
-    energy.total += work;
-    energy.by_joint[static_cast<std::size_t>(joint)] += work;
-    const int phase = static_cast<int>(s.phase) - static_cast<int>(DigPhase::penetrate);
-    energy.by_phase[static_cast<std::size_t>(phase)] += work;
-    energy.soil += causes[0];
-    energy.payload += causes[1];
-    energy.links += causes[2];
-  }
-
-  void note_force(const Stretch& s, const Resistance& resistance, const JointAngles& torque,
-                  bool history) {
-    if (s.phase == DigPhase::lift) return;
-    const Vector2d force = resistance.total();
-    result_.peak_force = std::max(result_.peak_force, force.norm());
-    if (history) {
-      result_.history.push_back(
-          {s.phase, travelled_ + 0.5 * s.length, s.joints, force, torque, fill_});
-    }
+    step.by_links = torque_against_link_weight(machine, s.at);
+    if (s.phase != DigPhase::lift) account_.note_force(step, resistance.total(), fill_);
+    account_.stalls(step);
+    account_.book(step);
   }
 
   // ---- end -------------------------------------------------------------------------------------
@@ -283,15 +251,12 @@ class Dig {
     moving_.include(passed_);
     ground_.set_wall({});
     ground_.wake(ground_.widened(moving_, 1));
-    result_.payload_volume = fill_;
-    result_.payload_mass = fill_ * model_.loose.bulk_density;
-    result_.soil.payload = fill_;
   }
 
-  void settle_accounts() {
+  /// Loose soil that was gained where the ground was cut, and elsewhere.
+  void sum_loose_soil(SoilLedger& ledger) const {
     const Terrain& before = ground_.before();
     const CellBlock& cells = ground_.cells();
-    SoilLedger& ledger = result_.soil;
     const double area = ground_.cell_size() * ground_.cell_size();
     for (Index col = cells.col_begin; col < cells.col_end; ++col) {
       for (Index row = cells.row_begin; row < cells.row_end; ++row) {
@@ -303,50 +268,22 @@ class Dig {
         ledger.spilled += (gained - in_pit) * area;
       }
     }
-    if (ledger.bank_cut > 0.0) ledger.fallback_fraction = ledger.fallen_back / ledger.bank_cut;
-  }
-
-  /// Dry mass above the lowest point of path and ground.
-  void note_solids(double carried) {
-    double deepest = ground_.lowest();
-    for (const DigPose& pose : path_.poses) deepest = std::min(deepest, pose.bucket.z);
-    result_.soil.solids_before = ground_.solids_before(deepest);
-    result_.soil.solids_after = ground_.solids(deepest) + carried * model_.loose.dry_density;
   }
 
   const HeightMapModel& model_;
   const DigPath& path_;
+  const DigOptions& options_;
   Swath swath_;
   GroundWindow ground_;
   Cavity cavity_;
   BucketResistance resistance_;
+  DigAccount account_;
 
-  int sweeps_ = 0;  ///< of slumping per step
-  DigResult result_;
+  int sweeps_ = 0;     ///< of slumping per step
   double fill_ = 0.0;  ///< loose soil in the bucket [m^3]
-  double travelled_ = 0.0;
-  CellBlock moving_;  ///< cells that may not be at rest
-  CellBlock passed_;  ///< cells the lip has passed, whose walls the bucket holds until it is out
+  CellBlock moving_;   ///< cells that may not be at rest
+  CellBlock passed_;   ///< cells the lip has passed, whose walls the bucket holds until it is out
 };
-
-void check(const Terrain& terrain, const DigPath& path) {
-  const auto bad = [](const std::string& what) {
-    throw Error(ErrorKind::bad_input, "dig: " + what);
-  };
-  const auto& z = terrain.bank.z;
-  if (z.size() == 0) bad("the map is empty");
-  if (!(terrain.bank.cell_size > 0.0)) {
-    bad("cell must be > 0 m, got " + std::to_string(terrain.bank.cell_size));
-  }
-  const auto same = [&](const Eigen::ArrayXXd& layer) {
-    return layer.rows() == z.rows() && layer.cols() == z.cols();
-  };
-  if (!same(terrain.loose)) bad("bank and loose layer must have the same size");
-  for (const Eigen::ArrayXXd* layer : {&terrain.bank_void_ratio, &terrain.loose_void_ratio}) {
-    if (layer->size() > 0 && !same(*layer)) bad("void ratios must have the size of the map");
-  }
-  if (path.poses.size() < 2) bad("the path has no poses");
-}
 
 }  // namespace
 
@@ -359,8 +296,7 @@ std::string HeightMapSimulator::name() {
 }
 
 std::string HeightMapSimulator::identity() const {
-  return name() + ", machine " + fingerprint(model_->machine) + ", soil " +
-         fingerprint(model_->soil) + " at " + number_text(model_->density_percent) + " %";
+  return simulator_identity(name(), model_->machine, model_->soil, model_->density_percent);
 }
 
 const SoilState& HeightMapSimulator::bank() const { return model_->bank; }
@@ -368,8 +304,8 @@ const SoilState& HeightMapSimulator::loose() const { return model_->loose; }
 
 DigResult HeightMapSimulator::dig(const Terrain& terrain, const DigPath& path,
                                   const DigOptions& options) const {
-  check(terrain, path);
-  return Dig(*model_, terrain, path).run(options);
+  check_dig(terrain, path);
+  return Dig(*model_, terrain, path, options).run();
 }
 
 }  // namespace excavplan

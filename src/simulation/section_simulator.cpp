@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/earthmoving.hpp>
 
 #include "base/angles.hpp"
-#include "base/text.hpp"
+#include "simulation/dig_account.hpp"
 #include "simulation/soil_section.hpp"
 
 namespace excavplan {
@@ -551,46 +551,36 @@ class SectionDig {
       : model_(model),
         machine_(model.machine),
         path_(path),
-        options_(options),
         bucket_(machine_.bucket),
         section_(terrain, {model.kind, model.bank, model.loose}, machine_.bucket.width_outside,
-                 reach(machine_.bucket, path)),
+                 reach(machine_, path)),
         resistance_(model, section_),
+        account_(machine_, path, options),
         repose_(model.slopes.heap) {}
 
   DigResult run() {
     const BucketPose& start = path_.poses.front().bucket;
     section_.pass({start.x, start.z});
-    if (options_.history) result_.history.reserve(path_.poses.size());
     std::size_t i = 1;
     for (; i < path_.poses.size() && path_.poses[i].phase != DigPhase::lift; ++i) {
       if (!dig_step(path_.poses[i - 1], path_.poses[i])) break;
     }
-    if (!result_.stall) {
+    if (!account_.result.stall) {
       for (; i < path_.poses.size(); ++i) lift_step(path_.poses[i - 1], path_.poses[i]);
     }
     settle();
-    finish();
-    return std::move(result_);
+    const LooseSoil rest = write_back(section_, repose_);
+    account_.result.soil.spilled = rest.elsewhere;
+    account_.result.soil.fallen_back = rest.in_cut;
+    account_.close(section_.ground(), contents_, repose_);
+    return std::move(account_.result);
   }
 
  private:
-  static Reach reach(const Bucket& bucket, const DigPath& path) {
-    if (path.poses.size() < 2) {
-      throw Error(ErrorKind::bad_input, "dig: a path has at least 2 poses, this one has " +
-                                            std::to_string(path.poses.size()));
-    }
-    const double first = path.poses.front().bucket.x;
-    Reach reach = {first, first, (bucket.profile[2] - bucket.profile[0]).norm()};
-    for (const DigPose& pose : path.poses) {
-      if (pose.phase == DigPhase::lift) break;
-      if (!std::isfinite(pose.bucket.x) || !std::isfinite(pose.bucket.z)) {
-        throw Error(ErrorKind::bad_input, "dig: every pose of the path must be finite");
-      }
-      reach.x_min = std::min(reach.x_min, pose.bucket.x);
-      reach.x_max = std::max(reach.x_max, pose.bucket.x);
-    }
-    return reach;
+  static Reach reach(const Machine& machine, const DigPath& path) {
+    const std::vector<Vector2d>& profile = machine.bucket.profile;
+    const Rectangle strip = swept_strip(machine, path);
+    return {strip.x_min, strip.x_max, (profile[2] - profile[0]).norm()};
   }
 
   double width() const { return machine_.bucket.width_outside; }
@@ -609,38 +599,22 @@ class SectionDig {
     const Vector2d q(to.bucket.x, to.bucket.z);
     const Resistance soil = resist(
         0.5 * (p + q), q - p, 0.5 * (from.bucket.floor_angle + to.bucket.floor_angle), to.phase);
-    const JointAngles by_soil = torque_against_force(machine_, at, soil.face_at, soil.face) +
-                                torque_against_force(machine_, at, soil.tip_at, soil.tip) +
-                                torque_against_force(machine_, at, soil.heel_at, soil.heel);
-    const JointAngles by_payload = carry(at, std::max(0.0, contents_ - soil.on_floor));
-    const JointAngles by_links = torque_against_link_weight(machine_, at);
-    const JointAngles torque = by_soil + by_payload + by_links;
-    const JointAngles turn = to.joints - from.joints;
-    const Vector2d force = soil.total();
-    result_.peak_force = std::max(result_.peak_force, force.norm());
-    if (options_.history) {
-      result_.history.push_back(
-          {to.phase, travelled_ + 0.5 * (q - p).norm(), joints, force, torque, contents_});
-    }
-    if (stalls(torque, turn, to.phase)) return false;
-    for (Index j = 0; j < 3; ++j) {
-      if (!(torque(j) * turn(j) > 0.0)) continue;
-      EnergyLedger& energy = result_.energy;
-      const double work = torque(j) * turn(j);
-      energy.total += work;
-      energy.by_joint[static_cast<std::size_t>(j)] += work;
-      energy.by_phase[phase_index(to.phase)] += work;
-      energy.soil += by_soil(j) * turn(j);
-      energy.payload += by_payload(j) * turn(j);
-      energy.links += by_links(j) * turn(j);
-    }
-    travelled_ += (q - p).norm();
+    DigStep step;
+    step.phase = to.phase;
+    step.length = (q - p).norm();
+    step.joints = joints;
+    step.turn = to.joints - from.joints;
+    step.by_soil = torque_against_force(machine_, at, soil.face_at, soil.face) +
+                   torque_against_force(machine_, at, soil.tip_at, soil.tip) +
+                   torque_against_force(machine_, at, soil.heel_at, soil.heel);
+    step.by_payload = carry(at, std::max(0.0, contents_ - soil.on_floor));
+    step.by_links = torque_against_link_weight(machine_, at);
+    account_.note_force(step, soil.total(), contents_);
+    if (account_.stalls(step)) return false;
+    account_.book(step);
+    account_.travel(step.length);
     cut(p, q);
     return true;
-  }
-
-  static std::size_t phase_index(DigPhase phase) {
-    return phase == DigPhase::scoop ? 2 : phase == DigPhase::drag ? 1 : 0;
   }
 
   Resistance resist(const Vector2d& tip, const Vector2d& step, double floor_angle, DigPhase phase) {
@@ -661,26 +635,14 @@ class SectionDig {
     return torque_against_force(machine_, at, centre, {0.0, -volume * model_.loose.unit_weight});
   }
 
-  /// A joint that cannot be driven on; one that only holds back may take more.
-  bool stalls(const JointAngles& torque, const JointAngles& turn, DigPhase phase) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto joint = static_cast<Index>(j);
-      const double asked = torque(joint);
-      if (!(asked * turn(joint) > 0.0) || std::abs(asked) <= machine_.limits[j].torque) continue;
-      result_.stall = Stall{phase, static_cast<Joint>(j), travelled_, asked};
-      return true;
-    }
-    return false;
-  }
-
   void cut(const Vector2d& p, const Vector2d& q) {
     const CutArea area = section_.cut(p, q);
     const GroundAhead ground = section_.ahead(q.x());
     const double falls = fall(ground);
     const double lip = q.y() - ground.surface;
     const double from_pile = pile_.take(p.x() - q.x(), lip, falls);
-    result_.soil.bank_cut += area.bank * width();
-    result_.soil.loose_cut += (area.loose + from_pile) * width();
+    account_.result.soil.bank_cut += area.bank * width();
+    account_.result.soil.loose_cut += (area.loose + from_pile) * width();
     contents_ += (area.swollen + from_pile) * width();
     const double support = std::max(0.0, pile_.height(falls) - lip);
     const double holds = bucket_.held(support, model_.slopes).area;
@@ -696,9 +658,12 @@ class SectionDig {
   void lift_step(const DigPose& from, const DigPose& to) {
     const LinkPositions at = link_positions(machine_, 0.5 * (from.joints + to.joints));
     bucket_.turn_to(at.phi3);
-    const JointAngles torque = carry(at, contents_) + torque_against_link_weight(machine_, at);
-    const JointAngles turn = to.joints - from.joints;
-    for (Index j = 0; j < 3; ++j) result_.energy.lift += std::max(0.0, torque(j) * turn(j));
+    DigStep step;
+    step.phase = DigPhase::lift;
+    step.turn = to.joints - from.joints;
+    step.by_payload = carry(at, contents_);
+    step.by_links = torque_against_link_weight(machine_, at);
+    account_.book(step);
     bucket_.turn_to(link_positions(machine_, to.joints).phi3);
     const GroundAhead ground = section_.ahead(to.bucket.x);
     const double support = ground.surface - to.bucket.z;
@@ -727,68 +692,20 @@ class SectionDig {
     }
   }
 
-  void finish() {
-    SoilLedger& ledger = result_.soil;
-    const LooseSoil rest = write_back(section_, repose_);
-    ledger.spilled = rest.elsewhere;
-    ledger.fallen_back = rest.in_cut;
-    ledger.payload = result_.payload_volume = contents_;
-    ledger.fallback_fraction = ledger.bank_cut > 0.0 ? ledger.fallen_back / ledger.bank_cut : 0.0;
-    result_.payload_mass = contents_ * model_.loose.bulk_density;
-    GroundWindow& ground = section_.ground();
-    if (options_.dump_at) pour(ground, *options_.dump_at, contents_, repose_);
-    const double below = lowest(ground);
-    ledger.solids_before = ground.solids_before(below);
-    const double carried = options_.dump_at ? 0.0 : contents_ * model_.loose.dry_density;
-    ledger.solids_after = ground.solids(below) + carried;
-    result_.patch = ground.patch();
-  }
-
-  /// Of the path and of the bank in the window.
-  double lowest(const GroundWindow& ground) const {
-    double low = path_.poses.front().bucket.z;
-    for (const DigPose& pose : path_.poses) low = std::min(low, pose.bucket.z);
-    const CellBlock& cells = ground.cells();
-    for (Index col = cells.col_begin; col < cells.col_end; ++col) {
-      for (Index row = cells.row_begin; row < cells.row_end; ++row) {
-        low = std::min(low, ground.bank(row, col));  // NaN is not less
-      }
-    }
-    return low;
-  }
-
   const SectionModel& model_;
   const Machine& machine_;
   const DigPath& path_;
-  const DigOptions& options_;
   BucketSection bucket_;
   SoilSection section_;
   SoilResistance resistance_;
+  DigAccount account_;
   double repose_;
   Pile pile_;
   double pile_at_ = 0.0;
   double contents_ = 0.0;    ///< loose, in the bucket [m^3]
   double dropped_ = 0.0;     ///< by the rising bucket [m^2]
   double dropped_at_ = 0.0;  ///< sum of area times x
-  double travelled_ = 0.0;
-  DigResult result_;
 };
-
-void check(const Terrain& terrain) {
-  const auto refuse = [](const std::string& what) {
-    throw Error(ErrorKind::bad_input, "dig: " + what);
-  };
-  const HeightMap& map = terrain.bank;
-  if (map.z.size() == 0) refuse("the map is empty");
-  if (!(map.cell_size > 0.0)) refuse("cell must be > 0 m, got " + std::to_string(map.cell_size));
-  const auto fits = [&](const Eigen::ArrayXXd& layer) {
-    return layer.rows() == map.z.rows() && layer.cols() == map.z.cols();
-  };
-  if (!fits(terrain.loose)) refuse("the loose layer must be as large as the map");
-  for (const Eigen::ArrayXXd* layer : {&terrain.bank_void_ratio, &terrain.loose_void_ratio}) {
-    if (layer->size() > 0 && !fits(*layer)) refuse("void ratios must be as large as the map");
-  }
-}
 
 }  // namespace
 
@@ -805,7 +722,7 @@ SectionSimulator::SectionSimulator(const Machine& machine, const SoilKind& soil,
 
 DigResult SectionSimulator::dig(const Terrain& terrain, const DigPath& path,
                                 const DigOptions& options) const {
-  check(terrain);
+  check_dig(terrain, path);
   return SectionDig(*model_, terrain, path, options).run();
 }
 
@@ -814,8 +731,7 @@ std::string SectionSimulator::name() {
 }
 
 std::string SectionSimulator::identity() const {
-  return name() + ", machine " + fingerprint(model_->machine) + ", soil " +
-         fingerprint(model_->kind) + " at " + number_text(model_->density_percent) + " %";
+  return simulator_identity(name(), model_->machine, model_->kind, model_->density_percent);
 }
 
 }  // namespace excavplan

@@ -9,6 +9,8 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/text.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -17,6 +19,7 @@ using Eigen::Vector2d;
 
 // Numbers of our own choice.
 constexpr double look_ahead = 0.25;  // for level and slope of the ground [m]
+constexpr double rounding = 1e-9;    // of a row that the bucket only touches [-]
 constexpr double growth = 0.5;       // by which a section grows, and its room ahead at first [m]
 
 double square(double value) { return value * value; }
@@ -84,41 +87,27 @@ class HeapShape {
   double at_edge_;
 };
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw Error(ErrorKind::bad_input, "dig: " + what);
-}
-
 std::string span(double from, double to) {
-  return std::to_string(from) + " .. " + std::to_string(to) + " m";
-}
-
-/// Edges of the bucket in rows of the map.
-std::pair<double, double> edges(const HeightMap& map, double width) {
-  return {(-0.5 * width - map.origin.y()) / map.cell_size,
-          (0.5 * width - map.origin.y()) / map.cell_size};
+  return number_text(from) + " .. " + number_text(to) + " m";
 }
 
 /// The cells that the bucket passes.
-CellBlock cells_under(const HeightMap& map, double width, const Reach& reach) {
-  const auto [low, high] = edges(map, width);
-  if (!(low >= -1e-9 && high <= static_cast<double>(map.z.rows()) + 1e-9)) {
-    refuse("the bucket, y = " + span(-0.5 * width, 0.5 * width) + ", must lie on the map");
-  }
+CellBlock cells_under(const HeightMap& map, const Swath& swath, const Reach& reach) {
   const Rectangle extent = map.extent();
   if (!(reach.x_min >= extent.x_min && reach.x_max < extent.x_max)) {
-    refuse("the path, x = " + span(reach.x_min, reach.x_max) + ", must lie on the map");
+    throw Error(ErrorKind::bad_input,
+                "dig: the path, x = " + span(reach.x_min, reach.x_max) +
+                    ", must lie on the map, x = " + span(extent.x_min, extent.x_max));
   }
   const auto col_of = [&](double x) {
     return static_cast<Index>((x - map.origin.x()) / map.cell_size);
   };
-  const CellBlock cells = {static_cast<Index>(std::floor(low + 1e-9)),
-                           static_cast<Index>(std::ceil(high - 1e-9)), col_of(reach.x_min),
+  const CellBlock cells = {swath.first_row(), swath.end_row(), col_of(reach.x_min),
                            std::min(map.z.cols(), col_of(reach.x_max) + 1)};
   for (Index col = cells.col_begin; col < cells.col_end; ++col) {
-    for (Index row = cells.row_begin; row < cells.row_end; ++row) {
-      if (!std::isnan(map.z(row, col))) continue;
-      refuse("the path crosses unknown ground at x = " + std::to_string(map.x(col)) + " m");
-    }
+    if (swath.is_known(col)) continue;
+    throw Error(ErrorKind::bad_input,
+                "dig: the path crosses unknown ground at x = " + number_text(map.x(col)) + " m");
   }
   return cells;
 }
@@ -203,9 +192,9 @@ class MapWriter {
 
   void fill(Index col, double thickness) {
     if (!(thickness > 0.0)) return;
-    const std::vector<double>& share = section_.coverage();
-    for (std::size_t r = 0; r < share.size(); ++r) {
-      ground_.raise_loose(section_.first_row() + static_cast<Index>(r), col, share[r] * thickness);
+    const Swath& swath = section_.swath();
+    for (Index r = 0; r < swath.rows(); ++r) {
+      ground_.raise_loose(swath.first_row() + r, col, swath.cover(r) * thickness);
     }
   }
 
@@ -256,28 +245,18 @@ class MapWriter {
 
 SoilSection::SoilSection(const Terrain& terrain, const GroundSoil& soil, double width,
                          const Reach& reach)
-    : ground_(terrain, soil,
-              with_room(cells_under(terrain.bank, width, reach), terrain.bank, reach)),
+    : swath_(terrain.bank, width, rounding),
+      ground_(terrain, soil,
+              with_room(cells_under(terrain.bank, swath_, reach), terrain.bank, reach)),
       width_(width),
-      cell_(terrain.bank.cell_size),
+      cell_size_(terrain.bank.cell_size),
       origin_(terrain.bank.origin.x()) {
-  cover_rows();
+  for (Index r = 0; r < swath_.rows(); ++r) rows_ += swath_.cover(r);
   cover_columns(reach);
 }
 
-void SoilSection::cover_rows() {
-  const auto [low, high] = edges(ground_.before().bank, width_);
-  first_row_ = static_cast<Index>(std::floor(low + 1e-9));
-  const auto end = static_cast<Index>(std::ceil(high - 1e-9));
-  for (Index row = first_row_; row < end; ++row) {
-    const auto r = static_cast<double>(row);
-    coverage_.push_back(std::min(r + 1.0, high) - std::max(r, low));
-    rows_ += coverage_.back();
-  }
-}
-
 void SoilSection::cover_columns(const Reach& reach) {
-  const CellBlock path = cells_under(ground_.before().bank, width_, reach);
+  const CellBlock path = cells_under(ground_.before().bank, swath_, reach);
   first_col_ = path.col_begin;
   for (Index col = path.col_begin; col < path.col_end; ++col) columns_.push_back(mean_column(col));
   while (left(end_col()) < reach.x_max + reach.behind && grow_behind()) continue;
@@ -288,11 +267,12 @@ void SoilSection::cover_columns(const Reach& reach) {
 }
 
 bool SoilSection::grow_ahead() {
-  const auto cells = static_cast<Index>(std::ceil(growth / cell_));
+  const auto cells = static_cast<Index>(std::ceil(growth / cell_size_));
   const Index end = first_col_;
-  while (end - first_col_ < cells && first_col_ > 0 && known(first_col_ - 1)) --first_col_;
+  while (end - first_col_ < cells && first_col_ > 0 && swath_.is_known(first_col_ - 1))
+    --first_col_;
   if (first_col_ == end) return false;
-  ground_.cover({first_row_, first_row_ + 1, first_col_, end});
+  ground_.cover({swath_.first_row(), swath_.first_row() + 1, first_col_, end});
   columns_.insert(columns_.begin(), static_cast<std::size_t>(end - first_col_), Column{});
   for (Index col = first_col_; col < end; ++col) at(col) = mean_column(col);
   return true;
@@ -300,29 +280,22 @@ bool SoilSection::grow_ahead() {
 
 bool SoilSection::grow_behind() {
   const Index begin = end_col();
-  const Index wanted = begin + static_cast<Index>(std::ceil(growth / cell_));
+  const Index wanted = begin + static_cast<Index>(std::ceil(growth / cell_size_));
   Index end = begin;
-  while (end < std::min(wanted, ground_.before().loose.cols()) && known(end)) ++end;
+  while (end < std::min(wanted, ground_.before().loose.cols()) && swath_.is_known(end)) ++end;
   if (end == begin) return false;
-  ground_.cover({first_row_, first_row_ + 1, begin, end});
+  ground_.cover({swath_.first_row(), swath_.first_row() + 1, begin, end});
   for (Index col = begin; col < end; ++col) columns_.push_back(mean_column(col));
-  return true;
-}
-
-bool SoilSection::known(Index col) const {
-  for (std::size_t r = 0; r < coverage_.size(); ++r) {
-    if (std::isnan(ground_.before().bank.z(first_row_ + static_cast<Index>(r), col))) return false;
-  }
   return true;
 }
 
 Column SoilSection::mean_column(Index col) {
   Column mean;
-  for (std::size_t r = 0; r < coverage_.size(); ++r) {
-    const Index row = first_row_ + static_cast<Index>(r);
-    mean.bank += coverage_[r] * ground_.bank(row, col);
-    mean.loose += coverage_[r] * ground_.loose(row, col);
-    mean.void_ratio += coverage_[r] * ground_.bank_void_ratio(row, col);
+  for (Index r = 0; r < swath_.rows(); ++r) {
+    const Index row = swath_.first_row() + r;
+    mean.bank += swath_.cover(r) * ground_.bank(row, col);
+    mean.loose += swath_.cover(r) * ground_.loose(row, col);
+    mean.void_ratio += swath_.cover(r) * ground_.bank_void_ratio(row, col);
   }
   mean.bank_before = mean.bank /= rows_;
   mean.loose_before = mean.loose /= rows_;
@@ -332,7 +305,7 @@ Column SoilSection::mean_column(Index col) {
 }
 
 Index SoilSection::column_at(double x) const {
-  const auto col = std::floor((x - origin_) / cell_);
+  const auto col = std::floor((x - origin_) / cell_size_);
   return static_cast<Index>(
       std::clamp(col, static_cast<double>(first_col_), static_cast<double>(end_col() - 1)));
 }
@@ -349,13 +322,13 @@ CutArea SoilSection::cut(Vector2d p, Vector2d q) {
   const Index last = column_at(q.x());
   for (Index col = column_at(p.x()); col <= last; ++col) {
     const double from = std::max(p.x(), left(col));
-    const double to = std::min(q.x(), left(col) + cell_);
+    const double to = std::min(q.x(), left(col) + cell_size_);
     if (!(to > from)) continue;
     const CutArea area = cut_column(at(col), from, to, line);
     sum.bank += area.bank;
     sum.loose += area.loose;
-    sum.swollen += take_bank(col, area.bank / cell_) * cell_;
-    sum.swollen += take_loose(col, area.loose / cell_) * cell_;
+    sum.swollen += take_bank(col, area.bank / cell_size_) * cell_size_;
+    sum.swollen += take_loose(col, area.loose / cell_size_) * cell_size_;
   }
   return sum;
 }
@@ -364,21 +337,20 @@ CutArea SoilSection::cut(Vector2d p, Vector2d q) {
 double SoilSection::take_bank(Index col, double thickness) {
   if (!(thickness > 0.0)) return 0.0;
   double level = at(col).bank -= thickness;
-  const auto top = [&](std::size_t r) {  // where the bucket covers the row
-    const Index row = first_row_ + static_cast<Index>(r);
+  const auto top = [&](Index r) {  // where the bucket covers the row
+    const Index row = swath_.first_row() + r;
     const double before = ground_.before().bank.z(row, col);
-    return before - (before - ground_.bank(row, col)) / coverage_[r];
+    return before - (before - ground_.bank(row, col)) / swath_.cover(r);
   };
   double above = 0.0;
-  for (std::size_t n = 0; n <= coverage_.size();
-       ++n) {  // Newton's method, from below: ends exactly
+  for (Index n = 0; n <= swath_.rows(); ++n) {  // Newton's method, from below: ends exactly
     above = 0.0;
     double weight = 0.0;
-    for (std::size_t r = 0; r < coverage_.size(); ++r) {
+    for (Index r = 0; r < swath_.rows(); ++r) {
       const double height = top(r) - level;
       if (!(height > 0.0)) continue;
-      above += coverage_[r] * height;
-      weight += coverage_[r];
+      above += swath_.cover(r) * height;
+      weight += swath_.cover(r);
     }
     const double rise = weight > 0.0 ? (above - thickness * rows_) / weight : 0.0;
     if (!(rise > 1e-15)) break;
@@ -387,11 +359,11 @@ double SoilSection::take_bank(Index col, double thickness) {
   if (!(above > 0.0)) return 0.0;
   const double exact = thickness * rows_ / above;
   double swollen = 0.0;
-  for (std::size_t r = 0; r < coverage_.size(); ++r) {
+  for (Index r = 0; r < swath_.rows(); ++r) {
     const double height = top(r) - level;
     if (!(height > 0.0)) continue;
-    const Index row = first_row_ + static_cast<Index>(r);
-    const double taken = exact * coverage_[r] * height;
+    const Index row = swath_.first_row() + r;
+    const double taken = exact * swath_.cover(r) * height;
     swollen += ground_.swollen_bank(row, col, taken);
     ground_.lower_bank(row, col, taken);
   }
@@ -405,9 +377,9 @@ double SoilSection::take_loose(Index col, double thickness) {
   if (!(taken > 0.0)) return 0.0;
   mean.loose -= taken;
   double swollen = 0.0;
-  for (std::size_t r = 0; r < coverage_.size(); ++r) {
-    const Index row = first_row_ + static_cast<Index>(r);
-    const double share = coverage_[r] * ground_.before().loose(row, col) / mean.loose_before;
+  for (Index r = 0; r < swath_.rows(); ++r) {
+    const Index row = swath_.first_row() + r;
+    const double share = swath_.cover(r) * ground_.before().loose(row, col) / mean.loose_before;
     swollen += ground_.swollen_loose(row, col, share * taken);
     ground_.lower_loose(row, col, share * taken);
   }
@@ -428,7 +400,7 @@ void SoilSection::pass(const Vector2d& tip) {
 double SoilSection::uncut(double x) const {
   const double first = middle(first_col_);
   const double along =
-      std::clamp((x - first) / cell_, 0.0, static_cast<double>(columns_.size() - 1));
+      std::clamp((x - first) / cell_size_, 0.0, static_cast<double>(columns_.size() - 1));
   const auto i = static_cast<std::size_t>(along);
   const double bank = columns_[i].bank_before;
   if (i + 1 == columns_.size()) return bank;
@@ -437,7 +409,7 @@ double SoilSection::uncut(double x) const {
 
 GroundAhead SoilSection::ahead(double x) const {
   const Index last = column_at(x);
-  const Index first = column_at(x - look_ahead + 0.5 * cell_);
+  const Index first = column_at(x - look_ahead + 0.5 * cell_size_);
   const double n = static_cast<double>(last - first + 1);
   GroundAhead mean;
   double moment = 0.0;
@@ -445,7 +417,7 @@ GroundAhead SoilSection::ahead(double x) const {
   const double centre = 0.5 * (middle(first) + middle(last));
   for (Index col = first; col <= last; ++col) {
     const Column& here = column(col);
-    const bool passed = here.swept() > cell_ - 1e-9;
+    const bool passed = here.swept() > cell_size_ - 1e-9;
     const double bank = passed ? here.bank : here.bank_before;
     const double loose = passed ? here.loose : here.loose_before;
     mean.bank += bank / n;
@@ -477,7 +449,7 @@ double SoilSection::shed(double x, double high, double fall, double slope) {
     double& windrow = at(col).windrow;
     const double target = area_beside(thickness * width_ + windrow, width_, slope);
     const double leaving = std::max(0.0, target - windrow) * length;
-    windrow += leaving / cell_;
+    windrow += leaving / cell_size_;
     shed += leaving / width_;
     u += length;
   }
@@ -501,11 +473,11 @@ void SoilSection::raise(const Heap& heap, double area, Index begin, Index end) {
   const auto total = [&](double apex) {
     double sum = 0.0;
     for (Index col = begin; col < end; ++col) sum += std::max(0.0, above(col, apex));
-    return sum * cell_;
+    return sum * cell_size_;
   };
   double low = std::numeric_limits<double>::infinity();
   for (Index col = begin; col < end; ++col) low = std::min(low, -above(col, 0.0));
-  double high = low + std::sqrt(area * heap.slope) + heap.slope * cell_;
+  double high = low + std::sqrt(area * heap.slope) + heap.slope * cell_size_;
   while (total(high) < area) high += high - low;
   while (high - low > 1e-6) {
     const double half = 0.5 * (low + high);

@@ -8,9 +8,10 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/simulation/terrain.hpp>
 
-#include "simulation/soil_layers.hpp"
+#include "simulation/ground_window.hpp"
+#include "simulation/swath.hpp"
 
 /// @file
 /// The ground of SectionSimulator: mean heights over the bucket's width, one column of cells each.
@@ -76,15 +77,14 @@ class SoilSection {
 
   GroundWindow& ground() { return ground_; }
   double width() const { return width_; }
-  double cell_size() const { return cell_; }
-  Eigen::Index first_row() const { return first_row_; }
-  const std::vector<double>& coverage() const { return coverage_; }  ///< of the rows
-  double rows() const { return rows_; }                              ///< sum of the coverage
+  double cell_size() const { return cell_size_; }
+  const Swath& swath() const { return swath_; }
+  double rows() const { return rows_; }  ///< sum of what the bucket covers of each [-]
   Eigen::Index first_col() const { return first_col_; }
   Eigen::Index end_col() const { return first_col_ + static_cast<Eigen::Index>(columns_.size()); }
   const Column& column(Eigen::Index col) const { return columns_[index(col)]; }
-  double left(Eigen::Index col) const { return origin_ + cell_ * static_cast<double>(col); }
-  double middle(Eigen::Index col) const { return left(col) + 0.5 * cell_; }
+  double left(Eigen::Index col) const { return origin_ + cell_size_ * static_cast<double>(col); }
+  double middle(Eigen::Index col) const { return left(col) + 0.5 * cell_size_; }
   Eigen::Index column_at(double x) const;  ///< the nearest column outside the section
 
   /// State of the bank where its void ratio is this.
@@ -125,22 +125,19 @@ class SoilSection {
  private:
   std::size_t index(Eigen::Index col) const { return static_cast<std::size_t>(col - first_col_); }
   Column& at(Eigen::Index col) { return columns_[index(col)]; }
-  void cover_rows();
   void cover_columns(const Reach& reach);
   bool grow_ahead();
   bool grow_behind();
-  bool known(Eigen::Index col) const;
   Column mean_column(Eigen::Index col);
   double take_bank(Eigen::Index col, double thickness);
   double take_loose(Eigen::Index col, double thickness);
   void raise(const Heap& heap, double area, Eigen::Index begin, Eigen::Index end);
 
+  Swath swath_;
   GroundWindow ground_;
   double width_;
-  double cell_;
+  double cell_size_;
   double origin_;
-  Eigen::Index first_row_ = 0;
-  std::vector<double> coverage_;
   double rows_ = 0.0;
   Eigen::Index first_col_ = 0;
   std::vector<Column> columns_;

@@ -82,6 +82,19 @@ DensityLaw load_density_law(const std::string& path) {
   return law;
 }
 
+DensityLaw density_law_of(const SoilKind& soil) {
+  DensityClosedForm form;
+  form.A = (1.0 + soil.void_ratio_loose) / (1.0 + soil.void_ratio_max);
+  form.r = (soil.void_ratio_max - soil.void_ratio_min) / (1.0 + soil.void_ratio_max);
+  form.r2 = 1.0;
+  DensityLaw law;
+  law.name = soil.name + ", solids conserved";
+  law.source = "void ratios of the soil";
+  law.form = law.freed_form = form;
+  law.soil = soil.name;
+  return law;
+}
+
 RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_factor) {
   const double k = bulking_factor.value;
   if (!(k > 0.0 && std::isfinite(k)) ||

@@ -13,11 +13,11 @@
 #include <excavplan/error.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
-#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "ground/robust.hpp"
 #include "survey/cloud_cell.hpp"
 #include "survey/cloud_outline.hpp"
+#include "survey/scan_reading.hpp"
 
 namespace excavplan {
 namespace {
@@ -315,83 +315,11 @@ Surface surface_of(const PointSource& source, HeightMap map, const RasterOptions
   return surface;
 }
 
-/// Takes points into the site frame and leaves out those outside the area.
-void visit_scan(const Scan& scan, const PointVisitor& visit) {
-  const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity();
-  const Eigen::Matrix3d rotation = scan.site_from_scan.topLeftCorner<3, 3>();
-  const Eigen::Vector3d shift = scan.site_from_scan.topRightCorner<3, 1>();
-  std::vector<Eigen::Vector3d> kept;
-  const auto bring_in = [&](const std::vector<Eigen::Vector3d>& points) {
-    kept.clear();
-    for (const Eigen::Vector3d& point : points) {
-      const Eigen::Vector3d p = is_moved ? Eigen::Vector3d(rotation * point + shift) : point;
-      if (!scan.area || scan.area->contains(p.x(), p.y())) kept.push_back(p);
-    }
-    visit(kept);
-  };
-  for (const std::string& file : scan.files) {
-    if (is_moved || scan.area) {
-      stream_cloud(file, bring_in);
-    } else {
-      stream_cloud(file, visit);
-    }
-  }
-}
-
 }  // namespace
 
 Surface survey_surface(const Scan& scan, const Rectangle& extent, const RasterOptions& options) {
   const PointSource source = [&scan](const PointVisitor& visit) { visit_scan(scan, visit); };
   return surface_of(source, empty_map(extent, options), options);
-}
-
-std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
-                                     const RasterOptions& options, unsigned threads) {
-  std::vector<Surface> surfaces(scans.size());
-  parallel_for(scans.size(), threads,
-               [&](std::size_t i) { surfaces[i] = survey_surface(scans[i], extent, options); });
-  return surfaces;
-}
-
-RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
-                                 const RasterOptions& options, double registration_cell) {
-  constexpr int most_rounds = 3;
-  RasterOptions coarse = options;
-  coarse.cell_size = std::max(options.cell_size, registration_cell);
-  const bool is_fine = coarse.cell_size > options.cell_size;
-  Scan after = scans.after;
-  RegisteredPair result;
-  SurfacePair& pair = result.surfaces;
-  const auto survey = [&](const RasterOptions& raster) {
-    std::vector<Surface> both = survey_surfaces({scans.before, after}, extent, raster);
-    pair.before = std::move(both[0]);
-    pair.after = std::move(both[1]);
-  };
-  survey(coarse);
-  pair.alignment = result.first = align(pair.before, pair.after);
-  for (int round = 1; round < most_rounds; ++round) {
-    const double largest = pair.alignment.largest_shift(pair.after.height);
-    if (!(largest > (is_fine ? 0.0 : 0.5 * options.cell_size))) break;
-    result.correction = pair.alignment.correction() * result.correction;
-    after.site_from_scan = result.correction * scans.after.site_from_scan;
-    pair.after = survey_surface(after, extent, coarse);
-    pair.alignment = align(pair.before, pair.after);
-  }
-  if (is_fine) survey(options);
-  result.correction = pair.alignment.correction() * result.correction;
-  return result;
-}
-
-ScanOutline outline(const Scan& scan) {
-  CloudOutline found;
-  visit_scan(scan, [&found](const std::vector<Eigen::Vector3d>& points) { found.add(points); });
-  return found.result();
-}
-
-std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threads) {
-  std::vector<ScanOutline> found(scans.size());
-  parallel_for(scans.size(), threads, [&](std::size_t i) { found[i] = outline(scans[i]); });
-  return found;
 }
 
 HeightMap rasterise(const Cloud& cloud, const Rectangle& extent, const RasterOptions& options) {

@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/kinematics.hpp>
 #include <excavplan/random.hpp>
 
 #include "base/angles.hpp"

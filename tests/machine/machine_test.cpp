@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/kinematics.hpp>
 
 #include <unistd.h>
 

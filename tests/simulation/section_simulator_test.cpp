@@ -469,7 +469,7 @@ TEST_F(Section, SaysWhatIsWrongWithAPath) {
   EXPECT_EQ(message(ground, far), "dig: every pose of the path must be finite");
   Terrain narrow = undisturbed(flat_ground({1.0, -0.2, 9.0, 0.2}, 0.05));
   EXPECT_EQ(message(narrow, path),
-            "dig: the bucket, y = -0.350000 .. 0.350000 m, must lie on the map");
+            "dig: the bucket, y = -0.35 .. 0.35 m, must lie on the map");
 }
 
 TEST_F(Section, RepeatedDigsAtOneSpotLoseNothing) {

@@ -732,8 +732,7 @@ TEST(WriteCloud, RoundTripIsExact) {
 
 TEST(WriteCloud, TextKeepsEveryDigit) {
   const Cloud cloud = sample_cloud(1.0, true);
-  for (const auto format :
-       {CloudFormat{"pcd", true}, CloudFormat{"ply", true}, CloudFormat{"xyz"}}) {
+  for (const auto& format :        {CloudFormat{"pcd", true}, CloudFormat{"ply", true}, CloudFormat{"xyz"}}) {
     const TempFile file;
     write_cloud(file.path(), cloud, format);
     expect_points(read_cloud(file.path()), cloud.points);

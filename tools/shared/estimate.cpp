@@ -5,47 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/ground/bulking.hpp>
-
 #include "shared/quantity.hpp"
 #include "shared/results.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-/// Volume after without the voids between blocks, over the volume before.
-Measured without_voids(const VolumeChange& change, const Measured& bulking, const Measured& voids) {
-  const double before = change.before.value;
-  return {bulking.value - voids.value / before, std::hypot(bulking.sd, voids.sd / before)};
-}
-
-/// k = f + (1 - f) k_measured with the errors of both.
-Measured freed_of(const Measured& bulking, const Measured& fallback) {
-  return {free_of_fallback(bulking.value, fallback.value),
-          std::hypot((1.0 - fallback.value) * bulking.sd, (1.0 - bulking.value) * fallback.sd)};
-}
-
-/// The bulking factor that the law is asked for.
-std::optional<Measured> corrected(const VolumeChange& change, const Estimate& result) {
-  const bool voids = result.knowledge.blocks && result.knowledge.blocks->voids;
-  if (!voids && !result.knowledge.fallback) return std::nullopt;
-  Measured k = *result.bulking;
-  if (voids) k = without_voids(change, k, *result.knowledge.blocks->voids);
-  if (result.knowledge.fallback) k = freed_of(k, result.knowledge.fallback->fraction);
-  return k;
-}
-
-void warn_of_blocks(const BlockReport& report, Estimate& result) {
-  std::string message = "the soil lies in blocks (score " + readable(report.score) + " of 1): ";
-  for (std::size_t i = 0; i < report.reasons.size(); ++i) {
-    message += (i > 0 ? "; " : "") + report.reasons[i];
-  }
-  message += report.voids ? "; the voids between them were estimated and taken out"
-                          : "; the voids between them are in the volume, and their size cannot be "
-                            "told";
-  result.warnings.push_back({"blocks", message + ": the density is not to be trusted"});
-  result.trustworthy = false;
-}
 
 nlohmann::ordered_json fallback_json(const Fallback& fallback) {
   return {{"fraction", fallback.fraction.value},
@@ -67,114 +31,158 @@ nlohmann::ordered_json blocks_json(const BlockReport& report) {
   return json;
 }
 
-}  // namespace
-
-Estimate estimate(const VolumeChange& change, const Knowledge& knowledge, DensityLaw law) {
-  Estimate result;
-  result.warnings = change.warnings;
-  result.bulking = bulking_factor(change);
-  result.knowledge = knowledge;
-  if (result.bulking) {
-    result.density_without_fallback = density_of_bulking(law.freed_form, result.bulking->value);
-    result.corrected = corrected(change, result);
-    if (knowledge.fallback) law.form = law.freed_form;
-    Measured k = result.corrected.value_or(*result.bulking);
-    const bool known_error = !std::isnan(k.sd);
-    if (!known_error) {
-      k.sd = 0.0;
-      result.warnings.push_back(
-          {"volume_error_unknown",
-           "this method tells no error of its volumes: the interval of the density holds the "
-           "scatter of the law only"});
-    }
-    result.density = relative_density(law, k);
-    result.trustworthy = known_error && result.density->trustworthy;
-    for (const Warning& warning : result.density->warnings) result.warnings.push_back(warning);
-  } else {
-    result.trustworthy = false;
+/// Null where the sensor stood still and said so.
+nlohmann::ordered_json registration_json(const std::optional<ScanRegistration>& registration) {
+  if (!registration) return nullptr;
+  const Alignment& alignment = registration->found;
+  const auto numbers = [](const Motion& motion) {
+    return nlohmann::ordered_json(std::vector<double>(motion.data(), motion.data() + 6));
+  };
+  nlohmann::ordered_json correction = nlohmann::ordered_json::array();
+  for (const auto& row : registration->correction.rowwise()) {
+    correction.push_back(std::vector<double>(row.begin(), row.end()));
   }
-  if (knowledge.blocks && knowledge.blocks->blocks) warn_of_blocks(*knowledge.blocks, result);
-  for (const Warning& warning : change.warnings) {
-    if (warning.code == "zone_at_border" || warning.code == "zone_partly_unseen") {
-      result.trustworthy = false;
-    }
-  }
-  return result;
+  return {{"correction", correction},
+          {"found", numbers(alignment.found)},
+          {"found_sd", numbers(alignment.covariance.diagonal().cwiseMax(0.0).cwiseSqrt())},
+          {"vertical_is_significant", alignment.vertical_is_significant},
+          {"lateral_is_significant", alignment.lateral_is_significant},
+          {"residual_sd_m", alignment.residual_sd},
+          {"stable_share", alignment.stable_share}};
 }
 
-nlohmann::ordered_json estimate_json(const VolumeChange& change, const Estimate& result,
-                                     const DensityLaw& law) {
+nlohmann::ordered_json zones_json(const VolumeChange& change) {
+  auto list = nlohmann::ordered_json::array();
+  for (const ChangeZone& zone : change.zones) {
+    list.push_back(
+        {{"kind", name(zone.kind)},
+         {"volume_m3", zone.volume.value},
+         {"volume_sd_m3", zone.volume.sd},
+         {"area_m2", zone.area},
+         {"unseen_share", zone.unknown_share},
+         {"extent_m",
+          {zone.extent.x_min, zone.extent.y_min, zone.extent.x_max, zone.extent.y_max}}});
+  }
+  return list;
+}
+
+const char* name(VolumeMethod method) {
+  return method == VolumeMethod::paper ? "paper" : "surface";
+}
+
+nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
   nlohmann::ordered_json json;
-  json["volume"] = volumes_json(change);
+  json["volume"] = volumes_json(estimate.change);
   json["bulking_factor"] = nullptr;
   json["bulking_factor_sd"] = nullptr;
   json["density_percent"] = nullptr;
   json["density_raw_percent"] = nullptr;
   json["density_sd_percent"] = nullptr;
   json["density_interval_percent"] = nullptr;
-  if (result.bulking) {
-    json["bulking_factor"] = result.bulking->value;
-    json["bulking_factor_sd"] = result.bulking->sd;
-    json["density_percent"] = result.density->percent;
-    json["density_raw_percent"] = result.density->raw_percent;
-    json["density_sd_percent"] = result.density->sd_percent;
-    json["density_interval_percent"] = result.density->interval_percent;
-    json["density_without_fallback_percent"] = result.density_without_fallback;
+  if (estimate.bulking) {
+    json["bulking_factor"] = estimate.bulking->value;
+    json["bulking_factor_sd"] = estimate.bulking->sd;
+    json["density_percent"] = estimate.density->percent;
+    json["density_raw_percent"] = estimate.density->raw_percent;
+    json["density_sd_percent"] = estimate.density->sd_percent;
+    json["density_interval_percent"] = estimate.density->interval_percent;
+    json["density_without_fallback_percent"] = estimate.density_without_fallback;
   }
   json["bulking_factor_corrected"] = nullptr;
   json["bulking_factor_corrected_sd"] = nullptr;
-  if (result.corrected) {
-    json["bulking_factor_corrected"] = result.corrected->value;
-    json["bulking_factor_corrected_sd"] = result.corrected->sd;
+  if (estimate.corrected) {
+    json["bulking_factor_corrected"] = estimate.corrected->value;
+    json["bulking_factor_corrected_sd"] = estimate.corrected->sd;
   }
-  const Knowledge& known = result.knowledge;
-  json["fallback"] = known.fallback ? fallback_json(*known.fallback) : nullptr;
-  json["blocks"] = known.blocks ? blocks_json(*known.blocks) : nullptr;
-  json["law"] = law.name;
+  json["fallback"] = estimate.fallback ? fallback_json(*estimate.fallback) : nullptr;
+  json["blocks"] = blocks_json(estimate.blocks);
+  json["law"] = estimate.law.name;
   json["law_soil"] = nullptr;
-  if (!law.soil.empty()) json["law_soil"] = law.soil;
-  json["trustworthy"] = result.trustworthy;
+  if (!estimate.law.soil.empty()) json["law_soil"] = estimate.law.soil;
+  json["trustworthy"] = estimate.trustworthy;
+  json["method"] = name(estimate.method);
   return json;
 }
 
-std::vector<std::string> estimate_lines(const VolumeChange& change, const Estimate& result,
-                                        const DensityLaw& law) {
+nlohmann::ordered_json survey_json(const DensityEstimate& estimate) {
+  nlohmann::ordered_json json = {{"cell_m", estimate.cell_size}, {"registration", nullptr}};
+  if (estimate.registration) {
+    json["registration"] = {{"dig", registration_json(estimate.registration)},
+                            {"dump", registration_json(estimate.dump_registration)}};
+  }
+  json["zones"] = zones_json(estimate.change);
+  return json;
+}
+
+std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
   const auto volume = [](const Measured& v) { return readable(v.value, v.sd) + " m3"; };
-  std::vector<std::string> lines = {"hole       " + volume(change.excavated),
-                                    "spill      " + volume(change.spilled),
-                                    "heap       " + volume(change.dumped)};
-  if (!result.bulking) {
+  std::vector<std::string> lines = {"hole       " + volume(estimate.change.excavated),
+                                    "spill      " + volume(estimate.change.spilled),
+                                    "heap       " + volume(estimate.change.dumped)};
+  if (!estimate.bulking) {
     lines.emplace_back("bulking    unknown, and so is the density");
     return lines;
   }
-  const RelativeDensity& d = *result.density;
-  lines.push_back("bulking    " + readable(result.bulking->value, result.bulking->sd));
-  if (const auto& fallback = result.knowledge.fallback) {
+  const RelativeDensity& d = *estimate.density;
+  lines.push_back("bulking    " + readable(estimate.bulking->value, estimate.bulking->sd));
+  if (const auto& fallback = estimate.fallback) {
     lines.push_back("fallback   " +
                     readable(100.0 * fallback->fraction.value, 100.0 * fallback->fraction.sd) +
                     " % of the cut");
   }
-  if (const auto& blocks = result.knowledge.blocks; blocks && blocks->voids) {
-    lines.push_back("voids      " + volume(*blocks->voids) + " between blocks of " +
-                    readable(*blocks->block_size, 2) + " m");
+  if (const BlockReport& blocks = estimate.blocks; blocks.voids) {
+    lines.push_back("voids      " + volume(*blocks.voids) + " between blocks of " +
+                    readable(*blocks.block_size, 2) + " m");
   }
-  if (result.corrected) {
-    lines.push_back("corrected  " + readable(result.corrected->value, result.corrected->sd) +
+  if (estimate.corrected) {
+    lines.push_back("corrected  " + readable(estimate.corrected->value, estimate.corrected->sd) +
                     ", bulking freed of this");
   }
   lines.push_back("density    " + readable(d.percent, d.sd_percent) + " %, 95 % interval " +
                   readable(d.interval_percent[0]) + " .. " + readable(d.interval_percent[1]) +
                   " %");
-  lines.push_back("law        " + law.name + (result.trustworthy ? "" : " (NOT TRUSTWORTHY)"));
-  const double bias = result.density_without_fallback - d.raw_percent;
-  if (!result.knowledge.fallback && std::abs(bias) > 0.05) {
+  lines.push_back("law        " + estimate.law.name +
+                  (estimate.trustworthy ? "" : " (NOT TRUSTWORTHY)"));
+  const double bias = estimate.density_without_fallback - d.raw_percent;
+  if (!estimate.fallback && std::abs(bias) > 0.05) {
     lines.push_back(
         "           holds for digs whose bucket spilled as in its calibration; had nothing "
         "fallen back, " +
-        readable(std::clamp(result.density_without_fallback, 0.0, 100.0)) +
+        readable(std::clamp(estimate.density_without_fallback, 0.0, 100.0)) +
         " % (--dug-path finds out)");
   }
   return lines;
+}
+
+}  // namespace
+
+DensityLaw law_named(const std::string& name) {
+  return load_density_law(shipped_or_file("laws", name == "default" ? "zx120-loam" : name));
+}
+
+Outcome estimate_outcome(const DensityEstimate& estimate) {
+  Outcome outcome;
+  outcome.json = estimate_json(estimate);
+  outcome.json.update(survey_json(estimate));
+  outcome.lines = estimate_lines(estimate);
+  outcome.warnings = estimate.warnings;
+  outcome.trustworthy = estimate.trustworthy;
+  return outcome;
+}
+
+void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome) {
+  const DensityEstimate& other = &counts == &both.paper ? both.surface : both.paper;
+  for (const DensityEstimate* each : {&both.surface, &both.paper}) {
+    outcome.json["methods"][name(each->method)] = estimate_json(*each);
+  }
+  outcome.lines.push_back(std::string("method ") + name(other.method) + " gives");
+  for (const std::string& line : estimate_lines(other)) outcome.lines.push_back("  " + line);
+  for (const Warning& warning : other.warnings) {
+    const auto same = [&](const Warning& w) { return w.message == warning.message; };
+    if (std::any_of(counts.warnings.begin(), counts.warnings.end(), same)) continue;
+    outcome.warnings.push_back(
+        {warning.code, std::string("method ") + name(other.method) + ": " + warning.message});
+  }
 }
 
 }  // namespace excavplan::tools

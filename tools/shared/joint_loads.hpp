@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/kinematics.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 
 /// @file

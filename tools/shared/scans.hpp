@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 
-#include <excavplan/ground/volume_change.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
 namespace excavplan::tools {
@@ -17,38 +16,20 @@ struct ScanFrames {
   std::optional<Rectangle> area;  ///< points outside are left out
 };
 
-/// A scan that stays in its file, and what a first look told of it.
-struct SeenScan {
-  Scan scan;
-  ScanOutline outline;
+/// @throws Error (bad_file) if a matrix cannot be read
+ScanPair scan_pair(const std::string& before, const std::string& after, const ScanFrames& frames);
 
-  const std::string& file() const { return scan.files.front(); }
-  /// All its points in the site frame, for methods that need them.
-  /// @throws Error (bad_file)
-  Cloud cloud() const;
-};
+/// Runs `work`, and says with an error about the frame of a scan which options mend it.
+template <typename Work>
+auto with_frame_hint(const std::string& hint, const Work& work) {
+  try {
+    return work();
+  } catch (const FrameError& error) {
+    throw Error(error.kind(), error.what() + ("; " + hint));
+  }
+}
 
-/// Two scans of one area, with what brings them into the site frame.
-struct SeenPair {
-  SeenScan before;
-  SeenScan after;
-
-  std::string files() const { return before.file() + ", " + after.file(); }
-};
-
-/// @throws Error (bad_file) if one cannot be read or holds fewer than 100 finite points
-SeenPair read_scans(const std::string& before, const std::string& after, const ScanFrames& frames);
-
-/// That of excavplan::cell_for().
-double cell_for(const SeenPair& scans);
-
-/// Both scans on one grid over the ground that both see. With `align_them` the one after is brought
-/// onto the one before by the ground that did not change, as far as that is significant; without,
-/// only the height of one against the other is left open.
-/// @throws Error (bad_file) if they do not overlap
-RegisteredPair surveyed(const SeenPair& scans, double cell, bool align_them);
-
-/// The heights of these, not aligned.
-HeightMapPair surfaces(const SeenPair& scans, double cell);
+inline constexpr const char* pair_frame_hint =
+    "--before-frame and --after-frame bring them into one frame";
 
 }  // namespace excavplan::tools

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <excavplan/machine/dig_parameters.hpp>
-#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/kinematics.hpp>
 
 /// @file
 /// The poses and postures of one dig, as its parameters ask for.
@@ -80,6 +80,11 @@ struct DigPathOptions {
   /// The lowest point of the bucket ends this far above the ground [m]; ours.
   double lift_clearance = 0.3;
 };
+
+/// For a path that was planned on another measurement of this ground: it often just keeps the
+/// distances above, and here the ground may lie some millimetres off. They are less strict by
+/// 0.01 rad and 0.02 m; ours.
+DigPathOptions rules_for_planned_path();
 
 /// Lays out penetration, drag, scoop and lift, and solves the joints of every pose in closed form.
 ///

@@ -31,6 +31,17 @@ Terrain level_planning_ground(const Machine& machine, double cell_size = 0.05);
 GroundProfile boom_plane_profile(const HeightMap& surface);
 GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
 
+/// Mean height of a surface over the width of the bucket and 0.15 m to both sides of x (ours): for
+/// scans, where the noise of one cell would move a path. Keeps a reference to the surface.
+GroundProfile profile_under_bucket(const HeightMap& surface, const Machine& machine);
+
+/// The ground over which the tip passes while it digs, as wide as the bucket.
+Rectangle swept_strip(const Machine& machine, const DigPath& path);
+
+/// Height of the line that the tip follows while it digs, the lower one where it passes twice [m];
+/// NaN where it does not dig.
+double swept_height(const DigPath& path, double x);
+
 /// Slope of the surface in the boom plane from `from_x` on, rising away from the machine [rad]: the
 /// line of least squares through the known cells. NaN with fewer than two.
 double boom_plane_slope(const Terrain& terrain, double from_x);

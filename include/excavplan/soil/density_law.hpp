@@ -9,6 +9,7 @@
 
 #include <excavplan/error.hpp>
 #include <excavplan/ground/volume_change.hpp>
+#include <excavplan/soil/soil.hpp>
 
 /// @file
 /// From the bulking factor k to the relative density d [%] and back.
@@ -62,6 +63,11 @@ struct DensityLaw {
 ///
 /// @throws Error (bad_file) naming file, key, value and rule
 DensityLaw load_density_law(const std::string& path);
+
+/// The law that conservation of solids gives a soil: the closed form from its void ratios, B = 0,
+/// without scatter. It leaves out what falls back into the cut and clods, which a calibrated law
+/// holds: where a tenth of the cut falls back it reads some points too low (docs/methods.md).
+DensityLaw density_law_of(const SoilKind& soil);
 
 /// Relative density by the law as it stands [%], also outside 0 .. 100. The closed form has none at
 /// k <= B and runs to minus infinity above it: it ends at -1000 %, and its slope there.

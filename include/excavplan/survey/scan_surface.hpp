@@ -3,27 +3,38 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include <excavplan/error.hpp>
 #include <excavplan/ground/volume_change.hpp>
 #include <excavplan/survey/cloud.hpp>
 
-/// @file Surfaces from files of any size, which are read more than once and never held.
+/// @file Surfaces from scans: files of any size, which are read more than once and never held, or
+/// clouds in memory, which give the same bytes.
 
 namespace excavplan {
 
-/// Files taken at one time that together show one piece of ground.
+/// What was seen at one time of one piece of ground: files, clouds in memory, or both.
 struct Scan {
   std::vector<std::string> files;                                ///< each as read_cloud() reads it
   Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();  ///< a rigid motion
   std::optional<Rectangle> area;  ///< points outside, in the site frame, are left out
+  std::vector<std::shared_ptr<const Cloud>> clouds = {};  ///< in the frame of the files; not null
 };
 
-/// What a first look at a scan tells of its points inside the area.
+/// The error (bad_file) of scans that lie elsewhere than they must, mostly because they are in
+/// another frame than `site_from_scan` says.
+class FrameError : public Error {
+ public:
+  explicit FrameError(const std::string& message) : Error(ErrorKind::bad_file, message) {}
+};
+
+/// What a first pass over a scan tells of its points inside the area.
 struct ScanOutline {
   std::uint64_t points = 0;
   std::uint64_t finite_points = 0;
@@ -87,6 +98,7 @@ struct RegisteredPair {
 /// survey's, is taken off the points, which are then surveyed again.
 /// @throws Error as survey_surface() and align()
 RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
-                                 const RasterOptions& options, double registration_cell);
+                                 const RasterOptions& options, double registration_cell,
+                                 unsigned threads = 0);
 
 }  // namespace excavplan

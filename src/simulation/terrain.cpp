@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/simulation/terrain.hpp>
 
 #include <cmath>
 
 #include "base/angles.hpp"
 
 namespace excavplan {
-namespace {}  // namespace
-
 HeightMap Terrain::surface() const {
   HeightMap map = bank;
   map.z += loose;
@@ -27,12 +25,6 @@ void apply(const TerrainPatch& patch, Terrain& terrain) {
   if (patch.loose_void_ratio.size() > 0) {
     terrain.loose_void_ratio.block(patch.row, patch.col, rows, cols) = patch.loose_void_ratio;
   }
-}
-
-Terrain DigResult::after(const Terrain& before) const {
-  Terrain terrain = before;
-  apply(patch, terrain);
-  return terrain;
 }
 
 HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,

@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
-namespace excavplan::tools {
+/// @file
+/// Tables of numbers in CSV files. Private to the project.
+
+namespace excavplan {
 
 /// A CSV file of numbers: a line of names, then lines of as many numbers; `#` starts a comment.
 class Table {
@@ -28,4 +31,4 @@ class Table {
   std::vector<std::vector<double>> columns_;
 };
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

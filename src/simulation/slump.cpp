@@ -1,24 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/soil_layers.hpp"
+#include "simulation/slump.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <excavplan/error.hpp>
+
+#include "base/angles.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
 using Eigen::Index;
-
-constexpr Index spare = 8;  // cells by which a window grows beyond what is asked; ours
-
-double dry_density(const SoilKind& kind, double void_ratio) {
-  return kind.specific_gravity * water_density / (1.0 + void_ratio);
-}
 
 /// A cell by its place on the map and in the layers.
 struct Place {
@@ -166,180 +162,6 @@ class Slump {
 
 }  // namespace
 
-CellBlock CellBlock::widened(Index margin, Index map_rows, Index map_cols) const {
-  if (empty()) return *this;
-  return {std::max<Index>(0, row_begin - margin), std::min(map_rows, row_end + margin),
-          std::max<Index>(0, col_begin - margin), std::min(map_cols, col_end + margin)};
-}
-
-// ---- GroundWindow -------------------------------------------------------------------------------
-
-GroundWindow::GroundWindow(const Terrain& whole, const GroundSoil& soil, const CellBlock& cells)
-    : whole_(whole), soil_(soil) {
-  cover(cells);
-}
-
-void GroundWindow::cover(const CellBlock& cells) {
-  if (cells_.contains(cells)) return;
-  CellBlock wanted = cells_;
-  wanted.include(widened(cells, spare));
-  check(wanted);
-  const GroundWindow old = *this;
-  cells_ = wanted;
-  stride_ = wanted.rows() + 2;
-  const auto size = static_cast<std::size_t>(stride_ * (wanted.cols() + 2));
-  const bool has_void_ratio = whole_.loose_void_ratio.size() > 0;
-  bank_.assign(size, walled_height);
-  loose_.assign(size, 0.0);
-  height_.assign(size, walled_height);
-  awake_.assign(size, 1);
-  walled_.assign(size, 0);
-  void_ratio_.assign(has_void_ratio ? size : 0, soil_.loose.void_ratio);
-  for (Index col = wanted.col_begin; col < wanted.col_end; ++col) {
-    for (Index row = wanted.row_begin; row < wanted.row_end; ++row) {
-      const bool held = old.cells_.contains(row, col);
-      const std::size_t i = at(row, col);
-      bank_[i] = held ? old.bank(row, col) : whole_.bank.z(row, col);
-      loose_[i] = held ? old.loose(row, col) : whole_.loose(row, col);
-      height_[i] = bank_[i] + loose_[i];
-      if (held) awake_[i] = old.awake(old.at(row, col)) ? 1 : 0;
-      if (has_void_ratio) {
-        void_ratio_[i] =
-            held ? old.void_ratio_[old.at(row, col)] : whole_.loose_void_ratio(row, col);
-      }
-    }
-  }
-  build_wall(wall_, 1);
-}
-
-void GroundWindow::check(const CellBlock& cells) const {
-  const auto within = [&](const Eigen::ArrayXXd& layer, double low, double high, const char* what) {
-    for (Index col = cells.col_begin; col < cells.col_end; ++col) {
-      for (Index row = cells.row_begin; row < cells.row_end; ++row) {
-        const double value = layer(row, col);
-        if (std::isnan(whole_.bank.z(row, col)) || (value >= low && value <= high)) continue;
-        throw Error(ErrorKind::bad_input, std::string("dig: ") + what + " in the cell at x = " +
-                                              std::to_string(whole_.bank.x(col)) +
-                                              " m, y = " + std::to_string(whole_.bank.y(row)) +
-                                              " m is " + std::to_string(value) + ", must be in " +
-                                              std::to_string(low) + " .. " + std::to_string(high));
-      }
-    }
-  };
-  const SoilKind& kind = soil_.kind;
-  constexpr double deepest_layer = 1e6;  // any finite thickness
-  within(whole_.loose, 0.0, deepest_layer, "the loose layer");
-  if (whole_.bank_void_ratio.size() > 0) {
-    within(whole_.bank_void_ratio, kind.void_ratio_min, kind.void_ratio_max,
-           "the void ratio of the bank");
-  }
-  if (whole_.loose_void_ratio.size() > 0) {
-    within(whole_.loose_void_ratio, kind.void_ratio_min, kind.void_ratio_loose,
-           "the void ratio of the loose layer");
-  }
-}
-
-SoilState GroundWindow::bank_state(Index row, Index col) const {
-  return bank_is_even() ? soil_.bank
-                        : bank_state_of_void_ratio(soil_.kind, bank_void_ratio(row, col));
-}
-
-void GroundWindow::mix(std::size_t cell, double thickness) {
-  const double solids =
-      loose_[cell] / (1.0 + void_ratio_[cell]) + thickness / (1.0 + soil_.loose.void_ratio);
-  if (solids > 0.0) {
-    void_ratio_[cell] = std::min((loose_[cell] + thickness) / solids - 1.0, soil_.loose.void_ratio);
-  }
-}
-
-void GroundWindow::wake(const CellBlock& block) {
-  for (Index col = block.col_begin; col < block.col_end; ++col) {
-    for (Index row = block.row_begin; row < block.row_end; ++row) awake_[at(row, col)] = 1;
-  }
-}
-
-void GroundWindow::set_wall(const CellBlock& wall) {
-  cover(wall);
-  const CellBlock old = wall_;
-  wall_ = wall;
-  build_wall(old, 0);
-  build_wall(wall, 1);
-}
-
-void GroundWindow::build_wall(const CellBlock& block, std::uint16_t built) {
-  for (Index col = block.col_begin; col < block.col_end; ++col) {
-    for (Index row = block.row_begin; row < block.row_end; ++row) {
-      const std::size_t i = at(row, col);
-      if (walled_[i] == built || wall_.contains(row, col) != (built != 0)) continue;
-      walled_[i] = built;
-      changed(i);
-    }
-  }
-}
-
-template <typename Cell>
-double GroundWindow::mass(Cell&& cell_mass) const {
-  double mass = 0.0;
-  for (Index col = cells_.col_begin; col < cells_.col_end; ++col) {
-    double sum = 0.0;
-    for (Index row = cells_.row_begin; row < cells_.row_end; ++row) {
-      const double here = cell_mass(row, col);
-      if (!std::isnan(here)) sum += here;
-    }
-    mass += sum;
-  }
-  return mass * cell_size() * cell_size();
-}
-
-double GroundWindow::bank_density(Index row, Index col) const {
-  return bank_is_even() ? soil_.bank.dry_density
-                        : dry_density(soil_.kind, whole_.bank_void_ratio(row, col));
-}
-
-double GroundWindow::solids(double above) const {
-  return mass([&](Index row, Index col) {
-    const double loose_density = void_ratio_.empty()
-                                     ? soil_.loose.dry_density
-                                     : dry_density(soil_.kind, void_ratio_[at(row, col)]);
-    return (bank(row, col) - above) * bank_density(row, col) + loose(row, col) * loose_density;
-  });
-}
-
-double GroundWindow::solids_before(double above) const {
-  const bool even = whole_.loose_void_ratio.size() == 0;
-  return mass([&](Index row, Index col) {
-    const double loose_density =
-        even ? soil_.loose.dry_density : dry_density(soil_.kind, whole_.loose_void_ratio(row, col));
-    return (whole_.bank.z(row, col) - above) * bank_density(row, col) +
-           whole_.loose(row, col) * loose_density;
-  });
-}
-
-double GroundWindow::lowest() const {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const double bank : bank_) {
-    if (bank < lowest) lowest = bank;
-  }
-  return lowest;
-}
-
-TerrainPatch GroundWindow::patch() const {
-  const auto array = [&](const std::vector<double>& layer) {
-    using Framed = Eigen::Map<const Eigen::ArrayXXd>;
-    return Eigen::ArrayXXd(
-        Framed(layer.data(), stride_, cells_.cols() + 2).block(1, 1, cells_.rows(), cells_.cols()));
-  };
-  TerrainPatch patch;
-  patch.row = cells_.row_begin;
-  patch.col = cells_.col_begin;
-  patch.bank = array(bank_);
-  patch.loose = array(loose_);
-  if (!void_ratio_.empty()) patch.loose_void_ratio = array(void_ratio_);
-  return patch;
-}
-
-// ---- Sliding and pouring ------------------------------------------------------------------------
-
 CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits, int sweeps) {
   Slump slide(ground, limits);
   for (int i = 0; i < sweeps && !block.empty(); ++i) {
@@ -360,13 +182,13 @@ void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double
   const auto row = static_cast<Index>(on_map ? row_at : 0.0);
   const auto col = static_cast<Index>(on_map ? col_at : 0.0);
   if (!on_map || std::isnan(map.z(row, col))) {
-    throw Error(ErrorKind::bad_input, "dump point (" + std::to_string(at.x()) + ", " +
-                                          std::to_string(at.y()) +
+    throw Error(ErrorKind::bad_input, "dump point (" + number_text(at.x()) + ", " +
+                                          number_text(at.y()) +
                                           ") m must lie on known ground of the map");
   }
   // On ground up to nearly as steep as the cone, the heap stays within a few radii of level
   // ground's.
-  const double radius = std::cbrt(3.0 * volume / (3.14159265358979323846 * slope));
+  const double radius = std::cbrt(3.0 * volume / (pi * slope));
   const CellBlock axis = {row, row + 1, col, col + 1};
   const CellBlock block =
       ground.widened(axis, static_cast<Index>(3.0 * radius / map.cell_size) + 2);

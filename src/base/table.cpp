@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "shared/table.hpp"
+#include "base/table.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -11,7 +11,7 @@
 
 #include "base/files.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 std::string trimmed(const std::string& text) {
@@ -90,4 +90,4 @@ std::optional<std::size_t> Table::index(const std::string& name) const {
   return static_cast<std::size_t>(at - names_.begin());
 }
 
-}  // namespace excavplan::tools
+}  // namespace excavplan

@@ -2,49 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/simulation/terrain.hpp>
 #include <excavplan/soil/soil.hpp>
 
+#include "simulation/cell_block.hpp"
+
 namespace excavplan {
-
-/// A block of cells, upper ends exclusive.
-struct CellBlock {
-  Eigen::Index row_begin = 0;
-  Eigen::Index row_end = 0;
-  Eigen::Index col_begin = 0;
-  Eigen::Index col_end = 0;
-
-  void include(const CellBlock& other) {
-    if (other.empty()) return;
-    if (empty()) {
-      *this = other;
-      return;
-    }
-    row_begin = std::min(row_begin, other.row_begin);
-    row_end = std::max(row_end, other.row_end);
-    col_begin = std::min(col_begin, other.col_begin);
-    col_end = std::max(col_end, other.col_end);
-  }
-  bool contains(Eigen::Index row, Eigen::Index col) const {
-    return row >= row_begin && row < row_end && col >= col_begin && col < col_end;
-  }
-  bool contains(const CellBlock& other) const {
-    return other.empty() || (other.row_begin >= row_begin && other.row_end <= row_end &&
-                             other.col_begin >= col_begin && other.col_end <= col_end);
-  }
-  bool empty() const { return row_begin >= row_end || col_begin >= col_end; }
-  Eigen::Index rows() const { return row_end - row_begin; }
-  Eigen::Index cols() const { return col_end - col_begin; }
-  /// This block and `margin` cells around it, as far as a map of this size has them.
-  CellBlock widened(Eigen::Index margin, Eigen::Index map_rows, Eigen::Index map_cols) const;
-};
 
 /// What a terrain's soil is where the terrain does not say.
 struct GroundSoil {
@@ -189,25 +158,5 @@ class GroundWindow {
   std::vector<std::uint16_t> awake_;
   std::vector<std::uint16_t> walled_;
 };
-
-/// How steep the two layers may stand.
-struct SlopeLimits {
-  double loose_slope = 0.0;  ///< tangent of the angle of repose
-  bool bank_stands = false;  ///< walls of undisturbed soil are held, however high
-  /// Slopes whose fall over a cell is too high by less than this are at rest [m]; ours: well under
-  /// any scan's resolution.
-  double at_rest = 1e-4;
-};
-
-/// Lets soil slide where it stands too steep, inside `block` and one cell around it, which grows as
-/// soil leaves it. Undisturbed soil breaks off walls above its critical height down to its friction
-/// angle. At most `sweeps` passes; returns the block that may still move, empty once all is at
-/// rest. Solids are conserved to rounding; unknown and walled cells are walls.
-CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits, int sweeps);
-
-/// Heaps `volume` of loose soil on the terrain as a cone of the given slope with its axis at (x,
-/// y).
-/// @throws Error (bad_input) if the axis is off the map or on unknown ground
-void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double slope);
 
 }  // namespace excavplan

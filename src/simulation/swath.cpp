@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/swath.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <excavplan/error.hpp>
+
+#include "base/text.hpp"
+
+namespace excavplan {
+
+using Eigen::Index;
+
+Swath::Swath(const HeightMap& map, double width, double least_cover) : map_(map) {
+  const double half = 0.5 * width;
+  const double first = (-half - map.origin.y()) / map.cell_size;
+  const double last = (half - map.origin.y()) / map.cell_size;
+  if (!(first >= -least_cover && last <= static_cast<double>(map.z.rows()) + least_cover)) {
+    throw Error(ErrorKind::bad_input, "dig: the bucket, y = " + number_text(-half) + " .. " +
+                                          number_text(half) + " m, must lie on the map");
+  }
+  first_row_ = static_cast<Index>(std::floor(first + least_cover));
+  const auto end = std::min(map.z.rows(), static_cast<Index>(std::ceil(last - least_cover)));
+  cover_.resize(end - first_row_);
+  for (Index i = 0; i < cover_.size(); ++i) {
+    const auto row = static_cast<double>(first_row_ + i);
+    cover_(i) = std::min(last, row + 1.0) - std::max(first, row);
+  }
+}
+
+Index Swath::column(double x) const {
+  const double col = std::floor((x - map_.origin.x()) / map_.cell_size);
+  if (!(col >= 0.0 && col < static_cast<double>(map_.z.cols()))) {
+    const Rectangle extent = map_.extent();
+    throw Error(ErrorKind::bad_input, "dig: the path leaves the map at x = " + number_text(x) +
+                                          " m; the map covers x = " + number_text(extent.x_min) +
+                                          " .. " + number_text(extent.x_max) + " m");
+  }
+  return static_cast<Index>(col);
+}
+
+bool Swath::is_known(Index col) const {
+  return !map_.z.col(col).segment(first_row_, rows()).isNaN().any();
+}
+
+}  // namespace excavplan

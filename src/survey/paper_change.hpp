@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/survey/scan_surface.hpp>
+
+/// @file The paper's method on scans that nobody cut by hand. Private to the library.
+
+namespace excavplan {
+
+/// The scans of dig area and dump area, the same ones for a whole scene.
+struct PaperScans {
+  const ScanPair& dig;
+  const ScanPair* dump = nullptr;  ///< none: `dig` shows both
+};
+
+/// Volumes as published, each in its area: that of the options or, in a whole scene, the extent of
+/// the zones that the change of the surface found there. Zones, height change and warnings of the
+/// result are those of the surface.
+/// @throws Error (bad_file) naming the scans
+VolumeChange paper_change(const PaperScans& scans, const VolumeChange& surface,
+                          const ChangeOptions& areas, double leaf);
+
+}  // namespace excavplan

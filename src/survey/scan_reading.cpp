@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "survey/scan_reading.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "survey/cloud_outline.hpp"
+#include "survey/point_stream.hpp"
+
+namespace excavplan {
+namespace {
+
+/// Calls `visit` with the points of a cloud, some thousand at a time.
+void visit_parts(const std::vector<Eigen::Vector3d>& points, const PointVisitor& visit) {
+  for (auto from = points.begin(); from != points.end();) {
+    const auto left = static_cast<std::size_t>(points.end() - from);
+    const auto to = from + static_cast<std::ptrdiff_t>(std::min(left, points_at_a_time));
+    visit({from, to});
+    from = to;
+  }
+}
+
+void require_points(const Scan& scan, const ScanOutline& seen) {
+  if (seen.finite_points >= 100) return;
+  throw Error(ErrorKind::bad_file, name_of(scan) + ": holds fewer than 100 finite points" +
+                                       (scan.area ? " inside the area" : ""));
+}
+
+std::string text(const Rectangle& r) {
+  return "x " + readable(r.x_min) + " .. " + readable(r.x_max) + ", y " + readable(r.y_min) +
+         " .. " + readable(r.y_max) + " m";
+}
+
+Rectangle overlap(const SeenPair& pair) {
+  constexpr double least = 0.2;  // [m], ours
+  const Rectangle& a = *pair.before.extent;
+  const Rectangle& b = *pair.after.extent;
+  const Rectangle both = {std::max(a.x_min, b.x_min), std::max(a.y_min, b.y_min),
+                          std::min(a.x_max, b.x_max), std::min(a.y_max, b.y_max)};
+  if (!(both.x_max - both.x_min > least && both.y_max - both.y_min > least)) {
+    throw FrameError(name_of(pair.scans.before) + " and " + name_of(pair.scans.after) +
+                     " do not overlap: " + text(a) + " and " + text(b));
+  }
+  return both;
+}
+
+}  // namespace
+
+void visit_scan(const Scan& scan, const PointVisitor& visit) {
+  const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity();
+  const Eigen::Matrix3d rotation = scan.site_from_scan.topLeftCorner<3, 3>();
+  const Eigen::Vector3d shift = scan.site_from_scan.topRightCorner<3, 1>();
+  std::vector<Eigen::Vector3d> kept;
+  const PointVisitor bring_in = [&](const std::vector<Eigen::Vector3d>& points) {
+    kept.clear();
+    for (const Eigen::Vector3d& point : points) {
+      const Eigen::Vector3d p = is_moved ? Eigen::Vector3d(rotation * point + shift) : point;
+      if (!scan.area || scan.area->contains(p.x(), p.y())) kept.push_back(p);
+    }
+    visit(kept);
+  };
+  const bool as_it_is = !is_moved && !scan.area;
+  for (const std::string& file : scan.files) stream_cloud(file, as_it_is ? visit : bring_in);
+  for (const auto& cloud : scan.clouds) {
+    if (as_it_is) {
+      visit(cloud->points);
+    } else {
+      visit_parts(cloud->points, bring_in);
+    }
+  }
+}
+
+Cloud gathered(const Scan& scan) {
+  Scan held = scan;
+  held.files.clear();
+  held.clouds.clear();
+  for (const std::string& file : scan.files) {
+    held.clouds.push_back(std::make_shared<const Cloud>(read_cloud(file)));
+  }
+  held.clouds.insert(held.clouds.end(), scan.clouds.begin(), scan.clouds.end());
+  Cloud all;
+  visit_scan(held, [&all](const std::vector<Eigen::Vector3d>& points) {
+    all.points.insert(all.points.end(), points.begin(), points.end());
+  });
+  all.width = all.points.size();
+  return all;
+}
+
+std::string name_of(const Scan& scan) {
+  if (scan.files.empty()) return "a scan in memory";
+  std::string name = scan.files.front();
+  for (std::size_t i = 1; i < scan.files.size(); ++i) name += " with " + scan.files[i];
+  return name;
+}
+
+SeenPair see(const ScanPair& scans, unsigned threads) {
+  const std::vector<ScanOutline> seen = outlines({scans.before, scans.after}, threads);
+  require_points(scans.before, seen[0]);
+  require_points(scans.after, seen[1]);
+  return {scans, seen[0], seen[1]};
+}
+
+RegisteredPair survey_pair(const SeenPair& pair, double cell_size, bool registered,
+                           unsigned threads) {
+  RasterOptions raster;
+  raster.cell_size = cell_size;
+  const Rectangle extent = overlap(pair);
+  if (registered) {
+    return survey_registered(pair.scans, extent, raster, pair.cell_size(), threads);
+  }
+  std::vector<Surface> both =
+      survey_surfaces({pair.scans.before, pair.scans.after}, extent, raster, threads);
+  RegisteredPair result;
+  result.surfaces.before = std::move(both[0]);
+  result.surfaces.after = std::move(both[1]);
+  return result;
+}
+
+std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
+                                     const RasterOptions& options, unsigned threads) {
+  std::vector<Surface> surfaces(scans.size());
+  parallel_for(scans.size(), threads,
+               [&](std::size_t i) { surfaces[i] = survey_surface(scans[i], extent, options); });
+  return surfaces;
+}
+
+RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
+                                 const RasterOptions& options, double registration_cell,
+                                 unsigned threads) {
+  constexpr int most_rounds = 3;
+  RasterOptions coarse = options;
+  coarse.cell_size = std::max(options.cell_size, registration_cell);
+  const bool is_fine = coarse.cell_size > options.cell_size;
+  Scan after = scans.after;
+  RegisteredPair result;
+  SurfacePair& pair = result.surfaces;
+  const auto survey = [&](const RasterOptions& raster) {
+    std::vector<Surface> both = survey_surfaces({scans.before, after}, extent, raster, threads);
+    pair.before = std::move(both[0]);
+    pair.after = std::move(both[1]);
+  };
+  survey(coarse);
+  pair.alignment = result.first = align(pair.before, pair.after);
+  for (int round = 1; round < most_rounds; ++round) {
+    const double largest = pair.alignment.largest_shift(pair.after.height);
+    if (!(largest > (is_fine ? 0.0 : 0.5 * options.cell_size))) break;
+    result.correction = pair.alignment.correction() * result.correction;
+    after.site_from_scan = result.correction * scans.after.site_from_scan;
+    pair.after = survey_surface(after, extent, coarse);
+    pair.alignment = align(pair.before, pair.after);
+  }
+  if (is_fine) survey(options);
+  result.correction = pair.alignment.correction() * result.correction;
+  return result;
+}
+
+ScanOutline outline(const Scan& scan) {
+  CloudOutline found;
+  visit_scan(scan, [&found](const std::vector<Eigen::Vector3d>& points) { found.add(points); });
+  return found.result();
+}
+
+std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threads) {
+  std::vector<ScanOutline> found(scans.size());
+  parallel_for(scans.size(), threads, [&](std::size_t i) { found[i] = outline(scans[i]); });
+  return found;
+}
+
+}  // namespace excavplan

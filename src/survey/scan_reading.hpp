@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <excavplan/survey/scan_surface.hpp>
+
+/// @file The points of a scan, wherever they are. Private to the library.
+
+namespace excavplan {
+
+/// Hands on the points of a scan in the site frame, without those outside its area; those that are
+/// not finite may be among them. The same on every call. @throws Error (bad_file)
+void visit_scan(const Scan& scan, const PointVisitor& visit);
+
+/// All these points at once, for methods that need them.
+/// @throws Error (bad_file) as read_cloud()
+Cloud gathered(const Scan& scan);
+
+/// Its files, for messages.
+std::string name_of(const Scan& scan);
+
+/// A pair of scans and what a first pass over each told.
+struct SeenPair {
+  ScanPair scans;
+  ScanOutline before;
+  ScanOutline after;
+
+  double cell_size() const { return cell_for({before, after}); }
+  std::string names() const { return name_of(scans.before) + ", " + name_of(scans.after); }
+};
+
+/// @throws Error (bad_file) if one cannot be read or holds fewer than 100 finite points
+SeenPair see(const ScanPair& scans, unsigned threads);
+
+/// Both on one grid over the ground that both see. If they are to be registered, the one after is
+/// brought onto the one before by the ground that did not change, as far as that is significant;
+/// else only the height of one against the other is left open.
+/// @throws FrameError if they do not overlap
+RegisteredPair survey_pair(const SeenPair& pair, double cell_size, bool registered,
+                           unsigned threads);
+
+}  // namespace excavplan
