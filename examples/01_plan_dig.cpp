@@ -13,7 +13,10 @@ int main() {
   const GroundDensity density(40.0, 5.0);  // with its standard deviation [%]
 
   const DigPlan plan = plan_dig(machine, loam, density);
-  if (!plan.dig) return std::printf("%s\n", plan.reason.c_str()), 1;
+  if (!plan.dig) {
+    std::printf("%s\n", plan.reason.c_str());
+    return 1;
+  }
   std::printf("lifts %.0f kg for %.1f kJ\n", plan.dig->payload_mass, plan.dig->energy / 1000.0);
   for (const TrajectoryPoint& point : plan.trajectory.points) {
     std::printf("%.3f s: boom %.3f, arm %.3f, bucket %.3f rad\n", point.time, point.joints(0),

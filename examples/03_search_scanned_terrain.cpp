@@ -44,7 +44,10 @@ int main(int count, char** words) {
 
   std::printf("%s\n", plan.stopped ? "stopped" : "");
   for (const Warning& warning : plan.warnings) std::printf("%s\n", warning.message.c_str());
-  if (!plan.dig) return std::printf("%s\n", plan.reason.c_str()), 1;
+  if (!plan.dig) {
+    std::printf("%s\n", plan.reason.c_str());
+    return 1;
+  }
   std::printf("from x = %.2f m: lifts %.0f kg for %.1f kJ\n", plan.dig->start_x,
               plan.dig->payload_mass, plan.dig->energy / 1000.0);
 }

@@ -95,7 +95,10 @@ int main() {
   for (const SimulatorKind& kind : {default_simulator(), own}) {
     options.simulator = kind;
     const DigPlan plan = plan_dig(machine, loam, GroundDensity(40.0), options);
-    if (!plan.dig) return std::printf("%s\n", plan.reason.c_str()), 1;
+    if (!plan.dig) {
+      std::printf("%s\n", plan.reason.c_str());
+      return 1;
+    }
     std::printf("%s: drag %.2f m, lifts %.0f kg for %.1f kJ\n", kind.name.c_str(),
                 plan.dig->parameters.drag_length, plan.dig->payload_mass,
                 plan.dig->energy / 1000.0);

@@ -48,7 +48,10 @@ int main() {
   options.method = PlanMethod::search;
   for (int dig = 1; dig <= digs; ++dig) {
     const DigPlan plan = plan_dig(machine, loam, density, seen, options);
-    if (!plan.dig) return std::printf("%s\n", plan.reason.c_str()), 1;
+    if (!plan.dig) {
+      std::printf("%s\n", plan.reason.c_str());
+      return 1;
+    }
 
     SceneOptions driven;  // the machine follows plan.trajectory
     driven.path = plan.dig->parameters;

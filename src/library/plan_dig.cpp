@@ -53,7 +53,8 @@ void judge_density(const Task& task, DigPlan& plan) {
 
 std::shared_ptr<const PathLibrary> library_of(const Task& task) {
   if (!task.options.library) {
-    return std::make_shared<PathLibrary>(shipped_library(task.machine, task.soil));
+    return std::make_shared<PathLibrary>(
+        shipped_library(task.machine, task.soil, task.options.data_folder));
   }
   const auto& library = task.options.library;
   const std::string& own = task.options.simulator.name;
@@ -254,10 +255,11 @@ DigPlan plan_dig(const Task& task) {
 
 const char* name(PlanMethod method) { return method == PlanMethod::library ? "library" : "search"; }
 
-PathLibrary shipped_library(const Machine& machine, const SoilKind& soil) {
+PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
+                            const std::string& data_folder) {
   std::string file;
   try {
-    file = find_data_file("libraries/" + machine.name + "-" + soil.name + ".json");
+    file = find_data_file("libraries/" + machine.name + "-" + soil.name + ".json", data_folder);
   } catch (const Error&) {
     throw Error(ErrorKind::bad_input, "no library of " + machine.name + " in " + soil.name +
                                           " is shipped: a search needs none, build-path-library "
