@@ -7,7 +7,7 @@
 
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
-#include <excavplan/soil/density_law.hpp>
+#include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/soil.hpp>
 
 namespace excavplan {
