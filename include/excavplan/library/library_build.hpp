@@ -52,8 +52,8 @@ struct LibraryProgress {
   std::size_t entries_done = 0;
   std::size_t entries = 0;
   int evaluations = 0;  ///< by this build, those of its other workers included
-  std::string entry;    ///< last one worked on
-  double best = 0.0;    ///< efficiency found for it so far [kg/J]; NaN: none yet
+  double best =
+      0.0;  ///< efficiency found so far for the entry last worked on [kg/J]; NaN: none yet
   double seconds = 0.0;
   double seconds_left = 0.0;  ///< NaN: unknown yet
 };
