@@ -55,12 +55,15 @@ void judge_density(const Task& task, DigPlan& plan) {
 }
 
 std::shared_ptr<const PathLibrary> library_of(const Task& task) {
-  const auto& library = task.options.library;
-  if (!library) return std::make_shared<PathLibrary>(shipped_library(task.machine, task.soil));
-  const std::string& own = task.options.simulator.name;
-  require_fit(*library, task.machine, task.soil, "the library",
-              library->simulator == own ? own : default_simulator().name);
-  return library;
+  const PlanOptions& options = task.options;
+  if (!options.library) {
+    return std::make_shared<PathLibrary>(
+        shipped_library(task.machine, task.soil, options.data_folder));
+  }
+  const std::string& own = options.simulator.name;
+  require_fit(*options.library, task.machine, task.soil, "the library",
+              options.library->simulator == own ? own : default_simulator().name);
+  return options.library;
 }
 
 /// The slope of the ground, and as much of it as the library covers.
@@ -138,6 +141,7 @@ void look_up_plan(const Task& task, DigPlan& plan) {
   plan.start_rule = task.level ? "of the library" : describe(task.options.search.start_rule);
   const auto outcome = dig_here(task, *library, expected, plan);
   if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
+    plan.path = {};
     plan.reason =
         "the library's path does not work here (a search may find one): " + describe(*failure);
     return;
@@ -245,10 +249,11 @@ DigPlan plan_dig(const Task& task) {
 
 const char* name(PlanMethod method) { return method == PlanMethod::library ? "library" : "search"; }
 
-PathLibrary shipped_library(const Machine& machine, const SoilKind& soil) {
+PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
+                            const std::string& data_folder) {
   std::string file;
   try {
-    file = find_data_file("libraries/" + machine.name + "-" + soil.name + ".json");
+    file = find_data_file("libraries/" + machine.name + "-" + soil.name + ".json", data_folder);
   } catch (const Error&) {
     throw Error(ErrorKind::bad_input,
                 "no library of " + machine.name + " in " + soil.name +

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
 #include <excavplan/library/path_library.hpp>
 #include <excavplan/machine/trajectory.hpp>
@@ -25,14 +26,16 @@ enum class PlanMethod {
 };
 const char* name(PlanMethod method);
 
-/// The library that excavplan ships for a machine in a soil.
+/// The library that excavplan ships for a machine in a soil; `data_folder` as in find_data_file().
 /// @throws Error (bad_input) if none is shipped or it does not fit, (bad_file) if it cannot be read
-PathLibrary shipped_library(const Machine& machine, const SoilKind& soil);
+PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
+                            const std::string& data_folder = data_folder_of_package);
 
 struct PlanOptions {
   PlanMethod method = PlanMethod::library;
-  /// Null: shipped_library(), read anew by every call.
+  /// Null: shipped_library() of `data_folder`, read anew by every call.
   std::shared_ptr<const PathLibrary> library = nullptr;
+  std::string data_folder = data_folder_of_package;  ///< as find_data_file() takes it
   /// `progress` reports and cancels, the seed fixes the result for any number of `threads`, and
   /// `start_rule` also places a dig looked up for given ground. Without `start` a search for most
   /// mass per energy begins with the library's dig. Where `stop.evaluations` is 0 the default
