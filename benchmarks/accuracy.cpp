@@ -15,10 +15,9 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/depth_camera.hpp>
+#include <excavplan/survey/density_estimate.hpp>
 
 #include "base/parallel.hpp"
-#include "shared/estimate.hpp"
-#include "shared/scans.hpp"
 #include "support/block_heap.hpp"
 #include "support/survey_scenes.hpp"
 
@@ -139,21 +138,16 @@ std::string write_scan(const std::string& folder, const Survey& survey, Part par
   return file;
 }
 
-tools::SeenPair scans_of(const std::string& folder, const Survey& survey, Part part) {
-  const std::string before = write_scan(folder, survey, part, false);
-  return tools::read_scans(before, write_scan(folder, survey, part, true), {});
+ScanPair scans_of(const std::string& folder, const Survey& survey, Part part) {
+  ScanPair pair;
+  pair.before.files = {write_scan(folder, survey, part, false)};
+  pair.after.files = {write_scan(folder, survey, part, true)};
+  return pair;
 }
 
-tools::Estimate estimate(const VolumeChange& change, const std::vector<HeightMap>& after,
-                         const DensityLaw& law) {
-  tools::Knowledge knowledge;
-  knowledge.blocks = assess_blocks(after, change);
-  return tools::estimate(change, knowledge, law);
-}
-
-std::string record_of(const Survey& survey, const VolumeChange& change,
-                      const tools::Estimate& found) {
+std::string record_of(const Survey& survey, const DensityEstimate& found) {
   const Dig& dig = survey.dig;
+  const VolumeChange& change = found.change;
   const Measured none{std::nan(""), std::nan("")};
   const Measured k = found.bulking.value_or(none);
   const Measured free = found.corrected.value_or(k);
@@ -179,21 +173,12 @@ constexpr const char* header =
 /// From nothing to a line, over files in the folder.
 std::string measured(const std::string& folder, const Survey& survey) {
   std::filesystem::create_directories(folder);
-  const bool align_them = survey.kind.registered;
-  if (survey.whole) {
-    const tools::SeenPair scans = scans_of(folder, survey, Part::whole);
-    const SurfacePair scene = tools::surveyed(scans, cell_for(scans), align_them).surfaces;
-    const VolumeChange change = measure_change(scene);
-    return record_of(survey, change, estimate(change, {scene.after.height}, *survey.law));
-  }
-  const tools::SeenPair dig_scans = scans_of(folder, survey, Part::dig);
-  const tools::SeenPair dump_scans = scans_of(folder, survey, Part::dump);
-  const double cell = std::max(cell_for(dig_scans), cell_for(dump_scans));
-  const SurfacePair dig = tools::surveyed(dig_scans, cell, align_them).surfaces;
-  const SurfacePair dump = tools::surveyed(dump_scans, cell, align_them).surfaces;
-  const VolumeChange change = measure_change(dig, dump);
-  return record_of(survey, change,
-                   estimate(change, {dig.after.height, dump.after.height}, *survey.law));
+  const ScanPair first = scans_of(folder, survey, survey.whole ? Part::whole : Part::dig);
+  DigScans scans{first.before, first.after};
+  if (!survey.whole) scans.dump = scans_of(folder, survey, Part::dump);
+  DensityOptions options;
+  options.registered = survey.kind.registered;
+  return record_of(survey, estimate_density(scans, *survey.law, options));
 }
 
 struct Settings {

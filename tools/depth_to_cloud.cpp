@@ -3,16 +3,10 @@
 #include <excavplan/survey/depth_image.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <sstream>
 
-#include <excavplan/survey/scan_pose.hpp>
-
-#include "base/files.hpp"
-#include "base/json.hpp"
-#include "base/table.hpp"
-#include "base/text.hpp"
+#include "shared/found_pose.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -90,67 +84,12 @@ std::vector<std::string> frames_of(const Inputs& inputs) {
   return frames;
 }
 
-/// A pose with what is known of its error.
-struct FoundPose {
-  Eigen::Matrix4d site_from_camera;
-  nlohmann::ordered_json json;
-  std::string line;
-};
-
-std::string millimetres(double metres) {
-  return number_text(std::round(metres * 1e4) / 10.0) + " mm";
-}
-
-FoundPose level(const Cloud& cloud) {
-  const LevelPose pose = level_on_ground(cloud);
-  return {pose.site_from_scan,
-          {{"method", "level"},
-           {"height_m", pose.height},
-           {"tilt_rad", pose.tilt},
-           {"residual_sd_m", pose.residual_sd},
-           {"ground_share", pose.ground_share}},
-          "ground found in " + std::to_string(std::lround(100.0 * pose.ground_share)) +
-              " % of the pixels, " + number_text(std::round(pose.height * 1e3) / 1e3) +
-              " m below the camera, flat within " + millimetres(pose.residual_sd)};
-}
-
-FoundPose pose_from_points(const std::string& path, const Cloud& cloud,
-                           const DepthIntrinsics& intrinsics) {
-  const Table table = Table::read(path);
-  const bool by_pixel = table.has("u_px");
-  std::vector<Eigen::Vector3d> in_camera;
-  std::vector<Eigen::Vector3d> in_site;
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const auto value = [&](const char* name) { return table.column(name)[i]; };
-    in_camera.push_back(
-        by_pixel ? point_at_pixel(cloud, intrinsics, value("u_px"), value("v_px"))
-                 : Eigen::Vector3d(value("camera_x_m"), value("camera_y_m"), value("camera_z_m")));
-    in_site.emplace_back(value("x_m"), value("y_m"), value("z_m"));
-  }
-  const PointPose pose = pose_of_points(in_camera, in_site);
-  const double worst = *std::max_element(pose.residuals.begin(), pose.residuals.end());
-  return {pose.site_from_scan,
-          {{"method", "points"}, {"residuals_m", pose.residuals}, {"residual_rms_m", pose.rms}},
-          std::to_string(in_site.size()) + " known points fit within " + millimetres(pose.rms) +
-              " (rms), the worst within " + millimetres(worst)};
-}
-
 std::optional<FoundPose> find_pose(const Inputs& inputs, const Cloud& cloud,
                                    const DepthIntrinsics& intrinsics) {
-  if (inputs.level) return level(cloud);
+  if (inputs.level) return levelled_pose(cloud);
   if (inputs.points) return pose_from_points(*inputs.points, cloud, intrinsics);
   if (inputs.pose) return FoundPose{read_frame(*inputs.pose), {{"method", "given"}}, {}};
   return std::nullopt;
-}
-
-std::string matrix_text(const Eigen::Matrix4d& matrix) {
-  std::string text;
-  for (Eigen::Index row = 0; row < 4; ++row) {
-    for (Eigen::Index col = 0; col < 4; ++col) {
-      text += number_text(matrix(row, col)) + (col == 3 ? "\n" : " ");
-    }
-  }
-  return text;
 }
 
 void check(const Inputs& inputs) {
@@ -172,7 +111,7 @@ Outcome convert(const Inputs& inputs) {
   const auto pose = find_pose(inputs, cloud, intrinsics);
   if (pose) transform(cloud, pose->site_from_camera);
   const CloudSummary summary = summarise(cloud);
-  if (inputs.pose_out) write_file(*inputs.pose_out, matrix_text(pose->site_from_camera));
+  if (inputs.pose_out) write_frame(*inputs.pose_out, pose->site_from_camera);
   write_cloud(inputs.out, cloud, format);
 
   Outcome outcome;

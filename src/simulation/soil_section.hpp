@@ -64,13 +64,12 @@ struct Reach {
 /// rest stays on the section until write_back().
 class SoilSection {
  public:
-  /// Covers known ground around the reach and grows where soil comes to rest.
+  /// Covers known ground around the reach.
   /// @throws Error (bad_input) if a cell the bucket passes is off the map or unknown
   SoilSection(const Terrain& terrain, const GroundSoil& soil, double width, const Reach& reach);
 
   GroundWindow& ground() { return ground_; }
   double width() const { return width_; }
-  double cell_size() const { return cell_size_; }
   const Swath& swath() const { return swath_; }
   double rows() const { return rows_; }  ///< sum of what the bucket covers of each [-]
   Eigen::Index first_col() const { return first_col_; }

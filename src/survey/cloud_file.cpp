@@ -188,4 +188,14 @@ Eigen::Matrix4d read_frame(const std::string& path) {
   return frame;
 }
 
+void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan) {
+  std::string text;
+  for (Eigen::Index row = 0; row < 4; ++row) {
+    for (Eigen::Index col = 0; col < 4; ++col) {
+      text += number_text(site_from_scan(row, col)) + (col == 3 ? "\n" : " ");
+    }
+  }
+  write_file(path, text);
+}
+
 }  // namespace excavplan

@@ -14,8 +14,10 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/table.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -25,9 +27,8 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 void require_valid(const DepthIntrinsics& intrinsics) {
   const auto require = [](bool holds, const char* name, double value, const char* rule) {
-    if (holds && std::isfinite(value)) return;
-    throw Error(ErrorKind::bad_input, std::string("depth image: ") + name + " is " +
-                                          number_text(value) + ", must be " + rule);
+    excavplan::require(holds && std::isfinite(value), std::string("depth image: ") + name, value,
+                       rule);
   };
   require(intrinsics.fx > 0.0, "fx", intrinsics.fx, "> 0");
   require(intrinsics.fy > 0.0, "fy", intrinsics.fy, "> 0");
@@ -282,6 +283,21 @@ Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrin
            " pixels with a depth within 2 of it, must be 3 or more");
   }
   return camera.point(u, v, median(depths));
+}
+
+KnownPoints read_known_points(const std::string& path, const Cloud& cloud,
+                              const DepthIntrinsics& intrinsics) {
+  const Table table = Table::read(path);
+  const bool by_pixel = table.has("u_px");
+  KnownPoints points;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto value = [&](const char* name) { return table.column(name)[i]; };
+    points.in_camera.push_back(
+        by_pixel ? point_at_pixel(cloud, intrinsics, value("u_px"), value("v_px"))
+                 : Eigen::Vector3d(value("camera_x_m"), value("camera_y_m"), value("camera_z_m")));
+    points.in_site.emplace_back(value("x_m"), value("y_m"), value("z_m"));
+  }
+  return points;
 }
 
 }  // namespace excavplan

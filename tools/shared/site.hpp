@@ -24,9 +24,8 @@ struct Site {
   std::vector<Warning> warnings;
 };
 
-/// The ground of `extent` on cells of this size: measured if a cloud is given, else level. A cloud
-/// with fewer than 2 points per cell is rasterised on larger cells and interpolated, and what it
-/// does not see but for small gaps stays unknown; a warning says either.
+/// The ground of `extent` on cells of this size: terrain_from_scan() if a cloud is given, else
+/// level.
 ///
 /// @throws Error (bad_file) if the cloud cannot be read or holds hardly a point in the extent
 /// @throws Error (bad_input) if a frame is given without a cloud

@@ -59,8 +59,8 @@ struct DensityLaw {
 DensityLaw load_density_law(const std::string& path);
 
 /// The law that conservation of solids gives a soil: the closed form from its void ratios, B = 0,
-/// without scatter. It leaves out what falls back into the cut and clods, which a calibrated law
-/// holds: where a tenth of the cut falls back it reads some points too low (docs/methods.md).
+/// without scatter. It leaves out clods and soil that falls back into the cut, which a calibrated
+/// law holds: where a tenth of the cut falls back, the density comes out some 4 points too high.
 DensityLaw density_law_of(const SoilKind& soil);
 
 /// Relative density by the law [%], also outside 0 .. 100. The closed form, which falls to minus

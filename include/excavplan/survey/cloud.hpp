@@ -67,6 +67,9 @@ std::string cloud_endings();
 /// rigid to 1e-4
 Eigen::Matrix4d read_frame(const std::string& path);
 
+/// Writes what read_frame() reads, every number with all its digits. @throws Error (bad_file)
+void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan);
+
 void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);
 
 /// What is in a cloud.

@@ -57,4 +57,16 @@ AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
 Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrinsics, double u,
                                double v);
 
+/// Points of a scan whose places in the site are known, pair by pair.
+struct KnownPoints {
+  std::vector<Eigen::Vector3d> in_camera;
+  std::vector<Eigen::Vector3d> in_site;
+};
+
+/// Reads them from a CSV file with the columns x_m, y_m, z_m of the site and either u_px, v_px,
+/// looked up by point_at_pixel(), or camera_x_m, camera_y_m, camera_z_m. For pose_of_points().
+/// @throws Error (bad_file) naming file, line or column and rule; (bad_input) as point_at_pixel()
+KnownPoints read_known_points(const std::string& path, const Cloud& cloud,
+                              const DepthIntrinsics& intrinsics);
+
 }  // namespace excavplan

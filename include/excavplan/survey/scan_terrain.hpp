@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <excavplan/error.hpp>
+#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/survey/scan_surface.hpp>
+
+namespace excavplan {
+
+/// Ground to dig on as a scan shows it.
+struct ScannedTerrain {
+  Terrain terrain;                ///< undisturbed; unknown where the scan does not see
+  std::vector<Warning> warnings;  ///< unseen_ground, sparse_terrain
+};
+
+/// The ground of `extent` on cells of `cell_size` [m], in the site frame (origin on the machine's
+/// swing axis at ground level, x forward).
+///
+/// A scan with fewer than 2 points per cell is rasterised on larger cells and interpolated
+/// (sparse_terrain). Gaps of up to 0.3 m or 3 cells are filled; what lies in wider ones stays
+/// unknown (unseen_ground), and no dig goes there.
+///
+/// @throws Error (bad_file) if a file cannot be read; FrameError with fewer than 10 points within a
+/// metre of the extent; (bad_input) unless cell_size > 0
+ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size);
+
+}  // namespace excavplan
