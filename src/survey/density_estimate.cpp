@@ -10,6 +10,7 @@
 #include <variant>
 
 #include <excavplan/ground/bulking.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/text.hpp"
 #include "survey/paper_change.hpp"
@@ -94,32 +95,13 @@ VolumeChange paper_change(const Seen& seen, const VolumeChange& surface,
 
 // ---- What is known beside the volumes ---------------------------------------------------------
 
-/// Mean height under the bucket, 15 cm to both sides of x: one cell's noise would move
-/// the whole path.
-GroundProfile ground_under(const HeightMap& map, double width) {
-  return [&map, width](double x) {
-    constexpr double reach = 0.15;  // [m], ours
-    double sum = 0.0;
-    int count = 0;
-    for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
-      if (std::abs(map.x(col) - x) > reach) continue;
-      for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
-        if (std::abs(map.y(row)) > 0.5 * width || std::isnan(map.z(row, col))) continue;
-        sum += map.z(row, col);
-        ++count;
-      }
-    }
-    return count > 0 ? sum / count : std::nan("");
-  };
-}
-
 /// What lies on the floor of the path that was dug.
 Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const VolumeChange& change) {
   const HeightMap& before = surfaces.before.height;
   HeightMap after = realigned(surfaces.after.height, surfaces.alignment);
   after.z -= change.areas.front().datum;
   const auto path = make_dig_path(dug.machine, dug.parameters, dug.start_x,
-                                  ground_under(before, dug.machine.bucket.width_outside));
+                                  profile_under_bucket(before, dug.machine));
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
     throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
   }
