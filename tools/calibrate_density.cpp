@@ -27,6 +27,7 @@ struct Inputs {
   std::optional<std::string> samples;
   std::string soil = "loam";
   std::string machine = "zx120";
+  std::string simulator = default_simulator().word;
   std::string densities = "0:5:100";
   DigParameters path = paper_fixed_path();
   double cell_size = 0.05;
@@ -38,6 +39,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "measured samples, CSV with the columns bulking_factor,density_percent");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
+  arguments.simulator(inputs.simulator);
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities to dig [%], or a list a,b,c");
   arguments.option("path", inputs.path, "dig path");
@@ -49,24 +51,13 @@ DensityCalibration from_samples(const std::string& file) {
   const Table table = Table::read(file);
   const auto& factors = table.column("bulking_factor");
   const auto& densities = table.column("density_percent");
-  DensityCalibration calibration;
   std::vector<BulkingSample> samples;
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    samples.push_back({factors[i], densities[i]});
-    DensityCalibration::Sample sample;
-    sample.density_percent = densities[i];
-    sample.bulking_factor = factors[i];
-    calibration.samples.push_back(sample);
-  }
-  calibration.name = "samples";
-  calibration.source = std::to_string(samples.size()) + " measured samples";
-  calibration.use = "closed_form";
+  for (std::size_t i = 0; i < table.rows(); ++i) samples.push_back({factors[i], densities[i]});
   try {
-    calibration.forms = fit_density_forms(samples);
+    return calibrate_density(samples);
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, file + ": " + error.what());
   }
-  return calibration;
 }
 
 DensityCalibration from_simulator(const Inputs& inputs) {
@@ -74,6 +65,7 @@ DensityCalibration from_simulator(const Inputs& inputs) {
   options.densities_percent = parse_densities("--densities", inputs.densities);
   options.cell_size = inputs.cell_size;
   options.path = inputs.path;
+  options.simulator = simulator_of_word(inputs.simulator);
   return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);
 }
 

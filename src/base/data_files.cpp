@@ -59,4 +59,17 @@ std::string find_data_file(const std::string& relative_path, const std::string& 
   throw Error(ErrorKind::bad_file, relative_path + ": not found in any of" + searched);
 }
 
+std::string shipped_or_file(const std::string& folder, const std::string& name_or_path,
+                            const std::string& package_folder) {
+  if (name_or_path.find_first_of("/.") != std::string::npos || fs::exists(name_or_path)) {
+    return name_or_path;
+  }
+  try {
+    return find_data_file(folder + "/" + name_or_path + ".json", package_folder);
+  } catch (const Error&) {
+    throw Error(ErrorKind::bad_input, "'" + name_or_path + "' is neither a file nor one of the " +
+                                          folder + " that excavplan ships");
+  }
+}
+
 }  // namespace excavplan

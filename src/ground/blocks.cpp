@@ -11,6 +11,8 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/angles.hpp"
+#include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/grid_cells.hpp"
 
@@ -19,7 +21,7 @@ namespace {
 
 using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
-constexpr double degree = 0.017453292519943295;
+constexpr double degree = pi / 180.0;
 
 // Ours, found on simulated heaps of loose soil and of blocks (docs/methods.md#blocks).
 constexpr double coarse_window = 0.30;           // [m]
@@ -96,10 +98,10 @@ std::optional<WindowFit> fit_window(const Patch& patch, Cell at, Eigen::Index ra
   const Vector surface = solver.solve(right);
   const Vector x_row = solver.solve(Vector::Unit(1));
   const Vector y_row = solver.solve(Vector::Unit(2));
-  const double cell = patch.map.cell_size;
-  return WindowFit{surface(1) / cell, surface(2) / cell,
+  const double cell_size = patch.map.cell_size;
+  return WindowFit{surface(1) / cell_size, surface(2) / cell_size,
                    std::max(0.0, squares - surface.dot(right)) / (count - terms),
-                   0.5 * (x_row(1) + y_row(2)) / (cell * cell)};
+                   0.5 * (x_row(1) + y_row(2)) / (cell_size * cell_size)};
 }
 
 /// What the cells of one kind of ground show, over all maps.
@@ -222,8 +224,8 @@ std::optional<double> size_of_blocks(const std::vector<Patch>& heap) {
   constexpr double median_of_normal = 0.6745;
   constexpr std::size_t fewest_bends = 50;
   std::vector<double> bend_per_lag;
-  const double cell = heap.front().map.cell_size;
-  const auto last = static_cast<Eigen::Index>(longest_lag / cell);
+  const double cell_size = heap.front().map.cell_size;
+  const auto last = static_cast<Eigen::Index>(longest_lag / cell_size);
   for (Eigen::Index lag = 1; lag <= last; ++lag) {
     std::vector<double> bends;
     double noise = 0.0;
@@ -242,7 +244,8 @@ std::optional<double> size_of_blocks(const std::vector<Patch>& heap) {
   }
   const double curve = *(peak - 1) - 2.0 * *peak + *(peak + 1);
   const double shift = curve < 0.0 ? 0.5 * (*(peak - 1) - *(peak + 1)) / curve : 0.0;
-  return size_per_lag * cell * (static_cast<double>(peak - bend_per_lag.begin()) + 1.0 + shift);
+  return size_per_lag * cell_size *
+         (static_cast<double>(peak - bend_per_lag.begin()) + 1.0 + shift);
 }
 
 /// Masks of what rose and what fell in one area.
@@ -282,27 +285,24 @@ double depth_of_heap(const VolumeChange& change, const std::vector<AreaMasks>& m
 
 void check(const std::vector<HeightMap>& after, const VolumeChange& change,
            const BlockOptions& options) {
-  const auto require = [](bool holds, const std::string& rule, double value) {
-    if (!holds) {
-      throw Error(ErrorKind::bad_input, "blocks: " + rule + ", got " + number_text(value));
-    }
-  };
-  require(options.angle_of_repose > 0.0 && options.angle_of_repose < 1.2,
-          "angle of repose must be in 0 .. 1.2 rad", options.angle_of_repose);
+  require(options.angle_of_repose > 0.0 && options.angle_of_repose < 1.2, "blocks: angle of repose",
+          options.angle_of_repose, "in 0 .. 1.2 rad");
   const double noise = options.noise_sd.value_or(0.0);
-  require(noise >= 0.0 && std::isfinite(noise), "noise must be >= 0 m", noise);
-  require(options.packed_voids > 0.0 && options.packed_voids < 1.0,
-          "packed voids must be in 0 .. 1", options.packed_voids);
-  require(options.packed_voids_sd >= 0.0, "sd of packed voids must be >= 0",
-          options.packed_voids_sd);
-  require(!after.empty() && after.size() == change.areas.size(),
-          "must be given one map for each of the " + std::to_string(change.areas.size()) +
-              " areas, at least one",
-          static_cast<double>(after.size()));
+  require(noise >= 0.0 && std::isfinite(noise), "blocks: noise", noise, ">= 0 m");
+  require(options.packed_voids > 0.0 && options.packed_voids < 1.0, "blocks: packed voids",
+          options.packed_voids, "in 0 .. 1");
+  require(options.packed_voids_sd >= 0.0, "blocks: sd of packed voids", options.packed_voids_sd,
+          ">= 0");
+  if (after.empty() || after.size() != change.areas.size()) {
+    throw Error(ErrorKind::bad_input, "blocks: there must be one map for each of the " +
+                                          std::to_string(change.areas.size()) +
+                                          " areas, at least one, there are " +
+                                          std::to_string(after.size()));
+  }
   for (std::size_t i = 0; i < after.size(); ++i) {
-    require(same_grid(after[i], change.areas[i].difference),
-            "each map must be on the grid of its area, which is not so for map",
-            static_cast<double>(i));
+    if (same_grid(after[i], change.areas[i].difference)) continue;
+    throw Error(ErrorKind::bad_input, "blocks: each map must be on the grid of its area, map " +
+                                          std::to_string(i) + " is not");
   }
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/text.hpp"
+#include "base/check.hpp"
 
 namespace excavplan {
 
@@ -41,10 +41,8 @@ BulkingErrors bulking_errors(const VolumeChange& change) {
 }
 
 double free_of_fallback(double bulking_measured, double fallback_fraction) {
-  if (!(fallback_fraction >= 0.0 && fallback_fraction < 1.0)) {
-    throw Error(ErrorKind::bad_input,
-                "fallback fraction is " + number_text(fallback_fraction) + ", must be in [0, 1)");
-  }
+  require(fallback_fraction >= 0.0 && fallback_fraction < 1.0, "fallback fraction",
+          fallback_fraction, "at least 0 and below 1");
   return fallback_fraction + (1.0 - fallback_fraction) * bulking_measured;
 }
 

@@ -119,9 +119,9 @@ Eigen::ArrayXXi widened(const Eigen::ArrayXXi& label, double radius) {
 /// Finds zones and the noise of the ground between them, each from the other.
 class ChangeFinder {
  public:
-  ChangeFinder(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance, double cell,
+  ChangeFinder(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance, double cell_size,
                const ChangeOptions& options)
-      : cell_(cell), options_(options) {
+      : cell_size_(cell_size), options_(options) {
     found_.difference = std::move(difference);
     holes_ = fill_holes(found_.difference);
     find_rim();
@@ -205,7 +205,7 @@ class ChangeFinder {
       const std::vector<Cell> cells = mark_connected(label, seed, index, [&](Cell cell) {
         return significance(cell) * sign >= options_.growth && !in_shadow(cell);
       });
-      if (static_cast<double>(cells.size()) * cell_ * cell_ < options_.min_zone_area) {
+      if (static_cast<double>(cells.size()) * cell_size_ * cell_size_ < options_.min_zone_area) {
         for (const Cell cell : cells) label(cell.row, cell.col) = too_small;
       } else {
         found_.zone_is_cut.push_back(reaches_the_edge(cells));
@@ -213,7 +213,7 @@ class ChangeFinder {
     });
     label = (label < 0).select(stable, label);
     take_in_shadows(label);
-    found_.zone = found_.difference.isNaN().select(stable, widened(label, margin() / cell_));
+    found_.zone = found_.difference.isNaN().select(stable, widened(label, margin() / cell_size_));
   }
 
   /// In a hole too large to be chance between points.
@@ -263,7 +263,7 @@ class ChangeFinder {
   /// A zone's edge below the threshold: soil that lies at 27 degrees or more, at least one cell.
   double margin() const {
     constexpr double gentlest = 0.5;  // ours
-    return std::max({options_.margin, cell_, options_.growth * smooth_sd_ / gentlest});
+    return std::max({options_.margin, cell_size_, options_.growth * smooth_sd_ / gentlest});
   }
 
   bool reaches_the_edge(const std::vector<Cell>& cells) const {
@@ -309,7 +309,7 @@ class ChangeFinder {
     });
   }
 
-  double cell_;
+  double cell_size_;
   const ChangeOptions& options_;
   ChangedGround found_;
   Smoothed smoothed_;
@@ -322,9 +322,9 @@ class ChangeFinder {
 
 }  // namespace
 
-ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance, double cell,
-                          const ChangeOptions& options) {
-  return ChangeFinder(std::move(difference), variance, cell, options).find();
+ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance,
+                          double cell_size, const ChangeOptions& options) {
+  return ChangeFinder(std::move(difference), variance, cell_size, options).find();
 }
 
 std::vector<bool> zones_near(const Eigen::ArrayXXi& zone, const std::vector<bool>& chosen,

@@ -23,9 +23,9 @@ struct ChangedGround {
 
 /// @param difference after - before [m], NaN where unknown, at least 100 known cells
 /// @param variance of each cell of it as its own points tell, NaN where they do not [m^2]
-/// @param cell edge of a cell [m]
-ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance, double cell,
-                          const ChangeOptions& options);
+/// @param cell_size edge of a cell [m]
+ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance,
+                          double cell_size, const ChangeOptions& options);
 
 /// The zones within `distance_cells` of the chosen ones, which count as near themselves.
 std::vector<bool> zones_near(const Eigen::ArrayXXi& zone, const std::vector<bool>& chosen,

@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "base/angles.hpp"
 #include "ground/grid_cells.hpp"
 
 namespace excavplan {
@@ -20,7 +21,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// A fitted covariance makes kriging look better than it is (Zimmerman and Cressie 1992); the
 /// factor is ours, from 300 simulated surveys.
 constexpr double plug_in = 1.15;
-constexpr double two_pi = 6.283185307179586;
 
 struct Products {
   double sum = 0.0;
@@ -68,7 +68,7 @@ Covariances empirical(const Eigen::ArrayXXd& residual) {
     const double rho = here.mean() / variance;
     telling = rho > significant * std::sqrt(squares / here.count);
     if (!telling) continue;
-    squares += two_pi * static_cast<double>(lag) * rho * rho;
+    squares += 2.0 * pi * static_cast<double>(lag) * rho * rho;
     found.told = static_cast<std::size_t>(lag) + 1;
   }
   return found;
@@ -76,20 +76,20 @@ Covariances empirical(const Eigen::ArrayXXd& residual) {
 
 /// Weighted least squares on the variogram (Cressie 1985): its values at short lags, which tell
 /// the shape, err little, and a mean that the residuals lost does not matter.
-NoiseModel fit(const Covariances& covariances, double cell) {
+NoiseModel fit(const Covariances& covariances, double cell_size) {
   const double variance = covariances.at_lag[0].mean();
-  const double longest = cell * static_cast<double>(covariances.at_lag.size());
+  const double longest = cell_size * static_cast<double>(covariances.at_lag.size());
   NoiseModel best;
   double least = std::numeric_limits<double>::infinity();
   for (const double power : {1.0, 1.25, 1.5, 1.75, 2.0}) {  // this grid is ours
-    for (double length = 0.4 * cell; length < longest; length *= 1.06) {
+    for (double length = 0.4 * cell_size; length < longest; length *= 1.06) {
       const NoiseModel shape{0.0, 1.0, length, power};
       Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
       Eigen::Vector2d right = Eigen::Vector2d::Zero();
       double squares = 0.0;
       for (std::size_t lag = 1; lag < covariances.at_lag.size(); ++lag) {
         const double value = variance - covariances.at_lag[lag].mean();
-        const Eigen::Vector2d terms(1.0, 1.0 - shape.at(cell * static_cast<double>(lag)));
+        const Eigen::Vector2d terms(1.0, 1.0 - shape.at(cell_size * static_cast<double>(lag)));
         const double weight = 1.0 / std::max(value * value, 1e-4 * variance * variance);
         normal += weight * terms * terms.transpose();
         right += weight * value * terms;
@@ -169,7 +169,7 @@ class Blocks {
     const HeightMap& map = field.before;
     const bool correlated = field.noise.correlated > 0.0;
     const double reach =
-        correlated ? std::sqrt(field.noise.integral() / field.noise.correlated / two_pi) : 0.0;
+        correlated ? std::sqrt(field.noise.integral() / field.noise.correlated / (2.0 * pi)) : 0.0;
     Eigen::ArrayXXd outside = (field.zone >= 0)
                                   .select(Eigen::ArrayXXd::Zero(map.z.rows(), map.z.cols()),
                                           std::numeric_limits<double>::infinity());
@@ -309,15 +309,15 @@ double NoiseModel::at(double distance) const {
 
 double NoiseModel::integral() const {
   if (correlated == 0.0) return 0.0;
-  return correlated * two_pi * length * length * std::tgamma(2.0 / power) / power;
+  return correlated * 2.0 * pi * length * length * std::tgamma(2.0 / power) / power;
 }
 
-NoiseModel find_noise(const Eigen::ArrayXXd& residual, double cell) {
+NoiseModel find_noise(const Eigen::ArrayXXd& residual, double cell_size) {
   const Covariances covariances = empirical(residual);
   NoiseModel model;
   model.white = covariances.at_lag[0].mean();
   if (covariances.told < 2) return model;
-  const NoiseModel fitted = fit(covariances, cell);
+  const NoiseModel fitted = fit(covariances, cell_size);
   return fitted.correlated > 0.0 ? fitted : model;
 }
 

@@ -28,13 +28,15 @@ struct NoiseModel {
   /// Integral of the correlated part over the plane [m^4].
   double integral() const;
   /// Variance that independent cells would need for a mean over a large area to err as much [m^2].
-  double large_area_variance(double cell) const { return white + integral() / (cell * cell); }
+  double large_area_variance(double cell_size) const {
+    return white + integral() / (cell_size * cell_size);
+  }
 };
 
 /// The noise of residuals (NaN where the ground is not stable), from their empirical covariance
 /// along rows and columns. White if no lag can be told from none (Bartlett 1946), else fitted up to
 /// twice the first lag that cannot.
-NoiseModel find_noise(const Eigen::ArrayXXd& residual, double cell);
+NoiseModel find_noise(const Eigen::ArrayXXd& residual, double cell_size);
 
 /// How a motion changes the height of a cell at `place` from the centre of rotation, by the
 /// gradient of the ground there.

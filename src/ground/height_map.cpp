@@ -49,27 +49,27 @@ Eigen::Index gap_along(const Eigen::ArrayXXd& z, Cell at, Cell step) {
 
 }  // namespace
 
-HeightMap flat_ground(const Rectangle& extent, double cell, double height) {
+HeightMap flat_ground(const Rectangle& extent, double cell_size, double height) {
   const double width = extent.x_max - extent.x_min;
   const double depth = extent.y_max - extent.y_min;
   if (!(width > 0.0 && depth > 0.0 && std::isfinite(width) && std::isfinite(depth))) {
     throw Error(ErrorKind::bad_input, "extent of the map is " + number_text(width) + " m x " +
                                           number_text(depth) + " m, must be positive and finite");
   }
-  if (!(cell > 0.0 && std::isfinite(cell))) {
-    throw Error(ErrorKind::bad_input, "cell is " + number_text(cell) + " m, must be positive");
+  if (!(cell_size > 0.0 && std::isfinite(cell_size))) {
+    throw Error(ErrorKind::bad_input, "cell is " + number_text(cell_size) + " m, must be positive");
   }
-  const double cols = std::max(1.0, std::ceil(width / cell - grid_tolerance));
-  const double rows = std::max(1.0, std::ceil(depth / cell - grid_tolerance));
+  const double cols = std::max(1.0, std::ceil(width / cell_size - grid_tolerance));
+  const double rows = std::max(1.0, std::ceil(depth / cell_size - grid_tolerance));
   if (!(rows * cols <= most_cells)) {
     throw Error(ErrorKind::bad_input,
                 "a map of " + number_text(width) + " m x " + number_text(depth) +
-                    " m in cells of " + number_text(cell) + " m holds " + number_text(rows * cols) +
-                    " cells, most are " + number_text(most_cells));
+                    " m in cells of " + number_text(cell_size) + " m holds " +
+                    number_text(rows * cols) + " cells, most are " + number_text(most_cells));
   }
   HeightMap map;
   map.origin = {extent.x_min, extent.y_min};
-  map.cell_size = cell;
+  map.cell_size = cell_size;
   map.z = Eigen::ArrayXXd::Constant(static_cast<Eigen::Index>(rows),
                                     static_cast<Eigen::Index>(cols), height);
   return map;
@@ -100,7 +100,8 @@ bool same_grid(const HeightMap& a, const HeightMap& b) {
          ((a.origin - b.origin).array().abs() <= tolerance).all();
 }
 
-HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell, double widest_gap) {
+HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell_size,
+                    double widest_gap) {
   HeightMap whole = map;
   const double most = std::floor(widest_gap / map.cell_size + grid_tolerance);
   for (const std::vector<Cell>& hole : fill_holes(whole.z).cells) {
@@ -109,7 +110,7 @@ HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell, 
       if (static_cast<double>(width) > most) whole.z(at.row, at.col) = nan;
     }
   }
-  HeightMap result = flat_ground(extent, cell);
+  HeightMap result = flat_ground(extent, cell_size);
   for_each_cell(result.z, [&](Cell at) {
     result.z(at.row, at.col) = height_at(whole, result.x(at.col), result.y(at.row));
   });

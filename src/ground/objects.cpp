@@ -19,8 +19,8 @@ constexpr double edge_excess = 0.05;             // ours: as far as an object re
 constexpr double of_a_heap = 0.2;                // ours: ground around over top, as risen [-]
 
 /// Height above the steepest surface that could lie there, less what one cell blurs.
-Eigen::ArrayXXd excess_of(const Eigen::ArrayXXd& z, double cell) {
-  return z - slope_limited(z, steepest * cell) - steepest * cell;
+Eigen::ArrayXXd excess_of(const Eigen::ArrayXXd& z, double cell_size) {
+  return z - slope_limited(z, steepest * cell_size) - steepest * cell_size;
 }
 
 /// Cells within `margin` of the given ones, or next to them.
@@ -67,14 +67,14 @@ bool is_part_of_heap(const std::vector<Cell>& cells, const Eigen::ArrayXXd& rise
 
 /// What stands in `with` but not in `without`.
 std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd& without,
-                             double cell, double margin) {
+                             double cell_size, double margin) {
   constexpr int free = -1;
   std::vector<Object> objects;
   const Eigen::ArrayXXd rise =
       (with - without).isNaN().select(with - without, (with - without).max(0.0));
-  const Eigen::ArrayXXd excess = excess_of(rise, cell);
+  const Eigen::ArrayXXd excess = excess_of(rise, cell_size);
   if (!(excess > least_excess).any()) return objects;
-  const Eigen::ArrayXXd own_excess = excess_of(with, cell);
+  const Eigen::ArrayXXd own_excess = excess_of(with, cell_size);
   Eigen::ArrayXXi label = Eigen::ArrayXXi::Constant(rise.rows(), rise.cols(), free);
   for_each_cell(rise, [&](Cell seed) {
     if (label(seed.row, seed.col) != free) return;
@@ -84,14 +84,15 @@ std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd&
     const auto joins = [&](Cell cell_at) { return excess(cell_at.row, cell_at.col) > edge_excess; };
     Object object;
     object.cells = mark_connected(label, seed, 0, joins);
-    object.is_blunder = static_cast<double>(object.cells.size()) * cell * cell < least_area;
+    object.is_blunder =
+        static_cast<double>(object.cells.size()) * cell_size * cell_size < least_area;
     if (!object.is_blunder) {
       object.cells = widened(object.cells, rise, margin);
       if (is_part_of_heap(object.cells, rise)) return;
     }
     for (const Cell at : object.cells) {
       const double change = with(at.row, at.col) - without(at.row, at.col);
-      if (!std::isnan(change)) object.volume += cell * cell * change;
+      if (!std::isnan(change)) object.volume += cell_size * cell_size * change;
     }
     objects.push_back(std::move(object));
   });
@@ -108,10 +109,10 @@ void blank(Eigen::ArrayXXd& z, const std::vector<Object>& objects) {
 
 }  // namespace
 
-std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell,
-                                     double margin) {
-  std::vector<Object> objects = standing(after, before, cell, margin);
-  std::vector<Object> gone = standing(before, after, cell, margin);
+std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after,
+                                     double cell_size, double margin) {
+  std::vector<Object> objects = standing(after, before, cell_size, margin);
+  std::vector<Object> gone = standing(before, after, cell_size, margin);
   blank(after, objects);
   blank(before, gone);
   for (Object& object : gone) {

@@ -26,7 +26,7 @@ struct Object {
 /// of blocks as rough as those are large.
 ///
 /// @param margin by which what is found is widened, 1.5 at least (ours); 0: not at all [cell]
-std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell,
-                                     double margin);
+std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after,
+                                     double cell_size, double margin);
 
 }  // namespace excavplan

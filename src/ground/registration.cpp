@@ -13,7 +13,7 @@
 
 #include <excavplan/error.hpp>
 
-#include "base/text.hpp"
+#include "base/check.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/robust.hpp"
@@ -282,17 +282,10 @@ Eigen::Isometry3d rigid(const Alignment& alignment) {
 }
 
 /// Slope along one axis from the known neighbours on both sides, or the one side that is known.
-double slope(double low, double here, double high, double cell) {
-  if (!std::isnan(low) && !std::isnan(high)) return (high - low) / (2.0 * cell);
-  if (!std::isnan(high)) return (high - here) / cell;
-  return std::isnan(low) ? 0.0 : (here - low) / cell;
-}
-
-void require_positive(double value, const std::string& option) {
-  if (!(value > 0.0)) {
-    throw Error(ErrorKind::bad_input,
-                "align: " + option + " is " + number_text(value) + ", must be positive");
-  }
+double slope(double low, double here, double high, double cell_size) {
+  if (!std::isnan(low) && !std::isnan(high)) return (high - low) / (2.0 * cell_size);
+  if (!std::isnan(high)) return (high - here) / cell_size;
+  return std::isnan(low) ? 0.0 : (here - low) / cell_size;
 }
 
 }  // namespace
@@ -318,9 +311,9 @@ double Alignment::largest_shift(const HeightMap& map) const {
 }
 
 Alignment align(const Surface& before, const Surface& after, const AlignmentOptions& options) {
-  require_positive(options.shift_prior, "shift_prior");
-  require_positive(options.turn_prior, "turn_prior");
-  require_positive(options.steepest, "steepest");
+  require(options.shift_prior > 0.0, "align: shift_prior", options.shift_prior, "positive");
+  require(options.turn_prior > 0.0, "align: turn_prior", options.turn_prior, "positive");
+  require(options.steepest > 0.0, "align: steepest", options.steepest, "positive");
   if (!same_grid(before.height, after.height)) {
     throw Error(ErrorKind::bad_input,
                 "align: the surfaces must be on one grid: same origin, cell and size");

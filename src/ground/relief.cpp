@@ -55,7 +55,7 @@ double share_of_relief(const Eigen::ArrayXXd& relief, const Eigen::ArrayXXd& res
 
 /// True if the relief under every zone is like that of stable ground: neither larger, nor higher
 /// or lower in the mean than its covariance there allows. An older hole or heap is no error.
-bool is_alike(const Eigen::ArrayXXd& relief, const ChangedGround& ground, double cell) {
+bool is_alike(const Eigen::ArrayXXd& relief, const ChangedGround& ground, double cell_size) {
   constexpr double largest_ratio = 2.0;  // ours: of rms
   constexpr double largest_mean = 2.5;   // ours [sd]
   const std::size_t zones = ground.zone_is_cut.size();
@@ -72,10 +72,11 @@ bool is_alike(const Eigen::ArrayXXd& relief, const ChangedGround& ground, double
     counts[i] += 1.0;
   });
   const NoiseModel noise =
-      find_noise(ground.residual.isNaN().select(ground.residual, relief), cell);
+      find_noise(ground.residual.isNaN().select(ground.residual, relief), cell_size);
   const double variance = noise.white + noise.correlated;
   for (std::size_t i = 0; i < zones; ++i) {
-    const double most = largest_mean * largest_mean * counts[i] * noise.large_area_variance(cell);
+    const double most =
+        largest_mean * largest_mean * counts[i] * noise.large_area_variance(cell_size);
     if (squares[i] > largest_ratio * largest_ratio * variance * counts[i]) return false;
     if (sums[i] * sums[i] > most) return false;
   }

@@ -88,15 +88,15 @@ void sum_faces(Area& area, const Surface& scan) {
   std::vector<double> points(zones, 0.0);
   const Gradient gradient = gradient_of(scan.height);
   const double regularity = regularity_of(scan.points, area.ground.zone);
-  const double cell = area.grid.cell_size;
-  const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell);
+  const double cell_size = area.grid.cell_size;
+  const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell_size);
   for_each_cell(area.ground.zone, [&](Cell at) {
     const int index = area.ground.zone(at.row, at.col);
     if (index < 0) return;
     const auto i = static_cast<std::size_t>(index);
     points[i] += scan.points(at.row, at.col);
     const double slope = std::hypot(gradient.x(at.row, at.col), gradient.y(at.row, at.col));
-    if (slope > least) faces[i] += slope * cell * cell;
+    if (slope > least) faces[i] += slope * cell_size * cell_size;
   });
   for (std::size_t i = 0; i < zones; ++i) {
     if (faces[i] == 0.0 || points[i] == 0.0) continue;
@@ -108,7 +108,7 @@ void sum_faces(Area& area, const Surface& scan) {
 /// What may be missing of zones that reach the edge of what was seen: from there on soil that falls
 /// or rises to the ground by a gentle slope.
 void sum_beyond_edge(Area& area) {
-  const double cell = area.grid.cell_size;
+  const double cell_size = area.grid.cell_size;
   std::vector<double> missing(area.zones.size(), 0.0);
   const auto& zone = area.ground.zone;
   for_each_cell(zone, [&](Cell at) {
@@ -120,7 +120,7 @@ void sum_beyond_edge(Area& area) {
     });
     if (!is_edge) return;
     const double height = area.ground.difference(at.row, at.col);
-    missing[static_cast<std::size_t>(index)] += cell * 0.5 * height * height / gentle;
+    missing[static_cast<std::size_t>(index)] += cell_size * 0.5 * height * height / gentle;
   });
   for (std::size_t i = 0; i < missing.size(); ++i) area.zones[i].holes += std::pow(missing[i], 2);
 }

@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/surveyed_area.hpp"
 #include "ground/zone_kinds.hpp"
@@ -24,12 +25,6 @@ constexpr double largest_noise = 0.1;        // ours: of a cell; coarser than an
 constexpr double least_dumped_share = 0.2;   // ours: a smaller rise away from the hole is no heap
 constexpr double least_bulking = 0.97;       // loosest soil keeps its volume; ours: 3 % below that
 constexpr double largest_bulking = 3.0;      // ours: blocks give about 2
-
-void require(bool holds, const std::string& option, double value, const std::string& rule) {
-  if (!holds) {
-    throw Error(ErrorKind::bad_input, option + " is " + number_text(value) + ", must be " + rule);
-  }
-}
 
 void check(const std::optional<Rectangle>& area, const std::string& name) {
   if (area && !(area->x_max > area->x_min && area->y_max > area->y_min)) {

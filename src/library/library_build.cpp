@@ -3,27 +3,30 @@
 #include <excavplan/library/library_build.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
 #include <filesystem>
-#include <iterator>
+#include <limits>
 #include <map>
 #include <mutex>
-#include <optional>
+#include <random>
 #include <set>
 #include <utility>
 
 #include <excavplan/error.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/files.hpp"
-#include "base/json.hpp"
+#include "base/parallel.hpp"
+#include "base/task_queue.hpp"
 #include "base/text.hpp"
-#include "library/library_cells.hpp"
-#include "library/library_midway.hpp"
-#include "library/library_row.hpp"
-#include "library/shared_tasks.hpp"
+#include "library/library_file.hpp"
+#include "library/library_tasks.hpp"
 
 namespace excavplan {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr int most_points = 1000000;  // of a first generation; ours
 
@@ -45,6 +48,7 @@ void require_rising(const std::string& what, const std::vector<double>& values, 
 /// Libraries are told apart by the names of their machine and soil.
 template <typename Named>
 void require_unlike(const std::string& what, const std::vector<Named>& all) {
+  require(!all.empty(), "no " + what + " is asked for");
   std::set<std::string> names;
   for (const Named& one : all) {
     require(names.insert(file_name_part(one.name)).second,
@@ -52,351 +56,352 @@ void require_unlike(const std::string& what, const std::vector<Named>& all) {
   }
 }
 
-/// Row and density of a cell.
-using Key = std::pair<std::size_t, double>;
-
-/// The cells, each for itself: what those asked for came to, computed or read from the folder.
-class Cells {
+/// What the user sees of a build, and whether he stopped it.
+class Watch {
  public:
-  Cells(const std::vector<LibraryRow>& rows, const LibraryBuildOptions& options, SharedTasks& tasks)
-      : rows_(rows), options_(options), tasks_(tasks) {
-    if (options.folder.empty()) return;
-    std::error_code error;
-    std::filesystem::create_directories(options.folder, error);
-    if (!std::filesystem::is_directory(options.folder)) {
-      throw Error(ErrorKind::bad_file, options.folder + ": is not a folder and cannot be made");
-    }
+  explicit Watch(const LibraryBuildOptions& options) : options_(options) {}
+
+  void expect_entry() { ++now_.entries; }
+  void entry_done(bool computed) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++now_.entries_done;
+    computed_ += computed ? 1 : 0;
+    tell();
   }
-
-  bool has(const Key& key) const { return outcomes_.count(key) == 1; }
-  const CellOutcome& operator[](const Key& key) const { return outcomes_.at(key); }
-
-  enum class Source { folder, anywhere };
-
-  /// Reads or computes the cells, and before each those that it starts from.
-  void take(const std::vector<Key>& wanted, Source source) {
-    std::map<Key, std::size_t> generations;
-    for (const Key& key : wanted) add_with_parents(key, generations);
-    std::vector<Key> keys;
-    for (const auto& [key, generation] : generations) keys.push_back(key);
-    std::stable_sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
-      return generations.at(a) < generations.at(b);
-    });
-    std::map<Key, std::size_t> places;
-    std::vector<std::vector<std::size_t>> parents(keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      places[keys[i]] = i;
-      for (const Key& parent : missing_parents(keys[i])) parents[i].push_back(places.at(parent));
-    }
-    tasks_.watch().expect(outcomes_.size() + keys.size());
-    tasks_.run_in_order(
-        parents, [&](std::size_t i) { return text_of(keys[i], source); },
-        [&](std::size_t i, const std::string& text) {
-          const CellOutcome outcome = read_cell("cell", text, cell_of(keys[i]), options_.search);
-          const std::lock_guard<std::mutex> lock(mutex_);
-          outcomes_[keys[i]] = outcome;
-        });
+  bool dug(int digs, double best) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    now_.evaluations += digs;
+    now_.best = best;
+    tell();
+    return !stopped_;
   }
+  void note(const std::string& line) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (options_.note) options_.note(line);
+  }
+  bool stopped() const { return stopped_; }
+  const LibraryProgress& now() const { return now_; }
 
  private:
-  /// @return the generation of a cell that is missing: 0 if it need not wait for another one
-  std::size_t add_with_parents(const Key& key, std::map<Key, std::size_t>& generations) const {
-    if (outcomes_.count(key) == 1) return 0;
-    std::size_t own = 0;
-    for (const Key& parent : missing_parents(key)) {
-      own = std::max(own, 1 + add_with_parents(parent, generations));
-    }
-    return generations[key] = own;
+  void tell() {
+    if (!options_.progress || stopped_) return;
+    now_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    now_.seconds_left = now_.seconds * static_cast<double>(now_.entries - now_.entries_done) /
+                        static_cast<double>(computed_);  // 0 / 0 or infinite at first
+    if (!options_.progress(now_)) stopped_ = true;
   }
 
-  std::vector<Key> missing_parents(const Key& key) const {
-    std::vector<Key> parents;
-    for (const double density : parent_densities(key.second, options_.search)) {
-      const Key parent{key.first, density};
-      if (outcomes_.count(parent) == 0) parents.push_back(parent);
-    }
-    return parents;
-  }
-
-  /// The text of a cell's file, from the folder or computed; empty if stopped.
-  std::string text_of(const Key& key, Source source) {
-    const LibraryCell cell = cell_of(key);
-    const std::string name = cell_file_name(cell, options_.search);
-    if (const std::string kept = kept_text(cell, name, source); !kept.empty()) {
-      tasks_.watch().cell_done(false);
-      return kept;
-    }
-    if (source == Source::folder) {
-      throw Error(ErrorKind::bad_file, options_.folder + "/" + name +
-                                           ": is missing: the shard that computes it has not "
-                                           "ended, or machine, soil or program have changed since");
-    }
-    const auto outcome =
-        compute_cell(cell, options_.search, parents_of(key), tasks_.watch().of(name));
-    if (!outcome) return {};
-    const std::string text = cell_text(cell, options_.search, *outcome);
-    if (!options_.folder.empty()) write_file(options_.folder + "/" + name, text);
-    tasks_.watch().cell_done(true);
-    return text;
-  }
-
-  std::vector<CellOutcome> parents_of(const Key& key) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    std::vector<CellOutcome> parents;
-    for (const double density : parent_densities(key.second, options_.search)) {
-      parents.push_back(outcomes_.at({key.first, density}));
-    }
-    return parents;
-  }
-
-  std::string kept_text(const LibraryCell& cell, const std::string& name, Source source) const {
-    const std::string path = options_.folder + "/" + name;
-    if (options_.folder.empty() || !std::filesystem::exists(path)) return {};
-    try {
-      const std::string text = read_file(path);
-      read_cell(path, text, cell, options_.search);
-      return text;
-    } catch (const Error& e) {
-      if (source == Source::folder) throw;
-      tasks_.watch().note(std::string(e.what()) + "; it is computed anew");
-      return {};
-    }
-  }
-
-  LibraryCell cell_of(const Key& key) const { return rows_[key.first].cell(key.second); }
-
-  const std::vector<LibraryRow>& rows_;
   const LibraryBuildOptions& options_;
-  SharedTasks& tasks_;
-  std::mutex mutex_;  // guards the outcomes while cells are computed
-  std::map<Key, CellOutcome> outcomes_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::mutex mutex_;
+  LibraryProgress now_;
+  int computed_ = 0;
+  std::atomic<bool> stopped_{false};
 };
 
+/// The value midway between the middle two of some places, by the polynomial of the logarithm
+/// through all of them.
+/// @param known  up to four places and their values > 0
+double expected_midway(const std::vector<std::pair<double, double>>& known, double place) {
+  double sum = 0.0;
+  for (const auto& [own, value] : known) {
+    double weight = std::log(value);
+    for (const auto& [other, unused] : known) {
+      if (other != own) weight *= (place - other) / (own - other);
+    }
+    sum += weight;
+  }
+  return std::exp(sum);
+}
+
+/// Of what is looked up midway between two digs.
+/// @param best  efficiency of the best dig there
+/// @param measured  efficiencies there of their mix and, if they are far apart, of both
+Interpolation interpolation(const PlannedDig& below, const PlannedDig& above, double best,
+                            const std::vector<double>& measured) {
+  PlannedDig taken = dig_between(below, above, 0.5, false);
+  double efficiency = measured[0];
+  const bool nearest = measured.size() == 3 && measured[0] < std::min(measured[1], measured[2]);
+  if (nearest) {
+    taken = measured[2] < measured[1] ? above : below;
+    efficiency = std::min(measured[1], measured[2]);
+  }
+  return {{std::clamp(1.0 - efficiency / best, 0.0, 1.0),
+           efficiency > 0.0 ? taken.efficiency() / efficiency - 1.0 : 0.0},
+          nearest};
+}
+
+/// Lays out all tasks of a build, and has them done.
+///
+/// Every entry is searched; then once up and once down each slope, an entry whose neighbour has a
+/// dig of another kind is searched from that dig too; then what is looked up midway is dug.
 class Build {
  public:
   Build(const LibraryGrid& grid, const LibraryBuildOptions& options)
-      : grid_(grid),
+      : job_{grid, options.search},
         options_(options),
-        tasks_(options),
-        rows_(rows_of(grid)),
-        cells_(rows_, options, tasks_) {}
-
-  LibraryBuild whole() {
-    Source source = options_.only_merge ? Source::folder : Source::anywhere;
-    do {
-      cells_.take(all_keys(), source);
-      source = Source::anywhere;  // densities that are added belong to no shard
-      if (!tasks_.stopped()) settle_rows();
-    } while (!tasks_.stopped() && refine());
-    std::vector<PathLibrary> libraries;
-    for (std::size_t first = 0; first < rows_.size() && !tasks_.stopped();
-         first += grid_.slopes.size()) {
-      libraries.push_back(library_of(first));
-      measure_slopes(libraries.back(), first);
-    }
-    LibraryBuild build = summary(all_keys());
-    if (!build.stopped) build.libraries = std::move(libraries);
-    return build;
-  }
-
-  LibraryBuild part(const LibraryShard& shard) {
-    require(!options_.folder.empty(), "a shard needs a folder for its cells");
-    require(shard.count >= 1 && shard.index >= 1 && shard.index <= shard.count,
-            "shard " + std::to_string(shard.index) + "/" + std::to_string(shard.count) +
-                " must be 1/N .. N/N");
-    const std::vector<Key> all = all_keys();
-    const auto cut = [&](int i) {
-      return static_cast<std::ptrdiff_t>(all.size() * static_cast<std::size_t>(i) /
-                                         static_cast<std::size_t>(shard.count));
-    };
-    // Neighbours stay together: only at its two ends a part computes a parent that others have too.
-    const std::vector<Key> mine(all.begin() + cut(shard.index - 1), all.begin() + cut(shard.index));
-    cells_.take(mine, Source::anywhere);
-    return summary(mine);
-  }
-
- private:
-  using Source = Cells::Source;
-
-  static std::vector<LibraryRow> rows_of(const LibraryGrid& grid) {
-    std::vector<LibraryRow> rows;
-    for (const Machine& machine : grid.machines) {
-      for (const SoilKind& soil : grid.soils) {
+        watch_(options),
+        queue_(options.folder.empty() ? 0 : std::random_device{}()) {
+    for (std::size_t machine = 0; machine < grid.machines.size(); ++machine) {
+      for (std::size_t soil = 0; soil < grid.soils.size(); ++soil) {
         for (const double slope : grid.slopes) {
-          rows.emplace_back(LibraryCell{&machine, &soil, slope, 0.0}, grid.densities_percent);
+          for (const double density : grid.densities_percent) {
+            entries_.push_back(&searched({machine, soil, slope, density}));
+          }
         }
       }
     }
-    return rows;
-  }
-
-  std::vector<Key> all_keys() const {
-    std::vector<Key> keys;
-    for (std::size_t row = 0; row < rows_.size(); ++row) {
-      for (const double density : rows_[row].densities()) keys.push_back({row, density});
+    if (std::holds_alternative<AnchoredSearch>(options.search.method)) exchange_kinds();
+    const std::size_t row = grid.densities_percent.size();
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      measure(i, {1, row, &LibraryPlace::density_percent, &Entry::to_next_density});
+      measure(i, {row, grid.slopes.size(), &LibraryPlace::slope, &Entry::to_next_slope});
     }
-    return keys;
   }
 
-  LibraryBuild summary(const std::vector<Key>& wanted) const {
+  LibraryBuild run() {
+    if (!options_.folder.empty()) {
+      std::error_code error;
+      fs::create_directories(options_.folder, error);
+      if (!fs::is_directory(options_.folder)) {
+        throw Error(ErrorKind::bad_file, options_.folder + ": is not a folder and cannot be made");
+      }
+    }
+    std::vector<TaskQueue::Worker> workers(
+        thread_count(options_.threads), [this](const std::string& task) {
+          return do_task(job_, task,
+                         [this](int digs, double best) { return watch_.dug(digs, best); });
+        });
+    for (const LibraryWorker& other : options_.other_workers) {
+      workers.push_back(
+          [&](const std::string& task) { return watch_.stopped() ? std::string() : other(task); });
+    }
     LibraryBuild build;
-    build.stopped = tasks_.stopped();
-    build.cells = wanted.size();
-    build.cells_done = static_cast<std::size_t>(std::count_if(
-        wanted.begin(), wanted.end(), [&](const Key& key) { return cells_.has(key); }));
+    build.stopped = !queue_.run(workers);
+    build.entries = watch_.now().entries;
+    build.entries_done = watch_.now().entries_done;
+    if (!build.stopped) build.libraries = libraries();
     return build;
   }
 
-  /// Measures between all densities, and looks again at those whose neighbours know better, until
-  /// there is nothing left to do.
-  void settle_rows() {
-    for (const Key& key : all_keys()) rows_[key.first].take(key.second, cells_[key]);
-    do {
-      measure_midways();
-    } while (!tasks_.stopped() && look_again());
-  }
+ private:
+  struct Entry {
+    LibraryPlace place;
+    LibraryAnswer first;  ///< of its own search
+    LibraryAnswer found;  ///< with its neighbours' kinds of digs
+    Interpolation to_next_density;
+    Interpolation to_next_slope;
+    std::size_t searched = 0;  ///< task after which `first` is known
+    std::size_t settled = 0;   ///< task after which `found` is final
+  };
 
-  void measure_midways() {
-    std::vector<std::pair<LibraryRow*, LibraryRow::Pair>> all;
-    for (LibraryRow& row : rows_) {
-      for (const LibraryRow::Pair& pair : row.unmeasured()) all.push_back({&row, pair});
+  /// An entry, and before it those that its search starts from.
+  Entry& searched(const LibraryPlace& place) {
+    const auto [at, fresh] =
+        all_.try_emplace(std::tuple(place.machine, place.soil, place.slope, place.density_percent));
+    Entry& entry = at->second;
+    if (!fresh) return entry;
+    entry.place = place;
+    std::vector<const Entry*> parents;
+    std::vector<std::size_t> after;
+    for (const double density : parent_densities(place.density_percent, job_.search)) {
+      parents.push_back(&searched({place.machine, place.soil, place.slope, density}));
+      after.push_back(parents.back()->searched);
     }
-    tasks_.run(
-        all.size(),
-        [&](std::size_t i) {
-          return text_of(all[i].first->measure(all[i].second, options_.search.cell_size));
-        },
-        [&](std::size_t i, const std::string& text) {
-          all[i].first->take(all[i].second, midway_in(text));
-        });
+    watch_.expect_entry();
+    const std::string file = options_.folder + "/" + entry_file_name(job_, place);
+    entry.searched = entry.settled = queue_.add(
+        {after, [=, &entry] { return kept(file, entry) ? "" : first_task(entry, parents); },
+         [=, &entry](const std::string& text) {
+           entry.first = entry.found = read_answer(job_, entry.place, "task", text);
+           if (!options_.folder.empty()) write_file(file, text);
+           watch_.entry_done(true);
+         }});
+    return entry;
   }
 
-  /// @return false if there was nothing to look at
-  bool look_again() {
-    std::vector<std::pair<LibraryRow*, LibraryRow::Look>> all;
-    if (std::holds_alternative<GeneticAlgorithm>(options_.search.method)) return false;
-    for (LibraryRow& row : rows_) {
-      for (const LibraryRow::Look& look : row.looks_due()) all.push_back({&row, look});
+  static std::string first_task(const Entry& entry, const std::vector<const Entry*>& parents) {
+    std::vector<std::pair<double, PlannedDig>> digs;
+    for (const Entry* parent : parents) {
+      if (parent->first.feasible) {
+        digs.push_back({parent->place.density_percent, parent->first.dig});
+      }
     }
-    tasks_.run(
-        all.size(),
-        [&](std::size_t i) {
-          const auto& [row, look] = all[i];
-          const LibraryCell cell = row->cell(look.density);
-          const auto outcome =
-              excavplan::look_again(cell, options_.search, row->starts_of(look),
-                                    tasks_.watch().of(cell_file_name(cell, options_.search)));
-          return outcome ? cell_text(cell, options_.search, *outcome) : std::string();
-        },
-        [&](std::size_t i, const std::string& text) {
-          const auto& [row, look] = all[i];
-          row->take(look, read_cell("second look", text, row->cell(look.density), options_.search));
-        });
-    return !all.empty();
+    return to_text(first_search(entry.place, digs));
   }
 
-  static std::string text_of(const Midway& midway) {
-    return nlohmann::json{midway.error.loss, midway.error.expectation, midway.evaluations,
-                          midway.better, midway.jump}
-        .dump();
-  }
-  static Midway midway_in(const std::string& text) {
-    const auto json = nlohmann::json::parse(text);
-    return {{json[0].get<double>(), json[1].get<double>()},
-            json[2].get<int>(),
-            json[3].get<Midway::Better>(),
-            json[4].get<bool>()};
-  }
-
-  /// @return true if densities were added
-  bool refine() {
-    if (options_.refine == 0.0) return false;
-    bool any = false;
-    for (LibraryRow& row : rows_) any = row.refine(options_.refine) || any;
-    return any;
-  }
-
-  PathLibrary library_of(std::size_t first) const {
-    const LibraryCell any = rows_[first].cell(0.0);
-    PathLibrary library{any.machine->name,
-                        any.soil->name,
-                        fingerprint(*any.machine),
-                        fingerprint(*any.soil),
-                        HeightMapSimulator::name(),
-                        options_.search.cell_size,
-                        options_.search.seed,
-                        describe(options_.search),
-                        {},
-                        {}};
-    for (std::size_t r = first; r < first + grid_.slopes.size(); ++r) rows_[r].add_to(library);
-    if (library.entries.empty()) {
-      throw Error(ErrorKind::bad_input, "library: no dig is feasible for " + library.machine +
-                                            " in " + library.soil + " at any density");
+  /// Takes what the folder has of an entry.
+  bool kept(const std::string& file, Entry& entry) {
+    if (options_.folder.empty() || !fs::exists(file)) return false;
+    try {
+      entry.first = entry.found = read_answer(job_, entry.place, file, read_file(file));
+    } catch (const Error& e) {
+      watch_.note(std::string(e.what()) + "; it is computed anew");
+      return false;
     }
-    return library;
+    watch_.entry_done(false);
+    return true;
   }
 
-  /// Digs what is looked up midway between two slopes.
-  void measure_slopes(PathLibrary& library, std::size_t first) {
-    const std::vector<SlopeGap> gaps = slope_gaps(library);
-    tasks_.run(
-        gaps.size(),
-        [&](std::size_t i) {
-          const SlopeGap& gap = gaps[i];
-          LibraryCell midway = rows_[first].cell(gap.density_percent);
-          midway.slope = gap.middle;
-          return text_of(measure_midway(midway, options_.search.cell_size, gap.below, gap.above,
-                                        gap.best_expected));
-        },
-        [&](std::size_t i, const std::string& text) {
-          PathLibraryEntry& entry = library.entries[gaps[i].entry];
-          const Midway midway = midway_in(text);
-          entry.midway_slope = midway.error;
-          entry.jump_slope = midway.jump;
-          entry.evaluations += midway.evaluations;
-        });
+  void exchange_kinds() {
+    const std::size_t row = job_.grid.densities_percent.size();
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      if (i % row > 0) try_kind(*entries_[i], *entries_[i - 1]);
+    }
+    for (std::size_t i = entries_.size(); i-- > 0;) {
+      if (i % row + 1 < row) try_kind(*entries_[i], *entries_[i + 1]);
+    }
   }
 
-  const LibraryGrid& grid_;
+  void try_kind(Entry& entry, const Entry& neighbour) {
+    const auto task = [&] {
+      const bool both = entry.found.feasible && neighbour.found.feasible;
+      if (!both || !far_apart(entry.found.dig, neighbour.found.dig)) return std::string();
+      LibraryTask improve{entry.place};
+      improve.starts = {neighbour.found.dig.parameters};
+      improve.known = entry.found.efficiency();
+      return to_text(improve);
+    };
+    entry.settled =
+        queue_.add({{entry.settled, neighbour.settled}, task, [&](const std::string& text) {
+                      LibraryAnswer answer = read_answer(job_, entry.place, "task", text);
+                      answer.evaluations += entry.found.evaluations;
+                      if (answer.efficiency() > entry.found.efficiency()) {
+                        entry.found = answer;
+                      } else {
+                        entry.found.evaluations = answer.evaluations;
+                      }
+                    }});
+  }
+
+  /// The entries in a line along density or slope.
+  struct Line {
+    std::size_t step;   ///< from one to the next, in entries_
+    std::size_t count;  ///< of the line
+    double LibraryPlace::*along;
+    Interpolation Entry::*to_next;
+  };
+
+  /// Digs what is looked up midway between an entry and the next of a line.
+  void measure(std::size_t i, const Line& line) {
+    const std::size_t own = i / line.step % line.count;
+    if (own + 1 == line.count) return;
+    Entry& below = *entries_[i];
+    const Entry& above = *entries_[i + line.step];
+    std::vector<const Entry*> around = {&below, &above};
+    if (own > 0) around.push_back(entries_[i - line.step]);
+    if (own + 2 < line.count) around.push_back(entries_[i + 2 * line.step]);
+    std::vector<std::size_t> after;
+    for (const Entry* entry : around) after.push_back(entry->settled);
+    LibraryPlace middle = below.place;
+    middle.*line.along = 0.5 * (below.place.*line.along + above.place.*line.along);
+    queue_.add({after, [=, &below, &above] { return midway_task(middle, below, above); },
+                [=, &below, &above](const std::string& text) {
+                  const LibraryAnswer answer = read_answer(job_, middle, "task", text);
+                  std::vector<std::pair<double, double>> known;
+                  for (const Entry* entry : around) {
+                    if (!entry->found.feasible) continue;
+                    known.push_back({entry->place.*line.along, entry->found.efficiency()});
+                  }
+                  below.*line.to_next =
+                      interpolation(below.found.dig, above.found.dig,
+                                    expected_midway(known, middle.*line.along), answer.measured);
+                  below.found.evaluations += answer.evaluations;
+                }});
+  }
+
+  static std::string midway_task(const LibraryPlace& middle, const Entry& below,
+                                 const Entry& above) {
+    if (!below.found.feasible || !above.found.feasible) return {};
+    const PlannedDig& a = below.found.dig;
+    const PlannedDig& b = above.found.dig;
+    LibraryTask task{middle, {dig_between(a, b, 0.5, false)}};
+    if (far_apart(a, b)) task.digs.insert(task.digs.end(), {a, b});
+    return to_text(task);
+  }
+
+  std::vector<PathLibrary> libraries() const {
+    std::vector<PathLibrary> all;
+    const std::size_t size = job_.grid.slopes.size() * job_.grid.densities_percent.size();
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      const Entry& entry = *entries_[i];
+      if (i % size == 0) all.push_back(empty_library(entry.place));
+      const double density = entry.place.density_percent;
+      if (entry.found.feasible) {
+        all.back().entries.push_back({density, entry.place.slope, entry.found.dig,
+                                      entry.found.evaluations, entry.to_next_density,
+                                      entry.to_next_slope});
+      } else {
+        all.back().gaps.push_back({density, entry.place.slope});
+      }
+      require(i % size + 1 < size || !all.back().entries.empty(),
+              "no dig is feasible for " + all.back().machine + " in " + all.back().soil +
+                  " at any density");
+    }
+    return all;
+  }
+
+  PathLibrary empty_library(const LibraryPlace& place) const {
+    const Machine& machine = job_.grid.machines[place.machine];
+    const SoilKind& soil = job_.grid.soils[place.soil];
+    const LibrarySearch& search = job_.search;
+    return {machine.name,
+            soil.name,
+            fingerprint(machine),
+            fingerprint(soil),
+            search.simulator.name,
+            search.cell_size,
+            search.seed,
+            describe(search),
+            {},
+            {}};
+  }
+
+  const LibraryJob job_;
   const LibraryBuildOptions& options_;
-  SharedTasks tasks_;
-  std::vector<LibraryRow> rows_;  // slopes of a machine and soil stand together
-  Cells cells_;
+  Watch watch_;
+  TaskQueue queue_;
+  std::map<std::tuple<std::size_t, std::size_t, double, double>, Entry> all_;
+  std::vector<Entry*> entries_;  ///< of the grid: machine, soil, slope, density
 };
 
 }  // namespace
 
-void require_buildable(const LibraryGrid& grid, const LibraryBuildOptions& options) {
-  require(!grid.machines.empty(), "no machine is asked for");
-  require(!grid.soils.empty(), "no soil is asked for");
-  require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
-  require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
-  require(options.refine >= 0.0 && options.refine < 1.0,
-          "refine must be in 0 .. 1, got " + number_text(options.refine));
+void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
   require_unlike("machine", grid.machines);
   require_unlike("soil", grid.soils);
-  require(options.search.seed <= most_exact,
-          "the seed must be at most " + std::to_string(most_exact) + ", the largest whole number " +
-              "that the file keeps, got " + std::to_string(options.search.seed));
-  const auto* anchored = std::get_if<AnchoredSearch>(&options.search.method);
-  require(!anchored || anchored->points <= most_points,
-          "points must be <= " + std::to_string(most_points) + ", got " +
-              std::to_string(anchored ? anchored->points : 0));
-  require(options.search.cell_size >= finest_cell && options.search.cell_size <= coarsest_cell,
+  require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
+  require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
+  require(search.seed <= most_exact, "the seed must be at most " + std::to_string(most_exact) +
+                                         ", the largest whole number " +
+                                         "that the file keeps, got " + std::to_string(search.seed));
+  if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
+    require(anchored->points <= most_points, "points must be <= " + std::to_string(most_points) +
+                                                 ", got " + std::to_string(anchored->points));
+  }
+  require(search.cell_size >= finest_cell && search.cell_size <= coarsest_cell,
           "the cell of the ground must be in " + number_text(finest_cell) + " .. " +
-              number_text(coarsest_cell) + " m, got " + number_text(options.search.cell_size));
-  require(!options.only_merge || !options.folder.empty(), "a merge needs a folder of cells");
+              number_text(coarsest_cell) + " m, got " + number_text(search.cell_size));
+}
+
+LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {
+  return [job = LibraryJob{std::move(grid), std::move(search)}](const std::string& task) {
+    return do_task(job, task, {});
+  };
 }
 
 LibraryBuild build_path_libraries(const LibraryGrid& grid, const LibraryBuildOptions& options) {
-  require_buildable(grid, options);
-  return Build(grid, options).whole();
+  require_buildable(grid, options.search);
+  return Build(grid, options).run();
 }
 
-LibraryBuild build_library_shard(const LibraryGrid& grid, const LibraryShard& shard,
-                                 const LibraryBuildOptions& options) {
-  require_buildable(grid, options);
-  return Build(grid, options).part(shard);
+void remove_library_entries(const std::string& folder) {
+  if (!fs::is_directory(folder)) return;
+  for (const auto& file : fs::directory_iterator(folder)) {
+    const std::string name = file.path().filename();
+    if (name.find(entry_file_end) != std::string::npos) fs::remove(file.path());
+  }
+  if (fs::is_empty(folder)) fs::remove(folder);
 }
 
 }  // namespace excavplan

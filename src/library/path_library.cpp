@@ -7,114 +7,87 @@
 #include <string>
 
 #include <excavplan/error.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
 
-#include "base/files.hpp"
-#include "base/json.hpp"
 #include "base/text.hpp"
-#include "library/library_cells.hpp"
-#include "library/library_midway.hpp"
+#include "library/library_file.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr const char* format = "excavplan-path-library";
-constexpr int version = 4;
-
 using Entries = std::vector<PathLibraryEntry>;
 
-/// The entries of one slope.
-struct Row {
-  Entries::const_iterator begin;
-  Entries::const_iterator end;
-};
+// Two digs that differ by more than this fraction of a number's range may be of different kinds;
+// ours.
+constexpr double near = 0.2;
 
-Row row_of(const PathLibrary& library, double slope) {
-  const auto before = [](const PathLibraryEntry& entry, double value) {
-    return entry.slope < value;
-  };
-  const auto after = [](double value, const PathLibraryEntry& entry) {
-    return value < entry.slope;
-  };
-  const Entries& entries = library.entries;
-  return {std::lower_bound(entries.begin(), entries.end(), slope, before),
-          std::upper_bound(entries.begin(), entries.end(), slope, after)};
+[[noreturn]] void refuse(const std::string& text) {
+  throw Error(ErrorKind::bad_input, "library: " + text);
 }
 
-/// Two places in the library and how far a value is from the first to the second.
-template <typename Place>
-struct Between {
-  Place below;
-  Place above;
+void require_inside(const std::string& what, double value, double lower, double upper) {
+  if (value >= lower && value <= upper) return;
+  refuse(what + " " + number_text(value) + " is outside its range " + number_text(lower) + " .. " +
+         number_text(upper));
+}
+
+/// The entries around a density on one slope, and how far it is from the first to the second.
+struct Densities {
+  Entries::const_iterator below;
+  Entries::const_iterator above;
   double share = 0.0;
+
+  Entries::const_iterator nearest() const { return share < 0.5 ? below : above; }
 };
 
-[[noreturn]] void refuse(const std::string& what, double value, double lower, double upper) {
-  throw Error(ErrorKind::bad_input, "library: " + what + " " + number_text(value) +
-                                        " is outside its range " + number_text(lower) + " .. " +
-                                        number_text(upper));
-}
-
-Between<Row> slopes_around(const PathLibrary& library, double slope) {
-  const Entries& entries = library.entries;
-  if (entries.empty()) throw Error(ErrorKind::bad_input, "library: it holds no entry");
-  const double lowest = entries.front().slope;
-  const double highest = entries.back().slope;
-  if (!(slope >= lowest && slope <= highest)) refuse("slope [rad]", slope, lowest, highest);
-  const Row exact = row_of(library, slope);
-  if (exact.begin != exact.end) return {exact, exact, 0.0};
-  const Row below = row_of(library, std::prev(exact.begin)->slope);
-  const Row above = row_of(library, exact.begin->slope);
-  const double from = below.begin->slope;
-  for (const PathLibraryGap& gap : library.gaps) {
-    if (gap.slope <= from || gap.slope >= above.begin->slope) continue;
-    throw Error(ErrorKind::bad_input, "library: no dig is feasible at any density on a slope of " +
-                                          number_text(gap.slope) + " rad");
-  }
-  return {below, above, (slope - from) / (above.begin->slope - from)};
-}
-
-void refuse_gap(const PathLibrary& library, const Row& row, double from, double to) {
-  for (const PathLibraryGap& gap : library.gaps) {
-    if (gap.slope == row.begin->slope && gap.density_percent > from && gap.density_percent < to) {
-      throw Error(ErrorKind::bad_input, "library: no dig is feasible at a density of " +
-                                            number_text(gap.density_percent) + " % on a slope of " +
-                                            number_text(gap.slope) + " rad");
-    }
-  }
-}
-
-Between<Entries::const_iterator> densities_around(const PathLibrary& library, const Row& row,
-                                                  double density) {
-  const double lowest = row.begin->density_percent;
-  const double highest = std::prev(row.end)->density_percent;
-  if (!(density >= lowest && density <= highest)) refuse("density [%]", density, lowest, highest);
-  const auto above = std::lower_bound(
-      row.begin, row.end, density,
-      [](const PathLibraryEntry& entry, double value) { return entry.density_percent < value; });
+Densities densities_around(const PathLibrary& library, double slope, double density) {
+  const auto begin =
+      std::find_if(library.entries.begin(), library.entries.end(),
+                   [&](const PathLibraryEntry& entry) { return entry.slope == slope; });
+  const auto end = std::find_if(begin, library.entries.end(), [&](const PathLibraryEntry& entry) {
+    return entry.slope != slope;
+  });
+  require_inside("density [%]", density, begin->density_percent, std::prev(end)->density_percent);
+  const auto above = std::find_if(
+      begin, end, [&](const PathLibraryEntry& entry) { return entry.density_percent >= density; });
   if (above->density_percent == density) return {above, above, 0.0};
   const auto below = std::prev(above);
-  refuse_gap(library, row, below->density_percent, above->density_percent);
-  return {below, above,
-          (density - below->density_percent) / (above->density_percent - below->density_percent)};
+  const double from = below->density_percent;
+  const double to = above->density_percent;
+  for (const PathLibraryGap& gap : library.gaps) {
+    if (gap.slope != slope || gap.density_percent < from || gap.density_percent > to) continue;
+    refuse("no dig is feasible at a density of " + number_text(gap.density_percent) +
+           " % on a slope of " + number_text(slope) + " rad");
+  }
+  return {below, above, (density - from) / (to - from)};
 }
 
-PlannedDig look_up(const PathLibrary& library, const Row& row, double density) {
-  const auto around = densities_around(library, row, density);
-  return dig_between(around.below->dig, around.above->dig, around.share, around.below->jump);
+/// The entries around a density on the slopes around a slope.
+struct Around {
+  Densities low;
+  Densities high;
+  double share = 0.0;  ///< of the way from the lower slope to the higher
+};
+
+Around around(const PathLibrary& library, double density, double slope) {
+  const Entries& entries = library.entries;
+  if (entries.empty()) refuse("it holds no entry");
+  require_inside("slope [rad]", slope, entries.front().slope, entries.back().slope);
+  const auto above = std::find_if(entries.begin(), entries.end(),
+                                  [&](const PathLibraryEntry& e) { return e.slope >= slope; });
+  const double to = above->slope;
+  const double from = to == slope ? to : std::prev(above)->slope;
+  for (const PathLibraryGap& gap : library.gaps) {
+    if (gap.slope <= from || gap.slope >= to) continue;
+    refuse("no dig is feasible at any density on a slope of " + number_text(gap.slope) + " rad");
+  }
+  return {densities_around(library, from, density), densities_around(library, to, density),
+          from == to ? 0.0 : (slope - from) / (to - from)};
 }
 
-/// @param row  the lower one of the slopes
-bool jumps_between_slopes(const PathLibrary& library, const Row& row, double density) {
-  const auto around = densities_around(library, row, density);
-  return (around.share < 0.5 ? around.below : around.above)->jump_slope;
-}
-
-/// Of the error midway, at a share of the way from one entry to the next.
-double size_at(double share) { return 4.0 * share * (1.0 - share); }
-
-MidwayError scaled(const MidwayError& error, double size) {
-  return {size * error.loss, size * error.expectation};
+/// The error at a share of the way from one entry to the next.
+MidwayError scaled(const MidwayError& midway, double share) {
+  const double size = 4.0 * share * (1.0 - share);
+  return {size * midway.loss, size * midway.expectation};
 }
 
 MidwayError larger(const MidwayError& a, const MidwayError& b) {
@@ -122,31 +95,13 @@ MidwayError larger(const MidwayError& a, const MidwayError& b) {
           std::abs(a.expectation) > std::abs(b.expectation) ? a.expectation : b.expectation};
 }
 
-MidwayError error_between_densities(const PathLibrary& library, const Row& row, double density) {
-  const auto around = densities_around(library, row, density);
-  return scaled(around.below->midway, size_at(around.share));
+PlannedDig dig_at(const Densities& place) {
+  return dig_between(place.below->dig, place.above->dig, place.share,
+                     place.below->to_next_density.nearest);
 }
 
-/// @param row  the lower one of the slopes
-MidwayError error_between_slopes(const PathLibrary& library, const Row& row, double density) {
-  const auto around = densities_around(library, row, density);
-  return larger(around.below->midway_slope, around.above->midway_slope);
-}
-
-/// Rises with slope and density, in this order.
-template <typename Item>
-bool before(const Item& a, const Item& b) {
-  return a.slope != b.slope ? a.slope < b.slope : a.density_percent < b.density_percent;
-}
-
-template <typename Item>
-void require_order(const JsonObject& file, const std::string& key, const std::vector<Item>& items) {
-  for (std::size_t i = 1; i < items.size(); ++i) {
-    if (!before(items[i - 1], items[i])) {
-      file.fail(key, "slopes, and densities of a slope, must rise, entry " + std::to_string(i + 1) +
-                         " does not");
-    }
-  }
+MidwayError error_at(const Densities& place) {
+  return scaled(place.below->to_next_density.midway, place.share);
 }
 
 std::string difference(const std::string& what, const std::string& own, const std::string& asked) {
@@ -155,82 +110,41 @@ std::string difference(const std::string& what, const std::string& own, const st
 
 }  // namespace
 
+bool far_apart(const PlannedDig& a, const PlannedDig& b) {
+  const auto& table = dig_parameter_table();
+  return std::any_of(table.begin(), table.end(), [&](const DigParameterInfo& info) {
+    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
+    return step > near * (info.upper - info.lower);
+  });
+}
+
+PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool nearest) {
+  if (share == 0.0) return a;
+  if (nearest) return share < 0.5 ? a : b;
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  PlannedDig dig = a;
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    dig.parameters.*info.field = mix(a.parameters.*info.field, b.parameters.*info.field);
+  }
+  for (double PlannedDig::*figure :
+       {&PlannedDig::start_x, &PlannedDig::payload_mass, &PlannedDig::payload_volume,
+        &PlannedDig::energy, &PlannedDig::duration}) {
+    dig.*figure = mix(a.*figure, b.*figure);
+  }
+  return dig;
+}
+
 int PathLibrary::evaluations() const {
   int sum = 0;
   for (const PathLibraryEntry& entry : entries) sum += entry.evaluations;
   return sum;
 }
 
-PathLibrary load_path_library(const std::string& path) {
-  const std::string content = read_file(path);
-  for (int old = 1; old < version; ++old) {
-    if (content.find("\"version\": " + std::to_string(old) + ",") < 100) {
-      throw Error(ErrorKind::bad_file, path + ": version: is " + std::to_string(old) +
-                                           ", this program reads version " +
-                                           std::to_string(version) +
-                                           "; build the library again: build-path-library --out "
-                                           "FILE");
-    }
-  }
-  JsonObject file = JsonObject::open_sealed(path, content, format, version);
-  PathLibrary library;
-  library.machine = file.text("machine");
-  library.soil = file.text("soil");
-  library.machine_fingerprint = file.text("machine_fingerprint");
-  library.soil_fingerprint = file.text("soil_fingerprint");
-  library.simulator = file.text("simulator");
-  library.cell_size = file.number("cell_m", 0.0, 1.0);
-  library.seed = static_cast<std::uint64_t>(file.number("seed", 0.0, most_exact));
-  library.search = file.text("search");
-  for (JsonObject& object : file.objects("entries")) {
-    library.entries.push_back(read_library_entry(std::move(object)));
-  }
-  require_order(file, "entries", library.entries);
-  if (library.entries.empty()) file.fail("entries", "holds no entry");
-  for (JsonObject& object : file.objects("gaps")) {
-    library.gaps.push_back(
-        {object.number("density_percent", 0.0, 100.0), object.number("slope_rad", -1.0, 1.0)});
-    object.done();
-  }
-  require_order(file, "gaps", library.gaps);
-  file.ignore("evaluations");
-  file.ignore("note");
-  file.done();
-  return library;
-}
-
-std::string file_name(const PathLibrary& library) {
-  return file_name_part(library.machine) + "-" + file_name_part(library.soil) + ".json";
-}
-
-std::string to_json(const PathLibrary& library) {
-  nlohmann::ordered_json file = {{"format", format},
-                                 {"version", version},
-                                 {"machine", library.machine},
-                                 {"soil", library.soil},
-                                 {"machine_fingerprint", library.machine_fingerprint},
-                                 {"soil_fingerprint", library.soil_fingerprint},
-                                 {"simulator", library.simulator},
-                                 {"cell_m", library.cell_size},
-                                 {"seed", library.seed},
-                                 {"search", library.search},
-                                 {"evaluations", library.evaluations()}};
-  file["entries"] = nlohmann::ordered_json::array();
-  for (const PathLibraryEntry& entry : library.entries) {
-    file["entries"].push_back(library_entry_json(entry));
-  }
-  file["gaps"] = nlohmann::ordered_json::array();
-  for (const PathLibraryGap& gap : library.gaps) {
-    file["gaps"].push_back({{"density_percent", gap.density_percent}, {"slope_rad", gap.slope}});
-  }
-  return sealed_text(file);
-}
-
 void require_fit(const PathLibrary& library, const Machine& machine, const SoilKind& soil,
-                 const std::string& name) {
+                 const std::string& name, const std::string& simulator) {
   std::string text = difference("its machine", library.machine, machine.name) +
                      difference("its soil", library.soil, soil.name) +
-                     difference("its simulator", library.simulator, HeightMapSimulator::name());
+                     difference("its simulator", library.simulator, simulator);
   if (library.machine == machine.name && library.machine_fingerprint != fingerprint(machine)) {
     text += "; the numbers of machine " + machine.name + " have changed since it was computed";
   }
@@ -244,21 +158,17 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
 }
 
 PlannedDig look_up(const PathLibrary& library, double density_percent, double slope) {
-  const Between<Row> rows = slopes_around(library, slope);
-  const PlannedDig below = look_up(library, rows.below, density_percent);
-  if (rows.share == 0.0) return below;
-  return dig_between(below, look_up(library, rows.above, density_percent), rows.share,
-                     jumps_between_slopes(library, rows.below, density_percent));
+  const Around place = around(library, density_percent, slope);
+  return dig_between(dig_at(place.low), dig_at(place.high), place.share,
+                     place.low.nearest()->to_next_slope.nearest);
 }
 
 MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope) {
-  const Between<Row> rows = slopes_around(library, slope);
-  const MidwayError of_density =
-      larger(error_between_densities(library, rows.below, density_percent),
-             error_between_densities(library, rows.above, density_percent));
-  if (rows.share == 0.0) return of_density;
+  const Around place = around(library, density_percent, slope);
+  const MidwayError of_density = larger(error_at(place.low), error_at(place.high));
   const MidwayError of_slope =
-      scaled(error_between_slopes(library, rows.below, density_percent), size_at(rows.share));
+      scaled(larger(place.low.below->to_next_slope.midway, place.low.above->to_next_slope.midway),
+             place.share);
   return {std::min(1.0, of_density.loss + of_slope.loss),
           of_density.expectation + of_slope.expectation};
 }

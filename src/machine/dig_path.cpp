@@ -473,6 +473,17 @@ class DrivableStarts {
 
 }  // namespace
 
+DigPathOptions rules_for_planned_path() {
+  constexpr double angle = 0.01;   // [rad]
+  constexpr double length = 0.02;  // [m]
+  DigPathOptions rules;
+  rules.min_heel_clearance -= angle;
+  rules.track_margin -= length;
+  rules.max_depth += length;
+  rules.lift_clearance -= length;
+  return rules;
+}
+
 const char* name(DigPhase phase) {
   switch (phase) {
     case DigPhase::approach:

@@ -9,6 +9,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/check.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -24,16 +25,11 @@ constexpr double room_share = 0.4;      // of a phase that the rounding of one c
 constexpr double sharpest_turn = -0.5;  // cosine of the turn beyond which the machine stops
 
 void check(const DigPath& path, const TrajectoryOptions& options) {
-  if (!(options.speed_fraction > 0.0 && options.speed_fraction <= 1.0)) {
-    throw Error(ErrorKind::bad_input, "TrajectoryOptions::speed_fraction is " +
-                                          number_text(options.speed_fraction) +
-                                          ", must be above 0 and at most 1");
-  }
-  if (!(options.corner_tolerance >= 0.0 && options.corner_tolerance <= largest_tolerance)) {
-    throw Error(ErrorKind::bad_input,
-                "TrajectoryOptions::corner_tolerance is " + number_text(options.corner_tolerance) +
-                    ", must be in 0 .. " + number_text(largest_tolerance) + " m");
-  }
+  require(options.speed_fraction > 0.0 && options.speed_fraction <= 1.0,
+          "TrajectoryOptions::speed_fraction", options.speed_fraction, "above 0 and at most 1");
+  require(options.corner_tolerance >= 0.0 && options.corner_tolerance <= largest_tolerance,
+          "TrajectoryOptions::corner_tolerance", options.corner_tolerance,
+          "in 0 .. " + number_text(largest_tolerance) + " m");
   if (path.poses.size() < 2) {
     throw Error(ErrorKind::bad_input, "the dig path has " + std::to_string(path.poses.size()) +
                                           " poses, must have at least 2");

@@ -7,11 +7,10 @@
 #include <limits>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/scene.hpp>
 
 namespace excavplan {
 namespace {
@@ -26,26 +25,20 @@ Machine tireless(Machine machine) {
 
 DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
                                    const CalibrationOptions& options) {
-  const Eigen::Vector2d dump_at = default_dump_point();
+  SceneOptions dig;
+  dig.path = options.path;
+  dig.simulator = options.simulator;
   const Terrain ground =
-      undisturbed(flat_ground(scene_extent(machine, dump_at), options.cell_size));
-  const auto laid_out = make_dig_path_anywhere(machine, options.path, boom_plane_profile(ground));
-  if (const auto* infeasible = std::get_if<Infeasible>(&laid_out)) {
-    throw Error(ErrorKind::bad_input, "calibration: " + infeasible->message);
-  }
-  DigOptions dig;
-  dig.dump_at = dump_at;
-  const HeightMapSimulator simulator(tireless(machine), soil, density);
-  const DigResult result = simulator.dig(ground, std::get<DigPath>(laid_out), dig);
+      undisturbed(flat_ground(scene_extent(machine, dig.dump_at), options.cell_size));
+  const DigScene scene = run_scene(tireless(machine), soil, density, ground, dig);
 
   DensityCalibration::Sample sample;
   sample.density_percent = density;
-  sample.bulking_factor_measured =
-      height_map_volumes(ground, result.after(ground), dump_at).bulking_factor;
-  sample.fallback_fraction = result.soil.fallback_fraction;
+  sample.bulking_factor_measured = scene.volumes.bulking_factor;
+  sample.fallback_fraction = scene.dig.soil.fallback_fraction;
   sample.bulking_factor =
       free_of_fallback(sample.bulking_factor_measured, sample.fallback_fraction);
-  sample.bulking_factor_true = bulking_of_density(soil, density);
+  sample.bulking_factor_true = scene.bulking_factor_true;
   return sample;
 }
 
@@ -72,12 +65,28 @@ DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soi
   const auto freed = pairs(calibration.samples, &Sample::bulking_factor);
   const auto measured = pairs(calibration.samples, &Sample::bulking_factor_measured);
   calibration.name = machine.name + "-" + soil.name;
-  calibration.source = "digs of the built-in simulator, " + machine.name + " in " + soil.name;
+  calibration.source =
+      "digs of the simulator " + options.simulator.name + ", " + machine.name + " in " + soil.name;
   calibration.soil = soil.name;
   calibration.use = std::string("closed_form") + as_measured;
   calibration.forms = fit_density_forms(freed);
   for (DensityFit& fit : fit_density_forms(measured, as_measured)) {
     calibration.forms.push_back(std::move(fit));
+  }
+  return calibration;
+}
+
+DensityCalibration calibrate_density(const std::vector<BulkingSample>& samples) {
+  DensityCalibration calibration;
+  calibration.name = "samples";
+  calibration.source = std::to_string(samples.size()) + " measured samples";
+  calibration.use = "closed_form";
+  calibration.forms = fit_density_forms(samples);
+  for (const BulkingSample& measured : samples) {
+    DensityCalibration::Sample sample;
+    sample.density_percent = measured.density_percent;
+    sample.bulking_factor = measured.bulking_factor;
+    calibration.samples.push_back(sample);
   }
   return calibration;
 }

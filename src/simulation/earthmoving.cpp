@@ -7,9 +7,9 @@
 #include <limits>
 #include <string>
 
-#include <excavplan/error.hpp>
-
 #include "base/angles.hpp"
+#include "base/check.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
@@ -151,12 +151,10 @@ constexpr double highest_slope = 40.0 * degree;
 
 CriticalWedges::CriticalWedges(double friction, double tool_friction)
     : friction_(friction), tool_friction_(tool_friction) {
-  if (!(tool_friction >= 0.0 && tool_friction <= friction && friction < 60.0 * degree)) {
-    throw Error(ErrorKind::bad_input,
-                "earthmoving: friction angles must be 0 <= tool <= soil < 60 deg, got " +
-                    std::to_string(tool_friction / degree) + " and " +
-                    std::to_string(friction / degree));
-  }
+  require(friction < 60.0 * degree, "earthmoving: friction angle", friction,
+          "below 60 deg, in rad");
+  require(tool_friction >= 0.0 && tool_friction <= friction, "earthmoving: tool friction angle",
+          tool_friction, "in 0 .. " + number_text(friction) + " rad, that of the soil");
   // Nearer than 20 deg to the locked wedge the equation is not used: a dead wedge forms there.
   highest_rake_ = std::min(lowest_rake + (rakes - 1) * rake_step,
                            pi - friction - tool_friction - 20.0 * degree);
@@ -201,12 +199,10 @@ FrictionWedges::FrictionWedges(double lowest, double highest, double tool_ratio)
   const double widest = 2.5 * degree;
   const auto steps = std::max(1, static_cast<int>(std::ceil((highest - lowest) / widest)));
   step_ = (highest - lowest) / steps;
-  if (!(lowest <= highest && tool_ratio >= 0.0 && tool_ratio <= 1.0)) {
-    throw Error(ErrorKind::bad_input, "earthmoving: friction " + std::to_string(lowest / degree) +
-                                          " .. " + std::to_string(highest / degree) +
-                                          " deg must be in order, the tool's share " +
-                                          std::to_string(tool_ratio) + " in 0 .. 1");
-  }
+  require(lowest <= highest, "earthmoving: lowest friction angle", lowest,
+          "at most the highest, " + number_text(highest) + " rad");
+  require(tool_ratio >= 0.0 && tool_ratio <= 1.0, "earthmoving: tool friction ratio", tool_ratio,
+          "in 0 .. 1");
   for (int i = 0; i <= (step_ > 0.0 ? steps : 0); ++i) {
     tables_.emplace_back(lowest + i * step_, tool_ratio * (lowest + i * step_));
   }

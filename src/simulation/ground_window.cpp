@@ -7,7 +7,8 @@
 #include <limits>
 #include <string>
 
-#include <excavplan/error.hpp>
+#include "base/check.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
@@ -72,11 +73,11 @@ void GroundWindow::check(const CellBlock& cells) const {
       for (Index row = cells.row_begin; row < cells.row_end; ++row) {
         const double value = layer(row, col);
         if (std::isnan(whole_.bank.z(row, col)) || (value >= low && value <= high)) continue;
-        throw Error(ErrorKind::bad_input, std::string("dig: ") + what + " in the cell at x = " +
-                                              std::to_string(whole_.bank.x(col)) +
-                                              " m, y = " + std::to_string(whole_.bank.y(row)) +
-                                              " m is " + std::to_string(value) + ", must be in " +
-                                              std::to_string(low) + " .. " + std::to_string(high));
+        require(false,
+                std::string("dig: ") + what +
+                    " in the cell at x = " + number_text(whole_.bank.x(col)) +
+                    " m, y = " + number_text(whole_.bank.y(row)) + " m",
+                value, "in " + number_text(low) + " .. " + number_text(high));
       }
     }
   };

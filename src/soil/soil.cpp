@@ -7,13 +7,13 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/angles.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double quarter_pi = 0.7853981633974483;
 constexpr double steepest_friction = 1.05;       // 60 deg; no soil has more [rad]
 constexpr double least_overburden_depth = 0.01;  // the stress law ends here: q -> 0 at the surface
 constexpr double pascal_per_kilopascal = 1000.0;
@@ -170,7 +170,7 @@ double bulking_of_density(const SoilKind& soil, double density_percent) {
 
 double critical_height(const SoilState& state) {
   return 4.0 * state.cohesion / state.unit_weight *
-         std::tan(quarter_pi + 0.5 * state.friction_angle);
+         std::tan(0.25 * pi + 0.5 * state.friction_angle);
 }
 
 }  // namespace excavplan

@@ -303,13 +303,13 @@ TEST(Blocks, RefusesWhatBreaksARule) {
   };
   BlockOptions options;
   options.angle_of_repose = 1.5;
-  EXPECT_EQ(error(options), "blocks: angle of repose must be in 0 .. 1.2 rad, got 1.5");
+  EXPECT_EQ(error(options), "blocks: angle of repose is 1.5, must be in 0 .. 1.2 rad");
   options = {};
   options.packed_voids = 1.0;
-  EXPECT_EQ(error(options), "blocks: packed voids must be in 0 .. 1, got 1");
+  EXPECT_EQ(error(options), "blocks: packed voids is 1, must be in 0 .. 1");
   options = {};
   options.noise_sd = -0.01;
-  EXPECT_EQ(error(options), "blocks: noise must be >= 0 m, got -0.01");
+  EXPECT_EQ(error(options), "blocks: noise is -0.01, must be >= 0 m");
   survey.after[0].origin.x() += 0.01;
   EXPECT_NE(error({}).find("must be on the grid of its area"), std::string::npos);
   survey.after.clear();

@@ -241,7 +241,8 @@ TEST_F(BadInput, DumpPointsOnOrTooNearTheDigAreRefused) {
   const auto dig = [](const std::string& place) {
     return Words{"--density", "40", "--dump-at", place};
   };
-  refused(2, "--dump-at: 5,0 is 0.00 m from the strip of this dig (x = 3.43 .. 6.05 m, y = -0.350",
+  refused(2,
+          "the dump point 5,0 is 0.00 m from the strip of this dig (x = 3.43 .. 6.05 m, y = -0.350",
           "simulate-dig", dig("5,0") + Words{"--plot", plot});
   const Machine machine = load_machine(shipped("machines/zx120.json"));
   const SoilKind loam = load_soil(shipped("soils/loam.json"));

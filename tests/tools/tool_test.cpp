@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include <excavplan/data_files.hpp>
+
 #include "support/errors.hpp"
 
 namespace excavplan::tools {

@@ -2,7 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/ranks.hpp"
 
-#ifdef EXCAVPLAN_MPI
+#ifndef EXCAVPLAN_MPI
+
+int excavplan::tools::run_ranked(int argc, const char* const* argv, const RankedProgram& program) {
+  return program(argc, argv, nullptr);
+}
+
+#else
 
 #include <mpi.h>
 
@@ -10,17 +16,59 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
 #include <mutex>
 #include <sstream>
 #include <thread>
 
+#include <excavplan/error.hpp>
+
+#include "base/parallel.hpp"
+
 namespace excavplan::tools {
 namespace {
 
-/// Takes numbers from counters in the memory of rank 0, which need not do anything for it.
+constexpr std::chrono::microseconds between_polls(200);
+// The launcher drops what it has not passed on when it takes the ranks down.
+constexpr std::chrono::milliseconds to_be_heard(300);
+
+/// What a stream is given while this lives.
+class Captured {
+ public:
+  explicit Captured(std::ostream& stream) : stream_(stream), before_(stream.rdbuf(text_.rdbuf())) {}
+  ~Captured() { stream_.rdbuf(before_); }
+  Captured(const Captured&) = delete;
+  Captured& operator=(const Captured&) = delete;
+
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+  std::ostream& stream_;
+  std::streambuf* before_;
+};
+
+/// The answer of a worker as text: a sign, and the result or what it threw.
+std::string answer_of(const LibraryWorker& worker, const std::string& task) {
+  try {
+    return "+" + worker(task);
+  } catch (const Error& e) {
+    return (e.kind() == ErrorKind::bad_file ? "f" : "i") + std::string(e.what());
+  } catch (const std::exception& e) {
+    return "!" + std::string(e.what());
+  }
+}
+
+std::string result_in(const std::string& answer, int rank) {
+  if (answer[0] == '+') return answer.substr(1);
+  const std::string text = "rank " + std::to_string(rank) + ": " + answer.substr(1);
+  if (answer[0] == '!') throw std::runtime_error(text);
+  throw Error(answer[0] == 'f' ? ErrorKind::bad_file : ErrorKind::bad_input, text);
+}
+
 class MpiRanks : public Ranks {
  public:
-  MpiRanks() {
+  explicit MpiRanks(std::string job) : job_(std::move(job)) {
     int provided = MPI_THREAD_SINGLE;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
     if (provided < MPI_THREAD_SERIALIZED) {
@@ -29,87 +77,118 @@ class MpiRanks : public Ranks {
     }
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
-    const MPI_Aint bytes = rank_ == 0 ? 2 * sizeof(long long) : 0;
-    MPI_Win_allocate(bytes, sizeof(long long), MPI_INFO_NULL, MPI_COMM_WORLD, &counters_, &window_);
-    MPI_Win_lock_all(0, window_);
-    if (rank_ == 0) replaced(failures, 0, MPI_REPLACE);
-    begin_anew();
   }
 
   int rank() const override { return rank_; }
 
-  std::size_t next() override {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return static_cast<std::size_t>(replaced(taken, 1, MPI_SUM));
+  void agree(unsigned threads) override {
+    lanes_ = static_cast<int>(threads);
+    compare(0, job_);
   }
 
-  std::vector<std::string> exchange(const std::string& mine) override {
-    const auto ranks = static_cast<std::size_t>(size_);
-    const int length = static_cast<int>(mine.size());
-    std::vector<int> lengths(ranks);
-    MPI_Allgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, MPI_COMM_WORLD);
-    std::vector<int> starts(ranks, 0);
-    for (std::size_t i = 1; i < ranks; ++i) starts[i] = starts[i - 1] + lengths[i - 1];
-    std::string all(static_cast<std::size_t>(starts.back() + lengths.back()), ' ');
-    MPI_Allgatherv(mine.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(),
-                   MPI_CHAR, MPI_COMM_WORLD);
-    begin_anew();
-    std::vector<std::string> texts;
-    for (std::size_t i = 0; i < ranks; ++i) {
-      texts.push_back(
-          all.substr(static_cast<std::size_t>(starts[i]), static_cast<std::size_t>(lengths[i])));
+  std::vector<LibraryWorker> workers() override {
+    std::vector<LibraryWorker> all;
+    for (int rank = 1; rank < size_; ++rank) {
+      for (int lane = 0; lane < lanes_; ++lane) {
+        all.push_back([this, rank, lane](const std::string& task) {
+          send(rank, lane, task);
+          return result_in(received(rank, lane), rank);
+        });
+      }
     }
-    return texts;
+    return all;
   }
 
-  void end(int code, const std::string& complaint) override {
-    constexpr int stopped_early = 75;
-    if (code != 0 && code != stopped_early) {
-      complain(complaint);
-      // The launcher drops what it has not passed on when it takes the job down.
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
-      MPI_Abort(MPI_COMM_WORLD, code);
+  void serve(const LibraryWorker& worker) override {
+    const auto lanes = static_cast<unsigned>(lanes_);
+    parallel_for(lanes, lanes, [&](std::size_t i) {
+      const int lane = static_cast<int>(i);
+      for (std::string task = received(0, lane); !task.empty(); task = received(0, lane)) {
+        send(0, lane, answer_of(worker, task));
+      }
+    });
+  }
+
+  /// Ends this rank's part.
+  void end(int code, const std::string& complaint) {
+    if (!agreed_) compare(code, complaint);
+    if (rank_ != 0 && code != 0) fail(code, complaint);
+    for (int rank = 1; rank_ == 0 && rank < size_; ++rank) {
+      for (int lane = 0; lane < lanes_; ++lane) send(rank, lane, {});
     }
-    MPI_Win_unlock_all(window_);
-    MPI_Win_free(&window_);
     MPI_Finalize();
   }
 
  private:
-  enum Counter { taken, failures };
-
-  void begin_anew() {
-    MPI_Barrier(MPI_COMM_WORLD);
-    if (rank_ == 0) replaced(taken, 0, MPI_REPLACE);
-    MPI_Barrier(MPI_COMM_WORLD);
+  /// Returns if no rank has failed and all have the same text.
+  void compare(int code, const std::string& text) {
+    agreed_ = true;
+    std::vector<int> codes(static_cast<std::size_t>(size_));
+    MPI_Allgather(&code, 1, MPI_INT, codes.data(), 1, MPI_INT, MPI_COMM_WORLD);
+    const auto failed = std::find_if(codes.begin(), codes.end(), [](int c) { return c != 0; });
+    if (failed != codes.end()) {
+      if (failed - codes.begin() == rank_) fail(code, text);
+      wait_for_the_end();
+    }
+    std::string first = text;
+    int length = static_cast<int>(first.size());
+    MPI_Bcast(&length, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    first.resize(static_cast<std::size_t>(length));
+    MPI_Bcast(first.data(), length, MPI_CHAR, 0, MPI_COMM_WORLD);
+    int other = first == text ? size_ : rank_;
+    int lowest = size_;
+    MPI_Allreduce(&other, &lowest, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (lowest == size_) return;
+    if (lowest == rank_) {
+      fail(2,
+           "build-path-library: the ranks of an MPI job share out one build: give all of them "
+           "the same options\n");
+    }
+    wait_for_the_end();
   }
 
-  /// What a counter held before.
-  long long replaced(Counter counter, long long operand, MPI_Op operation) {
-    long long before = 0;
-    MPI_Fetch_and_op(&operand, &before, MPI_LONG_LONG, 0, counter, operation, window_);
-    MPI_Win_flush(0, window_);
-    return before;
+  /// Says why, as rank 0 has done itself, and takes down all ranks.
+  [[noreturn]] void fail(int code, const std::string& complaint) {
+    std::istringstream lines(rank_ == 0 ? "" : complaint);
+    for (std::string line; std::getline(lines, line);) {
+      std::fprintf(stderr, "rank %d: %s\n", rank_, line.c_str());
+    }
+    std::this_thread::sleep_for(to_be_heard);
+    MPI_Abort(MPI_COMM_WORLD, code);
+    std::abort();
   }
 
-  /// Where all fail alike, the first rank has said why by itself; where only others do, the first
-  /// of them to come here speaks. Then it takes down those who wait.
-  void complain(const std::string& text) {
-    if (rank_ != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
-    if (replaced(failures, 1, MPI_SUM) > 0) {
-      std::this_thread::sleep_for(std::chrono::seconds(10));
-    } else if (rank_ != 0) {
-      std::istringstream lines(text);
-      for (std::string line; std::getline(lines, line);) {
-        std::fprintf(stderr, "rank %d: %s\n", rank_, line.c_str());
-      }
+  [[noreturn]] static void wait_for_the_end() {
+    for (;;) std::this_thread::sleep_for(to_be_heard);
+  }
+
+  // Every thread of this process comes here: one at a time, and not for long.
+
+  void send(int rank, int lane, const std::string& text) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, rank, lane, MPI_COMM_WORLD);
+  }
+
+  std::string received(int rank, int lane) {
+    for (;; std::this_thread::sleep_for(between_polls)) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      int there = 0;
+      MPI_Status status;
+      MPI_Iprobe(rank, lane, MPI_COMM_WORLD, &there, &status);
+      if (there == 0) continue;
+      int length = 0;
+      MPI_Get_count(&status, MPI_CHAR, &length);
+      std::string text(static_cast<std::size_t>(length), ' ');
+      MPI_Recv(text.data(), length, MPI_CHAR, rank, lane, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+      return text;
     }
   }
 
+  const std::string job_;
   int rank_ = 0;
   int size_ = 1;
-  long long* counters_ = nullptr;
-  MPI_Win window_ = MPI_WIN_NULL;
+  int lanes_ = 0;  // threads of each of the others that work for rank 0
+  bool agreed_ = false;
   std::mutex mutex_;
 };
 
@@ -123,15 +202,29 @@ bool launched() {
 
 }  // namespace
 
-std::unique_ptr<Ranks> Ranks::started() {
-  if (!launched()) return nullptr;
-  return std::make_unique<MpiRanks>();
+int run_ranked(int argc, const char* const* argv, const RankedProgram& program) {
+  if (!launched()) return program(argc, argv, nullptr);
+  std::vector<const char*> words(argv, argv + argc);
+  std::string job;
+  for (int i = 1; i < argc; ++i) job += std::string(argv[i]) + '\n';
+  MpiRanks ranks(job);
+  if (ranks.rank() == 0) {
+    const int code = program(argc, argv, &ranks);
+    ranks.end(code, {});
+    return code;
+  }
+  words.push_back("--quiet");  // but for errors
+  std::string complaint;
+  int code = 0;
+  {
+    const Captured answer(std::cout), errors(std::cerr);
+    code = program(static_cast<int>(words.size()), words.data(), &ranks);
+    complaint = errors.text();
+  }
+  ranks.end(code, complaint);
+  return code;
 }
 
 }  // namespace excavplan::tools
-
-#else
-
-std::unique_ptr<excavplan::tools::Ranks> excavplan::tools::Ranks::started() { return nullptr; }
 
 #endif

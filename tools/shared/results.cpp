@@ -2,14 +2,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/results.hpp"
 
+#include <utility>
+
 #include <excavplan/error.hpp>
 
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"
+#include "shared/joint_loads.hpp"
 #include "shared/plot.hpp"
 #include "shared/quantity.hpp"
 
 namespace excavplan::tools {
+namespace {
+
+nlohmann::ordered_json energy_json(const EnergyLedger& energy) {
+  const auto kj = [](double joule) { return joule / 1000.0; };
+  return {
+      {"by_phase_kj",
+       {{"penetrate", kj(energy.by_phase[0])},
+        {"drag", kj(energy.by_phase[1])},
+        {"scoop", kj(energy.by_phase[2])}}},
+      {"by_joint_kj",
+       {{"boom", kj(energy.by_joint[0])},
+        {"arm", kj(energy.by_joint[1])},
+        {"bucket", kj(energy.by_joint[2])}}},
+      {"by_cause_kj",
+       {{"soil", kj(energy.soil)}, {"payload", kj(energy.payload)}, {"links", kj(energy.links)}}},
+      {"lift_kj", kj(energy.lift)}};
+}
+
+nlohmann::ordered_json soil_json(const SoilLedger& soil) {
+  return {{"bank_cut_m3", soil.bank_cut},
+          {"loose_cut_m3", soil.loose_cut},
+          {"payload_m3", soil.payload},
+          {"spilled_m3", soil.spilled},
+          {"fallen_back_m3", soil.fallen_back}};
+}
+
+nlohmann::ordered_json stall_json(const Stall& stall) {
+  return {{"phase", name(stall.phase)},
+          {"joint", name(stall.joint)},
+          {"travelled_m", stall.travelled},
+          {"torque_nm", stall.torque}};
+}
+
+}  // namespace
+
 nlohmann::ordered_json volumes_json(const VolumeChange& change) {
   nlohmann::ordered_json json;
   const auto add = [&](const char* name, const Measured& volume) {
@@ -22,6 +60,16 @@ nlohmann::ordered_json volumes_json(const VolumeChange& change) {
   add("before", change.before);
   add("after", change.after);
   return json;
+}
+
+nlohmann::ordered_json volumes_json(const HeightMapVolumes& volumes) {
+  VolumeChange exact;
+  exact.excavated.value = volumes.excavated;
+  exact.spilled.value = volumes.spilled;
+  exact.dumped.value = volumes.dumped;
+  exact.before.value = volumes.excavated;
+  exact.after.value = volumes.spilled + volumes.dumped;
+  return volumes_json(exact);
 }
 
 nlohmann::ordered_json dig_json(const PlannedDig& dig) {
@@ -49,6 +97,54 @@ std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& sprea
       "energy       " + readable(dig.energy / 1000.0, spread.energy / 1000.0) + " kJ",
       "efficiency   " + readable(1000.0 * dig.efficiency(), 1000.0 * spread.efficiency) + " kg/kJ",
       "duration     " + readable(dig.duration) + " s"};
+}
+
+nlohmann::ordered_json scene_json(const Machine& machine, const DigScene& scene) {
+  const DigResult& dig = scene.dig;
+  return {{"density_percent", scene.density_percent},
+          {"soil", scene.soil},
+          {"path", path_json(scene.path.parameters, scene.path.start_x)},
+          {"payload_mass_kg", dig.payload_mass},
+          {"payload_volume_m3", dig.payload_volume},
+          {"energy_kj", dig.energy.total / 1000.0},
+          {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()},
+          {"duration_s", scene.duration},
+          {"peak_force_kn", dig.peak_force / 1000.0},
+          {"stalled", dig.stall.has_value()},
+          {"stall", dig.stall ? stall_json(*dig.stall) : nlohmann::ordered_json()},
+          {"volume", volumes_json(scene.volumes)},
+          {"bulking_factor", scene.volumes.bulking_factor},
+          {"bulking_factor_true", scene.bulking_factor_true},
+          {"fallback_fraction", dig.soil.fallback_fraction},
+          {"solids_before_kg", dig.soil.solids_before},
+          {"solids_after_kg", dig.soil.solids_after},
+          {"final_angle_of_repose_rad", heap_slope(scene.before, scene.after, scene.dump_at)},
+          {"energy", energy_json(dig.energy)},
+          {"joints", to_json(machine, joint_loads(machine, dig.history))},
+          {"soil_ledger", soil_json(dig.soil)},
+          {"dump_at_m", {scene.dump_at.x(), scene.dump_at.y()}}};
+}
+
+std::vector<std::string> scene_lines(const Machine& machine, const DigScene& scene) {
+  const DigResult& dig = scene.dig;
+  const HeightMapVolumes& volumes = scene.volumes;
+  const auto kilo = [](double value) { return readable(value / 1000.0); };
+  std::vector<std::string> lines =
+      dig_lines({scene.path.parameters, scene.path.start_x, dig.payload_mass, dig.payload_volume,
+                 dig.energy.total, scene.duration});
+  const std::string shares = "  of which   soil " + kilo(dig.energy.soil) + ", payload " +
+                             kilo(dig.energy.payload) + ", links " + kilo(dig.energy.links) + " kJ";
+  lines.insert(lines.begin() + 3, shares);  // below the energy
+  lines.push_back("peak force   " + kilo(dig.peak_force) + " kN");
+  for (std::string& line : load_lines(machine, joint_loads(machine, dig.history))) {
+    lines.push_back(std::move(line));
+  }
+  lines.push_back("volumes      hole " + readable(volumes.excavated) + ", spill " +
+                  readable(volumes.spilled) + ", heap " + readable(volumes.dumped) + " m3");
+  lines.push_back("bulking      " + readable(volumes.bulking_factor, 4) +
+                  " from the height maps, " + readable(scene.bulking_factor_true, 4) +
+                  " by dry mass, fallback " + readable(100.0 * dig.soil.fallback_fraction) + " %");
+  return lines;
 }
 
 std::vector<double> parse_densities(const std::string& what, const std::string& text) {

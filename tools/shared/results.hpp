@@ -10,6 +10,7 @@
 
 #include <excavplan/ground/volume_change.hpp>
 #include <excavplan/planning/planner.hpp>
+#include <excavplan/simulation/scene.hpp>
 
 /// @file
 /// Results as the JSON keys that other programs rely on, and as lines for people.
@@ -18,6 +19,8 @@ namespace excavplan::tools {
 
 /// The five volumes, each with its standard deviation.
 nlohmann::ordered_json volumes_json(const VolumeChange& change);
+/// The same of height maps without error.
+nlohmann::ordered_json volumes_json(const HeightMapVolumes& volumes);
 
 /// "path" with start_x_m, payload, energy, efficiency, duration.
 nlohmann::ordered_json dig_json(const PlannedDig& dig);
@@ -28,6 +31,11 @@ std::string path_text(const PlannedDig& dig);
 std::string nearest_text(const std::optional<NearestDig>& nearest);
 /// What it lifts and costs.
 std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& spread = {});
+
+/// A simulated dig: what it lifts and costs, what it asks of the joints, where the soil goes.
+/// @param scene  with the history of its dig
+nlohmann::ordered_json scene_json(const Machine& machine, const DigScene& scene);
+std::vector<std::string> scene_lines(const Machine& machine, const DigScene& scene);
 
 /// Densities "0:5:100", "40" or "10,40,80" [%]. @throws Error (bad_input)
 std::vector<double> parse_densities(const std::string& what, const std::string& text);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,16 +10,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
-#include <excavplan/ground/height_map.hpp>
 #include <excavplan/library/path_library.hpp>
-#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/machine.hpp>
 #include <excavplan/soil/soil.hpp>
 
-#include "shared/quantity.hpp"
+#include "shared/arguments.hpp"
 
 /// @file
-/// What all command line tools share: options, help, output, exit codes. A tool is a struct of
+/// How a command line tool runs: help, output, exit codes. A tool is a struct of
 /// inputs with their defaults, a function that binds the options to it, one that does the work, and
 ///
 ///     int main(int argc, char** argv) {
@@ -44,68 +43,6 @@ struct About {
   std::vector<Example> examples;
   bool can_be_untrustworthy = false;  ///< adds --strict
   bool can_stop_early = false;        ///< an interrupt sets Console::stop_requested() instead
-};
-
-/// What a tool takes. Each option is bound to a variable that holds its default; help shows it.
-/// Names are without the dashes.
-class Arguments {
- public:
-  using Assign = std::function<void(const std::string& text)>;
-  struct Entry {
-    std::string name;
-    std::string placeholder;  ///< "LENGTH"; empty for a flag
-    std::string help;
-    std::string default_text;
-    bool positional = false;
-    bool required = false;
-    Assign assign;
-  };
-
-  void positional(const std::string& name, std::string& value, const std::string& help);
-  void positional(const std::string& name, std::optional<std::string>& value,
-                  const std::string& help);
-
-  void flag(const std::string& name, bool& value, const std::string& help);
-  void option(const std::string& name, double& value, Quantity quantity, const std::string& help);
-  void option(const std::string& name, std::optional<double>& value, Quantity quantity,
-              const std::string& help);
-  void option(const std::string& name, int& value, const std::string& help);
-  void option(const std::string& name, std::optional<int>& value, const std::string& help);
-  void option(const std::string& name, std::uint64_t& value, const std::string& help);
-  void option(const std::string& name, std::optional<Rectangle>& value, const std::string& help);
-  /// The help of the second tells the numbers of a path too.
-  void option(const std::string& name, std::optional<DigParameters>& value,
-              const std::string& help);
-  void option(const std::string& name, DigParameters& value, const std::string& help);
-  /// "x,y"
-  void option(const std::string& name, std::optional<Eigen::Vector2d>& value,
-              const std::string& help);
-  /// One of a few words.
-  void choice(const std::string& name, std::string& value, const std::vector<std::string>& words,
-              const std::string& help);
-  void file(const std::string& name, std::string& value, const std::string& help);
-  void file(const std::string& name, std::optional<std::string>& value, const std::string& help);
-  /// A text that is not a file: a name, a list of its own syntax.
-  void text(const std::string& name, const std::string& placeholder, std::string& value,
-            const std::string& help);
-  void text(const std::string& name, const std::string& placeholder,
-            std::optional<std::string>& value, const std::string& help);
-
-  /// --soil, --machine and --plot are the same in every tool; see soil_named(), machine_named().
-  void soil(std::string& name);
-  void machine(std::string& name);
-  /// --simulator; see simulator_of_word().
-  void simulator(std::string& word);
-  void plot(std::optional<std::string>& path, const std::string& shows);
-
-  /// The option must be given.
-  void require(const std::string& name);
-
-  const std::vector<Entry>& entries() const { return entries_; }
-
- private:
-  void add(Entry entry);
-  std::vector<Entry> entries_;
 };
 
 /// What a tool hands back.
@@ -184,9 +121,5 @@ Machine machine_named(const std::string& name_or_path);
 /// @throws Error if it cannot be read, does not fit, or none is shipped
 PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
                        const SoilKind& soil);
-
-/// Path of the file in data/`folder` of that name, or the path itself if it is one.
-/// @throws Error (bad_input) if it looks like a name but none of that name is shipped
-std::string shipped_or_file(const std::string& folder, const std::string& name_or_path);
 
 }  // namespace excavplan::tools

@@ -8,6 +8,7 @@
 
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/planning/planner.hpp>
+#include <excavplan/simulation/simulators.hpp>
 #include <excavplan/soil/soil.hpp>
 
 /// @file
@@ -16,27 +17,31 @@
 
 namespace excavplan {
 
-/// How far a path looked up midway between two entries is off, found by digging it.
+/// How far a path looked up between two entries is off, found by digging it midway.
 struct MidwayError {
-  /// Share of the best efficiency there that it gives away [0, 1]; 1 if it cannot be dug. The best
-  /// is estimated from the entries around.
+  /// Fraction of the best efficiency there that is lost [0, 1]; 1 if it cannot be dug. The best is
+  /// estimated from the entries around.
   double loss = 0.0;
   /// The efficiency that look_up() expects, against the one simulated: their ratio less 1.
   double expectation = 0.0;
 };
 
+/// From one entry to the next.
+struct Interpolation {
+  MidwayError midway;
+  /// The nearer dig is looked up and not a mix of the two: they differ so much that the mix was
+  /// found worse midway.
+  bool nearest = false;
+};
+
 /// The best dig for one density on one slope.
 struct PathLibraryEntry {
   double density_percent = 0.0;
+  double slope = 0.0;  ///< of the ground in the boom direction, rising away from the machine [rad]
   PlannedDig dig;
-  int evaluations = 0;  ///< digs simulated for it
-  double slope = 0.0;   ///< of the ground in the boom direction, rising away from the machine [rad]
-  MidwayError midway;   ///< towards the next density of the same slope; zero for the last
-  MidwayError midway_slope;  ///< towards the next slope at the same density; zero on the last
-  /// Towards the next density, and the next slope, the nearer dig is looked up and not a mix of the
-  /// two: they are of different kinds, and the mix was found worse midway.
-  bool jump = false;
-  bool jump_slope = false;
+  int evaluations = 0;            ///< digs simulated for it
+  Interpolation to_next_density;  ///< on the same slope; nothing for the last
+  Interpolation to_next_slope;    ///< at the same density; nothing on the last
 };
 
 /// A density at which no dig is feasible on its slope.
@@ -72,13 +77,14 @@ std::string file_name(const PathLibrary& library);
 std::string to_json(const PathLibrary& library);
 
 /// Refuses a library that was computed for another machine, soil or simulator.
-/// @param name  of the library, for the message
+/// @param name       of the library, for the message
+/// @param simulator  SimulatorKind::name
 /// @throws Error (bad_input) naming all that differs
 void require_fit(const PathLibrary& library, const Machine& machine, const SoilKind& soil,
-                 const std::string& name);
+                 const std::string& name, const std::string& simulator = default_simulator().name);
 
 /// The dig for a density and a slope: parameters and expectations linear between the entries
-/// around; the nearer of two where the optimum jumps between them.
+/// around, or those of the nearer one (Interpolation::nearest).
 ///
 /// @throws Error (bad_input) if density or slope are outside the library, or in a gap of it
 PlannedDig look_up(const PathLibrary& library, double density_percent, double slope = 0.0);

@@ -81,6 +81,11 @@ struct DigPathOptions {
   double lift_clearance = 0.3;
 };
 
+/// For a path that was planned on another measurement of this ground: it often just keeps the
+/// distances above, and here the ground may lie some millimetres off. They are less strict by
+/// 0.01 rad and 0.02 m; ours.
+DigPathOptions rules_for_planned_path();
+
 /// Lays out penetration, drag, scoop and lift, and solves the joints of every pose in closed form.
 ///
 /// Penetrate: the floor is parallel to the line of penetration. Drag: the tip moves level, the

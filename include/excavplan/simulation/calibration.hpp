@@ -5,28 +5,32 @@
 #include <optional>
 #include <vector>
 
-#include <excavplan/machine/dig_path.hpp>
-#include <excavplan/simulation/soil_simulator.hpp>
-#include <excavplan/soil/density_law.hpp>
+#include <excavplan/machine/dig_parameters.hpp>
+#include <excavplan/simulation/simulators.hpp>
+#include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/soil.hpp>
 
 namespace excavplan {
 
 struct CalibrationOptions {
-  std::vector<double> densities_percent;  ///< empty: 0, 5 .. 100, as the paper does
+  std::vector<double> densities_percent = {};  ///< empty: 0, 5 .. 100, as the paper does
   DigParameters path = paper_fixed_path();
   double cell_size = 0.05;  ///< [m]
+  SimulatorKind simulator = default_simulator();
 };
 
-/// Digs the built-in simulator at every density, measures the bulking factor from its height maps
-/// as the paper does (section 3.1), and fits line and closed form to it: once as measured, once
-/// freed of the soil that fell back into the cut. The as-measured closed form is the one to use
-/// with scans, which cannot see what lies under fallen soil.
+/// Digs the simulator at every density, measures the bulking factor from its height maps as the
+/// paper does (section 3.1), and fits the forms of a law to it: once as measured, once freed of the
+/// soil that fell back into the cut. The as-measured closed form is the one to use with scans,
+/// which cannot see what lies under fallen soil.
 ///
-/// @throws Error (bad_input) if the path cannot be driven, the machine stalls, or fewer than 4
-/// densities are given
+/// @throws Error (bad_input) if the path cannot be driven or fewer than 4 densities are given
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
                                      const CalibrationOptions& options = {});
+
+/// Fits the forms of a law to measured digs of known density; the closed form is the one to use.
+/// @throws Error (bad_input) as fit_density_forms()
+DensityCalibration calibrate_density(const std::vector<BulkingSample>& samples);
 
 /// How far the bulking factor of the height maps and the true one part, and why.
 ///

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <excavplan/library/path_library.hpp>
+#include <excavplan/planning/planner.hpp>
+#include <excavplan/simulation/simulators.hpp>
+#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/soil/density_law.hpp>
+#include <excavplan/soil/soil.hpp>
+
+/// @file
+/// The paper's simulation experiment (section 3): a fixed path against the path planned for the
+/// density that the first dig shows.
+
+namespace excavplan {
+
+struct ExperimentOptions {
+  DigParameters fixed_path = paper_fixed_path();
+  std::optional<PathLibrary> library = {};        ///< paths are looked up in it; empty: searched
+  DigSearchOptions search = {};                   ///< if searched
+  double cell_size = 0.05;                        ///< of the simulated ground [m]
+  SimulatorKind simulator = default_simulator();  ///< digs, and plans if searched
+};
+
+/// One soil, dug along both paths.
+struct ExperimentResult {
+  double density_percent = 0.0;  ///< the true one
+  HeightMapVolumes volumes;      ///< of the dig along the fixed path, with its bulking factor
+  RelativeDensity estimate;      ///< from that bulking factor
+  PlannedDig fixed;              ///< begins with the largest margin
+  PlannedDig planned;            ///< for the estimate, dug in the true soil
+  StartRule start_rule;          ///< that puts the start of the planned dig nearest to where it is
+  PlannedDig fixed_moved;        ///< the fixed path, its start by that rule
+
+  /// Of the planned over the fixed dig in efficiency [%]. The shares of the path and of the start:
+  /// (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
+  double gain_percent() const;
+  double path_gain_percent() const;
+  double start_gain_percent() const;
+};
+
+/// Digs once along the fixed path in soil of this density, estimates the density from the bulking
+/// factor of the height maps, plans a path for the estimate and digs along it in the true soil.
+/// All on level ground.
+///
+/// @throws Error (bad_input) if the density is outside 0 .. 100 or the library, an option is out of
+///         range, the fixed path cannot be dug, or no dig is feasible at the estimate
+ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
+                                double density_percent, const ExperimentOptions& options = {});
+
+}  // namespace excavplan

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/experiment/experiment.hpp>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include <excavplan/error.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/scene.hpp>
+
+#include "base/text.hpp"
+#include "machine/dig_path_text.hpp"
+
+namespace excavplan {
+namespace {
+
+double gain(const PlannedDig& of, const PlannedDig& over) {
+  return 100.0 * (of.efficiency() / over.efficiency() - 1.0);
+}
+
+/// The digs of one experiment, in soil of one density.
+class Experiment {
+ public:
+  Experiment(const Machine& machine, const SoilKind& soil, double density_percent,
+             const ExperimentOptions& options)
+      : machine_(machine),
+        soil_(soil),
+        density_(density_percent),
+        options_(options),
+        ground_(level_planning_ground(machine, options.cell_size)),
+        simulator_(options.simulator.make(machine, soil, density_percent)) {}
+
+  PlannedDig dig(const DigParameters& parameters, const StartRule& start) const {
+    const auto outcome = evaluate_dig(machine_, *simulator_, ground_, parameters, start);
+    if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
+      throw Error(ErrorKind::bad_input, describe(*failure));
+    }
+    return std::get<PlannedDig>(outcome);
+  }
+
+  HeightMapVolumes volumes(const PlannedDig& fixed) const {
+    SceneOptions dig;
+    dig.path = fixed.parameters;
+    dig.start_x = fixed.start_x;
+    dig.simulator = options_.simulator;
+    const Terrain ground =
+        undisturbed(flat_ground(scene_extent(machine_, dig.dump_at), options_.cell_size));
+    return run_scene(machine_, soil_, density_, ground, dig).volumes;
+  }
+
+  PlannedDig plan(double density) const {
+    if (options_.library) return look_up(*options_.library, density);
+    const auto simulator = options_.simulator.make(machine_, soil_, density);
+    const auto found = search_dig(machine_, *simulator, ground_, options_.search);
+    if (found) return found->dig;
+    std::string nearest;
+    if (found.nearest) {
+      nearest = "; the nearest, " + path_text(found.nearest->parameters, found.nearest->start_x) +
+                ": " + found.nearest->reason;
+    }
+    throw Error(ErrorKind::bad_input,
+                "no dig can be done at a density of " + readable(density) + " %" + nearest);
+  }
+
+  /// From its own start; by the default rule if the true soil forbids that one.
+  PlannedDig dig_as_planned(const PlannedDig& plan) const {
+    const StartRule own(plan.start_x);
+    const auto outcome = evaluate_dig(machine_, *simulator_, ground_, plan.parameters, own);
+    if (const auto* dug = std::get_if<PlannedDig>(&outcome)) return *dug;
+    return dig(plan.parameters, {});
+  }
+
+  /// The rule that puts the start of a planned dig nearest to where it is.
+  StartRule rule_behind(const PlannedDig& planned) const {
+    const auto distance = [&](const StartRule& rule) {
+      return std::abs(dig(planned.parameters, rule).start_x - planned.start_x);
+    };
+    const StartRule work = StartRule::Kind::least_work;
+    const StartRule margin = StartRule::Kind::largest_margin;
+    return distance(work) < distance(margin) ? work : margin;
+  }
+
+ private:
+  const Machine& machine_;
+  const SoilKind& soil_;
+  double density_;
+  const ExperimentOptions& options_;
+  Terrain ground_;
+  std::unique_ptr<const SoilSimulator> simulator_;
+};
+
+}  // namespace
+
+double ExperimentResult::gain_percent() const { return gain(planned, fixed); }
+double ExperimentResult::path_gain_percent() const { return gain(planned, fixed_moved); }
+double ExperimentResult::start_gain_percent() const { return gain(fixed_moved, fixed); }
+
+ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
+                                double density_percent, const ExperimentOptions& options) {
+  const Experiment experiment(machine, soil, density_percent, options);
+  ExperimentResult result;
+  result.density_percent = density_percent;
+  result.fixed = experiment.dig(options.fixed_path, {});
+  result.volumes = experiment.volumes(result.fixed);
+  result.estimate = relative_density(law, {result.volumes.bulking_factor, 0.0});
+  result.planned = experiment.dig_as_planned(experiment.plan(result.estimate.percent));
+  result.start_rule = experiment.rule_behind(result.planned);
+  result.fixed_moved = experiment.dig(options.fixed_path, result.start_rule);
+  return result;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "library/library_tasks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <excavplan/error.hpp>
+
+#include "base/text.hpp"
+#include "library/library_file.hpp"
+#include "optimisation/search_checkpoint.hpp"
+
+namespace excavplan {
+
+// As text between processes and in files: every number as it is.
+void to_json(nlohmann::json& json, const DigParameters& dig) {
+  for (const DigParameterInfo& info : dig_parameter_table()) json[info.name] = dig.*info.field;
+}
+void from_json(const nlohmann::json& json, DigParameters& dig) {
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    json.at(info.name).get_to(dig.*info.field);
+  }
+}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PlannedDig, parameters, start_x, payload_mass, payload_volume,
+                                   energy, duration)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryPlace, machine, soil, slope, density_percent)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryTask, place, digs, starts, expected, known)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryAnswer, feasible, dig, evaluations, measured)
+
+namespace {
+
+constexpr const char* format = "excavplan-library-entry";
+
+// Searched from nothing, and how far apart densities are that start from one another [%]; ours,
+// after docs/methods.md#library.
+constexpr double anchors[] = {0.0, 50.0, 100.0};
+constexpr double stride = 10.0;
+
+// How much below the line through two others an efficiency may be, between and beyond them; the
+// logarithm of the efficiency bends less. And how far below a known one a start may be to be
+// polished. Ours.
+constexpr double slack_between = 0.006;
+constexpr double slack_beyond = 0.025;
+constexpr double slack_of_start = 0.03;
+
+double nearest_anchor(double density) {
+  return *std::min_element(std::begin(anchors), std::end(anchors), [density](double a, double b) {
+    return std::abs(a - density) < std::abs(b - density);
+  });
+}
+
+std::string describe(const AnchoredSearch& method) {
+  return "anchors: " + std::to_string(method.points) + " points, " + std::to_string(method.basins) +
+         " basins, polish of " + std::to_string(method.polish_evaluations) +
+         "; others: " + std::to_string(method.inherited_evaluations) + " from neighbours";
+}
+
+/// All that decides what the first search for a place finds; the seed of all its searches.
+std::string identity(const LibraryJob& job, const LibraryPlace& place) {
+  const LibrarySearch& search = job.search;
+  return "machine " + fingerprint(job.grid.machines[place.machine]) + ", soil " +
+         fingerprint(job.grid.soils[place.soil]) + ", simulator " + search.simulator.name +
+         " on cells of " + number_text(search.cell_size) + " m, slope " + number_text(place.slope) +
+         " rad, density " + number_text(place.density_percent) + " %, seed " +
+         std::to_string(search.seed) + ", " + describe(search) + ", start " +
+         describe(DigSearchOptions{}.start_rule);
+}
+
+/// From nothing.
+/// @param effort  number of times as many points as usual
+DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
+  DigSearchOptions options;
+  if (const auto* genetic = std::get_if<GeneticAlgorithm>(&search.method)) {
+    options.method = *genetic;
+    return options;
+  }
+  const auto& anchored = std::get<AnchoredSearch>(search.method);
+  MemeticSearch method;
+  method.first_generation = effort * anchored.points;
+  method.basins = anchored.basins;
+  method.polish_evaluations = anchored.polish_evaluations;
+  method.generations = 0;
+  options.method = method;
+  return options;
+}
+
+/// A polish, and one more from its best with the simplex spread again.
+DigSearchOptions warm_search(const LibrarySearch& search,
+                             const std::vector<DigParameters>& starts) {
+  const auto& anchored = std::get<AnchoredSearch>(search.method);
+  MemeticSearch method;
+  method.first_generation = 0;
+  method.generations = 0;
+  method.basins = 1;
+  method.polish_evaluations = anchored.inherited_evaluations / 2;
+  DigSearchOptions options;
+  options.method = method;
+  options.start = starts;
+  options.stop.evaluations = anchored.inherited_evaluations;
+  return options;
+}
+
+/// Starts that ask less of the machine.
+std::vector<DigParameters> shallower(const DigParameters& start) {
+  std::vector<DigParameters> starts;
+  for (const double share : {0.85, 0.7}) {
+    starts.push_back(start);
+    starts.back().penetration_length *= share;
+  }
+  return starts;
+}
+
+/// Does the tasks of one place.
+class Site {
+ public:
+  Site(const LibraryJob& job, const LibraryPlace& place,
+       const std::function<bool(int, double)>& progress)
+      : search_(job.search),
+        seed_(checksum(identity(job, place))),
+        machine_(job.grid.machines[place.machine]),
+        simulator_(
+            search_.simulator.make(machine_, job.grid.soils[place.soil], place.density_percent)),
+        ground_(sloped_planning_ground(machine_, place.slope, search_.cell_size)),
+        progress_(progress) {}
+
+  LibraryAnswer answer(const LibraryTask& task) {
+    for (const PlannedDig& dig : task.digs) measure(dig);
+    if (!task.digs.empty()) return answer_;
+    if (task.known > 0.0) {
+      improve(task);
+    } else {
+      search(task);
+    }
+    return answer_;
+  }
+
+  bool stopped() const { return stopped_; }
+
+ private:
+  void search(const LibraryTask& task) {
+    if (!task.starts.empty()) attempt(warm_search(search_, task.starts));
+    if (!answer_.feasible && !task.starts.empty()) {
+      attempt(warm_search(search_, shallower(task.starts.back())));
+    }
+    if (!answer_.feasible || answer_.efficiency() < task.expected) attempt(cold_search(search_, 1));
+    if (!answer_.feasible) attempt(cold_search(search_, 8));
+  }
+
+  void improve(const LibraryTask& task) {
+    DigSearchOptions only_the_start = warm_search(search_, task.starts);
+    only_the_start.stop.evaluations = 1;
+    attempt(only_the_start);
+    if (answer_.efficiency() > (1.0 - slack_of_start) * task.known) {
+      attempt(warm_search(search_, task.starts));
+    }
+  }
+
+  /// Does nothing once stopped.
+  void attempt(DigSearchOptions options) {
+    if (stopped_) return;
+    int evaluations = 0;
+    options.seed = seed_;
+    options.threads = 1;
+    options.progress = [&](const SearchProgress& now) {
+      tell(now.evaluations - evaluations, now.best);
+      evaluations = now.evaluations;
+      return !stopped_;
+    };
+    const auto found = search_dig(machine_, *simulator_, ground_, options);
+    if (!found || found->dig.efficiency() <= answer_.efficiency()) return;
+    answer_.feasible = true;
+    answer_.dig = found->dig;
+  }
+
+  void measure(const PlannedDig& dig) {
+    auto outcome = evaluate_dig(machine_, *simulator_, ground_, dig.parameters, dig.start_x);
+    if (const auto* failure = std::get_if<DigFailure>(&outcome);
+        failure != nullptr && std::holds_alternative<Infeasible>(*failure)) {
+      outcome = evaluate_dig(machine_, *simulator_, ground_, dig.parameters,
+                             DigSearchOptions{}.start_rule);
+    }
+    const auto* dug = std::get_if<PlannedDig>(&outcome);
+    answer_.measured.push_back(dug ? dug->efficiency() : 0.0);
+    tell(1, answer_.measured.back());
+  }
+
+  void tell(int digs, double best) {
+    answer_.evaluations += digs;
+    if (progress_ && !progress_(digs, best)) stopped_ = true;
+  }
+
+  const LibrarySearch& search_;
+  const std::uint64_t seed_;
+  const Machine& machine_;
+  const std::unique_ptr<const SoilSimulator> simulator_;
+  const Terrain ground_;
+  const std::function<bool(int, double)>& progress_;
+  LibraryAnswer answer_;
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+std::vector<double> parent_densities(double density_percent, const LibrarySearch& search) {
+  if (std::holds_alternative<GeneticAlgorithm>(search.method)) return {};
+  const double below = stride * std::floor(density_percent / stride);
+  if (below < density_percent) {
+    const double above = below + stride;
+    if (density_percent - below < above - density_percent) return {below, above};
+    return {above, below};
+  }
+  const double anchor = nearest_anchor(density_percent);
+  if (density_percent == anchor) return {};
+  const double towards = density_percent < anchor ? stride : -stride;
+  if (density_percent + towards == anchor) return {anchor};
+  return {density_percent + towards, density_percent + 2.0 * towards};
+}
+
+LibraryTask first_search(const LibraryPlace& place,
+                         const std::vector<std::pair<double, PlannedDig>>& parents) {
+  LibraryTask task{place};
+  if (parents.empty()) return task;
+  const auto& [near_density, near] = parents.front();
+  const auto& [far_density, far] = parents.back();
+  if (far_apart(near, far)) {
+    task.starts.push_back(far.parameters);
+  } else if (parents.size() == 2) {
+    const double share = (place.density_percent - near_density) / (far_density - near_density);
+    const auto line = [share](double a, double b) { return a + share * (b - a); };
+    DigParameters there;
+    for (const DigParameterInfo& info : dig_parameter_table()) {
+      there.*info.field = std::clamp(line(near.parameters.*info.field, far.parameters.*info.field),
+                                     info.lower, info.upper);
+    }
+    task.starts.push_back(there);
+    task.expected = (1.0 - (share > 0.0 ? slack_between : slack_beyond)) *
+                    std::exp(line(std::log(near.efficiency()), std::log(far.efficiency())));
+  }
+  task.starts.push_back(near.parameters);
+  return task;
+}
+
+std::string describe(const LibrarySearch& search) {
+  return std::visit([](const auto& method) { return describe(method); }, search.method);
+}
+
+std::string entry_file_name(const LibraryJob& job, const LibraryPlace& place) {
+  return file_name_part(job.grid.machines[place.machine].name) + "-" +
+         file_name_part(job.grid.soils[place.soil].name) + "-slope" + number_text(place.slope) +
+         "-density" + number_text(place.density_percent) + "-" +
+         checksum_text(identity(job, place)) + entry_file_end;
+}
+
+std::string to_text(const LibraryTask& task) { return nlohmann::json(task).dump(); }
+
+std::string do_task(const LibraryJob& job, const std::string& text,
+                    const std::function<bool(int digs, double best)>& progress) {
+  const auto task = nlohmann::json::parse(text).get<LibraryTask>();
+  Site site(job, task.place, progress);
+  const LibraryAnswer answer = site.answer(task);
+  if (site.stopped()) return {};
+  return sealed_text({{"format", format},
+                      {"version", 1},
+                      {"identity", identity(job, task.place)},
+                      {"answer", nlohmann::json(answer)}});
+}
+
+LibraryAnswer read_answer(const LibraryJob& job, const LibraryPlace& place, const std::string& name,
+                          const std::string& text) {
+  JsonObject file = JsonObject::open_sealed(name, text, format);
+  if (const std::string own = file.text("identity"); own != identity(job, place)) {
+    file.fail("identity",
+              "is '" + own + "', which is another entry than '" + identity(job, place) + "'");
+  }
+  return nlohmann::json::parse(text).at("answer").get<LibraryAnswer>();
+}
+
+}  // namespace excavplan

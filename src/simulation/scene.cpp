@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/simulation/scene.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include <excavplan/ground/bulking.hpp>
+#include <excavplan/machine/trajectory.hpp>
+#include <excavplan/random.hpp>
+
+#include "base/angles.hpp"
+#include "base/text.hpp"
+
+namespace excavplan {
+namespace {
+
+DigPath lay_out(const Machine& machine, const Terrain& ground, const SceneOptions& options) {
+  const GroundProfile profile = boom_plane_profile(ground);
+  auto path = options.start_x
+                  ? make_dig_path(machine, options.path, *options.start_x, profile, options.rules)
+                  : make_dig_path_anywhere(machine, options.path, profile, options.rules);
+  if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
+    throw Error(ErrorKind::bad_input, "this dig cannot be driven: " + infeasible->message);
+  }
+  return std::get<DigPath>(std::move(path));
+}
+
+/// The ground that the tip passes over, as wide as the bucket.
+Rectangle strip_of(const Machine& machine, const DigPath& path) {
+  const double half_width = 0.5 * machine.bucket.width_outside;
+  Rectangle strip{path.start_x, -half_width, path.start_x, half_width};
+  for (const DigPose& pose : path.poses) {
+    if (pose.phase == DigPhase::lift) continue;
+    strip.x_min = std::min(strip.x_min, pose.bucket.x);
+    strip.x_max = std::max(strip.x_max, pose.bucket.x);
+  }
+  return strip;
+}
+
+/// Foot of the cone in which a heaped bucket comes to rest [m].
+double heap_radius(const Machine& machine, const SoilKind& soil) {
+  return std::cbrt(3.0 * heaped_capacity(machine) / (pi * std::tan(soil.angle_of_repose)));
+}
+
+std::string text(const Eigen::Vector2d& point) {
+  return number_text(point.x()) + "," + number_text(point.y());
+}
+
+void require_clear_of_dig(const Eigen::Vector2d& dump_at, const Machine& machine,
+                          const SoilKind& soil, const DigPath& path) {
+  const Rectangle strip = strip_of(machine, path);
+  const double beside_x = std::max({strip.x_min - dump_at.x(), dump_at.x() - strip.x_max, 0.0});
+  const double beside_y = std::max({strip.y_min - dump_at.y(), dump_at.y() - strip.y_max, 0.0});
+  const double distance = std::hypot(beside_x, beside_y);
+  const double radius = heap_radius(machine, soil);
+  if (distance >= radius) return;
+  throw Error(ErrorKind::bad_input,
+              "the dump point " + text(dump_at) + " is " + readable(distance) +
+                  " m from the strip of this dig (x = " + readable(strip.x_min) + " .. " +
+                  readable(strip.x_max) + " m, y = " + readable(strip.y_min) + " .. " +
+                  readable(strip.y_max) + " m); a heap of " + readable(heaped_capacity(machine)) +
+                  " m3 needs at least " + readable(radius) + " m");
+}
+
+std::vector<Warning> reach_warnings(const Eigen::Vector2d& dump_at, const Machine& machine) {
+  const double from_axis = dump_at.norm();
+  const double reach = machine.boom_pin.x() + machine.full_length();
+  if (from_axis >= machine.track_front && from_axis <= reach) return {};
+  return {{"dump_out_of_reach", "the dump point " + text(dump_at) + " is " + readable(from_axis) +
+                                    " m from the swing axis; " + machine.name + " dumps from " +
+                                    readable(machine.track_front) + " m (its tracks) to " +
+                                    readable(reach) + " m (all links in one line)"}};
+}
+
+/// The middle of the cut, its scoop taken as 0.8 m; ours.
+Eigen::Vector2d dig_centre(const DigPath& path) {
+  return {path.start_x - 0.5 * (path.parameters.drag_length + 0.8), 0.0};
+}
+
+}  // namespace
+
+DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
+                   const Terrain& ground, const SceneOptions& options) {
+  DigScene scene;
+  scene.soil = soil.name;
+  scene.density_percent = density_percent;
+  scene.dump_at = options.dump_at;
+  scene.before = ground;
+  scene.path = lay_out(machine, ground, options);
+  require_clear_of_dig(scene.dump_at, machine, soil, scene.path);
+  scene.warnings = reach_warnings(scene.dump_at, machine);
+  DigOptions dig;
+  dig.history = options.history;
+  dig.dump_at = scene.dump_at;
+  scene.dig = options.simulator.make(machine, soil, density_percent)->dig(ground, scene.path, dig);
+  scene.after = scene.dig.after(ground);
+  scene.volumes = height_map_volumes(ground, scene.after, scene.dump_at);
+  scene.bulking_factor_true = bulking_of_density(soil, density_percent);
+  scene.duration = time_dig_path(machine, scene.path).dig_duration();
+  return scene;
+}
+
+SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed) {
+  const auto scan = [&](const Terrain& terrain, std::uint64_t epoch) {
+    const HeightMap surface = terrain.surface();
+    std::vector<Eigen::Vector3d> points;
+    std::uint64_t index = 0;
+    for (const Eigen::Vector2d& place : {dig_centre(scene.path), scene.dump_at}) {
+      const DepthCamera above = camera_above(place, height_at(surface, place.x(), place.y()));
+      DepthCamera placed = camera;
+      placed.position = above.position;
+      placed.target = above.target;
+      const auto seen = scan_surface(surface, placed, Random(seed, epoch, index++).bits());
+      points.insert(points.end(), seen.begin(), seen.end());
+    }
+    return points;
+  };
+  return {scan(scene.before, 0), scan(scene.after, 1)};
+}
+
+}  // namespace excavplan

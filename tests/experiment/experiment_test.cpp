@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/experiment/experiment.hpp>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/data_files.hpp>
+
+#include "support/errors.hpp"
+
+namespace excavplan {
+namespace {
+
+class ExperimentTest : public testing::Test {
+ protected:
+  ExperimentResult run(const ExperimentOptions& options, double density = 40.0) const {
+    return run_experiment(machine_, soil_, law_, density, options);
+  }
+  ExperimentOptions looked_up() const {
+    ExperimentOptions options;
+    options.library = load_path_library(find_data_file("libraries/zx120-loam.json"));
+    return options;
+  }
+
+  const Machine machine_ = load_machine(shipped_or_file("machines", "zx120"));
+  const SoilKind soil_ = load_soil(shipped_or_file("soils", "loam"));
+  const DensityLaw law_ = load_density_law(shipped_or_file("laws", "zx120-loam"));
+};
+
+TEST_F(ExperimentTest, PlansForTheDensityThatTheFixedDigShows) {
+  const ExperimentOptions options = looked_up();
+  const ExperimentResult result = run(options);
+  EXPECT_EQ(result.density_percent, 40.0);
+  EXPECT_NEAR(result.estimate.percent, 40.0, 0.5);
+  EXPECT_EQ(result.estimate.percent,
+            relative_density(law_, {result.volumes.bulking_factor, 0.0}).percent);
+  EXPECT_EQ(to_vector(result.fixed.parameters), to_vector(paper_fixed_path()));
+  const PlannedDig plan = look_up(*options.library, result.estimate.percent);
+  EXPECT_EQ(to_vector(result.planned.parameters), to_vector(plan.parameters));
+  EXPECT_EQ(result.planned.start_x, plan.start_x);
+}
+
+TEST_F(ExperimentTest, SplitsTheGainIntoPathAndStart) {
+  const ExperimentResult result = run(looked_up());
+  EXPECT_EQ(to_vector(result.fixed_moved.parameters), to_vector(paper_fixed_path()));
+  EXPECT_NE(result.fixed_moved.start_x, result.fixed.start_x);
+  EXPECT_EQ(result.start_rule.kind, StartRule::Kind::least_work);
+  EXPECT_GT(result.gain_percent(), 0.0);
+  EXPECT_NEAR(
+      (1.0 + result.path_gain_percent() / 100.0) * (1.0 + result.start_gain_percent() / 100.0),
+      1.0 + result.gain_percent() / 100.0, 1e-12);
+}
+
+TEST_F(ExperimentTest, DigsAndSearchesInTheSimulatorGiven) {
+  ExperimentOptions options;
+  options.simulator = simulator_of_word("section");
+  options.search.stop.evaluations = 20;
+  const ExperimentResult section = run(options);
+  EXPECT_NE(section.volumes.bulking_factor, run(looked_up()).volumes.bulking_factor);
+  const auto simulator = options.simulator.make(machine_, soil_, 40.0);
+  const auto again = evaluate_dig(machine_, *simulator, level_planning_ground(machine_),
+                                  section.planned.parameters, StartRule(section.planned.start_x));
+  EXPECT_EQ(std::get<PlannedDig>(again).payload_mass, section.planned.payload_mass);
+}
+
+TEST_F(ExperimentTest, RefusesAFixedPathThatCannotBeDug) {
+  ExperimentOptions options = looked_up();
+  options.fixed_path.penetration_length = 9.0;
+  EXPECT_NE(test::error_of([&] { run(options); }).find("penetrate, after "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace excavplan

@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/arguments.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <utility>
+
+#include <excavplan/error.hpp>
+#include <excavplan/simulation/simulators.hpp>
+
+#include "base/text.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+template <typename Integer>
+Integer parse_integer(const std::string& what, const std::string& text) {
+  Integer value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc::result_out_of_range) usage_error(what + ": " + text + " is too large");
+  if (error != std::errc{} || stop != end) {
+    const char* kind = std::is_signed_v<Integer> ? "a whole number" : "a whole number, 0 or more";
+    usage_error(what + ": '" + text + "' is not " + kind);
+  }
+  return value;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace
+
+void usage_error(const std::string& message) { throw Error(ErrorKind::bad_input, message); }
+
+void Arguments::add(Entry entry) { entries_.push_back(std::move(entry)); }
+
+void Arguments::positional(const std::string& name, std::string& value, const std::string& help) {
+  add({name, name, help, "", true, true, [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::positional(const std::string& name, std::optional<std::string>& value,
+                           const std::string& help) {
+  add({name, name, help, "", true, false, [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::flag(const std::string& name, bool& value, const std::string& help) {
+  add({name, "", help, "", false, false, [&value](const std::string&) { value = true; }});
+}
+
+void Arguments::option(const std::string& name, double& value, Quantity quantity,
+                       const std::string& help) {
+  add({name, placeholder(quantity), help + " [" + unit(quantity) + "]", number_text(value), false,
+       false, [&value, name, quantity](const std::string& text) {
+         value = parse_quantity("--" + name, text, quantity);
+       }});
+}
+
+void Arguments::option(const std::string& name, std::optional<double>& value, Quantity quantity,
+                       const std::string& help) {
+  add({name, placeholder(quantity), help + " [" + unit(quantity) + "]",
+       value ? number_text(*value) : "", false, false,
+       [&value, name, quantity](const std::string& text) {
+         value = parse_quantity("--" + name, text, quantity);
+       }});
+}
+
+void Arguments::option(const std::string& name, int& value, const std::string& help) {
+  add({name, "N", help, std::to_string(value), false, false,
+       [&value, name](const std::string& text) { value = parse_integer<int>("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, std::optional<int>& value,
+                       const std::string& help) {
+  add({name, "N", help, value ? std::to_string(*value) : "", false, false,
+       [&value, name](const std::string& text) { value = parse_integer<int>("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, std::uint64_t& value, const std::string& help) {
+  add({name, "N", help, std::to_string(value), false, false,
+       [&value, name](const std::string& text) {
+         value = parse_integer<std::uint64_t>("--" + name, text);
+         if (value > most_exact) {
+           usage_error("--" + name + ": " + text + " must be at most " +
+                       std::to_string(most_exact));
+         }
+       }});
+}
+
+void Arguments::option(const std::string& name, std::optional<Rectangle>& value,
+                       const std::string& help) {
+  add({name, "XMIN,YMIN,XMAX,YMAX", help + " [m]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_rectangle("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, std::optional<DigParameters>& value,
+                       const std::string& help) {
+  const DigPathForm form = dig_path_form();
+  add({name, form.placeholder, help + " [" + form.units + "]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_dig_path("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, DigParameters& value, const std::string& help) {
+  const DigPathForm form = dig_path_form();
+  add({name, form.placeholder, help + ": " + form.names + " [" + form.units + "]",
+       dig_path_argument(value), false, false,
+       [&value, name](const std::string& text) { value = parse_dig_path("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, Eigen::Vector2d& value, const std::string& help) {
+  add({name, "X,Y", help + " [m]", number_text(value.x()) + "," + number_text(value.y()), false,
+       false, [&value, name](const std::string& text) { value = parse_point("--" + name, text); }});
+}
+
+void Arguments::choice(const std::string& name, std::string& value,
+                       const std::vector<std::string>& words, const std::string& help) {
+  add({name, "WORD", help + ": " + joined(words), value, false, false,
+       [&value, name, words](const std::string& text) {
+         if (std::find(words.begin(), words.end(), text) == words.end()) {
+           usage_error("--" + name + ": '" + text + "' is not one of " + joined(words));
+         }
+         value = text;
+       }});
+}
+
+void Arguments::file(const std::string& name, std::string& value, const std::string& help) {
+  add({name, "FILE", help, value, false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::file(const std::string& name, std::optional<std::string>& value,
+                     const std::string& help) {
+  add({name, "FILE", help, value.value_or(""), false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::text(const std::string& name, const std::string& placeholder, std::string& value,
+                     const std::string& help) {
+  add({name, placeholder, help, value, false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::text(const std::string& name, const std::string& placeholder,
+                     std::optional<std::string>& value, const std::string& help) {
+  add({name, placeholder, help, value.value_or(""), false, false,
+       [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::soil(std::string& name) {
+  text("soil", "NAME|FILE", name, "kind of soil: loam, sand, clay, gravel, or a soil file");
+}
+
+void Arguments::simulator(std::string& word) {
+  std::vector<std::string> words;
+  for (const SimulatorKind& kind : simulator_kinds()) words.push_back(kind.word);
+  choice("simulator", word, words, "engine that digs; section: quick, in the boom plane alone");
+}
+
+void Arguments::machine(std::string& name) {
+  text("machine", "NAME|FILE", name, "excavator: zx120, or a machine file");
+}
+
+void Arguments::plot(std::optional<std::string>& path, const std::string& shows) {
+  add({"plot", "FILE.svg", "draw " + shows + " into this file", "", false, false,
+       [&path](const std::string& text) {
+         if (std::filesystem::path(text).extension() != ".svg") {
+           usage_error("--plot: '" + text + "' must end in .svg, plots are written as SVG only");
+         }
+         path = text;
+       }});
+}
+
+void Arguments::require(const std::string& name) {
+  std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return entry.name == name;
+  })->required = true;
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/machine/dig_parameters.hpp>
+
+#include "shared/quantity.hpp"
+
+namespace excavplan::tools {
+
+/// @throws Error (bad_input)
+[[noreturn]] void usage_error(const std::string& message);
+
+/// What a tool takes. Each option is bound to a variable that holds its default; help shows it.
+/// Names are without the dashes.
+class Arguments {
+ public:
+  using Assign = std::function<void(const std::string& text)>;
+  struct Entry {
+    std::string name;
+    std::string placeholder;  ///< "LENGTH"; empty for a flag
+    std::string help;
+    std::string default_text;
+    bool positional = false;
+    bool required = false;
+    Assign assign;
+  };
+
+  void positional(const std::string& name, std::string& value, const std::string& help);
+  void positional(const std::string& name, std::optional<std::string>& value,
+                  const std::string& help);
+
+  void flag(const std::string& name, bool& value, const std::string& help);
+  void option(const std::string& name, double& value, Quantity quantity, const std::string& help);
+  void option(const std::string& name, std::optional<double>& value, Quantity quantity,
+              const std::string& help);
+  void option(const std::string& name, int& value, const std::string& help);
+  void option(const std::string& name, std::optional<int>& value, const std::string& help);
+  void option(const std::string& name, std::uint64_t& value, const std::string& help);
+  void option(const std::string& name, std::optional<Rectangle>& value, const std::string& help);
+  /// The help of the second tells the numbers of a path too.
+  void option(const std::string& name, std::optional<DigParameters>& value,
+              const std::string& help);
+  void option(const std::string& name, DigParameters& value, const std::string& help);
+  /// "x,y"
+  void option(const std::string& name, Eigen::Vector2d& value, const std::string& help);
+  /// One of a few words.
+  void choice(const std::string& name, std::string& value, const std::vector<std::string>& words,
+              const std::string& help);
+  void file(const std::string& name, std::string& value, const std::string& help);
+  void file(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  /// A text that is not a file: a name, a list of its own syntax.
+  void text(const std::string& name, const std::string& placeholder, std::string& value,
+            const std::string& help);
+  void text(const std::string& name, const std::string& placeholder,
+            std::optional<std::string>& value, const std::string& help);
+
+  /// These are the same in every tool; see soil_named(), machine_named(), simulator_of_word().
+  void soil(std::string& name);
+  void machine(std::string& name);
+  void simulator(std::string& word);
+  void plot(std::optional<std::string>& path, const std::string& shows);
+
+  /// The option must be given.
+  void require(const std::string& name);
+
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  void add(Entry entry);
+  std::vector<Entry> entries_;
+};
+
+}  // namespace excavplan::tools
