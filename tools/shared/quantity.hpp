@@ -10,8 +10,6 @@
 
 #include "base/text.hpp"
 
-#include "base/text.hpp"
-
 /// @file
 /// Numbers with units, from people and for people. `what` names the option in messages.
 
