@@ -43,11 +43,11 @@ excavplan_install(planning
   SUMMARY "Soil, machine, simulation and planning of digs"
   REQUIRES_PUBLIC eigen3 REQUIRES nlopt LINKS -lpthread -ldl)
 excavplan_install(clouds
-  SUMMARY "Point clouds in and out, and height maps from them"
+  SUMMARY "Point clouds in and out, height maps, terrain and efficiency from them"
   REQUIRES_PUBLIC excavplan-planning)
 if(EXCAVPLAN_SURVEY)
   excavplan_install(survey
-    SUMMARY "The paper's volume method and depth images"
+    SUMMARY "Density from scans, survey planning and depth images"
     REQUIRES_PUBLIC excavplan-clouds
     REQUIRES pcl_filters pcl_search pcl_octree pcl_common
     LINKS -lopencv_imgcodecs -lopencv_core)

@@ -7,26 +7,29 @@
 
 namespace excavplan {
 
+/// What the caller did wrong.
 enum class ErrorKind {
   bad_input,  ///< an argument or an option breaks its documented rule
   bad_file,   ///< a file is missing, unreadable or not what it claims to be
 };
 
-/// The only exception this library throws on purpose.
+/// The only exception that this library throws on purpose.
 ///
-/// Thrown for what the caller could have prevented; the text names what is wrong, where, its value
+/// It reports what the caller could have prevented; the text names what is wrong, where, its value
 /// and the rule. What depends on the site or the machine, such as a pose out of reach or a density
-/// out of range, is a value in the result types.
+/// out of range, is a value in the result.
 class Error : public std::runtime_error {
  public:
+  /// An error of this kind with the text of what().
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  /// What the caller did wrong.
   ErrorKind kind() const noexcept { return kind_; }
 
  private:
   ErrorKind kind_;
 };
 
-/// Something the user should know about a result that is nevertheless given.
+/// A doubt about a result that is given all the same.
 struct Warning {
   std::string code;     ///< stable, for programs: "density_above_range"
   std::string message;  ///< for people: what was found, its value, what it means

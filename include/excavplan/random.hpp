@@ -10,18 +10,20 @@ namespace excavplan {
 /// A reproducible stream of random numbers: the same numbers on every compiler and standard
 /// library, which std::*_distribution does not promise.
 ///
-/// Streams are cheap: give every individual, pixel row or dig its own by the keys of the
-/// constructor, and the result does not depend on the order in which threads draw.
-/// Generator: SplitMix64 (Steele, Lea, Flood, OOPSLA 2014).
+/// Streams are cheap. With one for each individual, pixel row or dig the result does not depend on
+/// the order in which threads draw. Generator: SplitMix64 (Steele, Lea, Flood, OOPSLA 2014).
 class Random {
  public:
+  /// The stream of these three keys.
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t substream = 0)
       : state_(mix(mix(mix(seed) ^ stream) ^ substream)) {}
 
+  /// 64 random bits.
   std::uint64_t bits() { return mix(state_ += 0x9E3779B97F4A7C15ULL); }
 
   /// In [0, 1), 53 bits.
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
+  /// In [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
   /// In 0 .. count - 1; count > 0. The bias of the multiplication is below count / 2^53.

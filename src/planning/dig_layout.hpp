@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <variant>
 #include <vector>
 
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 
 namespace excavplan {
 
@@ -16,11 +15,11 @@ class KnownStrip {
   KnownStrip(const Terrain& terrain, const Machine& machine);
 
   bool is_known(double x_min, double x_max) const;
-  double cell_size() const { return cell_; }
+  double cell_size() const { return cell_size_; }
 
  private:
   double origin_;
-  double cell_;
+  double cell_size_;
   std::vector<int> unknown_before_;  ///< per column: how many of those before it are unknown
 };
 
@@ -32,17 +31,18 @@ class DigLayout {
   /// @throws Error (bad_input) if the start is to be searched
   std::variant<DigPath, Infeasible> path(const DigParameters& parameters,
                                          const StartRule& start) const;
-
-  const Machine& machine() const { return machine_; }
-
- private:
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
                                               const DigPathOptions& options = {}) const;
-  std::variant<DigPath, Infeasible> known(DigPath path) const;
-  std::optional<double> work_from(const DigParameters& parameters, double start_x,
-                                  const DigPathOptions& options) const;
-  std::optional<double> least_work_start(const DigParameters& parameters,
-                                         const DigPathOptions& options) const;
+  /// From this start, or if it cannot be from that of the largest margin.
+  std::variant<DigPath, Infeasible> path_near(const DigParameters& parameters,
+                                              double start_x) const;
+
+  const Machine& machine() const { return machine_; }
+  const GroundProfile& ground() const { return ground_; }
+
+ private:
+  std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
+  std::variant<DigPath, Infeasible> known(std::variant<DigPath, Infeasible> path) const;
 
   const Machine& machine_;
   GroundProfile ground_;

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/soil/density_law.hpp>
+#include <excavplan/soil/density_fit.hpp>
 
 #include "base/json.hpp"
 

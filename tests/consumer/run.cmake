@@ -52,6 +52,16 @@ function(check_tool prefix)
   endif()
 endfunction()
 
+# ---- The README shows this program to the letter.
+file(READ ${PROGRAM} program)
+string(FIND "${program}" "#include" start)
+string(SUBSTRING "${program}" ${start} -1 program)
+file(READ ${SOURCE}/README.md readme)
+string(FIND "${readme}" "${program}" shown)
+if(shown EQUAL -1)
+  message(FATAL_ERROR "README.md does not show ${PROGRAM} as it is")
+endif()
+
 # ---- Install: the two components are all there is.
 string(SHA1 name ${BUILD})
 set(WORK /tmp/excavplan-consumer-${name})

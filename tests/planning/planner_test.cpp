@@ -116,19 +116,29 @@ TEST_F(Planner, SpreadIsTheDeviationOverTheSoilsThatDoNotStall) {
   const Told light(1000.0, false), heavy(3000.0, false), hopeless(1e6, true);
   const PlannedDig dig = std::get<PlannedDig>(
       evaluate_dig(machine_, light, level_, paper_fixed_path(), StartRule::Kind::least_work));
-  const DigSpread spread =
-      dig_spread(machine_, {{&light, 0.2}, {&heavy, 0.6}, {&hopeless, 0.2}}, level_, dig);
+  const DigPath path = std::get<DigPath>(
+      make_dig_path(machine_, dig.parameters, dig.start_x, boom_plane_profile(level_)));
+  const auto spread_in = [&](const std::vector<PossibleSoil>& soils) {
+    return dig_spread(machine_, soils, level_, dig, path);
+  };
+  const DigSpread spread = spread_in({{&light, 0.2}, {&heavy, 0.6}, {&hopeless, 0.2}});
   // Two values with probabilities of 1/4 and 3/4.
   const double share = std::sqrt(0.25 * 0.75);
   EXPECT_NEAR(spread.energy, share * 2000.0, 1e-9);
   EXPECT_NEAR(spread.efficiency, share * (100.0 / 1000.0 - 100.0 / 3000.0), 1e-12);
   EXPECT_EQ(spread.payload_mass, 0.0);
   EXPECT_DOUBLE_EQ(spread.stall_probability, 0.2);
-  EXPECT_EQ(dig_spread(machine_, {{&hopeless, 1.0}}, level_, dig).stall_probability, 1.0);
-  PlannedDig nowhere = dig;
-  nowhere.start_x = 50.0;
-  EXPECT_THROW(dig_spread(machine_, {{&light, 1.0}}, level_, nowhere), Error);
-  EXPECT_THROW(dig_spread(machine_, {{&light, 0.5}}, level_, dig), Error);
+  EXPECT_EQ(spread_in({{&hopeless, 1.0}}).stall_probability, 1.0);
+  EXPECT_THROW(spread_in({{&light, 0.5}}), Error);
+}
+
+TEST_F(Planner, APathOffTheMapIsNoSpreadButAnError) {
+  const DigPath path = std::get<DigPath>(
+      make_dig_path(machine_, paper_fixed_path(), 6.0, [](double) { return 0.0; }));
+  const HeightMapSimulator soil = simulator(40.0);
+  Terrain small = level_;
+  small.bank.origin.x() += 50.0;
+  EXPECT_THROW(dig_spread(machine_, {{&soil, 1.0}}, small, {}, path), Error);
 }
 
 TEST_F(Planner, SlopeOfTheGroundIsTheLineThroughWhatIsKnown) {

@@ -141,6 +141,20 @@ TEST(DensityForm, ClosedFormAgreesWithTheDefaultLoam) {
   }
 }
 
+TEST(DensityLaw, OfASoilIsWhatConservationOfSolidsGives) {
+  const SoilKind clay = load_soil(find_data_file("soils/clay.json"));
+  const DensityLaw law = density_law_of(clay);
+  EXPECT_EQ(law.soil, clay.name);
+  for (int d = 0; d <= 100; d += 20) {
+    const double k = bulking_of_density(clay, d);
+    EXPECT_NEAR(density_of_bulking(law.form, k), d, 1e-9);
+    EXPECT_NEAR(density_of_bulking(law.freed_form, k), d, 1e-9);
+  }
+  const RelativeDensity found = relative_density(law, {bulking_of_density(clay, 50.0), 0.01});
+  EXPECT_NEAR(found.sd_percent, 0.01 * density_slope(law.form, bulking_of_density(clay, 50.0)),
+              1e-12);
+}
+
 TEST(DensityForm, ClosedFormStaysFiniteWhereItHasNoDensity) {
   const DensityClosedForm form{0.93, 0.5, 0.4, 0.0, 0.0};
   for (const double k : {0.5, 0.4, 1e-300}) {

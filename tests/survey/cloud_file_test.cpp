@@ -18,6 +18,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <excavplan/error.hpp>
 #include <excavplan/random.hpp>
 #include <excavplan/survey/cloud.hpp>
@@ -732,7 +734,8 @@ TEST(WriteCloud, RoundTripIsExact) {
 
 TEST(WriteCloud, TextKeepsEveryDigit) {
   const Cloud cloud = sample_cloud(1.0, true);
-  for (const auto& format :        {CloudFormat{"pcd", true}, CloudFormat{"ply", true}, CloudFormat{"xyz"}}) {
+  for (const auto& format :
+       {CloudFormat{"pcd", true}, CloudFormat{"ply", true}, CloudFormat{"xyz"}}) {
     const TempFile file;
     write_cloud(file.path(), cloud, format);
     expect_points(read_cloud(file.path()), cloud.points);
@@ -779,7 +782,15 @@ TEST(WriteCloud, AFileThatCannotBeWrittenIsAnError) {
       "cannot be written");
 }
 
+TEST(WriteCloud, AFormatThatIsNoneIsAnError) {
+  const string path = "a.las";
+  EXPECT_EQ(error_about([&] { write_cloud(path, sample_cloud(1.0, false), {"las"}); }, path,
+                        ErrorKind::bad_input),
+            "'las' is no format that clouds are written in");
+}
+
 TEST(WriteCloud, TheNameAsksForTheFormat) {
+  EXPECT_EQ(cloud_endings(), ".pcd, .ply, .xyz, .txt or .asc");
   EXPECT_EQ(cloud_format_of_name("a/b.pcd").name, "pcd");
   EXPECT_EQ(cloud_format_of_name("B.PLY").name, "ply");
   EXPECT_EQ(cloud_format_of_name("a.xyz").name, "xyz");
@@ -789,6 +800,16 @@ TEST(WriteCloud, TheNameAsksForTheFormat) {
     EXPECT_EQ(error_about([&] { cloud_format_of_name(name); }, name, ErrorKind::bad_input),
               "the name of a cloud must end in .pcd, .ply, .xyz, .txt or .asc");
   }
+}
+
+TEST(ReadFrame, ReadsWhatIsWritten) {
+  const TempFile file;
+  Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
+  frame.topLeftCorner<3, 3>() =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
+  frame.topRightCorner<3, 1>() = Eigen::Vector3d(1.0 / 3.0, -1e6 / 7.0, 2.5);
+  write_frame(file.path(), frame);
+  EXPECT_EQ(read_frame(file.path()), frame);
 }
 
 TEST(ReadFrame, SixteenNumbersOfARigidMotion) {

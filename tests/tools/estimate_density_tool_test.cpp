@@ -93,9 +93,6 @@ TEST_F(Tools, SeparateScansOfDigAndDumpTellTheSameAsTheWholeScene) {
 
 TEST_F(Tools, PaperMethodGivesItsVolumesAndNoTrust) {
   const Words words = quickstart(folder) + Words{"--method", "paper"};
-  if (contains(run_program("estimate-density", words).err, "built without it")) {
-    GTEST_SKIP() << "built without EXCAVPLAN_SURVEY";
-  }
   const json truth = json::parse(content_of(shipped("quickstart/truth.json")));
   const json paper = answer("estimate-density", words);
   std::cout << "  paper's method: k " << paper.at("bulking_factor") << " of "
@@ -135,9 +132,6 @@ TEST_F(Tools, AKnownPathFreesTheBulkingFactorOfWhatFellBack) {
 
 TEST_F(Tools, BothMethodsAreShownWhenAsked) {
   const Words words = quickstart(folder) + Words{"--compare-methods"};
-  if (contains(run_program("estimate-density", words).err, "built without it")) {
-    GTEST_SKIP() << "built without EXCAVPLAN_SURVEY";
-  }
   const json both = answer("estimate-density", words);
   const json surface = answer("estimate-density", quickstart(folder));
   const json paper = answer("estimate-density", quickstart(folder) + Words{"--method", "paper"});

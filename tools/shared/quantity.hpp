@@ -10,8 +10,6 @@
 
 #include "base/text.hpp"
 
-#include "base/text.hpp"
-
 /// @file
 /// Numbers with units on the command line. `what` names the option in messages.
 

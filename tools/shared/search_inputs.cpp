@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/search_inputs.hpp"
 
-#include <utility>
 #include <variant>
 
 #include <excavplan/error.hpp>
@@ -12,25 +11,36 @@
 namespace excavplan::tools {
 namespace {
 
-/// Generations of the default method, which its evaluations end long before; ours.
-constexpr int enough_for_the_evaluations = 20;
-
 [[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
+
+/// "energy", "priced:WATT"
+std::string usage(const DigGoalInfo& goal) {
+  return goal.word + (goal.parameter ? ":" + goal.parameter_name : "");
+}
+
+/// All goals, each as `text` puts it.
+template <typename Text>
+std::string goals_text(const std::string& separator, const Text& text) {
+  std::string all;
+  for (const DigGoalInfo& goal : dig_goals()) all += (all.empty() ? "" : separator) + text(goal);
+  return all;
+}
 
 DigObjective objective_of(const SearchInputs& inputs) {
   DigObjective objective;
   objective.rest_of_cycle = inputs.rest_of_cycle;
-  const std::string priced = "priced:";
-  if (inputs.goal == "time") {
-    objective.goal = DigObjective::Goal::mass_per_time;
-  } else if (inputs.goal.compare(0, priced.size(), priced) == 0) {
-    objective.goal = DigObjective::Goal::priced;
-    objective.time_price =
-        parse_quantity("--goal priced", inputs.goal.substr(priced.size()), Quantity::ratio);
-  } else if (inputs.goal != "energy") {
-    refuse("--goal: '" + inputs.goal + "' is none of energy, time, priced:WATT");
+  const std::size_t colon = inputs.goal.find(':');
+  const std::string word = inputs.goal.substr(0, colon);
+  for (const DigGoalInfo& goal : dig_goals()) {
+    if (goal.word != word || (goal.parameter == nullptr) != (colon == std::string::npos)) continue;
+    objective.goal = goal.goal;
+    if (goal.parameter) {
+      objective.*goal.parameter =
+          parse_quantity("--goal " + word, inputs.goal.substr(colon + 1), Quantity::ratio);
+    }
+    return objective;
   }
-  return objective;
+  refuse("--goal: '" + inputs.goal + "' is none of " + goals_text(", ", usage));
 }
 
 std::string range_option(const DigParameterInfo& info) {
@@ -39,22 +49,22 @@ std::string range_option(const DigParameterInfo& info) {
 
 DigBounds bounds_of(const SearchInputs& inputs) {
   DigBounds bounds;
-  const auto& table = dig_parameter_table();
-  for (std::size_t i = 0; i < table.size(); ++i) {
+  for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
     if (!inputs.ranges[i]) continue;
-    const std::string option = "--" + range_option(table[i]);
+    const DigParameterInfo& info = dig_parameter_table()[i];
+    const std::string option = "--" + range_option(info);
     const std::vector<std::string> ends = split(*inputs.ranges[i], ',');
     if (ends.size() != 2) refuse(option + ": '" + *inputs.ranges[i] + "' is not FROM,TO");
-    bounds.lower.*table[i].field = parse_quantity(option, ends[0], quantity_of(table[i]));
-    bounds.upper.*table[i].field = parse_quantity(option, ends[1], quantity_of(table[i]));
+    bounds.lower.*info.field = parse_quantity(option, ends[0], quantity_of(info));
+    bounds.upper.*info.field = parse_quantity(option, ends[1], quantity_of(info));
   }
   return bounds;
 }
 
 std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inputs) {
   if (inputs.method == "default") {
-    MemeticSearch memetic;
-    memetic.generations = inputs.generations != 0 ? inputs.generations : enough_for_the_evaluations;
+    auto memetic = std::get<MemeticSearch>(budget_search().method);
+    if (inputs.generations != 0) memetic.generations = inputs.generations;
     return memetic;
   }
   GeneticAlgorithm paper;
@@ -63,12 +73,22 @@ std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inpu
   return paper;
 }
 
+/// Shows a search on the console. @return whether it may go on
+bool report(Console& console, const SearchProgress& p, const DigGoalInfo& goal) {
+  console.progress(static_cast<double>(p.evaluations) / p.planned,
+                   "generation " + std::to_string(p.generation) + ": best " +
+                       readable(goal.per_si * p.best) + ", mean " + readable(goal.per_si * p.mean) +
+                       " " + goal.unit + ", " + std::to_string(p.evaluations) + " digs, " +
+                       readable(p.seconds_left) + " s left");
+  return !console.stop_requested();
+}
+
 }  // namespace
 
 void declare_search(Arguments& arguments, SearchInputs& inputs) {
-  arguments.text("goal", "GOAL", inputs.goal,
-                 "energy: mass per energy; time: mass per time; priced:WATT: mass per energy, a "
-                 "second costing so much");
+  arguments.text("goal", "GOAL", inputs.goal, goals_text("; ", [](const DigGoalInfo& goal) {
+                   return usage(goal) + ": " + goal.description;
+                 }));
   arguments.option("rest-of-cycle", inputs.rest_of_cycle, Quantity::time,
                    "swing, dump and return, added to the time of the dig");
   arguments.text("start", "RULE|LENGTH", inputs.start,
@@ -99,22 +119,14 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
 }
 
 StartRule start_rule_of(const SearchInputs& inputs) {
-  if (inputs.start == "work") return StartRule::Kind::least_work;
-  if (inputs.start == "margin") return StartRule::Kind::largest_margin;
-  if (inputs.start == "search") return StartRule::Kind::searched;
+  if (const auto rule = start_rule_of_word(inputs.start)) return *rule;
   return parse_quantity("--start", inputs.start, Quantity::length);
 }
 
-DigSearchOptions search_options(const SearchInputs& inputs, int evaluations, Console& console) {
-  if (inputs.evaluations < 0) {
-    refuse("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
-  }
+DigSearchOptions search_options(const SearchInputs& inputs, Console& console) {
   DigSearchOptions options;
   options.method = method_of(inputs);
   options.stop.evaluations = inputs.evaluations;
-  if (inputs.evaluations == 0 && inputs.method == "default") {
-    options.stop.evaluations = evaluations;
-  }
   options.seed = inputs.seed;
   options.threads = static_cast<unsigned>(inputs.threads);
   options.objective = objective_of(inputs);
@@ -122,21 +134,18 @@ DigSearchOptions search_options(const SearchInputs& inputs, int evaluations, Con
   options.start_rule = start_rule_of(inputs);
   options.checkpoint = inputs.checkpoint.value_or("");
   options.resume = inputs.resume;
-  const bool per_time = options.objective.goal == DigObjective::Goal::mass_per_time;
-  options.progress = [&console, per_time](const SearchProgress& p) {
-    const double scale = per_time ? 1.0 : 1000.0;
-    console.progress(static_cast<double>(p.evaluations) / p.planned,
-                     "generation " + std::to_string(p.generation) + ": best " +
-                         readable(scale * p.best) + ", mean " + readable(scale * p.mean) +
-                         (per_time ? " kg/s, " : " kg/kJ, ") + std::to_string(p.evaluations) +
-                         " digs, " + readable(p.seconds_left) + " s left");
-    return !console.stop_requested();
+  const DigGoalInfo& goal = info_of(options.objective.goal);
+  options.progress = [&console, &goal](const SearchProgress& progress) {
+    return report(console, progress, goal);
   };
   return options;
 }
 
 void check(const SearchInputs& inputs) {
   if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
+  if (inputs.evaluations < 0) {
+    refuse("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
+  }
   objective_of(inputs);
   bounds_of(inputs);
 }

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/dig_search.hpp>
 
 #include "shared/tool.hpp"
 
@@ -16,9 +15,9 @@ namespace excavplan::tools {
 
 /// How a dig is searched, as said on the command line.
 struct SearchInputs {
-  std::string goal = "energy";
+  std::string goal = dig_goals().front().word;
   double rest_of_cycle = 0.0;
-  std::string start = "work";
+  std::string start = start_rules().front().word;
   /// FROM,TO of each number of dig_parameter_table().
   std::vector<std::optional<std::string>> ranges =
       std::vector<std::optional<std::string>>(dig_parameter_table().size());
@@ -49,8 +48,7 @@ std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use);
 
 StartRule start_rule_of(const SearchInputs& inputs);
 
-/// With progress on the console, which also stops the search.
-/// @param evaluations  of the default method, unless the inputs say how many
-DigSearchOptions search_options(const SearchInputs& inputs, int evaluations, Console& console);
+/// For plan_dig(), with progress on the console, which also stops the search.
+DigSearchOptions search_options(const SearchInputs& inputs, Console& console);
 
 }  // namespace excavplan::tools

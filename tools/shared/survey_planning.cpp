@@ -83,6 +83,53 @@ std::string text_of(const std::optional<double>& value, const std::string& unit)
   return value ? readable(*value, 2) + unit : "not by this alone";
 }
 
+nlohmann::ordered_json json_of(const Request& request, const SurveyForecast& f,
+                               const SurveyNeeds& needs) {
+  const auto or_null = [](const auto& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+  };
+  return {{"sensor", request.plan.sensor.name},
+          {"range_m", f.range},
+          {"ray_spacing_m", f.ray_spacing},
+          {"excavated_sd_m3", f.excavated_sd},
+          {"after_sd_m3", f.after_sd},
+          {"bulking_factor_sd", f.bulking_sd},
+          {"density_sd_percent", f.density_sd_percent},
+          {"datum_sd_m", f.datum_sd},
+          {"variance_shares",
+           {{"white", f.white_share},
+            {"correlated", f.correlated_share},
+            {"datum", f.datum_share},
+            {"occlusion", f.occlusion_share}}},
+          {"hidden_share", f.hidden_share},
+          {"in_view", f.in_view},
+          {"target_sd_percent", request.target},
+          {"needs",
+           {{"range_at_most_m", or_null(needs.range)},
+            {"range_at_least_m", needs.nearest_range},
+            {"frames_at_least", or_null(needs.frames)},
+            {"noise_factor_at_most", or_null(needs.noise)}}}};
+}
+
+std::vector<std::string> lines_of(const Request& request, const SurveyForecast& f,
+                                  const SurveyNeeds& needs) {
+  const auto percent = [](double share) { return readable(100.0 * share, 2) + " %"; };
+  return {"sensor     " + request.plan.sensor.name + ", " + readable(f.range, 3) +
+              " m from the middle of the area, a ray every " + readable(1000.0 * f.ray_spacing, 2) +
+              " mm",
+          "bulking    sd " + readable(f.bulking_sd, 2),
+          "density    sd " + readable(f.density_sd_percent, 2) +
+              " points, one standard deviation, the law's own scatter not in it",
+          "  of which " + percent(f.white_share) + " noise, " + percent(f.correlated_share) +
+              " pattern, " + percent(f.datum_share) + " datum, " + percent(f.occlusion_share) +
+              " hidden ground",
+          "for " + readable(request.target, 2) + " points, either",
+          "  range    at most " + text_of(needs.range, " m at this angle of view"),
+          "  frames   at least " +
+              (needs.frames ? std::to_string(*needs.frames) : std::string("not by this alone")),
+          "  noise    at most " + text_of(needs.noise, " times that of this sensor")};
+}
+
 }  // namespace
 
 std::string survey_keys() {
@@ -99,50 +146,13 @@ std::string survey_keys() {
 Outcome planned_survey(const std::string& text, const DensityLaw& law) {
   Request request = parse(text);
   request.plan.density_slope = density_slope(law.form, request.plan.bulking_factor);
-  const SurveyForecast f = plan_survey(request.plan);
+  const SurveyForecast forecast = plan_survey(request.plan);
   const SurveyNeeds needs = survey_needs(request.plan, request.target);
-  const auto json_of = [](const auto& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-  };
   Outcome outcome;
-  outcome.json = {{"sensor", request.plan.sensor.name},
-                  {"range_m", f.range},
-                  {"ray_spacing_m", f.ray_spacing},
-                  {"excavated_sd_m3", f.excavated_sd},
-                  {"after_sd_m3", f.after_sd},
-                  {"bulking_factor_sd", f.bulking_sd},
-                  {"density_sd_percent", f.density_sd_percent},
-                  {"datum_sd_m", f.datum_sd},
-                  {"variance_shares",
-                   {{"white", f.white_share},
-                    {"correlated", f.correlated_share},
-                    {"datum", f.datum_share},
-                    {"occlusion", f.occlusion_share}}},
-                  {"hidden_share", f.hidden_share},
-                  {"in_view", f.in_view},
-                  {"target_sd_percent", request.target},
-                  {"needs",
-                   {{"range_at_most_m", json_of(needs.range)},
-                    {"range_at_least_m", needs.nearest_range},
-                    {"frames_at_least", json_of(needs.frames)},
-                    {"noise_factor_at_most", json_of(needs.noise)}}},
-                  {"law", law.name}};
-  const auto percent = [](double share) { return readable(100.0 * share, 2) + " %"; };
-  outcome.lines = {"sensor     " + request.plan.sensor.name + ", " + readable(f.range, 3) +
-                       " m from the middle of the area, a ray every " +
-                       readable(1000.0 * f.ray_spacing, 2) + " mm",
-                   "bulking    sd " + readable(f.bulking_sd, 2),
-                   "density    sd " + readable(f.density_sd_percent, 2) +
-                       " points, one standard deviation, the law's own scatter not in it",
-                   "  of which " + percent(f.white_share) + " noise, " +
-                       percent(f.correlated_share) + " pattern, " + percent(f.datum_share) +
-                       " datum, " + percent(f.occlusion_share) + " hidden ground",
-                   "for " + readable(request.target, 2) + " points, either",
-                   "  range    at most " + text_of(needs.range, " m at this angle of view"),
-                   "  frames   at least " + (needs.frames ? std::to_string(*needs.frames)
-                                                          : std::string("not by this alone")),
-                   "  noise    at most " + text_of(needs.noise, " times that of this sensor")};
-  if (!f.in_view) {
+  outcome.json = json_of(request, forecast, needs);
+  outcome.json["law"] = law.name;
+  outcome.lines = lines_of(request, forecast, needs);
+  if (!forecast.in_view) {
     outcome.warnings.push_back({"not_in_view",
                                 "pit, spill and heap do not fit into the field of view from there; "
                                 "at this angle they do from " +

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/library/plan_dig.hpp>
 
 #include "base/json.hpp"
 
@@ -352,17 +353,9 @@ Machine machine_named(const std::string& name_or_path) {
 
 PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
                        const SoilKind& soil) {
-  const std::string shipped = "libraries/" + machine.name + "-" + soil.name + ".json";
-  std::string name;
-  try {
-    name = file ? *file : find_data_file(shipped);
-  } catch (const Error&) {
-    throw Error(ErrorKind::bad_input, "no library of " + machine.name + " in " + soil.name +
-                                          " is shipped: --search needs none, build-path-library "
-                                          "makes one");
-  }
-  PathLibrary library = load_path_library(name);
-  require_fit(library, machine, soil, name);
+  if (!file) return shipped_library(machine, soil);
+  PathLibrary library = load_path_library(*file);
+  require_fit(library, machine, soil, *file);
   return library;
 }
 

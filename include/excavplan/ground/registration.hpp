@@ -14,21 +14,19 @@ namespace excavplan {
 using Motion = Eigen::Matrix<double, 6, 1>;
 using MotionCovariance = Eigen::Matrix<double, 6, 6>;
 
-/// How the scan after the dig lies against the one before.
+/// Position of the scan after the dig against the scan before.
 ///
-/// A point p of the ground appears in the scan after at centre + R (p - centre) + t. The default
-/// says: nothing is known to have moved, but the height of the scans against each other (the datum)
-/// is open.
+/// A point p of the ground appears in the scan after at centre + R (p - centre) + t. By default
+/// nothing has moved, but the height of the scans against each other (the datum) is not known.
 struct Alignment {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Motion motion = Motion::Zero();  ///< what is taken off: `found` as far as it is significant
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the rotation [m]
+  Motion motion = Motion::Zero();  ///< to correct for: `found` as far as it is significant
   Motion found = Motion::Zero();   ///< best estimate
   MotionCovariance covariance = MotionCovariance::Zero();  ///< of `found`
-  /// What may be left after `motion` is taken off, before the volumes look at the ground again:
-  /// wide for what the ground around the zones tells anew (height and tilts), the covariance for
-  /// the rest.
+  /// Covariance of what is left after the correction, for measure_change(): wide for what the
+  /// ground around the zones determines again (height and tilts), `covariance` for the rest.
   MotionCovariance left = default_left();
-  std::array<bool, 6> supported = {};    ///< the scene tells it: its sd is below half its prior's
+  std::array<bool, 6> supported = {};    ///< the scene determines it: sd below half the prior's
   bool vertical_is_significant = false;  ///< height and tilts, at 99 % against correlated error
   bool lateral_is_significant = false;   ///< shift and turn in plan, likewise
   double residual_sd = 0.0;              ///< robust, of one cell on ground that did not change [m]
@@ -36,17 +34,18 @@ struct Alignment {
 
   /// Takes points of the scan after back to the frame of the scan before.
   Eigen::Matrix4d correction() const;
-  /// Largest way in plan that `motion` moves a point of the map [m].
+  /// Largest displacement of a point of the map in plan by `motion` [m].
   double largest_shift(const HeightMap& map) const;
 
+  /// The default of `left`: the prior of the height, zero for the rest.
   static MotionCovariance default_left();
 };
 
-/// Settings of align(). Priors as in docs/methods.md#volumes.
+/// Settings of align(). Priors as in `docs/methods.md#volumes`.
 struct AlignmentOptions {
   double shift_prior = 0.020;     ///< sd of each translation [m], > 0
   double turn_prior = 0.0052360;  ///< sd of each rotation (0.3 degrees) [rad], > 0
-  double steepest = 1.0;  ///< cells of a larger gradient say nothing (walls, edges) [-], > 0
+  double steepest = 1.0;  ///< cells of a larger gradient (walls, edges) are not used [-], > 0
 };
 
 /// Finds the motion of the after surface on the ground that did not change.
@@ -54,16 +53,16 @@ struct AlignmentOptions {
 /// Linear in the six unknowns by the gradient of the ground (Nuth and Kaab 2011 with rotations);
 /// starts at the half-sample mode of the height change (Robertson and Cryer 1974), which survives
 /// more than 40 % of changed area, then reweights by Tukey's biweight. The variance of a cell is
-/// inflated by the correlation of the residuals, so that what the scene does not show (a shift on
-/// level ground) stays at zero by its prior.
+/// inflated by the correlation of the residuals, so that what the scene does not determine (a shift
+/// on level ground) stays at zero by its prior.
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid, share fewer than 100 known cells
 ///         with known neighbours, or an option is out of range
 Alignment align(const Surface& before, const Surface& after, const AlignmentOptions& options = {});
 
-/// The after map with the motion taken off by its gradients: for motions that move no point by
-/// more than half a cell in plan; beyond that, transform the points by correction() and rasterise
-/// them again.
+/// The map after, corrected for the motion by its gradients. For motions that displace no point by
+/// more than half a cell in plan; for larger ones transform the points by correction() and
+/// rasterise them again.
 HeightMap realigned(const HeightMap& after, const Alignment& alignment);
 
 }  // namespace excavplan

@@ -8,12 +8,13 @@
 
 namespace excavplan {
 
-/// A surveyed surface: heights of the ground and what the points say about their error.
+/// A surveyed surface: heights of the ground and their error by the points.
 struct Surface {
-  HeightMap height;          ///< NaN where no point was accepted
-  Eigen::ArrayXXd variance;  ///< of each cell's height, from the scatter of its own points and
-                             ///< independent from cell to cell [m^2]; NaN where they do not tell it
-  Eigen::ArrayXXi points;    ///< accepted in each cell
+  HeightMap height;  ///< NaN where no point was accepted
+  /// Of each cell's height, from the scatter of its own points, independent from cell to cell
+  /// [m^2]; NaN where unknown.
+  Eigen::ArrayXXd variance;
+  Eigen::ArrayXXi points;  ///< accepted in each cell
 };
 
 }  // namespace excavplan

@@ -10,32 +10,33 @@
 #include <Eigen/Core>
 
 /// @file
-/// The hydraulic cylinders behind the joints: how long they are, how hard they push, how much oil
-/// they take.
+/// The hydraulic cylinders of the joints: their length, force and flow of oil.
 ///
-/// Every pin is polar about the pin of its joint, so a linkage does not depend on how long the
-/// links are. Joint angles are those of the machine: positive turns down and curls in.
+/// Pins are given in polar coordinates about the pin of the joint, so that a linkage does not
+/// depend on the lengths of the links. Joint angles are those of the machine: positive turns down
+/// and curls in.
 
 namespace excavplan {
 
-/// A pin beside the pin of a joint, counter-clockwise of the direction of the link it sits on.
+/// A pin on a link, from the pin of the joint.
 struct PolarPin {
-  double distance = 0.0;  ///< from the joint's pin [m]
-  double angle = 0.0;     ///< [rad]
+  double distance = 0.0;  ///< from the pin of the joint [m]
+  double angle = 0.0;     ///< from the direction of the link, counter-clockwise [rad]
 };
 
 /// A bar between a pin on one of the two links and the end of the cylinder's rod.
 struct Bar {
-  PolarPin pin;
+  PolarPin pin;         ///< its end on the link
   double length = 0.0;  ///< [m]
 };
 
-/// What stands between rod and bucket: the rod pushes the pin where both bars meet.
+/// The linkage between rod and bucket: the rod acts on the pin where both bars meet.
 struct FourBar {
   Bar rocker;  ///< pinned to the link before the joint
   Bar link;    ///< pinned to the link after it
 };
 
+/// Where the cylinders of one joint are fixed.
 struct CylinderGeometry {
   int count = 1;  ///< cylinders side by side that share the work
   PolarPin foot;  ///< on the link before the joint; before the boom: from +x
@@ -43,33 +44,37 @@ struct CylinderGeometry {
   std::variant<PolarPin, FourBar> rod;
 };
 
+/// A cylinder at one joint angle.
 struct CylinderState {
   double length = 0.0;  ///< pin to pin [m]
   double lever = 0.0;   ///< d length / d joint angle [m/rad]; negative: pushing turns back
 };
 
-/// The cylinder of one joint (or the pair, all of it per cylinder). Its length grows or falls all
-/// the way through the joint's range: this is proved when it is made.
+/// The cylinder of one joint, or one of a pair. Its length strictly rises or falls over the range
+/// of the joint, which the constructor checks.
 class Cylinder {
  public:
-  /// A four-bar is assembled uncrossed: in the middle of the range, the rod is on the far side of
-  /// the line between the pins of rocker and link, seen from the joint.
+  /// A four-bar is assembled uncrossed: in the middle of the range, the end of the rod and the
+  /// joint lie on different sides of the line between the pins of rocker and link.
   ///
-  /// @param lower, upper  range of the joint [rad]
-  /// @throws Error (bad_input) saying at which joint angle the parts do not meet or are at their
-  ///         dead point, or that the stroke exceeds the shortest length, which no cylinder can
+  /// @param geometry where it is fixed
+  /// @param lower end of the joint's range [rad]
+  /// @param upper end of the joint's range [rad]
+  /// @throws Error (bad_input) naming the joint angle at which the parts do not meet or are at
+  /// their
+  ///         dead point; also if the stroke exceeds the shortest length, which no cylinder can have
   Cylinder(const CylinderGeometry& geometry, double lower, double upper);
 
-  /// Also beyond the range, as far as the parts meet; NaN where they do not.
+  /// State at a joint angle, also outside the range; NaN where the parts do not meet.
   CylinderState at(double joint) const;
 
-  /// Closed form; nothing where the length is not within the stroke (beyond rounding, 1e-12 m).
+  /// Joint angle of a length, in closed form; nothing outside the stroke (by more than 1e-12 m).
   std::optional<double> joint_angle(double length) const;
 
-  /// Of each cylinder, for a torque of its joint [N m]; positive pushes [N].
+  /// Force of each cylinder for a torque of the joint [N m]; positive pushes [N].
   double force(double joint, double torque) const;
 
-  int count() const { return geometry_.count; }
+  int count() const { return geometry_.count; }           ///< cylinders side by side
   double shortest() const { return shortest_; }           ///< [m]
   double longest() const { return longest_; }             ///< [m]
   double stroke() const { return longest_ - shortest_; }  ///< over the joint's range [m]
@@ -98,11 +103,12 @@ class Cylinder {
 /// Boom, arm, bucket.
 using Cylinders = std::array<Cylinder, 3>;
 
+/// States of all cylinders at these joint angles.
 std::array<CylinderState, 3> cylinder_states(const Cylinders& cylinders,
                                              const Eigen::Vector3d& joints);
 
-/// What each cylinder of a joint must push (negative: pull) for the joints to give `torque` [N].
-/// The weight of cylinders, rocker and link, and friction in the pins, are left out.
+/// Force of each cylinder of a joint for `torque` of the joints; positive pushes [N]. The weight of
+/// cylinders, rocker and link and the friction in the pins are neglected.
 Eigen::Vector3d cylinder_forces(const Cylinders& cylinders, const Eigen::Vector3d& joints,
                                 const Eigen::Vector3d& torque);
 
@@ -110,16 +116,17 @@ Eigen::Vector3d cylinder_forces(const Cylinders& cylinders, const Eigen::Vector3
 struct Piston {
   double diameter = 0.0;                                   ///< [m]
   double rod_diameter = 0.0;                               ///< [m], below diameter
-  double speed = std::numeric_limits<double>::infinity();  ///< it may have, either way [m/s]
+  double speed = std::numeric_limits<double>::infinity();  ///< highest, in both directions [m/s]
 
-  double area_filled(double growth) const;  ///< [m^2], of the side that takes oil as it grows
+  /// Area of the side that takes oil while the length changes by `growth` (its sign counts) [m^2].
+  double area_filled(double growth) const;
 };
 
-/// What drives boom, arm and bucket. The pumps must deliver count * area filled * speed, summed
-/// over the joints: oil is not led from one side of a piston to the other (regeneration).
+/// The hydraulics of boom, arm and bucket. The pumps deliver count * area filled * speed, summed
+/// over the joints; there is no regeneration from one side of a piston to the other.
 struct Hydraulics {
-  std::array<Piston, 3> pistons;
-  double pump_flow = 0.0;  ///< of all pumps together [m^3/s]
+  std::array<Piston, 3> pistons;  ///< of boom, arm, bucket
+  double pump_flow = 0.0;         ///< of all pumps together [m^3/s]
 };
 
 }  // namespace excavplan

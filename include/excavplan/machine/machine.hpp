@@ -28,20 +28,22 @@
 
 namespace excavplan {
 
+/// In the order of all arrays and vectors of joints.
 enum class Joint { boom, arm, bucket };
+/// "boom", "arm" or "bucket".
 const char* name(Joint joint);
 
 /// (boom, arm, bucket) [rad]; also torques [N m] and rates [rad/s] in the same order and sense.
 using JointAngles = Eigen::Vector3d;
 
-/// A link's mass and where its centre is: `along` the line from its pin to the next pin (or tip)
-/// and `across`, counter-clockwise of that line [m].
+/// Mass of a link and its centre, from the pin of the link.
 struct LinkMass {
-  double mass = 0.0;  ///< [kg]
-  double along = 0.0;
-  double across = 0.0;
+  double mass = 0.0;    ///< [kg]
+  double along = 0.0;   ///< the line to the next pin, or to the tip [m]
+  double across = 0.0;  ///< that line, counter-clockwise [m]
 };
 
+/// What a joint can do.
 struct JointLimits {
   double lower = 0.0;         ///< [rad]
   double upper = 0.0;         ///< [rad]
@@ -50,16 +52,16 @@ struct JointLimits {
   double torque = 0.0;        ///< [N m], > 0
 };
 
-/// Teeth in front of the lip, all alike, shaped like wedges.
+/// Teeth in front of the lip: equal wedges.
 struct Teeth {
-  int count = 0;
+  int count = 0;           ///< over the whole width
   double width = 0.0;      ///< of one [m]
   double thickness = 0.0;  ///< at the root [m]
   double length = 0.0;     ///< from root to point [m]
-  double angle = 0.0;      ///< of the wedge, its whole opening [rad]
+  double angle = 0.0;      ///< between both faces of the wedge [rad]
 };
 
-/// The bucket as its side profile swept over its width.
+/// The bucket: its side profile extruded over its width.
 struct Bucket {
   /// Corners of the cavity, (along, across) of the line from bucket pin to tip, counter-clockwise
   /// [m]. The first is the tip, the second the heel (end of the floor), the last the top edge; the
@@ -68,25 +70,25 @@ struct Bucket {
   double width_outside = 0.0;   ///< cuts this wide [m]
   double width_inside = 0.0;    ///< holds this wide [m]
   double edge_thickness = 0.0;  ///< of the lip [m]
-  double edge_angle = 0.0;      ///< wedge angle of the lip: the smallest rake it can have [rad]
+  double edge_angle = 0.0;      ///< wedge angle of the lip, its smallest rake [rad]
   std::optional<Teeth> teeth;   ///< nothing: a plain lip
 };
 
 /// A machine read from a file; immutable after that.
 struct Machine {
-  std::string name;
+  std::string name;                                    ///< "zx120"
   Eigen::Vector2d boom_pin = Eigen::Vector2d::Zero();  ///< x, z [m]
   double boom_length = 0.0;                            ///< boom pin to arm pin [m]
   double arm_length = 0.0;                             ///< arm pin to bucket pin [m]
   double bucket_length = 0.0;                          ///< bucket pin to tooth tip [m]
-  double track_front = 0.0;  ///< x of the foremost part of the undercarriage [m]
-  std::array<JointLimits, 3> limits;
-  std::array<LinkMass, 3> links;
-  Bucket bucket;
+  double track_front = 0.0;              ///< x of the foremost part of the undercarriage [m]
+  std::array<JointLimits, 3> limits;     ///< of boom, arm, bucket
+  std::array<LinkMass, 3> links;         ///< likewise
+  Bucket bucket;                         ///< with its teeth
   std::optional<Cylinders> cylinders;    ///< nothing if the file does not state them
   std::optional<Hydraulics> hydraulics;  ///< likewise; never without cylinders
 
-  /// Boom pin to tip with all links in one line: nothing is ever further away [m].
+  /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }
   double beta() const;  ///< angle between bucket floor and the line from tip to bucket pin [rad]
 };
@@ -94,18 +96,20 @@ struct Machine {
 /// Reads a machine file (docs/formats.md); every number in it names its source.
 ///
 /// @throws Error (bad_file) naming file, key, value and rule; among the rules: lengths and masses
-///         positive, limits in order, arm limits in 0 .. pi (the elbow never turns over), profile
-///         convex, counter-clockwise, tip at (bucket_length, 0), every cylinder's length rising or
-///         falling all the way through its joint's range
+///         positive, limits in order, arm limits in 0 .. pi (the elbow stays above), profile
+///         convex, counter-clockwise, tip at (bucket_length, 0), length of every cylinder strictly
+///         rising or falling over the range of its joint
 Machine load_machine(const std::string& path);
 
-/// 16 hexadecimal digits that change with every number of a machine that decides a dig; the name
-/// does not count.
+/// 16 hexadecimal digits that depend on every number of a machine that affects a dig, but not on
+/// its name.
 std::string fingerprint(const Machine& machine);
 
-/// Capacity of the bucket held with its mouth level: struck, and heaped with slopes of
-/// `slope` on all four sides (ISO 7451 rates excavator buckets at 1:1, slope = pi / 4) [m^3].
+/// Capacity of the bucket with its mouth level, filled to the mouth [m^3].
 double struck_capacity(const Machine& machine);
+
+/// The same with a heap on it that falls by `slope` [rad] to all four sides [m^3]. ISO 7451 rates
+/// excavator buckets at 1:1, slope = pi / 4.
 double heaped_capacity(const Machine& machine, double slope = 0.7853981633974483);
 
 }  // namespace excavplan

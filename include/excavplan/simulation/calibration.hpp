@@ -7,7 +7,7 @@
 
 #include <excavplan/machine/dig_parameters.hpp>
 #include <excavplan/simulation/simulators.hpp>
-#include <excavplan/soil/density_law.hpp>
+#include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/soil.hpp>
 
 namespace excavplan {

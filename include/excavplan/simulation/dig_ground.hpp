@@ -9,25 +9,26 @@
 #include <excavplan/simulation/soil_simulator.hpp>
 
 /// @file
-/// The ground that a machine digs: its extent, its profile in the boom plane, and ideal grounds to
-/// plan and calibrate on.
+/// The ground that a machine digs: its extent, its profile under the bucket, the part that a path
+/// sweeps, and ideal ground for planning and calibration.
 
 namespace excavplan {
 
-/// Ground that matters for a dig: from near the tracks to the machine's reach, one bucket and its
-/// windrows wide on both sides of the boom plane.
+/// Ground that affects a dig: from near the tracks to the machine's reach, wide enough for the
+/// bucket and its windrows.
 Rectangle planning_extent(const Machine& machine);
 
-/// Between which cells the tools and libraries simulate the ground [m]; ours: a dig on finer ones
-/// takes minutes.
+/// Smallest cell size at which tools and libraries simulate [m]; ours: a dig on smaller cells takes
+/// minutes.
 inline constexpr double finest_cell = 0.005;
+/// Largest cell size likewise [m].
 inline constexpr double coarsest_cell = 1.0;
 
 /// planning_extent() as level ground.
 Terrain level_planning_ground(const Machine& machine, double cell_size = 0.05);
 
-/// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the row
-/// of cells it needs.
+/// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the rows
+/// of cells that it needs.
 GroundProfile boom_plane_profile(const HeightMap& surface);
 GroundProfile boom_plane_profile(const Terrain& terrain);  ///< of its surface
 
@@ -42,18 +43,19 @@ Rectangle swept_strip(const Machine& machine, const DigPath& path);
 /// NaN where it does not dig.
 double swept_height(const DigPath& path, double x);
 
-/// Slope of the surface in the boom plane from `from_x` on, rising away from the machine [rad]: the
-/// line of least squares through the known cells. NaN with fewer than two.
+/// Slope of the surface in the boom plane beyond `from_x` [rad], positive if it rises away from the
+/// machine: least-squares line through the known cells. NaN with fewer than two.
 double boom_plane_slope(const Terrain& terrain, double from_x);
 
-/// Level ground under the machine that rises by `slope` [rad] from the front of its tracks on.
+/// planning_extent() as ground that is level up to the front of the tracks and rises by `slope`
+/// [rad] beyond it.
 Terrain sloped_planning_ground(const Machine& machine, double slope, double cell_size);
 
-/// Where dug soil goes unless said otherwise: beside the dig, clear of its windrows, within the
-/// swing of a machine that does not move (x, y) [m]; ours.
+/// Default place for the dug soil, (x, y) [m]; ours: beside the dig, clear of its windrows and
+/// within the reach of the machine where it stands.
 Eigen::Vector2d default_dump_point();
 
-/// Ground that holds the digs of a machine and a heap at `dump_at`.
+/// Ground for the digs of a machine and a heap at `dump_at`.
 Rectangle scene_extent(const Machine& machine, const Eigen::Vector2d& dump_at);
 
 }  // namespace excavplan

@@ -13,7 +13,7 @@
 ///
 /// P is the resultant on the tool's face, at the soil-tool friction angle to its normal. Sources:
 /// Reece 1964; McKyes, Soil Cutting and Tillage, 1985; slope terms derived from the same wedge
-/// (docs/methods.md#earthmoving). Angles in [rad].
+/// (`docs/methods.md#earthmoving`). Angles in [rad].
 
 namespace excavplan {
 
@@ -25,13 +25,14 @@ struct CuttingWedge {
   double slope = 0.0;          ///< alpha, of the surface along the travel, positive uphill
 };
 
+/// The factors N of the equation, and the wedge they are for.
 struct EarthmovingFactors {
-  double gamma = 0.0;
-  double c = 0.0;
-  double q = 0.0;  ///< of a surcharge pressure
-  double Q = 0.0;  ///< of a surcharge weight per width; use q or Q
-  double ca = 0.0;
-  double rake = 0.0;     ///< rho that they are for
+  double gamma = 0.0;    ///< of the weight of the wedge
+  double c = 0.0;        ///< of cohesion
+  double q = 0.0;        ///< of a surcharge pressure
+  double Q = 0.0;        ///< of a surcharge weight per width; use q or Q
+  double ca = 0.0;       ///< of adhesion
+  double rake = 0.0;     ///< rho of the wedge
   double failure = 0.0;  ///< beta, of the failure plane from the surface
   double D = 0.0;        ///< common denominator
 };
@@ -45,29 +46,34 @@ std::optional<EarthmovingFactors> earthmoving_factors(const CuttingWedge& wedge,
 std::optional<double> critical_failure_angle(const CuttingWedge& wedge);
 
 /// Factors of the horizontal force per width of a narrow blade with side crescents (McKyes and
-/// Ali 1977), level ground. `width_ratio` is b / t. The upper band of the force of a bucket, whose
-/// side plates suppress the crescents; side planes are the default.
+/// Ali 1977), level ground. `width_ratio` is b / t. An upper bound for a bucket, whose side plates
+/// suppress the crescents; the simulators use side planes.
 EarthmovingFactors crescent_factors(const CuttingWedge& wedge, double failure, double width_ratio);
 
-/// Cohesion and friction on the two vertical side planes of a wedge of depth t [N]
-/// (Perumpral type; docs/methods.md#earthmoving): to be added to P times side_plane_share().
+/// Soil of a wedge.
 struct SoilStrength {
   double unit_weight = 0.0;  ///< [N/m^3]
   double cohesion = 0.0;     ///< [Pa]
   double adhesion = 0.0;     ///< [Pa]
 };
+
+/// Cohesion and friction on the two vertical side planes of a wedge of this depth [m], to be added
+/// to P times side_plane_share() [N] (Perumpral type; `docs/methods.md#earthmoving`).
 double side_plane_force(const CuttingWedge& wedge, const EarthmovingFactors& factors,
                         const SoilStrength& strength, double depth);
+
+/// Factor from side_plane_force() to the force on the tool [-].
 double side_plane_share(const CuttingWedge& wedge, const EarthmovingFactors& factors);
 
 /// Factors at the critical failure angle over all rakes and slopes, tabulated once for a soil.
 class CriticalWedges {
  public:
+  /// Makes the table.
   /// @throws Error (bad_input) unless 0 <= tool_friction <= friction < 60 deg
   CriticalWedges(double friction, double tool_friction);
 
-  /// Rake is held inside 10 .. 120 deg and 20 deg below the rake at which no wedge can slide, slope
-  /// inside -(friction - 5 deg) .. 40 deg.
+  /// Factors for this rake and slope [rad]. The rake is clamped to 10 .. 120 deg and to 20 deg
+  /// below the rake at which no wedge can slide, the slope to -(friction - 5 deg) .. 40 deg.
   EarthmovingFactors at(double rake, double slope) const;
 
  private:
@@ -87,15 +93,16 @@ class CriticalWedges {
   std::vector<double> failure_;  ///< [rake index * slopes + slope index]
 };
 
-/// The same over a range of friction angles, tool friction being a fixed share of each: for ground
-/// that is not equally dense everywhere. The failure angle is interpolated between tables at most
-/// 2.5 deg of friction apart.
+/// The same for a range of friction angles with a constant ratio of tool friction: for ground of
+/// uneven density. The failure angle is interpolated between tables at most 2.5 deg of friction
+/// apart.
 class FrictionWedges {
  public:
+  /// Makes the tables.
   /// @throws Error (bad_input) unless 0 <= lowest <= highest < 60 deg and tool_ratio is in 0 .. 1
   FrictionWedges(double lowest, double highest, double tool_ratio);
 
-  /// `friction` is held inside the range, rake and slope as by CriticalWedges.
+  /// Factors; `friction` is clamped to the range, rake and slope as by CriticalWedges.
   EarthmovingFactors at(double rake, double slope, double friction) const;
 
  private:
@@ -104,8 +111,8 @@ class FrictionWedges {
   std::vector<CriticalWedges> tables_;
 };
 
-/// Passive pressure on a blunt edge over the pressure of the soil against it, A(x) of
-/// Balovnev 1983 for an edge at angle x.
+/// Ratio of the passive pressure on a blunt edge to the pressure in the soil: A(x) of Balovnev 1983
+/// for an edge at angle x.
 double blunt_edge_ratio(double edge_angle, double friction, double tool_friction);
 
 }  // namespace excavplan

@@ -11,39 +11,40 @@
 
 namespace excavplan {
 
-/// How steep soil stands in the bucket, as tangents.
+/// How steep soil can stand in the bucket, as tangents.
 struct HoldingSlopes {
   double face = 0.0;  ///< of the face above the lip while the bucket digs
   double heap = 0.0;  ///< of the heap above top edge and side plates
 };
 
-/// What the bucket can hold of loose soil with the line from its pin to its tip at angle `phi3`,
-/// the soil ahead standing `support` above the tip, 0 if clear of the ground [m^3]
-/// (docs/methods.md#bucket).
+/// Volume of loose soil that the bucket can hold [m^3], with the line from its pin to its tip at
+/// angle `phi3` [rad] and the soil ahead `support` above the tip [m], 0 if the bucket is clear of
+/// the ground (`docs/methods.md#bucket`).
 double bucket_capacity(const Machine& machine, double phi3, double support,
                        const HoldingSlopes& slopes);
 
-/// Steepest angle, from `least` to 80 deg, at which a face of soil of this height stands [rad]
+/// Steepest angle, in `least` .. 80 deg, at which a face of soil of this height stands [rad]
 /// (Culmann 1875: height = 4 c / gamma * sin(angle) cos(phi) / (1 - cos(angle - phi))).
 double stable_slope(const SoilState& soil, double height, double least);
 
-/// Rises with every change of the simulator that changes the result of a dig: what was computed
-/// with an older one, such as a path library, is then refused.
+/// Rises with every change of the simulator that affects the result of a dig. What was computed
+/// with another version, such as a path library, is refused.
 inline constexpr int height_map_simulator_version = 1;
 
 struct HeightMapModel;
 
-/// The built-in soil simulation: a bank and a loose layer per cell of a height map, quasi-static.
+/// The built-in simulator: a bank and a loose layer in each cell of a height map, quasi-static.
 ///
-/// The tip sweeps an exact volume out of every cell it passes; what it cuts swells to the loose
-/// state of the soil and fills the bucket up to what the bucket can hold in its attitude; the rest
-/// heaps up ahead of the lip, is cut again, and slides aside and back into the pit at its angle of
-/// repose. The soil resists by the fundamental earthmoving equation per strip of the edge, on the
-/// floor or on the soil packed on it, with side planes, the penetration of lip and teeth, the
-/// friction on floor and side plates, and the ground under the heel. Joint torques follow from
-/// soil, payload and link weights. Assumptions and limits: docs/methods.md#simulation.
+/// The tip cuts an exact volume out of each cell that it passes. Cut soil swells to the loose state
+/// and fills the bucket up to its capacity in its attitude; the rest heaps up ahead of the lip, is
+/// cut again, and slides aside and back into the pit at its angle of repose. The resistance is that
+/// of the fundamental earthmoving equation for each strip of the edge, on the floor or on the soil
+/// packed on it, with side planes, penetration of lip and teeth, friction on floor and side plates,
+/// and the ground under the heel. Joint torques follow from the forces of the soil and the weights
+/// of payload and links. Assumptions and limits: `docs/methods.md#simulation`.
 class HeightMapSimulator : public SoilSimulator {
  public:
+  /// For ground of this density [%].
   /// @throws Error (bad_input) unless 0 <= density_percent <= 100
   HeightMapSimulator(const Machine& machine, const SoilKind& soil, double density_percent);
 
@@ -53,8 +54,8 @@ class HeightMapSimulator : public SoilSimulator {
 
   static std::string name();  ///< with its version: "height-map 1"
 
-  const SoilState& bank() const;
-  const SoilState& loose() const;
+  const SoilState& bank() const;   ///< of the undisturbed soil
+  const SoilState& loose() const;  ///< of dug soil
 
  private:
   std::shared_ptr<const HeightMapModel> model_;

@@ -12,21 +12,23 @@
 
 namespace excavplan {
 
-/// Rises with every change of the simulator that changes the result of a dig.
+/// Rises with every change of the simulator that affects the result of a dig.
 inline constexpr int section_simulator_version = 1;
 
 struct SectionModel;
 
-/// The same physics in the boom plane alone: an independent second engine, several times faster.
+/// The same physics in the boom plane alone: a second, independent simulator that is several times
+/// faster and checks the first.
 ///
-/// Digs the mean profile of the ground over the bucket's width. The tip cuts exact areas out of it;
-/// what the bucket cannot hold is one wedge at the angle of repose ahead of the lip, which sheds
-/// windrows to both sides; heaps have closed forms, nothing is relaxed. Soil comes off the rows of
-/// the map under the bucket, each with its own void ratio; forces take the mean over them. What is
-/// left lies on these rows, windrows beside them. Assumptions and limits:
-/// docs/methods.md#simulation.
+/// It digs the mean profile of the ground over the width of the bucket. The tip cuts exact areas
+/// out of the profile; soil that the bucket cannot hold forms one wedge at the angle of repose
+/// ahead of the lip, which sheds windrows to both sides. Heaps have closed forms; there is no
+/// relaxation. Soil is taken from the rows of the map under the bucket, each with its own void
+/// ratio; forces take the mean over the rows. Soil that is left lies on these rows, windrows beside
+/// them. Assumptions and limits: `docs/methods.md#simulation`.
 class SectionSimulator : public SoilSimulator {
  public:
+  /// For ground of this density [%].
   /// @throws Error (bad_input) unless 0 <= density_percent <= 100
   SectionSimulator(const Machine& machine, const SoilKind& soil, double density_percent);
 
@@ -40,8 +42,7 @@ class SectionSimulator : public SoilSimulator {
   std::shared_ptr<const SectionModel> model_;
 };
 
-/// What the bucket can hold, by clipping its side profile with the slopes of the soil: same
-/// arguments and meaning as bucket_capacity(), another method [m^3].
+/// bucket_capacity() by another method: the side profile clipped by the slopes of the soil [m^3].
 double clipped_capacity(const Machine& machine, double phi3, double support,
                         const HoldingSlopes& slopes);
 

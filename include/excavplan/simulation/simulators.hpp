@@ -13,13 +13,12 @@
 
 namespace excavplan {
 
-/// A way to simulate digs: whatever searches, plans or calibrates takes one, and makes simulators
-/// of it for the machine, the soil and the densities that it needs. Fill one in to use a simulator
-/// of your own.
+/// A kind of simulator. Searches, plans and calibrations take one and make simulators with it for
+/// the machine, the soil and the densities that they need. Fill one in to use your own simulator.
 struct SimulatorKind {
   std::string word;  ///< that chooses it on the command line: "height-map"
-  /// With its version, "height-map 1": rises with every change that changes the result of a dig.
-  /// Laws and libraries keep it, and another name refuses them.
+  /// Name and version, "height-map 1". The version rises with every change that affects the result
+  /// of a dig; laws and libraries state the name and are refused with another one.
   std::string name;
   /// @throws Error (bad_input) unless 0 <= density_percent <= 100
   std::function<std::unique_ptr<const SoilSimulator>(const Machine& machine, const SoilKind& soil,

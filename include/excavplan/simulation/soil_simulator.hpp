@@ -14,19 +14,19 @@
 
 namespace excavplan {
 
-/// Energy of one dig [J]: design section 5. Every total is the sum over boom, arm and bucket of the
-/// integral of max(0, torque * rate) over penetrate, drag and scoop; no energy comes back.
+/// Energy of one dig [J]: the sum over boom, arm and bucket of the integral of max(0, torque *
+/// rate) over penetrate, drag and scoop. Negative work is not recovered.
 struct EnergyLedger {
-  double total = 0.0;
+  double total = 0.0;                ///< of the dig, without the lift
   std::array<double, 3> by_phase{};  ///< penetrate, drag, scoop
   std::array<double, 3> by_joint{};  ///< boom, arm, bucket
-  double soil = 0.0;                 ///< share of the total that the soil's resistance took
-  double payload = 0.0;              ///< share that the soil carried took
-  double links = 0.0;  ///< share that the weight of the links took; the three add up to the total
+  double soil = 0.0;                 ///< part of the total against the resistance of the soil
+  double payload = 0.0;              ///< part against the weight of the soil carried
+  double links = 0.0;  ///< part against the weight of the links: the rest of the total
   double lift = 0.0;   ///< of the lift clear of the ground, not part of the total
 };
 
-/// Where the soil went. Bank volumes are undisturbed, loose volumes are swollen [m^3].
+/// Where the soil went [m^3]. Bank volumes are those of undisturbed soil, loose ones are swollen.
 struct SoilLedger {
   double bank_cut = 0.0;           ///< undisturbed soil cut
   double loose_cut = 0.0;          ///< loose soil cut again
@@ -38,17 +38,17 @@ struct SoilLedger {
   double solids_after = 0.0;   ///< the same plus what is in the bucket [kg]
 };
 
-/// The machine could not go on. A result, not an error.
+/// A joint lacked the torque to go on. A result, not an error.
 struct Stall {
-  DigPhase phase = DigPhase::penetrate;
-  Joint joint = Joint::boom;
-  double travelled = 0.0;  ///< tip travel from the start of the dig [m]
-  double torque = 0.0;     ///< that was asked of the joint [N m]
+  DigPhase phase = DigPhase::penetrate;  ///< in which the dig ended
+  Joint joint = Joint::boom;             ///< that lacked torque
+  double travelled = 0.0;                ///< tip travel from the start of the dig [m]
+  double torque = 0.0;                   ///< that the joint needed [N m]
 };
 
-/// Forces half-way of one step.
+/// Forces in the middle of one step.
 struct ForceSample {
-  DigPhase phase = DigPhase::penetrate;
+  DigPhase phase = DigPhase::penetrate;            ///< of the step
   double travelled = 0.0;                          ///< tip travel [m]
   JointAngles joints = JointAngles::Zero();        ///< [rad]
   Eigen::Vector2d soil = Eigen::Vector2d::Zero();  ///< of the soil on the bucket (x, z) [N]
@@ -56,15 +56,16 @@ struct ForceSample {
   double bucket_fill = 0.0;                        ///< loose [m^3]
 };
 
+/// What a dig lifts, costs and leaves behind.
 struct DigResult {
-  TerrainPatch patch;           ///< every cell that changed, as it is afterwards
-  double payload_mass = 0.0;    ///< moist [kg]
-  double payload_volume = 0.0;  ///< loose [m^3]
-  EnergyLedger energy;
-  SoilLedger soil;
-  double peak_force = 0.0;  ///< largest force of the soil on the bucket [N]
-  std::optional<Stall> stall;
-  bool given_up = false;             ///< ended early, as DigOptions::give_up_below says
+  TerrainPatch patch;                ///< all cells that changed, afterwards
+  double payload_mass = 0.0;         ///< moist [kg]
+  double payload_volume = 0.0;       ///< loose [m^3]
+  EnergyLedger energy;               ///< [J]
+  SoilLedger soil;                   ///< [m^3]
+  double peak_force = 0.0;           ///< largest force of the soil on the bucket [N]
+  std::optional<Stall> stall;        ///< nothing: the machine finished the path
+  bool given_up = false;             ///< ended early: DigOptions::give_up_below
   std::vector<ForceSample> history;  ///< empty unless asked for
 
   /// The whole terrain afterwards.
@@ -78,40 +79,43 @@ struct DigResult {
   double efficiency() const { return energy.total > 0.0 ? payload_mass / energy.total : 0.0; }
 };
 
+/// Settings of SoilSimulator::dig().
 struct DigOptions {
-  bool history = false;
+  bool history = false;                    ///< record the forces
   std::optional<Eigen::Vector2d> dump_at;  ///< heap the payload here; else it stays in the bucket
 
-  // For searches, which care for the efficiency of many digs. A simulator may ignore both.
+  // For searches, which need only the efficiency of many digs. A simulator may ignore both.
 
-  /// Let the ground come to rest once the bucket is out. If not, only the patch and the account of
-  /// spilled and fallen_back are those of ground still sliding; payload and energy are the same.
+  /// Let the ground come to rest once the bucket is out. If false, the patch, spilled and
+  /// fallen_back are those of ground that still slides; payload and energy are the same.
   bool settle = true;
-  /// End the dig as soon as its efficiency cannot reach this any more [kg/J]: the energy spent
-  /// never falls, and the payload is at most what the bucket holds in its last attitude. Such a dig
-  /// is `given_up`; its efficiency() is below this, but else it is no guide to the whole dig.
+  /// End the dig as soon as its efficiency cannot reach this any more [kg/J]: the energy never
+  /// falls, and the payload is at most what the bucket holds in its last attitude. Such a dig is
+  /// `given_up`; its efficiency() is below this value, its other figures are incomplete.
   double give_up_below = 0.0;
 };
 
-/// A simulation of one dig on one terrain, ours or yours.
+/// A simulation of one dig on one terrain: the interface of a simulator of your own.
 ///
 /// An implementation returns the same bytes for the same arguments, may be called from several
-/// threads at once, conserves solids to 1e-9, leaves unknown cells unknown, and looks at no more of
-/// the terrain than it digs: the size of the map costs nothing.
-/// tests/soil_simulator_contract.hpp checks this for any implementation.
+/// threads at once, conserves solids to 1e-9, leaves unknown cells unknown, and reads no more of
+/// the terrain than it digs, so that the size of the map does not matter.
+/// tests/support/soil_simulator_contract.hpp checks this for any implementation.
 class SoilSimulator {
  public:
   virtual ~SoilSimulator() = default;
 
+  /// Digs along the path.
+  ///
   /// @throws Error (bad_input) if the path leaves the map or its known cells, the map is empty, a
   ///         layer is negative or a void ratio out of range where the dig works, or the dump point
   ///         lies off the map
   virtual DigResult dig(const Terrain& terrain, const DigPath& path,
                         const DigOptions& options = {}) const = 0;
 
-  /// All that decides its digs besides their arguments, as text: with its name and version, the
-  /// fingerprints of machine and soil, the density. The checkpoint of a search is refused by
-  /// another identity. Empty: a search knows the simulator by what it says of a few digs alone.
+  /// All that determines a dig besides its arguments, as text: name and version of the simulator,
+  /// fingerprints of machine and soil, density. A search refuses a checkpoint of another identity.
+  /// Empty: a search identifies the simulator by the results of a few digs.
   virtual std::string identity() const { return {}; }
 };
 

@@ -7,53 +7,55 @@
 #include <excavplan/ground/height_map.hpp>
 
 /// @file
-/// The ground that a simulator digs, and what its surface shows of a dig.
+/// The ground that a simulator digs, and measures of a dig on its surface.
 
 namespace excavplan {
 
-/// Ground in two layers on one grid. Unknown cells are NaN in `bank`; nothing moves on or off them.
+/// Ground in two layers on one grid. Unknown cells are NaN in `bank`; no soil enters or leaves
+/// them.
 struct Terrain {
   HeightMap bank;         ///< top of the undisturbed soil [m]
   Eigen::ArrayXXd loose;  ///< thickness of the loose soil on it [m], >= 0, same size
 
-  /// Void ratio of the undisturbed soil, the same down a whole cell, in the soil's
-  /// void_ratio_min .. void_ratio_max [-]. Empty: all of it as dense as the simulator was told.
+  /// Void ratio of the undisturbed soil, constant over the depth of a cell, in the soil's
+  /// void_ratio_min .. void_ratio_max [-]. Empty: the simulator's density everywhere.
   Eigen::ArrayXXd bank_void_ratio{};
   /// Void ratio of the loose layer, in the soil's void_ratio_min .. void_ratio_loose [-]. Empty:
-  /// all of it is void_ratio_loose, to which all soil swells that is dug or slides.
+  /// void_ratio_loose everywhere, to which all soil swells that is dug or slides.
   Eigen::ArrayXXd loose_void_ratio{};
 
   HeightMap surface() const;  ///< bank + loose
 };
 
-/// Undisturbed ground of this surface, with no loose soil.
+/// Undisturbed ground with this surface and no loose soil.
 Terrain undisturbed(const HeightMap& surface);
 
 /// A block of a terrain's cells in a new state.
 struct TerrainPatch {
-  Eigen::Index row = 0;  ///< of the block's first cell on the whole terrain
-  Eigen::Index col = 0;
+  Eigen::Index row = 0;              ///< of the block's first cell on the whole terrain
+  Eigen::Index col = 0;              ///< likewise
   Eigen::ArrayXXd bank;              ///< top of the undisturbed soil [m]
   Eigen::ArrayXXd loose;             ///< [m]
   Eigen::ArrayXXd loose_void_ratio;  ///< empty if the terrain's is
 };
 
-/// Puts a patch onto the terrain it was made for.
+/// Enters a patch into the terrain that it was made for.
 void apply(const TerrainPatch& patch, Terrain& terrain);
 
-/// Volumes of a dig straight from the height maps, cell by cell, as the paper does in its
-/// simulator.
+/// Volumes of a dig from the height maps, cell by cell, as the paper does in its simulator.
 struct HeightMapVolumes {
   double excavated = 0.0;       ///< ground that fell [m^3]
   double spilled = 0.0;         ///< ground that rose away from the heap [m^3]
   double dumped = 0.0;          ///< ground that rose within `dump_radius` of the dump point [m^3]
   double bulking_factor = 0.0;  ///< (spilled + dumped) / excavated; 0 if nothing was excavated
 };
+
+/// The volumes between two states of a terrain. `dump_radius` in [m].
 HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,
                                     const Eigen::Vector2d& dump_at, double dump_radius = 2.0);
 
-/// Slope of the heap that rose at `at`, mean of its flank between a quarter and three quarters of
-/// its radius over 36 directions [rad]; NaN if nothing rose there.
+/// Slope of the heap that rose at `at` [rad]: mean over 36 directions of its flank between a
+/// quarter and three quarters of its radius. NaN if nothing rose there.
 double heap_slope(const Terrain& before, const Terrain& after, const Eigen::Vector2d& at);
 
 }  // namespace excavplan

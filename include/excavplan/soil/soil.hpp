@@ -15,9 +15,10 @@ enum class ConeIndexLaw {
   stress,        ///< q = reference * (vertical stress / kPa)^exponent * exp(rate * d)
 };
 
-/// A kind of soil: what stays when its density changes. `d` is the relative density in 0 .. 1.
+/// A kind of soil: its numbers that do not depend on its density. `d` is the relative density in
+/// 0 .. 1.
 struct SoilKind {
-  std::string name;
+  std::string name;                  ///< "loam"
   double specific_gravity = 0.0;     ///< of the grains [-]
   double water_content = 0.0;        ///< water per dry mass [-]
   double void_ratio_max = 0.0;       ///< at d = 0 [-]
@@ -30,11 +31,11 @@ struct SoilKind {
   double tool_friction_ratio = 0.0;  ///< soil-metal friction angle / phi [-]
   double adhesion_ratio = 0.0;       ///< soil-metal adhesion / c [-]
   double angle_of_repose = 0.0;      ///< of loose soil [rad]
-  ConeIndexLaw cone_index_law = ConeIndexLaw::bulk_density;
-  double cone_index_reference = 0.0;          ///< [Pa]
-  double cone_index_rate = 0.0;               ///< [m^3/kg] or [-]
-  double cone_index_reference_density = 0.0;  ///< bulk_density law only [kg/m^3]
-  double cone_index_stress_exponent = 0.0;    ///< stress law only [-]
+  ConeIndexLaw cone_index_law = ConeIndexLaw::bulk_density;  ///< with the four numbers below
+  double cone_index_reference = 0.0;                         ///< [Pa]
+  double cone_index_rate = 0.0;                              ///< [m^3/kg] or [-]
+  double cone_index_reference_density = 0.0;                 ///< bulk_density law only [kg/m^3]
+  double cone_index_stress_exponent = 0.0;                   ///< stress law only [-]
 };
 
 /// A soil at one relative density. Loose soil (dug, dumped, spilled) is the state `loose()`.
@@ -56,23 +57,23 @@ struct SoilState {
 /// @throws Error (bad_file) naming file, key, value and rule
 SoilKind load_soil(const std::string& path);
 
-/// 16 hexadecimal digits that change with every number of a soil; the name does not count.
+/// 16 hexadecimal digits that depend on every number of a soil, but not on its name.
 std::string fingerprint(const SoilKind& soil);
 
 /// State of undisturbed soil. @throws Error (bad_input) unless 0 <= density_percent <= 100
 SoilState bank_state(const SoilKind& soil, double density_percent);
 
-/// The same for a void ratio. @throws Error (bad_input) unless void_ratio_min <= e <=
-/// void_ratio_max
+/// State of undisturbed soil with this void ratio.
+/// @throws Error (bad_input) unless void_ratio_min <= e <= void_ratio_max
 SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio);
 
-/// State of dug soil: void_ratio_loose, cohesion and adhesion lost, friction of the loosest state.
+/// State of dug soil: void_ratio_loose, no cohesion or adhesion, friction of the loosest state.
 SoilState loose_state(const SoilKind& soil);
 
 /// Penetration resistance (cone index) at a depth below the surface [Pa].
 ///
-/// The stress law takes the overburden (unit weight times depth) for the vertical stress and at
-/// least that of 1 cm, so that the surface itself resists too.
+/// The stress law takes the overburden (unit weight times depth, which is at least 1 cm) as the
+/// vertical stress, so that the surface resists too.
 double cone_index(const SoilKind& soil, const SoilState& state, double depth);
 
 /// Bulking factor if all soil goes from the bank at this density to the loose state:

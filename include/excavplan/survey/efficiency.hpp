@@ -18,7 +18,7 @@ namespace excavplan {
 enum class Spent { fuel, energy };
 enum class Lifted { volume, mass };
 
-/// What a bucket held, or the scans of the dump area that show it.
+/// What a bucket held.
 struct Payload {
   Lifted kind = Lifted::volume;
   Measured amount;  ///< [m^3] or [kg], > 0; the sd is NaN if it is not known
@@ -30,7 +30,7 @@ struct LoggedDig {
   std::string file;
   std::optional<double> from;  ///< time_s at which the dig starts [s]; else the first of the log
   std::optional<double> to;    ///< time_s at which it ends [s]; else the last of the log
-  std::variant<Payload, ScanPair> lifted;
+  std::variant<Payload, ScanPair> lifted;  ///< or the scans of the dump area that show it
   std::optional<double> cell_size;  ///< of the height maps of scans [m]; else cell_for() them
   unsigned threads = 0;             ///< for scans; 0: one per core
   std::string prefix = {};  ///< of from, to, volume and mass in messages, such as "--" of options

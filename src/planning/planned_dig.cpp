@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 
 #include <cmath>
 #include <string>
@@ -16,20 +16,6 @@ std::string describe(const DigFailure& failure) {
   return std::string("the ") + name(stall.joint) + " stalls in the phase " + name(stall.phase) +
          " after " + decimals(stall.travelled, 3) + " m: it would need " +
          decimals(std::abs(stall.torque) / 1000.0, 1) + " kN m";
-}
-
-std::string describe(const StartRule& rule) {
-  switch (rule.kind) {
-    case StartRule::Kind::largest_margin:
-      return "largest margin to joint limits and heel contact";
-    case StartRule::Kind::least_work:
-      return "least work of the links' own weight";
-    case StartRule::Kind::given:
-      return "given, x = " + number_text(rule.x) + " m";
-    case StartRule::Kind::searched:
-      return "searched with the path";
-  }
-  return "unknown rule";
 }
 
 std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,

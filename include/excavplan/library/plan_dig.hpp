@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/error.hpp>
+#include <excavplan/library/path_library.hpp>
+#include <excavplan/machine/trajectory.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/simulation/simulators.hpp>
+#include <excavplan/soil/density_law.hpp>
+
+/// @file
+/// From the density of the ground to the joint trajectory of the next dig, in one call.
+
+namespace excavplan {
+
+enum class PlanMethod {
+  library,  ///< looked up; dug once where the ground or the simulator is not the library's
+  search,   ///< searched by digs in the simulator, from the library's dig on
+};
+const char* name(PlanMethod method);
+
+/// The library that excavplan ships for a machine in a soil; `data_folder` as in find_data_file().
+/// @throws Error (bad_input) if none is shipped or it does not fit, (bad_file) if it cannot be read
+PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
+                            const std::string& data_folder = data_folder_of_package);
+
+struct PlanOptions {
+  PlanMethod method = PlanMethod::library;
+  /// Null: shipped_library() of `data_folder`, read anew by every call.
+  std::shared_ptr<const PathLibrary> library = nullptr;
+  std::string data_folder = data_folder_of_package;  ///< as find_data_file() takes it
+  /// `progress` reports and cancels, the seed fixes the result for any number of `threads`, and
+  /// `start_rule` also places a dig looked up for given ground. Without `start` a search for most
+  /// mass per energy begins with the library's dig. Where `stop.evaluations` is 0 the default
+  /// method makes evaluation_budget() digs.
+  DigSearchOptions search = budget_search();
+  SimulatorKind simulator = default_simulator();
+  TrajectoryOptions trajectory = {};
+  double cell_size = 0.05;  ///< of the level ground, if none is given [m]
+};
+
+/// How the search went.
+struct PlanSearch {
+  double worth = 0.0;  ///< of the dig, by the objective, in SI; the mean for an uncertain density
+  StopReason stopped_by = StopReason::generations;
+  int refused = 0;  ///< digs that cannot be driven, not simulated
+  /// Which numbers are worth 98 % of the best (SearchInsight::seen), in the order of
+  /// dig_parameter_table(), the start last if searched.
+  std::vector<ParameterRange> ranges;
+  /// What knowing an uncertain density would add, as a share of the worth >= 0; nothing for a
+  /// density taken as known and for a search that was stopped.
+  std::optional<double> value_of_knowing;
+};
+
+/// How the dig was looked up.
+struct PlanLookUp {
+  double slope = 0.0;                ///< of the ground, as far as the library goes [rad]
+  std::optional<MidwayError> error;  ///< look_up_error(); nothing on ground unlike the library's
+};
+
+struct DigPlan {
+  /// Expected figures: the library's on level ground in the simulator that it was computed with,
+  /// else those of the dig in `simulator`, their means if searched for an uncertain density.
+  /// Nothing if no dig can be done, or if the search was cancelled before it found one.
+  std::optional<PlannedDig> dig;
+  DigSpread spread;       ///< from the density's standard deviation; zero if that is 0
+  DigPath path;           ///< of the dig, with its approach
+  Trajectory trajectory;  ///< of that path
+  PlanMethod method = PlanMethod::library;
+  std::string start_rule;             ///< where the dig begins, for people
+  int evaluations = 0;                ///< digs simulated for the plan
+  std::optional<PlanSearch> search;   ///< if searched
+  std::optional<PlanLookUp> look_up;  ///< if looked up
+
+  bool stopped = false;     ///< the search was cancelled; the dig is the best until then
+  bool trustworthy = true;  ///< false after a warning marked * below
+  /// density_not_trustworthy *, law_of_other_soil, library_unreadable (the search began with
+  /// nothing), slope_outside_library *, ground_unlike_library *, may_stall *, approach_blocked (the
+  /// trajectory begins on the ground).
+  std::vector<Warning> warnings;
+
+  std::string reason;                 ///< why there is no dig; empty if there is one or it stopped
+  std::optional<NearestDig> nearest;  ///< if a search found no dig: what came nearest to one
+};
+
+/// Plans the next dig on the ground given, or on level ground.
+///
+/// What the site decides is in the plan: no feasible dig, a density that the library lacks, a path
+/// that does not suit the ground.
+///
+/// @throws Error (bad_input) if the density or an option is out of range, the library does not fit
+///         machine and soil, or none is shipped for them and the method is `library`
+/// @throws Error (bad_file) if the shipped library cannot be read and the method is `library`, or a
+///         checkpoint of the search is of another one, truncated or altered
+DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
+                 const Terrain& terrain, const PlanOptions& options = {});
+DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
+                 const PlanOptions& options = {});
+
+}  // namespace excavplan

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/optimisation/search_analysis.hpp>
+#include <excavplan/planning/dig_goal.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+
+/// @file
+/// Which dig suits the soil: the path of the highest worth, by default of the highest efficiency
+/// f = payload mass / energy.
+
+namespace excavplan {
+
+/// Between which digs a search chooses: by default those of dig_parameter_table().
+struct DigBounds {
+  DigParameters lower;
+  DigParameters upper;
+  DigBounds();
+};
+
+/// An evaluation is a dig, its fitness the dig's worth.
+struct DigSearchOptions : SearchSettings {
+  std::vector<DigParameters> start = {};  ///< known good digs to begin with
+  DigObjective objective = {};
+  DigBounds bounds = {};
+  StartRule start_rule = StartRule::Kind::least_work;
+};
+
+/// Settings for as many generations as a budget of evaluations allows.
+DigSearchOptions budget_search();
+
+/// Digs of one search that reach 99 % of the optimum from any seed (docs/methods.md#planning): 400;
+/// for each soil that uncertain ground may be, and for all together, 100 from a known good dig on
+/// and 200 from nothing. Ours.
+int evaluation_budget(bool uncertain, bool from_known);
+
+struct DigSearchResult {
+  PlannedDig dig;
+  DigPath path;        ///< of the dig, without an approach
+  double worth = 0.0;  ///< of the dig, by the objective
+  int evaluations = 0;
+  int refused = 0;       ///< digs that cannot be driven, not simulated
+  int infeasible = 0;    ///< of the evaluations: the machine stalled
+  bool stopped = false;  ///< by `progress`
+  StopReason stopped_by = StopReason::generations;
+  SearchInsight insight;  ///< in the order of dig_parameter_table(), the start last if searched
+};
+
+/// The dig that a search came nearest to a feasible one with.
+struct NearestDig {
+  DigParameters parameters;
+  std::optional<double> start_x;  ///< [m]; nothing if no start was found for it
+  /// The share of the path that is left where the machine stalls, 0 .. 1; above 1 for a path that
+  /// cannot be driven, more the earlier it fails.
+  double violation = 0.0;
+  std::string reason;  ///< for people
+};
+
+/// The result of a search; empty if no dig was feasible.
+template <typename Result>
+struct Found : std::optional<Result> {
+  using std::optional<Result>::optional;
+  std::optional<NearestDig> nearest;  ///< if empty; nothing if it was stopped before the first dig
+  bool stopped = false;               ///< if empty: by `progress`
+};
+
+/// Searches the numbers of a dig for the highest worth. All checks of the path come before the
+/// simulation: what cannot be driven costs no evaluation. Its violation, how much of the path is
+/// left where it fails, leads the search back to digs that can be driven.
+///
+/// @throws Error (bad_input) if an option is out of range
+/// @throws Error (bad_file) if a checkpoint is of another search, truncated or altered; another
+///         simulator is known by its identity()
+Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
+                                  const Terrain& terrain, const DigSearchOptions& options = {});
+
+}  // namespace excavplan

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/machine.hpp>
+#include <excavplan/planning/start_rule.hpp>
+#include <excavplan/simulation/soil_simulator.hpp>
+
+namespace excavplan {
+
+/// A dig with what it is expected to lift and to cost.
+struct PlannedDig {
+  DigParameters parameters;
+  double start_x = 0.0;         ///< [m]
+  double payload_mass = 0.0;    ///< moist [kg]
+  double payload_volume = 0.0;  ///< loose [m^3]
+  double energy = 0.0;          ///< [J]
+  double duration = 0.0;        ///< of penetrate, drag and scoop [s]
+
+  double efficiency() const { return energy > 0.0 ? payload_mass / energy : 0.0; }  ///< [kg/J]
+};
+
+/// Why a dig cannot be done: the path cannot be driven, or the machine stalls in the soil.
+using DigFailure = std::variant<Infeasible, Stall>;
+std::string describe(const DigFailure& failure);
+
+/// Lays out a dig, simulates it, times it.
+///
+/// Ground of unknown height under the bucket makes the path infeasible (unknown_ground).
+///
+/// @throws Error (bad_input) if the start is to be searched
+std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
+                                                  const SoilSimulator& simulator,
+                                                  const Terrain& terrain,
+                                                  const DigParameters& parameters,
+                                                  const StartRule& start = {});
+
+}  // namespace excavplan

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace excavplan {
+
+/// Where along the boom plane a dig begins. It decides the work of the links, and with it up to a
+/// third of the efficiency: paths are compared under one rule (docs/methods.md#start).
+struct StartRule {
+  enum class Kind {
+    largest_margin,  ///< make_dig_path_anywhere()
+    /// Least positive work of the links' own weight, on known ground and with all joints 2 degrees
+    /// off their limits; the largest margin where there is no such start. Starts are compared at
+    /// coarse poses, on a grid of 0.2 m and then by halved steps (docs/methods.md#start).
+    least_work,
+    given,
+    searched,  ///< one more number of the search; for search_dig() only
+  };
+  Kind kind = Kind::largest_margin;
+  double x = 0.0;  ///< if given [m]
+
+  StartRule(Kind rule = Kind::largest_margin) : kind(rule) {}   // NOLINT: is a rule
+  StartRule(double start_x) : kind(Kind::given), x(start_x) {}  // NOLINT: so is a place
+};
+
+std::string describe(const StartRule& rule);
+
+/// A rule that has a word on the command line.
+struct StartRuleInfo {
+  StartRule::Kind kind = StartRule::Kind::largest_margin;
+  std::string word;         ///< "work"
+  std::string description;  ///< "least work of the links' own weight"
+};
+
+/// All rules but that of a given place.
+const std::vector<StartRuleInfo>& start_rules();
+
+/// @return nothing if no rule has this word
+std::optional<StartRule> start_rule_of_word(const std::string& word);
+
+}  // namespace excavplan

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <excavplan/planning/dig_search.hpp>
+#include <excavplan/simulation/simulators.hpp>
+#include <excavplan/soil/density_law.hpp>
+
+/// @file
+/// Digs in soil that is known only with a probability (docs/methods.md#uncertain-density).
+
+namespace excavplan {
+
+/// One of the soils that the ground may be.
+struct PossibleSoil {
+  const SoilSimulator* simulator = nullptr;
+  double probability = 0.0;  ///< > 0; all of them add up to 1
+};
+
+/// The dig that is best on average, and what it would be worth to know the soil.
+struct UncertainDigSearchResult {
+  /// Its dig has the means of mass, volume, energy and duration, its worth is the mean of the
+  /// worths. A soil in which the machine stalls counts as worth 0.
+  DigSearchResult expected;
+  double worth_if_known = 0.0;  ///< mean of the worths of the best dig for each soil
+  int evaluations = 0;          ///< simulated digs, all soils and searches together
+
+  /// Expected value of perfect information, as a share of the expected worth, >= 0.
+  double value_of_knowing() const { return worth_if_known / expected.worth - 1.0; }
+};
+
+/// Searches the best dig for each soil, and from all of them the dig of the highest expected worth.
+/// The stop rules are those of each search; an evaluation of the last is one dig in every soil. The
+/// search for the i-th soil has the i-th seed from the one given on.
+///
+/// Of a checkpoint FILE the search for the first soil keeps FILE.soil1, that for the second
+/// FILE.soil2 and so on, the last search FILE itself; without `resume` all of them begin anew. What
+/// is stopped before the last search gives the best on average of the digs found so far.
+///
+/// @throws Error as for one soil, and (bad_input) unless the probabilities are positive and add up
+///         to 1
+Found<UncertainDigSearchResult> search_dig(const Machine& machine,
+                                           const std::vector<PossibleSoil>& soils,
+                                           const Terrain& terrain,
+                                           const DigSearchOptions& options = {});
+
+/// How much the figures of a dig scatter because the soil is uncertain: standard deviations over
+/// the soils in which the machine does not stall.
+struct DigSpread {
+  double payload_mass = 0.0;       ///< [kg]
+  double energy = 0.0;             ///< [J]
+  double efficiency = 0.0;         ///< [kg/J]
+  double stall_probability = 0.0;  ///< of the soils left out
+};
+
+/// Digs a planned dig in all the soils.
+/// @param path  of the dig, as it was laid out on the terrain
+/// @throws Error (bad_input) unless the probabilities are positive and add up to 1
+DigSpread dig_spread(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                     const Terrain& terrain, const PlannedDig& dig, const DigPath& path);
+
+/// A density the ground may have.
+struct PossibleDensity {
+  double percent = 0.0;
+  double probability = 0.0;
+};
+
+/// Nodes of the Gauss quadrature for a normal distribution cut off at 0 and 100 %: means over them
+/// are exact for polynomials of the density up to degree 2 count - 1.
+///
+/// @throws Error (bad_input) unless 0 <= mean <= 100, 0 < sd < infinity, 1 <= count <= 20
+std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent,
+                                                int count = 3);
+
+/// The soils that ground of a density may be, each with its simulator.
+class PossibleGround {
+ public:
+  /// At the possible_densities(), or at the one density if that is taken as known.
+  /// @throws Error (bad_input) unless the density is in 0 .. 100 % and its sd finite and >= 0
+  PossibleGround(const SimulatorKind& simulator, const Machine& machine, const SoilKind& soil,
+                 const GroundDensity& density);
+
+  /// Valid as long as this is.
+  const std::vector<PossibleSoil>& soils() const { return soils_; }
+
+ private:
+  std::vector<std::unique_ptr<const SoilSimulator>> simulators_;
+  std::vector<PossibleSoil> soils_;
+};
+
+}  // namespace excavplan

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/soil/density_law.hpp>
+
+/// @file
+/// Fitting density laws to digs of known density, and writing law files.
+
+namespace excavplan {
+
+/// One dig of known density.
+struct BulkingSample {
+  double bulking_factor = 0.0;   ///< [-]
+  double density_percent = 0.0;  ///< 0 .. 100
+};
+
+/// End of the key of a form fitted to k as height maps give it, not corrected for fallback.
+inline constexpr const char* as_measured = "_as_measured";
+
+/// Least-squares line of d on k.
+/// @throws Error (bad_input) with fewer than 3 different factors, a factor that is not positive, a
+/// density outside 0 .. 100, or where none fits (k must grow with d)
+DensityLine fit_line(const std::vector<BulkingSample>& samples);
+
+/// Least-squares hyperbola of k on d (A and B linear, r by NLopt).
+/// @throws Error (bad_input) as fit_line(), with fewer than 4 different densities
+DensityClosedForm fit_closed_form(const std::vector<BulkingSample>& samples);
+
+/// A fitted form and its key in a law file.
+struct DensityFit {
+  std::string key;   ///< "closed_form_as_measured"
+  DensityForm form;  ///< as fitted
+};
+
+/// Fits every form. Their keys are "line" and "closed_form", followed by `key_ending`.
+/// @throws Error (bad_input) as the fits
+std::vector<DensityFit> fit_density_forms(const std::vector<BulkingSample>& samples,
+                                          const std::string& key_ending = "");
+
+/// What a law file holds: the forms with the samples they were fitted to.
+struct DensityCalibration {
+  std::string name;    ///< of the law
+  std::string source;  ///< for people: where the samples come from
+  std::string soil;    ///< name of the soil; empty: not known
+  std::string use;     ///< key of the form to use
+  /// Fitted to k corrected for fallback where that is known; the keys of those fitted to k as
+  /// height maps give it end in `as_measured`.
+  std::vector<DensityFit> forms;
+  /// One dig.
+  struct Sample {
+    double density_percent = 0.0;          ///< 0 .. 100
+    double bulking_factor = 0.0;           ///< corrected for fallback
+    double bulking_factor_measured = 0.0;  ///< from height maps; 0 where unknown
+    double bulking_factor_true = 0.0;      ///< from the dry mass balance; 0 where unknown
+    double fallback_fraction = 0.0;        ///< of the cut; 0 where unknown
+  };
+  std::vector<Sample> samples;  ///< that the forms were fitted to
+
+  /// The form of this key. @throws Error (bad_input) if there is none
+  const DensityForm& form(const std::string& key) const;
+};
+
+/// The text of a law file. @throws nothing
+std::string to_json(const DensityCalibration& calibration);
+
+}  // namespace excavplan

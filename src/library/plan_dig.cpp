@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/library/plan_dig.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "base/text.hpp"
+#include "planning/dig_layout.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double much_steeper = 0.04;  // than the library's slopes [rad]; ours, docs/libraries.md
+constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
+constexpr double likely_stall = 0.05;  // probability; ours
+
+struct Task {
+  const Machine& machine;
+  const SoilKind& soil;
+  const GroundDensity& density;
+  const Terrain& ground;
+  bool level;  ///< no ground was given
+  const PlanOptions& options;
+  PossibleGround possible{options.simulator, machine, soil, density};
+
+  bool uncertain() const { return density.sd_percent > 0.0; }
+};
+
+void warn(DigPlan& plan, const char* code, const std::string& message) {
+  plan.warnings.push_back({code, message});
+}
+
+void distrust(DigPlan& plan, const char* code, const std::string& message) {
+  warn(plan, code, message);
+  plan.trustworthy = false;
+}
+
+void judge_density(const Task& task, DigPlan& plan) {
+  const std::string& soil = task.density.soil;
+  if (!task.density.trustworthy) {
+    distrust(plan, "density_not_trustworthy",
+             "the density is not trustworthy, so the path may not suit the soil");
+  }
+  if (!soil.empty() && soil != task.soil.name) {
+    warn(plan, "law_of_other_soil",
+         "the density was found by the law of " + soil + ", the path is planned in " +
+             task.soil.name);
+  }
+}
+
+std::shared_ptr<const PathLibrary> library_of(const Task& task) {
+  const PlanOptions& options = task.options;
+  if (!options.library) {
+    return std::make_shared<PathLibrary>(
+        shipped_library(task.machine, task.soil, options.data_folder));
+  }
+  const std::string& own = options.simulator.name;
+  require_fit(*options.library, task.machine, task.soil, "the library",
+              options.library->simulator == own ? own : default_simulator().name);
+  return options.library;
+}
+
+/// The slope of the ground, and as much of it as the library covers.
+struct Slope {
+  double ground = 0.0;  ///< [rad]; NaN: unknown
+  double covered = 0.0;
+};
+
+Slope slope_in(const PathLibrary& library, const Task& task) {
+  if (task.level) return {};
+  const double slope = boom_plane_slope(task.ground, task.machine.track_front);
+  return {slope, std::clamp(std::isnan(slope) ? 0.0 : slope, library.entries.front().slope,
+                            library.entries.back().slope)};
+}
+
+/// A dig, or why the library has none.
+std::variant<PlannedDig, std::string> known_dig(const PathLibrary& library, const Task& task,
+                                                const Slope& slope) {
+  try {
+    return look_up(library, task.density.percent, slope.covered);
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+/// A dig of the library laid out where it is needed, and simulated if its figures do not hold
+/// there.
+std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrary& library,
+                                              const PlannedDig& known, DigPlan& plan) {
+  const DigLayout layout(task.machine, task.ground);
+  auto path = task.level ? layout.path_near(known.parameters, known.start_x)
+                         : layout.path(known.parameters, task.options.search.start_rule);
+  if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
+  plan.path = std::get<DigPath>(std::move(path));
+  const SimulatorKind& kind = task.options.simulator;
+  if (task.level && library.simulator == kind.name) {
+    PlannedDig dig = known;
+    dig.start_x = plan.path.start_x;
+    return dig;
+  }
+  plan.evaluations = 1;
+  const auto simulator = kind.make(task.machine, task.soil, task.density.percent);
+  return dig_along(task.machine, *simulator, task.ground, plan.path);
+}
+
+/// Warns where the library knows no ground like this. @return whether it does
+bool suits_ground(const Slope& slope, const PlannedDig& expected, DigPlan& plan) {
+  const std::string remedy = "; a search finds a path that suits the ground";
+  if (std::abs(slope.ground - slope.covered) > much_steeper) {
+    distrust(plan, "slope_outside_library",
+             "the ground slopes by " + readable(slope.ground, 2) +
+                 " rad, the library is looked up at " + readable(slope.covered, 2) + " rad" +
+                 remedy);
+    return false;
+  }
+  if (plan.dig->efficiency() < (1.0 - far_below) * expected.efficiency()) {
+    distrust(plan, "ground_unlike_library",
+             "the path looked up does " + readable(1000.0 * plan.dig->efficiency()) +
+                 " kg/kJ here, against " + readable(1000.0 * expected.efficiency()) +
+                 " kg/kJ on the even ground of the library" + remedy);
+    return false;
+  }
+  return true;
+}
+
+void look_up_plan(const Task& task, DigPlan& plan) {
+  const auto library = library_of(task);
+  const Slope slope = slope_in(*library, task);
+  const auto known = known_dig(*library, task, slope);
+  if (const auto* reason = std::get_if<std::string>(&known)) {
+    plan.reason = *reason;
+    return;
+  }
+  const PlannedDig& expected = std::get<PlannedDig>(known);
+  plan.start_rule = task.level ? "of the library" : describe(task.options.search.start_rule);
+  const auto outcome = dig_here(task, *library, expected, plan);
+  if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
+    plan.path = {};
+    plan.reason =
+        "the library's path does not work here (a search may find one): " + describe(*failure);
+    return;
+  }
+  plan.dig = std::get<PlannedDig>(outcome);
+  plan.look_up = PlanLookUp{slope.covered, std::nullopt};
+  if (task.level || suits_ground(slope, expected, plan)) {
+    plan.look_up->error = look_up_error(*library, task.density.percent, slope.covered);
+  }
+}
+
+/// The library's dig to begin with, if there is one.
+std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
+  try {
+    const auto library = library_of(task);
+    const auto known = known_dig(*library, task, slope_in(*library, task));
+    if (const auto* dig = std::get_if<PlannedDig>(&known)) return {dig->parameters};
+  } catch (const Error& error) {
+    if (task.options.library) throw;
+    if (error.kind() == ErrorKind::bad_file) {
+      warn(plan, "library_unreadable",
+           std::string("the search starts from nothing, not from the shipped library: ") +
+               error.what());
+    }
+  }
+  return {};
+}
+
+DigSearchOptions search_options(const Task& task, DigPlan& plan) {
+  DigSearchOptions options = task.options.search;
+  // The library's digs are those of most mass per energy: another goal's search would stay there.
+  if (options.start.empty() && options.objective.goal == DigObjective::Goal::mass_per_energy) {
+    options.start = known_start(task, plan);
+  }
+  if (options.stop.evaluations == 0 && std::holds_alternative<MemeticSearch>(options.method)) {
+    options.stop.evaluations = evaluation_budget(task.uncertain(), !options.start.empty());
+  }
+  return options;
+}
+
+/// @param best  of what was found, if anything was
+template <typename Result>
+void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan) {
+  if (best) {
+    plan.dig = best->dig;
+    plan.path = best->path;
+    plan.evaluations = found->evaluations;
+    plan.search = PlanSearch{best->worth, best->stopped_by, best->refused, best->insight.seen, {}};
+  }
+  plan.stopped = best ? best->stopped : found.stopped;
+  if (best || plan.stopped) return;
+  plan.reason = "no dig inside the search ranges can be done on this ground";
+  plan.nearest = found.nearest;
+}
+
+void search_plan(const Task& task, DigPlan& plan) {
+  const DigSearchOptions options = search_options(task, plan);
+  const std::vector<PossibleSoil>& soils = task.possible.soils();
+  plan.start_rule = describe(options.start_rule);
+  if (task.uncertain()) {
+    const auto found = search_dig(task.machine, soils, task.ground, options);
+    take(found, found ? &found->expected : nullptr, plan);
+    if (plan.dig && !plan.stopped) plan.search->value_of_knowing = found->value_of_knowing();
+  } else {
+    const auto found = search_dig(task.machine, *soils.front().simulator, task.ground, options);
+    take(found, found ? &*found : nullptr, plan);
+  }
+}
+
+void add_spread(const Task& task, DigPlan& plan) {
+  const std::vector<PossibleSoil>& soils = task.possible.soils();
+  plan.spread = dig_spread(task.machine, soils, task.ground, *plan.dig, plan.path);
+  plan.evaluations += static_cast<int>(soils.size());
+  if (plan.spread.stall_probability <= likely_stall) return;
+  distrust(plan, "may_stall",
+           "the machine stalls with a probability of " +
+               readable(100.0 * plan.spread.stall_probability, 2) +
+               " %; the figures are of the digs in which it does not");
+}
+
+void add_trajectory(const Task& task, DigPlan& plan) {
+  auto approach = way_down(task.machine, plan.path, boom_plane_profile(task.ground));
+  if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
+    warn(plan, "approach_blocked",
+         "the trajectory begins on the ground, the way down is blocked: " + blocked->message);
+  } else {
+    plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
+  }
+  plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory);
+}
+
+DigPlan plan_dig(const Task& task) {
+  DigPlan plan;
+  plan.method = task.options.method;
+  judge_density(task, plan);
+  if (plan.method == PlanMethod::library) look_up_plan(task, plan);
+  if (plan.method == PlanMethod::search) search_plan(task, plan);
+  if (!plan.dig) return plan;
+  if (task.uncertain()) add_spread(task, plan);
+  add_trajectory(task, plan);
+  return plan;
+}
+
+}  // namespace
+
+const char* name(PlanMethod method) { return method == PlanMethod::library ? "library" : "search"; }
+
+PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
+                            const std::string& data_folder) {
+  std::string file;
+  try {
+    file = find_data_file("libraries/" + machine.name + "-" + soil.name + ".json", data_folder);
+  } catch (const Error&) {
+    throw Error(ErrorKind::bad_input,
+                "no library of " + machine.name + " in " + soil.name +
+                    " is shipped: a search needs none, build-path-library makes one");
+  }
+  PathLibrary library = load_path_library(file);
+  require_fit(library, machine, soil, file);
+  return library;
+}
+
+DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
+                 const Terrain& terrain, const PlanOptions& options) {
+  return plan_dig(Task{machine, soil, density, terrain, false, options});
+}
+
+DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
+                 const PlanOptions& options) {
+  const Terrain level = level_planning_ground(machine, options.cell_size);
+  return plan_dig(Task{machine, soil, density, level, true, options});
+}
+
+}  // namespace excavplan

@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planning/dig_problem.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// The start, where it is searched, follows the numbers of the table.
+double start_in(const VectorXd& point) { return point(point.size() - 1); }
+
+void append(VectorXd& point, double number) {
+  point.conservativeResize(point.size() + 1);
+  point(point.size() - 1) = number;
+}
+
+/// The checksum of numbers, byte by byte.
+class Fingerprint {
+ public:
+  void add(double value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    bytes_.append(bytes, sizeof value);
+  }
+  void add(const Eigen::ArrayXXd& values) {
+    add(static_cast<double>(values.rows()));
+    add(static_cast<double>(values.cols()));
+    for (Index i = 0; i < values.size(); ++i) add(values(i));
+  }
+  void add(const Terrain& terrain) {
+    add(terrain.bank.origin.x());
+    add(terrain.bank.origin.y());
+    add(terrain.bank.cell_size);
+    for (const Eigen::ArrayXXd* layer :
+         {&terrain.bank.z, &terrain.loose, &terrain.bank_void_ratio, &terrain.loose_void_ratio}) {
+      add(*layer);
+    }
+  }
+  void add(const std::variant<PlannedDig, DigFailure>& outcome) {
+    add(static_cast<double>(outcome.index()));
+    if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
+      for (const double value :
+           {dig->payload_mass, dig->payload_volume, dig->energy, dig->duration}) {
+        add(value);
+      }
+    } else if (const auto* stall = std::get_if<Stall>(&std::get<DigFailure>(outcome))) {
+      for (const double value :
+           {static_cast<double>(stall->phase), static_cast<double>(stall->joint), stall->travelled,
+            stall->torque}) {
+        add(value);
+      }
+    }
+  }
+  std::string text() const { return checksum_text(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+/// SoilSimulator::identity(), or if it has none the checksum of three digs, from the paper's path
+/// down to a quarter of its lengths, which few machines and soils forbid.
+std::string identity_of(const SoilSimulator& simulator, const Machine& machine) {
+  std::string own = simulator.identity();
+  if (!own.empty()) return own;
+  const Terrain level = level_planning_ground(machine, 0.1);
+  Fingerprint digs;
+  for (const double share : {1.0, 0.5, 0.25}) {
+    DigParameters dig = paper_fixed_path();
+    dig.penetration_length *= share;
+    dig.drag_length *= share;
+    digs.add(evaluate_dig(machine, simulator, level, dig));
+  }
+  return "a simulator of digs " + digs.text();
+}
+
+}  // namespace
+
+void check(const std::vector<PossibleSoil>& soils) {
+  double sum = 0.0;
+  for (const PossibleSoil& soil : soils) {
+    require(soil.simulator && soil.probability > 0.0, "the probability of a soil", soil.probability,
+            "above 0, with a simulator");
+    sum += soil.probability;
+  }
+  require(std::abs(sum - 1.0) < 1e-9, "the probability of all soils", sum, "1");
+}
+
+void check(const DigSearchOptions& options) {
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    const double lower = options.bounds.lower.*info.field;
+    const double upper = options.bounds.upper.*info.field;
+    const std::string what = std::string("the search range of ") + info.name;
+    require(lower >= 0.0 && std::isfinite(lower), what + " from", lower, "finite and at least 0");
+    require(upper >= lower && std::isfinite(upper), what + " to", upper,
+            "finite and not below its lower end");
+  }
+  const DigObjective& objective = options.objective;
+  require(objective.time_price >= 0.0 && std::isfinite(objective.time_price), "the price of time",
+          objective.time_price, "at least 0 W and finite");
+  require(objective.rest_of_cycle >= 0.0 && std::isfinite(objective.rest_of_cycle),
+          "the rest of the cycle", objective.rest_of_cycle, "at least 0 s and finite");
+}
+
+DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                       const Terrain& terrain, const DigPath& path) {
+  DigsInEach digs;
+  for (const PossibleSoil& soil : soils) {
+    digs.push_back(dig_along(machine, *soil.simulator, terrain, path));
+  }
+  return digs;
+}
+
+DigProblem::DigProblem(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                       const Terrain& terrain, const DigSearchOptions& options)
+    : soils_(soils), terrain_(terrain), options_(options), layout_(machine, terrain) {
+  check(options);
+}
+
+SearchResult DigProblem::run() {
+  SearchOptions search_options{options_, {}};
+  for (const DigParameters& dig : options_.start) search_options.start.push_back(point_of(dig));
+  SearchProblem problem{box(), [this](const VectorXd& point) { return simulate(point); },
+                        [this](const VectorXd& point) { return lay_out(point); }};
+  if (!options_.checkpoint.empty()) problem.fingerprint = fingerprint();
+  return search(problem, search_options);
+}
+
+DigProblem::Best DigProblem::best_of(const SearchResult& found) const {
+  Best best;
+  DigSearchResult& result = best.result;
+  result.path = path_of(found.best);
+  best.digs = dig_in_each(layout_.machine(), soils_, terrain_, result.path);
+  result.dig = mean_dig(best.digs);
+  result.worth = found.outcome.fitness;
+  result.evaluations = found.evaluations;
+  result.refused = found.repair;
+  result.infeasible = found.infeasible;
+  result.stopped = found.stopped_by == StopReason::cancelled;
+  result.stopped_by = found.stopped_by;
+  result.insight = explain(box(), found);
+  return best;
+}
+
+std::optional<NearestDig> DigProblem::nearest_of(const SearchResult& found) const {
+  if (found.history.empty()) return std::nullopt;
+  return NearestDig{to_dig_parameters(found.best), start_of(found.best), found.outcome.violation,
+                    found.outcome.reason};
+}
+
+SearchBox DigProblem::box() const {
+  const Machine& machine = layout_.machine();
+  SearchBox box{to_vector(options_.bounds.lower), to_vector(options_.bounds.upper)};
+  if (start_is_searched()) {
+    append(box.lower, machine.track_front);
+    append(box.upper, machine.boom_pin.x() + machine.full_length());
+  }
+  return box;
+}
+
+VectorXd DigProblem::point_of(const DigParameters& dig) const {
+  VectorXd point = to_vector(dig);
+  if (start_is_searched()) {
+    const auto path = layout_.path(dig, StartRule::Kind::least_work);
+    const auto* drivable = std::get_if<DigPath>(&path);
+    append(point,
+           drivable ? drivable->start_x : 0.5 * (start_in(box().lower) + start_in(box().upper)));
+  }
+  return point;
+}
+
+/// The repair: an undrivable path is refused, the start of a drivable one is kept for later.
+std::variant<VectorXd, Evaluation> DigProblem::lay_out(const VectorXd& point) {
+  const DigParameters parameters = to_dig_parameters(point);
+  const auto path = layout_.path(
+      parameters, start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
+  if (const auto* stop = std::get_if<Infeasible>(&path)) {
+    return Evaluation::infeasible(violation(*stop, parameters), stop->message);
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  starts_[key_of(point)] = std::get<DigPath>(path).start_x;
+  return point;
+}
+
+Evaluation DigProblem::simulate(const VectorXd& point) const {
+  const DigPath path = path_of(point);
+  const DigsInEach digs = dig_in_each(layout_.machine(), soils_, terrain_, path);
+  double worth = 0.0;
+  const DigFailure* failure = nullptr;
+  bool any = false;
+  for (std::size_t i = 0; i < digs.size(); ++i) {
+    if (const auto* dig = std::get_if<PlannedDig>(&digs[i])) {
+      worth += soils_[i].probability * options_.objective.worth(*dig);
+      any = true;
+    } else if (!failure) {
+      failure = &std::get<DigFailure>(digs[i]);
+    }
+  }
+  if (any) return worth;
+  return Evaluation::infeasible(violation(*failure, path.parameters), describe(*failure));
+}
+
+/// Means over the soils in which the machine does not stall; there must be one.
+PlannedDig DigProblem::mean_dig(const DigsInEach& digs) const {
+  PlannedDig mean;
+  double probability = 0.0;
+  for (std::size_t i = 0; i < digs.size(); ++i) {
+    const auto* dig = std::get_if<PlannedDig>(&digs[i]);
+    if (!dig) continue;
+    if (probability == 0.0) mean = *dig;
+    probability += soils_[i].probability;
+    const double share = soils_[i].probability / probability;
+    mean.payload_mass += share * (dig->payload_mass - mean.payload_mass);
+    mean.payload_volume += share * (dig->payload_volume - mean.payload_volume);
+    mean.energy += share * (dig->energy - mean.energy);
+  }
+  return mean;
+}
+
+/// Nothing for a path that was not laid out, unless its start does not depend on the path.
+std::optional<double> DigProblem::start_of(const VectorXd& point) const {
+  if (start_is_searched()) return start_in(point);
+  if (options_.start_rule.kind == StartRule::Kind::given) return options_.start_rule.x;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto known = starts_.find(key_of(point));
+  return known != starts_.end() ? std::optional(known->second) : std::nullopt;
+}
+
+DigPath DigProblem::path_of(const VectorXd& point) const {
+  const std::optional<double> start_x = start_of(point);
+  auto path =
+      layout_.path(to_dig_parameters(point), start_x ? StartRule(*start_x) : options_.start_rule);
+  return std::get<DigPath>(std::move(path));
+}
+
+/// All that decides the worth of a dig.
+std::string DigProblem::fingerprint() const {
+  Fingerprint ground;
+  ground.add(terrain_);
+  Fingerprint worth;
+  worth.add(static_cast<double>(options_.objective.goal));
+  worth.add(options_.objective.time_price);
+  worth.add(options_.objective.rest_of_cycle);
+  worth.add(static_cast<double>(options_.start_rule.kind));
+  worth.add(options_.start_rule.x);
+  const Machine& machine = layout_.machine();
+  std::string text = "dig on " + machine.name + " " + excavplan::fingerprint(machine) +
+                     ", ground " + ground.text() + ", worth " + worth.text();
+  for (const PossibleSoil& soil : soils_) {
+    text += ", with probability " + number_text(soil.probability) + " in " +
+            identity_of(*soil.simulator, machine);
+  }
+  return text;
+}
+
+}  // namespace excavplan

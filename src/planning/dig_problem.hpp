@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <excavplan/planning/uncertain_soil.hpp>
+
+#include "optimisation/search_points.hpp"
+#include "planning/dig_layout.hpp"
+
+namespace excavplan {
+
+/// @throws Error (bad_input) unless every soil has a simulator and the probabilities are positive
+///         and add up to 1
+void check(const std::vector<PossibleSoil>& soils);
+/// @throws Error (bad_input) if a range or the objective breaks its rule
+void check(const DigSearchOptions& options);
+
+/// A dig along one path in each of the soils.
+using DigsInEach = std::vector<std::variant<PlannedDig, DigFailure>>;
+DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                       const Terrain& terrain, const DigPath& path);
+
+/// The search for a dig as a search of a box. Keeps references to all that it is given.
+class DigProblem {
+ public:
+  /// @throws Error (bad_input) as check(options)
+  DigProblem(const Machine& machine, const std::vector<PossibleSoil>& soils, const Terrain& terrain,
+             const DigSearchOptions& options);
+
+  SearchResult run();
+
+  /// The dig of a result that is feasible, with its figures in every soil.
+  struct Best {
+    DigSearchResult result;
+    DigsInEach digs;
+  };
+  Best best_of(const SearchResult& found) const;
+  /// Of a result without a feasible dig; nothing if it has no point at all.
+  std::optional<NearestDig> nearest_of(const SearchResult& found) const;
+
+ private:
+  bool start_is_searched() const { return options_.start_rule.kind == StartRule::Kind::searched; }
+  SearchBox box() const;
+  Eigen::VectorXd point_of(const DigParameters& dig) const;
+  std::variant<Eigen::VectorXd, Evaluation> lay_out(const Eigen::VectorXd& point);
+  Evaluation simulate(const Eigen::VectorXd& point) const;
+  PlannedDig mean_dig(const DigsInEach& digs) const;
+  std::optional<double> start_of(const Eigen::VectorXd& point) const;
+  DigPath path_of(const Eigen::VectorXd& point) const;
+  std::string fingerprint() const;
+
+  const std::vector<PossibleSoil>& soils_;
+  const Terrain& terrain_;
+  const DigSearchOptions& options_;
+  DigLayout layout_;
+  mutable std::mutex mutex_;
+  std::map<PointKey, double> starts_;  ///< of the drivable paths asked for
+};
+
+}  // namespace excavplan

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/uncertain_soil.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <mutex>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "base/check.hpp"
+#include "base/parallel.hpp"
+#include "planning/dig_problem.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::Index;
+
+std::string checkpoint_of_soil(const std::string& checkpoint, std::size_t i) {
+  return checkpoint.empty() ? checkpoint : checkpoint + ".soil" + std::to_string(i + 1);
+}
+
+/// Of an earlier search: should this one end before it has written all of its own, resuming it
+/// would meet them.
+void remove_checkpoints(const std::string& checkpoint, std::size_t soils) {
+  std::vector<std::string> files = {checkpoint};
+  for (std::size_t i = 0; i < soils; ++i) files.push_back(checkpoint_of_soil(checkpoint, i));
+  for (const std::string& file : files) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error)) std::filesystem::remove(file, error);
+  }
+}
+
+struct BestForEach {
+  std::vector<Found<DigSearchResult>> soils;
+  bool stopped = false;  ///< by `progress`, which then is not asked again
+
+  std::vector<DigParameters> digs() const {
+    std::vector<DigParameters> all;
+    for (const auto& found : soils) {
+      if (found) all.push_back(found->dig.parameters);
+    }
+    return all;
+  }
+  /// In any of the soils.
+  std::optional<NearestDig> nearest() const {
+    std::optional<NearestDig> least;
+    for (const auto& found : soils) {
+      if (!found.nearest || (least && least->violation <= found.nearest->violation)) continue;
+      least = found.nearest;
+    }
+    return least;
+  }
+  int evaluations() const {
+    int sum = 0;
+    for (const auto& found : soils) sum += found ? found->evaluations : 0;
+    return sum;
+  }
+};
+
+/// Side by side, each from nothing: the best dig for one soil need not be near that for another.
+BestForEach best_for_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                          const Terrain& terrain, const DigSearchOptions& options) {
+  BestForEach best;
+  std::mutex mutex;
+  DigSearchOptions shared = options;
+  shared.threads = 1;
+  if (options.progress) {
+    shared.progress = [&](const SearchProgress& progress) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      best.stopped = best.stopped || !options.progress(progress);
+      return !best.stopped;
+    };
+  }
+  best.soils.resize(soils.size());
+  parallel_for(soils.size(), options.threads, [&](std::size_t i) {
+    DigSearchOptions one = shared;
+    one.seed = options.seed + i;  // a basin that one search misses another may find
+    one.checkpoint = checkpoint_of_soil(options.checkpoint, i);
+    best.soils[i] = search_dig(machine, *soils[i].simulator, terrain, one);
+  });
+  return best;
+}
+
+/// Nothing but a polish of the digs given, by the default method.
+DigSearchOptions from_known(const DigSearchOptions& options, std::vector<DigParameters> start) {
+  DigSearchOptions polish = options;
+  if (auto* memetic = std::get_if<MemeticSearch>(&polish.method)) {
+    memetic->generations = 0;
+    memetic->first_generation = 0;
+  }
+  polish.start = std::move(start);
+  return polish;
+}
+
+/// Nothing but the digs given. They are those of searches not finished: a checkpoint of this one
+/// would be of no use to the next.
+DigSearchOptions only_known(const DigSearchOptions& options, std::vector<DigParameters> start) {
+  DigSearchOptions known = options;
+  MemeticSearch no_search;
+  no_search.first_generation = no_search.generations = no_search.basins = 0;
+  known.method = no_search;
+  known.start = std::move(start);
+  known.progress = {};
+  known.checkpoint = {};
+  return known;
+}
+
+Found<UncertainDigSearchResult> nothing(std::optional<NearestDig> nearest, bool stopped) {
+  Found<UncertainDigSearchResult> none;
+  none.nearest = std::move(nearest);
+  none.stopped = stopped;
+  return none;
+}
+
+}  // namespace
+
+Found<UncertainDigSearchResult> search_dig(const Machine& machine,
+                                           const std::vector<PossibleSoil>& soils,
+                                           const Terrain& terrain,
+                                           const DigSearchOptions& options) {
+  check(soils);
+  check(options);
+  if (!options.checkpoint.empty() && !options.resume) {
+    remove_checkpoints(options.checkpoint, soils.size());
+  }
+  const BestForEach best = best_for_each(machine, soils, terrain, options);
+  if (best.digs().empty()) return nothing(best.nearest(), best.stopped);
+  const DigSearchOptions from_bests =
+      best.stopped ? only_known(options, best.digs()) : from_known(options, best.digs());
+  DigProblem problem(machine, soils, terrain, from_bests);
+  const SearchResult found = problem.run();
+  if (!found.feasible()) {
+    return nothing(problem.nearest_of(found), found.stopped_by == StopReason::cancelled);
+  }
+  UncertainDigSearchResult result;
+  DigProblem::Best mean = problem.best_of(found);
+  result.expected = std::move(mean.result);
+  if (best.stopped) {
+    result.expected.stopped = true;
+    result.expected.stopped_by = StopReason::cancelled;
+  }
+  result.evaluations = best.evaluations() + found.evaluations * static_cast<int>(soils.size());
+  for (std::size_t i = 0; i < soils.size(); ++i) {
+    const auto* dig = std::get_if<PlannedDig>(&mean.digs[i]);
+    const double same = dig ? options.objective.worth(*dig) : 0.0;  // a stall is worth nothing
+    const auto& own = best.soils[i];
+    result.worth_if_known += soils[i].probability * (own ? std::max(own->worth, same) : same);
+  }
+  return result;
+}
+
+DigSpread dig_spread(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                     const Terrain& terrain, const PlannedDig& dig, const DigPath& path) {
+  check(soils);
+  const DigsInEach digs = dig_in_each(machine, soils, terrain, path);
+  DigSpread spread;
+  Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = Eigen::Array3d::Zero();
+  double probability = 0.0;
+  for (std::size_t i = 0; i < digs.size(); ++i) {
+    const auto* dug = std::get_if<PlannedDig>(&digs[i]);
+    if (!dug) {
+      spread.stall_probability += soils[i].probability;
+      continue;
+    }
+    const Eigen::Array3d off(dug->payload_mass - dig.payload_mass, dug->energy - dig.energy,
+                             dug->efficiency() - dig.efficiency());
+    probability += soils[i].probability;
+    sum += soils[i].probability * off;
+    squares += soils[i].probability * off.square();
+  }
+  if (probability == 0.0) return spread;
+  const Eigen::Array3d mean = sum / probability;
+  const Eigen::Array3d sd = (squares / probability - mean.square()).max(0.0).sqrt();
+  return {sd(0), sd(1), sd(2), spread.stall_probability};
+}
+
+std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent, int count) {
+  require(mean_percent >= 0.0 && mean_percent <= 100.0, "the mean density", mean_percent,
+          "in 0 .. 100 %");
+  require(sd_percent > 0.0 && std::isfinite(sd_percent), "the standard deviation of the density",
+          sd_percent, "above 0 and finite");
+  sd_percent = std::min(sd_percent, 1000.0);  // above it all densities are equally likely
+  require(count >= 1 && count <= 20, "the number of possible densities", count, "in 1 .. 20");
+  // Three-term recurrence of the polynomials orthogonal under the density on a fine grid
+  // (Stieltjes), then the eigenvalues of its matrix (Golub and Welsch 1969).
+  constexpr Index fine = 4000;
+  const double low = std::max(0.0, mean_percent - 10.0 * sd_percent);
+  const double high = std::min(100.0, mean_percent + 10.0 * sd_percent);
+  const Eigen::ArrayXd x = (Eigen::ArrayXd::LinSpaced(fine, 0.5, fine - 0.5) / fine - 0.5) * 2.0;
+  const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  Eigen::ArrayXd weight = (-0.5 * ((middle + half * x - mean_percent) / sd_percent).square()).exp();
+  weight /= weight.sum();
+  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(count, count);
+  Eigen::ArrayXd before = Eigen::ArrayXd::Zero(fine);
+  Eigen::ArrayXd now = Eigen::ArrayXd::Ones(fine);  // orthonormal
+  double link = 0.0;
+  for (int i = 0; i < count; ++i) {
+    jacobi(i, i) = (weight * x * now.square()).sum();
+    if (i + 1 == count) break;
+    Eigen::ArrayXd next = (x - jacobi(i, i)) * now - link * before;
+    link = std::sqrt((weight * next.square()).sum());
+    jacobi(i, i + 1) = jacobi(i + 1, i) = link;
+    before = std::exchange(now, next / link);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(jacobi);
+  std::vector<PossibleDensity> densities;
+  for (int i = 0; i < count; ++i) {
+    densities.push_back(
+        {middle + half * solved.eigenvalues()(i), std::pow(solved.eigenvectors()(0, i), 2)});
+  }
+  return densities;
+}
+
+PossibleGround::PossibleGround(const SimulatorKind& simulator, const Machine& machine,
+                               const SoilKind& soil, const GroundDensity& density) {
+  require(density.percent >= 0.0 && density.percent <= 100.0, "the density", density.percent,
+          "in 0 .. 100 %");
+  require(density.sd_percent >= 0.0 && std::isfinite(density.sd_percent),
+          "the standard deviation of the density", density.sd_percent, "at least 0 and finite");
+  std::vector<PossibleDensity> densities = {{density.percent, 1.0}};
+  if (density.sd_percent > 0.0) {
+    densities = possible_densities(density.percent, density.sd_percent);
+  }
+  for (const auto& [percent, probability] : densities) {
+    simulators_.push_back(simulator.make(machine, soil, percent));
+    soils_.push_back({simulators_.back().get(), probability});
+  }
+}
+
+}  // namespace excavplan

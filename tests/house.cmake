@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+cmake_minimum_required(VERSION 3.24)
+
+# Sizes and tidiness as a test: run with cmake -D ROOT=<source directory> -P house.cmake
+
+# No header and no program file is longer than this.
+set(most_lines 150)
+# These may reach 200, with the reason.
+set(long_programs "")
+
+
+file(GLOB_RECURSE headers RELATIVE ${ROOT}
+  ${ROOT}/include/*.hpp ${ROOT}/src/*.hpp ${ROOT}/tools/*.hpp)
+file(GLOB programs RELATIVE ${ROOT} ${ROOT}/tools/*.cpp ${ROOT}/examples/*.cpp)
+foreach(file IN LISTS headers programs)
+  file(READ ${ROOT}/${file} text)
+  string(REGEX REPLACE "[^\n]" "" text "${text}")
+  string(LENGTH "${text}" count)
+  set(most ${most_lines})
+  if(file IN_LIST long_programs)
+    set(most 200)
+  endif()
+  if(count GREATER most)
+    message(SEND_ERROR "${file}: ${count} lines, at most ${most} are allowed")
+  endif()
+endforeach()
+
+# Code that was commented out: a comment that is a statement, a brace or a preprocessor line.
+string(CONCAT code
+  "#(include|if|endif|define)|};?$|.*{$|.*\\);$|(if|for|while) \\(.*;$|[a-z_.]+ [-+*/]?= .*;$|"
+  "(return|const|auto|double|int|bool|std::)[^.]*;$")
+file(GLOB_RECURSE sources RELATIVE ${ROOT}
+  ${ROOT}/include/*.hpp ${ROOT}/src/*.[ch]pp ${ROOT}/tools/*.[ch]pp ${ROOT}/tests/*.[ch]pp
+  ${ROOT}/benchmarks/*.[ch]pp ${ROOT}/examples/*.cpp)
+list(LENGTH sources count)
+if(count LESS 150)
+  message(SEND_ERROR "only ${count} source files under '${ROOT}': nothing was checked")
+endif()
+foreach(file IN LISTS sources)
+  file(STRINGS ${ROOT}/${file} comments REGEX "^ *//[^/!]")
+  foreach(line IN LISTS comments)
+    if(line MATCHES "// *(${code})")
+      message(SEND_ERROR "${file}: commented-out code: ${line}")
+    endif()
+  endforeach()
+endforeach()

@@ -1,0 +1,294 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/library/plan_dig.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "support/errors.hpp"
+
+namespace excavplan {
+namespace {
+
+/// A controller's own simulator: lifts 100 kg, at least cost with a drag of 1.2 m.
+class OwnSimulator : public SoilSimulator {
+ public:
+  DigResult dig(const Terrain&, const DigPath& path, const DigOptions&) const override {
+    DigResult result;
+    result.payload_mass = 100.0;
+    result.energy.total = 1000.0 + 1e4 * std::pow(path.parameters.drag_length - 1.2, 2);
+    return result;
+  }
+};
+
+SimulatorKind own_simulator() {
+  return {"own", "own 1", [](const Machine&, const SoilKind&, double) {
+            return std::make_unique<const OwnSimulator>();
+          }};
+}
+
+class PlanDig : public testing::Test {
+ protected:
+  static PlanOptions searched(int evaluations, unsigned threads = 0) {
+    PlanOptions options;
+    options.method = PlanMethod::search;
+    options.search.stop.evaluations = evaluations;
+    options.search.threads = threads;
+    return options;
+  }
+  DigPlan plan(const GroundDensity& density, const PlanOptions& options = {}) const {
+    return plan_dig(machine_, loam_, density, options);
+  }
+  Terrain rising(double rise) const {
+    Terrain ground = level_planning_ground(machine_);
+    for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
+      ground.bank.z.col(col) += rise * (ground.bank.x(col) - machine_.track_front);
+    }
+    return ground;
+  }
+  static bool warns(const DigPlan& plan, const std::string& code) {
+    return std::any_of(plan.warnings.begin(), plan.warnings.end(),
+                       [&](const Warning& warning) { return warning.code == code; });
+  }
+  /// All that a controller executes, to the last bit.
+  static std::string bytes(const DigPlan& plan) {
+    return to_json(plan.trajectory) + std::to_string(plan.evaluations) +
+           std::to_string(plan.search->worth);
+  }
+
+  const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  const SoilKind loam_ = load_soil(find_data_file("soils/loam.json"));
+};
+
+// ---- Looking up -------------------------------------------------------------------------------
+
+TEST_F(PlanDig, LooksUpOnLevelGroundWithoutADig) {
+  const DigPlan found = plan(40.0);
+  ASSERT_TRUE(found.dig);
+  const PlannedDig entry = look_up(shipped_library(machine_, loam_), 40.0);
+  EXPECT_EQ(found.dig->start_x, entry.start_x);
+  EXPECT_EQ(found.dig->energy, entry.energy);
+  EXPECT_EQ(found.method, PlanMethod::library);
+  EXPECT_EQ(found.start_rule, "of the library");
+  EXPECT_EQ(found.evaluations, 0);
+  EXPECT_EQ(found.look_up->error->loss, 0.0);
+  EXPECT_FALSE(found.search);
+  EXPECT_TRUE(found.trustworthy && found.warnings.empty() && found.reason.empty());
+}
+
+TEST_F(PlanDig, GivesThePathAndATrajectoryFromAboveTheGround) {
+  const DigPlan found = plan(40.0);
+  EXPECT_EQ(found.path.start_x, found.dig->start_x);
+  EXPECT_FALSE(found.path.approach.empty());
+  EXPECT_EQ(found.trajectory.points.front().phase, DigPhase::approach);
+  EXPECT_EQ(found.trajectory.points.back().phase, DigPhase::lift);
+  EXPECT_NEAR(found.trajectory.dig_duration(), found.dig->duration, 0.2);
+  PlanOptions slow;
+  slow.trajectory.speed_fraction = 0.4;
+  EXPECT_GT(plan(40.0, slow).trajectory.duration(), 1.5 * found.trajectory.duration());
+}
+
+TEST_F(PlanDig, DigsTheLibrarysPathOnGivenGround) {
+  const Terrain gentle = rising(0.02);
+  const DigPlan found = plan_dig(machine_, loam_, 40.0, gentle);
+  EXPECT_EQ(found.evaluations, 1);
+  EXPECT_EQ(found.start_rule, "least work of the links' own weight");
+  EXPECT_NEAR(found.look_up->slope, std::atan(0.02), 1e-6);
+  EXPECT_TRUE(found.look_up->error && found.trustworthy);
+  const auto same = evaluate_dig(machine_, *default_simulator().make(machine_, loam_, 40.0), gentle,
+                                 found.dig->parameters, StartRule::Kind::least_work);
+  EXPECT_EQ(found.dig->energy, std::get<PlannedDig>(same).energy);
+}
+
+TEST_F(PlanDig, DistrustsGroundThatTheLibraryDoesNotCover) {
+  PathLibrary narrow = shipped_library(machine_, loam_);
+  const auto steep = [](const PathLibraryEntry& entry) { return std::abs(entry.slope) > 0.06; };
+  narrow.entries.erase(std::remove_if(narrow.entries.begin(), narrow.entries.end(), steep),
+                       narrow.entries.end());
+  PlanOptions options;
+  options.library = std::make_shared<PathLibrary>(narrow);
+  const DigPlan found = plan_dig(machine_, loam_, 40.0, rising(0.2), options);
+  ASSERT_TRUE(found.dig);
+  EXPECT_TRUE(warns(found, "slope_outside_library"));
+  EXPECT_FALSE(found.trustworthy || found.look_up->error);
+}
+
+TEST_F(PlanDig, ADensityThatTheLibraryLacksIsAReasonNotAnError) {
+  PathLibrary part = shipped_library(machine_, loam_);
+  const auto soft = [](const PathLibraryEntry& entry) { return entry.density_percent < 50.0; };
+  part.entries.erase(std::remove_if(part.entries.begin(), part.entries.end(), soft),
+                     part.entries.end());
+  PlanOptions options;
+  options.library = std::make_shared<PathLibrary>(part);
+  const DigPlan none = plan(40.0, options);
+  EXPECT_FALSE(none.dig || none.stopped);
+  EXPECT_NE(none.reason.find("density"), std::string::npos) << none.reason;
+  options.method = PlanMethod::search;
+  options.search.stop.evaluations = 20;
+  EXPECT_TRUE(plan(40.0, options).dig) << "the search begins with nothing";
+}
+
+TEST_F(PlanDig, APathThatDoesNotWorkHereIsAReason) {
+  Terrain unknown = level_planning_ground(machine_);
+  unknown.bank.z.rightCols(unknown.bank.z.cols() / 2).setConstant(std::nan(""));
+  const DigPlan none = plan_dig(machine_, loam_, 40.0, unknown);
+  EXPECT_FALSE(none.dig);
+  EXPECT_EQ(none.reason.rfind("the library's path does not work here", 0), 0U) << none.reason;
+}
+
+TEST_F(PlanDig, RefusesWhatTheCallerCouldHavePrevented) {
+  EXPECT_EQ(test::error_of([&] { plan(140.0); }), "the density is 140, must be in 0 .. 100 %");
+  EXPECT_THROW(plan(std::nan("")), Error);
+  EXPECT_THROW(plan(GroundDensity(40.0, -1.0)), Error);
+  PlanOptions sand;
+  sand.library = std::make_shared<PathLibrary>(
+      shipped_library(machine_, load_soil(find_data_file("soils/sand.json"))));
+  EXPECT_NE(test::error_of([&] { plan(40.0, sand); }).find("its soil is sand, not loam"),
+            std::string::npos);
+  SoilKind peat = loam_;
+  peat.name = "peat";
+  EXPECT_NE(test::error_of([&] { shipped_library(machine_, peat); }).find("no library of zx120 in"),
+            std::string::npos);
+}
+
+// ---- Searching --------------------------------------------------------------------------------
+
+TEST_F(PlanDig, SearchBeginsWithTheLibrarysDig) {
+  const DigPlan first = plan(60.0, searched(1));
+  const PlannedDig known = look_up(shipped_library(machine_, loam_), 60.0);
+  EXPECT_EQ(first.dig->parameters.drag_length, known.parameters.drag_length);
+  PlanOptions for_time = searched(1);
+  for_time.search.objective.goal = DigObjective::Goal::mass_per_time;
+  EXPECT_NE(plan(60.0, for_time).dig->parameters.drag_length, known.parameters.drag_length);
+  PlanOptions own = searched(1);
+  own.search.start = {paper_fixed_path()};
+  EXPECT_EQ(plan(60.0, own).dig->parameters.drag_length, paper_fixed_path().drag_length);
+}
+
+TEST_F(PlanDig, SearchHasABudgetUnlessToldOtherwise) {
+  PlanOptions options = searched(0);
+  options.simulator = own_simulator();
+  EXPECT_EQ(plan(40.0, options).search->stopped_by, StopReason::evaluations);
+  EXPECT_EQ(plan(40.0, options).evaluations, 400);
+  const DigPlan uncertain = plan(GroundDensity(40.0, 5.0), options);
+  EXPECT_GE(uncertain.evaluations, 300);
+  EXPECT_LE(uncertain.evaluations, 3 * 100 + 3 * 100 + 3);
+}
+
+TEST_F(PlanDig, SameSearchForAnyThreads) {
+  for (const GroundDensity& density : {GroundDensity(30.0), GroundDensity(30.0, 6.0)}) {
+    const std::string one = bytes(plan(density, searched(30, 1)));
+    for (const unsigned threads : {2U, 5U}) {
+      EXPECT_EQ(bytes(plan(density, searched(30, threads))), one) << threads;
+    }
+  }
+}
+
+TEST_F(PlanDig, CancelledItGivesTheBestDigSoFarOrNone) {
+  PlanOptions options = searched(60);
+  options.search.progress = [](const SearchProgress& progress) { return progress.evaluations < 9; };
+  const DigPlan part = plan(40.0, options);
+  ASSERT_TRUE(part.dig);
+  EXPECT_TRUE(part.stopped);
+  EXPECT_EQ(part.search->stopped_by, StopReason::cancelled);
+  EXPECT_FALSE(part.trajectory.points.empty());
+
+  const DigPlan uncertain = plan(GroundDensity(40.0, 5.0), options);
+  EXPECT_TRUE(uncertain.stopped && uncertain.dig);
+  EXPECT_FALSE(uncertain.search->value_of_knowing);
+
+  options.search.bounds.lower = options.search.bounds.upper = {1.4, 0.9, 3.0};  // stalls
+  options.search.progress = [](const SearchProgress&) { return false; };
+  for (const GroundDensity& density : {GroundDensity(40.0), GroundDensity(40.0, 5.0)}) {
+    const DigPlan none = plan(density, options);
+    EXPECT_TRUE(none.stopped && none.reason.empty());
+    EXPECT_FALSE(none.dig);
+  }
+}
+
+TEST_F(PlanDig, WhereNoDigCanBeDoneItSaysWhatCameNearest) {
+  PlanOptions options = searched(5);
+  options.search.bounds.lower = options.search.bounds.upper = {1.4, 0.9, 3.0};
+  for (const GroundDensity& density : {GroundDensity(40.0), GroundDensity(40.0, 8.0)}) {
+    const DigPlan none = plan(density, options);
+    EXPECT_FALSE(none.dig || none.stopped);
+    EXPECT_FALSE(none.reason.empty());
+    ASSERT_TRUE(none.nearest);
+    EXPECT_EQ(none.nearest->parameters.drag_length, 3.0);
+    EXPECT_TRUE(none.trajectory.points.empty());
+  }
+}
+
+TEST_F(PlanDig, SearchesInASuppliedSimulator) {
+  PlanOptions options = searched(80);
+  options.simulator = own_simulator();
+  const DigPlan found = plan(40.0, options);
+  EXPECT_NEAR(found.dig->parameters.drag_length, 1.2, 0.01);
+  EXPECT_EQ(found.dig->payload_mass, 100.0);
+}
+
+TEST_F(PlanDig, ADigLookedUpIsDugInAnotherSimulatorThanTheLibrarys) {
+  PlanOptions options;
+  options.simulator = own_simulator();
+  const DigPlan found = plan(40.0, options);
+  EXPECT_EQ(found.dig->payload_mass, 100.0);
+  EXPECT_EQ(found.evaluations, 1);
+  EXPECT_EQ(found.dig->start_x, plan(40.0).dig->start_x);
+}
+
+// ---- The density ------------------------------------------------------------------------------
+
+TEST_F(PlanDig, FiguresScatterWithTheDensity) {
+  const DigPlan sure = plan(40.0);
+  const DigPlan scattered = plan(GroundDensity(40.0, 8.0));
+  EXPECT_EQ(scattered.dig->energy, sure.dig->energy);
+  EXPECT_EQ(sure.spread.efficiency, 0.0);
+  EXPECT_EQ(scattered.evaluations, 3);
+  const double soft = plan(32.0).dig->efficiency();
+  const double firm = plan(48.0).dig->efficiency();
+  EXPECT_NEAR(scattered.spread.efficiency, 0.5 * (soft - firm), 0.1 * (soft - firm));
+}
+
+TEST_F(PlanDig, SearchForAnUncertainDensitySaysWhatKnowingItIsWorth) {
+  const DigPlan found = plan(GroundDensity(40.0, 8.0), searched(30));
+  EXPECT_GE(found.search->value_of_knowing.value(), 0.0);
+  EXPECT_LT(*found.search->value_of_knowing, 0.05);
+  EXPECT_GT(found.spread.energy, 0.0);
+  EXPECT_FALSE(plan(40.0, searched(5)).search->value_of_knowing);
+}
+
+TEST_F(PlanDig, ADensityThatIsNotTrustedIsPassedOn) {
+  GroundDensity density = 40.0;
+  density.trustworthy = false;
+  density.soil = "sand";
+  const DigPlan found = plan(density);
+  EXPECT_FALSE(found.trustworthy);
+  EXPECT_TRUE(warns(found, "density_not_trustworthy") && warns(found, "law_of_other_soil"));
+  EXPECT_TRUE(found.look_up->error) << "the ground is the library's";
+  density.trustworthy = true;
+  EXPECT_TRUE(plan(density).trustworthy);
+  density.soil = "loam";
+  EXPECT_TRUE(plan(density).warnings.empty());
+}
+
+TEST_F(PlanDig, AStallThatIsLikelyIsNotTrusted) {
+  PlanOptions options = searched(30);
+  options.search.bounds.lower = {1.05, 0.5, 0.3};
+  const SoilKind clay = load_soil(find_data_file("soils/clay.json"));
+  const DigPlan risky = plan_dig(machine_, clay, GroundDensity(90.0, 10.0), options);
+  EXPECT_GT(risky.spread.stall_probability, 0.05);
+  EXPECT_TRUE(warns(risky, "may_stall"));
+  EXPECT_FALSE(risky.trustworthy);
+}
+
+}  // namespace
+}  // namespace excavplan

@@ -1,0 +1,32 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+cmake_minimum_required(VERSION 3.24)
+
+# -D EXCAVPLAN_SURVEY=OFF leaves out what its name says, and nothing else: configures SOURCE into
+# BUILD as on a machine that has neither PCL nor OpenCV, and compares the targets.
+
+function(run)
+  execute_process(COMMAND ${ARGV} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${BUILD})
+run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${BUILD} -D CMAKE_CXX_COMPILER=${CXX}
+  -D EXCAVPLAN_SURVEY=OFF -D EXCAVPLAN_TESTS=ON -D EXCAVPLAN_TOOLS=ON
+  -D CMAKE_DISABLE_FIND_PACKAGE_PCL=ON -D CMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON)
+run(${CMAKE_COMMAND} --build ${BUILD} --target help)
+foreach(target excavplan_planning excavplan_clouds calibrate-density simulate-dig plan-path
+    build-path-library run-experiment measure-efficiency inspect-cloud)
+  if(NOT output MATCHES "\n${target}: phony")
+    message(SEND_ERROR "${target} needs the survey")
+  endif()
+endforeach()
+foreach(target excavplan_survey estimate-density depth-to-cloud)
+  if(output MATCHES "\n${target}: phony")
+    message(SEND_ERROR "${target} is not left out")
+  endif()
+endforeach()
+file(REMOVE_RECURSE ${BUILD})

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/plan_results.hpp"
+
+#include <excavplan/error.hpp>
+
+#include "base/files.hpp"
+#include "base/text.hpp"
+#include "shared/results.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+/// @return 0 if the estimate states none
+double sd_in(const nlohmann::json& result, const std::string& file) {
+  const auto field = result.find("density_sd_percent");
+  if (field == result.end() || field->is_null()) return 0.0;
+  if (field->is_number() && field->get<double>() >= 0.0) return field->get<double>();
+  throw Error(ErrorKind::bad_file,
+              file + ": density_sd_percent must be a number of at least 0, it is " + field->dump());
+}
+
+nlohmann::ordered_json search_json(const PlanSearch& search, const DigGoalInfo& goal) {
+  nlohmann::ordered_json json = {{"stopped_by", name(search.stopped_by)},
+                                 {"refused", search.refused},
+                                 {"worth", goal.per_si * search.worth},
+                                 {"worth_unit", goal.unit}};
+  const auto& table = dig_parameter_table();
+  for (std::size_t i = 0; i < table.size() && i < search.ranges.size(); ++i) {
+    json["ranges_98_percent"][table[i].name] = {search.ranges[i].low, search.ranges[i].high};
+  }
+  return json;
+}
+
+nlohmann::ordered_json expectation_json(const PlanSearch& search, const DigGoalInfo& goal) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  if (goal.unit == "kg/kJ") json["expected_efficiency_kg_per_kj"] = goal.per_si * search.worth;
+  if (search.value_of_knowing) json["value_of_knowing_percent"] = 100.0 * *search.value_of_knowing;
+  return json;
+}
+
+nlohmann::ordered_json look_up_json(const PlanLookUp& look_up) {
+  nlohmann::ordered_json json = {{"look_up_slope_rad", look_up.slope},
+                                 {"look_up_loss", nullptr},
+                                 {"look_up_expectation_error", nullptr}};
+  if (look_up.error) {
+    json["look_up_loss"] = look_up.error->loss;
+    json["look_up_expectation_error"] = look_up.error->expectation;
+  }
+  return json;
+}
+
+nlohmann::ordered_json spread_json(const DigSpread& spread, double density_sd) {
+  return {{"density_sd_percent", density_sd},
+          {"payload_mass_sd_kg", spread.payload_mass},
+          {"energy_sd_kj", spread.energy / 1000.0},
+          {"efficiency_sd_kg_per_kj", 1000.0 * spread.efficiency},
+          {"stall_probability", spread.stall_probability}};
+}
+
+std::string expected_line(const PlanSearch& search, const DigGoalInfo& goal, double density_sd) {
+  std::string line = "expected     " + readable(goal.per_si * search.worth) + " " + goal.unit +
+                     " on average over " + readable(density_sd) + " points of standard deviation";
+  if (!search.value_of_knowing) return line;
+  return line + "; knowing the density would add " + readable(100.0 * *search.value_of_knowing, 2) +
+         " %";
+}
+
+/// Empty where the dig is that of an entry on level ground.
+std::string look_up_line(const PlanLookUp& look_up) {
+  if (!look_up.error || (look_up.error->loss == 0.0 && look_up.slope == 0.0)) return "";
+  std::string line = "looked up    ";
+  if (look_up.slope != 0.0) line += "on a slope of " + readable(look_up.slope, 2) + " rad";
+  if (look_up.error->loss == 0.0) return line;
+  return line + (look_up.slope != 0.0 ? ", " : "") + "between entries, which loses up to " +
+         readable(100.0 * look_up.error->loss, 2) + " % of the best efficiency";
+}
+
+std::string source_line(const DigPlan& plan) {
+  const std::string digs =
+      plan.evaluations > 0 ? ", " + std::to_string(plan.evaluations) + " digs simulated" : "";
+  return "source       " + std::string(name(plan.method)) + digs + "; start: " + plan.start_rule;
+}
+
+GroundDensity read_density(const std::string& file) {
+  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const auto field = json.is_object() ? json.find("density_percent") : json.end();
+  const bool there = json.is_object() && field != json.end();
+  if (!there || !field->is_number() ||
+      !(field->get<double>() >= 0.0 && field->get<double>() <= 100.0)) {
+    throw Error(ErrorKind::bad_file, file + ": density_percent must be a number in 0 .. 100" +
+                                         (there ? ", it is " + field->dump() : ", it is missing") +
+                                         "; expected a result of estimate-density --json");
+  }
+  GroundDensity density(field->get<double>(), sd_in(json, file));
+  const auto trustworthy = json.find("trustworthy");
+  density.trustworthy = trustworthy == json.end() || *trustworthy == true;
+  const auto soil = json.find("law_soil");
+  if (soil != json.end() && soil->is_string()) density.soil = soil->get<std::string>();
+  return density;
+}
+
+}  // namespace
+
+void check(const DensityInput& input) {
+  const auto refuse = [](const std::string& text) { throw Error(ErrorKind::bad_input, text); };
+  if (input.sd && *input.sd < 0.0) {
+    refuse("--density-sd: " + number_text(*input.sd) + " must be at least 0");
+  }
+  if (input.percent.has_value() == input.file.has_value()) {
+    refuse("give --density or --density-from, one of the two");
+  }
+  if (input.percent && !(*input.percent >= 0.0 && *input.percent <= 100.0)) {
+    refuse("--density: " + number_text(*input.percent) + " % is outside 0 .. 100");
+  }
+}
+
+GroundDensity density_of(const DensityInput& input) {
+  GroundDensity density = input.percent ? GroundDensity(*input.percent) : read_density(*input.file);
+  density.sd_percent = input.sd.value_or(density.sd_percent);
+  return density;
+}
+
+nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& density,
+                                 const DigObjective& objective) {
+  nlohmann::ordered_json json = {{"density_percent", density.percent}};
+  if (!plan.dig) {
+    json.update({{"source", name(plan.method)}, {"path", nullptr}});
+    return json;
+  }
+  json.update(dig_json(*plan.dig));
+  json["source"] = name(plan.method);
+  json["start_rule"] = plan.start_rule;
+  json["evaluations"] = plan.evaluations;
+  const DigGoalInfo& goal = info_of(objective.goal);
+  const bool uncertain = density.sd_percent > 0.0;
+  if (plan.search) json.update(search_json(*plan.search, goal));
+  if (plan.search && uncertain) json.update(expectation_json(*plan.search, goal));
+  if (plan.look_up) json.update(look_up_json(*plan.look_up));
+  if (uncertain) json.update(spread_json(plan.spread, density.sd_percent));
+  return json;
+}
+
+std::vector<std::string> plan_lines(const DigPlan& plan, const GroundDensity& density,
+                                    const std::string& soil, const DigObjective& objective) {
+  if (!plan.dig) return {"stopped before any dig was found"};
+  const DigGoalInfo& goal = info_of(objective.goal);
+  std::vector<std::string> lines = {
+      "density      " + readable(density.percent, density.sd_percent) + " % in " + soil};
+  for (const std::string& line : dig_lines(*plan.dig, plan.spread)) lines.push_back(line);
+  if (plan.search && objective.goal != DigObjective::Goal::mass_per_energy) {
+    lines.push_back("worth        " + readable(goal.per_si * plan.search->worth) + " " + goal.unit +
+                    ", " + goal.description);
+  }
+  if (plan.search && density.sd_percent > 0.0) {
+    lines.push_back(expected_line(*plan.search, goal, density.sd_percent));
+  }
+  if (plan.look_up && !look_up_line(*plan.look_up).empty()) {
+    lines.push_back(look_up_line(*plan.look_up));
+  }
+  if (plan.spread.stall_probability > 0.0) {
+    lines.push_back("stalls       with a probability of " +
+                    readable(100.0 * plan.spread.stall_probability, 2) + " %");
+  }
+  lines.push_back(source_line(plan));
+  return lines;
+}
+
+}  // namespace excavplan::tools
