@@ -11,7 +11,7 @@
 #include <excavplan/machine/kinematics.hpp>
 
 /// @file
-/// The poses and postures of one dig, as its parameters ask for.
+/// Poses and joint angles of one dig, from its parameters.
 ///
 ///     DigParameters -> DigPath -> Trajectory (trajectory.hpp)
 ///
@@ -81,9 +81,9 @@ struct DigPathOptions {
   double lift_clearance = 0.3;
 };
 
-/// For a path that was planned on another measurement of this ground: it often just keeps the
-/// distances above, and here the ground may lie some millimetres off. They are less strict by
-/// 0.01 rad and 0.02 m; ours.
+/// Options for a path that was planned on another measurement of the same ground. Planned paths
+/// are often at the limit of the distances above, and the other ground may lie some millimetres
+/// off: the limits are relaxed by 0.01 rad and 0.02 m; ours.
 DigPathOptions rules_for_planned_path();
 
 /// Lays out penetration, drag, scoop and lift, and solves the joints of every pose in closed form.
@@ -95,14 +95,15 @@ DigPathOptions rules_for_planned_path();
 /// bucket that comes to its limit out of the ground opens from there on. A phase of length 0 is
 /// left out. Checks are made at the poses.
 ///
-/// @throws Error (bad_input) if an option is out of range; bad parameters are a value
+/// @throws Error (bad_input) if an option is out of range; bad parameters are returned as
+/// Infeasible
 std::variant<DigPath, Infeasible> make_dig_path(const Machine& machine,
                                                 const DigParameters& parameters, double start_x,
                                                 const GroundProfile& ground,
                                                 const DigPathOptions& options = {});
 
-/// Chooses the start point by a scan of the reach: the one with the largest smallest margin to the
-/// joint limits (and to heel contact), ties to the middle (docs/methods.md#path).
+/// Chooses the start point from a scan of the reach: the one whose smallest margin to the joint
+/// limits and to heel contact is largest, the middle one of several (docs/methods.md#path).
 ///
 /// @return the path from there, or why the best of the failing start points fails: the one that
 /// gets furthest, at a few poses a phase unless these miss what stops it
