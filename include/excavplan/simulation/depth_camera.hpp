@@ -24,12 +24,12 @@ struct DepthCamera {
   Eigen::Vector3d position = {0.0, 0.0, 2.5};  ///< [m]
   Eigen::Vector3d target = {0.0, 0.0, 0.0};    ///< point on the optical axis [m]
   int width = 256;                             ///< pixels; the image's x axis is level
-  int height = 144;
-  double horizontal_view = 1.5184;  ///< field of view [rad]; ours: 87 deg
-  double noise = 0.0027;            ///< sd of the depth at 1 m, grows with range squared [m]; ours
-  double dropouts = 0.02;           ///< share of pixels without depth [-]
-  double max_range = 6.0;           ///< [m]; ours
-  int frames = 1;                   ///< averaged; noise and dropouts differ from frame to frame
+  int height = 144;                            ///< pixels
+  double horizontal_view = 1.5184;             ///< field of view [rad]; ours: 87 deg
+  double noise = 0.0027;        ///< sd of the depth at 1 m, grows with range squared [m]; ours
+  double dropouts = 0.02;       ///< share of pixels without depth [-]
+  double max_range = 6.0;       ///< [m]; ours
+  int frames = 1;               ///< averaged; noise and dropouts differ from frame to frame
   double pattern_noise = 0.0;   ///< sd at 1 m of what all frames of a scan share, grows with range
                                 ///< squared [m]
   double pattern_length = 3.0;  ///< its covariance falls as exp(-d^2 / (2 length^2)) [pixel]

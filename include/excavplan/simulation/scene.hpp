@@ -20,23 +20,25 @@
 
 namespace excavplan {
 
+/// What is dug, and where it is dumped.
 struct SceneOptions {
-  DigParameters path = paper_fixed_path();
-  std::optional<double> start_x = {};  ///< [m]; empty: make_dig_path_anywhere() chooses it
-  DigPathOptions rules = {};
+  DigParameters path = paper_fixed_path();  ///< numbers of the dig
+  std::optional<double> start_x = {};       ///< [m]; empty: make_dig_path_anywhere() chooses it
+  DigPathOptions rules = {};                ///< of the path
   Eigen::Vector2d dump_at = default_dump_point();  ///< centre of the heap (x, y) [m]
-  SimulatorKind simulator = default_simulator();
-  bool history = false;  ///< fill DigResult::history
+  SimulatorKind simulator = default_simulator();   ///< that digs
+  bool history = false;                            ///< fill DigResult::history
 };
 
+/// A dig and the ground it leaves.
 struct DigScene {
-  std::string soil;  ///< its name
-  double density_percent = 0.0;
-  DigPath path;
-  Eigen::Vector2d dump_at;
-  Terrain before;
-  Terrain after;  ///< with the heap
-  DigResult dig;
+  std::string soil;                  ///< its name
+  double density_percent = 0.0;      ///< of the undisturbed ground
+  DigPath path;                      ///< that was driven
+  Eigen::Vector2d dump_at;           ///< centre of the heap (x, y) [m]
+  Terrain before;                    ///< the dig
+  Terrain after;                     ///< with the heap
+  DigResult dig;                     ///< with forces, energy and where the soil went
   HeightMapVolumes volumes;          ///< of the two grounds
   double bulking_factor_true = 0.0;  ///< by the balance of dry mass [-]
   double duration = 0.0;             ///< of penetrate, drag and scoop [s]
@@ -51,9 +53,10 @@ struct DigScene {
 DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
                    const Terrain& ground, const SceneOptions& options = {});
 
+/// What is seen of a scene.
 struct SceneScans {
   std::vector<Eigen::Vector3d> before;  ///< in the site frame [m]
-  std::vector<Eigen::Vector3d> after;
+  std::vector<Eigen::Vector3d> after;   ///< in the site frame [m]
 };
 
 /// What two depth cameras see, one over the dig and one over the heap, placed by camera_above().

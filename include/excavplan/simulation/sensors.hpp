@@ -32,6 +32,7 @@ struct Sensor {
 /// All sensors with a model; the first is the default. Their figures and where they come from stand
 /// in src/simulation/sensors.cpp.
 const std::vector<Sensor>& sensors();
+/// The first of sensors().
 inline const Sensor& default_sensor() { return sensors().front(); }
 
 /// @throws Error (bad_input) naming the sensors there are
