@@ -43,7 +43,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities to dig [%], or a list a,b,c");
   arguments.option("path", inputs.path, "dig path");
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   arguments.file("out", inputs.out, "law file to write, for estimate-density --law");
 }
 
@@ -94,7 +94,7 @@ std::vector<std::string> difference_lines(const BulkingDifference& difference) {
     return {"true and measured k      agree at every density, within 0.05 points of it"};
   }
   return {
-      "true and measured k      part most at " + readable(at.density_percent) +
+      "true and measured k      differ most at " + readable(at.density_percent) +
           " %: " + readable(at.bulking_factor_true, 4) + " by dry mass, " +
           readable(at.bulking_factor_measured, 4) + " from the height maps; taken for true, " +
           readable(std::abs(difference.density_points), 2) + " points of density too " +

@@ -25,7 +25,7 @@ const About about = {
      {"inspect-cloud scan.pcd --frame scan_frame.txt --out site.pcd", "into the site frame"}}};
 
 void declare(Arguments& arguments, Inputs& inputs) {
-  arguments.positional("FILE", inputs.file, "scan to look at");
+  arguments.positional("FILE", inputs.file, "scan to examine");
   arguments.file("frame", inputs.frame,
                  "4 x 4 text matrix that takes the scan into the site frame; applied first");
   arguments.file("out", inputs.out, "write the cloud here: " + cloud_endings());
@@ -55,7 +55,7 @@ std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& clo
     if (std::isfinite(summary.density)) {
       lines.push_back("  " + readable(summary.density) + " points per m^2 of ground");
     }
-    lines.push_back("  frame, by the look of it: " + summary.frame_guess);
+    lines.push_back("  frame (a guess): " + summary.frame_guess);
   }
   if (inputs.out) lines.push_back("written to " + *inputs.out);
   return lines;

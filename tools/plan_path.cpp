@@ -30,11 +30,9 @@ const About about = {
     true};
 
 struct Inputs {
-  std::optional<double> density;
-  std::optional<std::string> density_from;
+  DensityInput density;
   std::optional<std::string> library;
   bool search = false;
-  std::optional<double> density_sd;
   TerrainInput terrain;
   std::string soil = "loam";
   std::string machine = "zx120";
@@ -46,13 +44,14 @@ struct Inputs {
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
-  arguments.option("density", inputs.density, Quantity::percent, "relative density of the ground");
+  arguments.option("density", inputs.density.percent, Quantity::percent,
+                   "relative density of the ground");
   arguments.option(
-      "density-sd", inputs.density_sd, Quantity::percent,
+      "density-sd", inputs.density.sd, Quantity::percent,
       "standard deviation of the density: how much the figures scatter; with --search the path "
       "that is best on average");
   arguments.file(
-      "density-from", inputs.density_from,
+      "density-from", inputs.density.file,
       "take the density and its uncertainty from this result of estimate-density --json");
   arguments.file("library", inputs.library,
                  "path library (default: the shipped one of the machine and the soil)");
@@ -75,15 +74,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
 
 /// What can be told before anything is read.
 void check(const Inputs& inputs) {
-  if (inputs.density_sd && *inputs.density_sd < 0.0) {
-    refuse("--density-sd: " + number_text(*inputs.density_sd) + " must be at least 0");
-  }
-  if (inputs.density.has_value() == inputs.density_from.has_value()) {
-    refuse("give --density or --density-from, one of the two");
-  }
-  if (inputs.density && !(*inputs.density >= 0.0 && *inputs.density <= 100.0)) {
-    refuse("--density: " + number_text(*inputs.density) + " % is outside 0 .. 100");
-  }
+  check(inputs.density);
   if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {
     refuse("--start search needs --search");
   }
@@ -91,13 +82,6 @@ void check(const Inputs& inputs) {
     if (file) require_folder_of(*file);  // now, not after the search
   }
   check(inputs.dig_search);
-}
-
-GroundDensity density_of(const Inputs& inputs) {
-  GroundDensity density =
-      inputs.density ? GroundDensity(*inputs.density) : read_density(*inputs.density_from);
-  density.sd_percent = inputs.density_sd.value_or(density.sd_percent);
-  return density;
 }
 
 PlanOptions options_of(const Inputs& inputs, Console& console) {
@@ -120,7 +104,7 @@ void write_trajectory(const std::string& file, const Trajectory& trajectory) {
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
   check(inputs);
-  const GroundDensity density = density_of(inputs);
+  const GroundDensity density = density_of(inputs.density);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);

@@ -45,7 +45,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   arguments.option("seed", inputs.seed, "seed of the searches");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core");
 }

@@ -58,7 +58,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("terrain-frame", inputs.terrain.frame,
                  "4 x 4 matrix that takes the terrain cloud into the site frame");
   arguments.option("dump-at", inputs.scene.dump_at, "where the payload is dumped");
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   arguments.file("before", inputs.before, "write the scene before, as a depth camera sees it");
   arguments.file("after", inputs.after, "write the scene after");
   arguments.option("seed", inputs.seed, "seed of the scans' noise");

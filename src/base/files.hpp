@@ -11,7 +11,7 @@ namespace excavplan {
 
 /// Writes a file whole or not at all: beside it first, then renamed over it. A link, a pipe or a
 /// device is written to.
-/// @throws Error (bad_file) if that fails; the old file then still stands
+/// @throws Error (bad_file) if that fails; the old file then remains
 void write_file(const std::string& path, const std::string& content);
 
 /// @throws Error (bad_file) if the folder that is to hold a file does not exist

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// nlohmann keeps the last of two equal keys without a word; this callback refuses them.
+/// nlohmann silently keeps the last of two equal keys; this callback refuses them.
 json parse(const std::string& path, const std::string& content) {
   std::vector<std::set<std::string>> keys;
   const auto refuse_duplicates = [&](int, json::parse_event_t event, json& parsed) {

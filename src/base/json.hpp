@@ -11,11 +11,11 @@
 
 /// @file
 /// Strict reading of our own JSON files: every error names the file, the key, the value and the
-/// rule; a key that nobody asked for, or that stands twice, is an error. Private to the library.
+/// rule; a key that is not read, or appears twice, is an error. Private to the project.
 
 namespace excavplan {
 
-/// An object of a JSON file with the way that leads to it ("links.boom").
+/// An object of a JSON file with its path in the file ("links.boom").
 class JsonObject {
  public:
   /// Opens a file whose top object has "format": `format` and "version": `version`.
@@ -41,7 +41,7 @@ class JsonObject {
 
   /// Marks a key as read without reading it ("sources" and other text for people).
   void ignore(const std::string& key) { read_.insert(key); }
-  /// @throws Error (bad_file) if a key was never asked for
+  /// @throws Error (bad_file) if a key was not read
   void done() const;
   /// @throws Error (bad_file): "file: key: message"
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;

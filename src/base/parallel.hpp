@@ -12,7 +12,7 @@
 
 namespace excavplan {
 
-/// How many threads are meant; 0: one per core.
+/// Number of threads; 0: one per core.
 inline unsigned thread_count(unsigned threads) {
   return threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
 }
@@ -40,7 +40,7 @@ void parallel_for(std::size_t count, unsigned threads, const Task& task) {
       others.emplace_back(work);
     }
   } catch (const std::system_error&) {
-    // The system gives no more threads; those there are do it all.
+    // No more threads are available; those that started do all tasks.
   }
   work();
   for (std::thread& other : others) other.join();

@@ -22,7 +22,7 @@ std::string readable(double value, int digits = 3);
 /// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
 std::string readable(double value, double sd);
 
-/// FNV-1a, 64 bit: against damage, not against intent. The text has 16 hexadecimal digits.
+/// FNV-1a, 64 bit: detects damage, not manipulation. The text has 16 hexadecimal digits.
 std::uint64_t checksum(const std::string& text);
 std::string checksum_text(const std::string& text);
 

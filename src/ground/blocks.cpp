@@ -29,21 +29,21 @@ constexpr Eigen::Index least_coarse_radius = 2;  // 5 x 5 cells
 constexpr double least_window_share = 0.6;       // of a window's cells, known and in the patch
 constexpr double steepness_margin = 10.0 * degree;
 constexpr int fewest_cells = 30;
-/// Ours: with larger cells the window is wider than a metre, and relief of the ground looks rough
-/// [m].
+/// Ours: with larger cells the window is wider than a metre, and the relief of the ground counts as
+/// rough [m].
 constexpr double largest_cell = 0.2;
 constexpr double loose_roughness = 0.020;  // loose soil has less about a window of 0.3 m [m]
 constexpr double block_roughness = 0.040;  // blocks have more
-constexpr double heap_level = 0.5;         // quantile of the windows that stands for a heap
-constexpr double pit_level = 0.3;          // and for a pit, many of whose windows lie on its walls
+constexpr double heap_level = 0.5;         // quantile of the windows that represents a heap
+constexpr double pit_level = 0.3;          // and a pit, with many windows on its walls
 constexpr double longest_lag = 0.6;        // [m]
-constexpr double size_per_lag = 1.6;       // mean edge over the lag at which a heap bends most
-constexpr double size_doubt = 0.2;         // relative sd of a size so found
+constexpr double size_per_lag = 1.6;       // mean edge / lag of the largest bend of a heap
+constexpr double size_doubt = 0.2;         // relative sd of the size
 constexpr double thinning = 0.79;          // voids = packed voids (1 - thinning size / depth)
 constexpr double largest_size = 0.9;       // over the depth of the heap
-constexpr double share_doubt = 0.1;        // sd of the share that is blocks
+constexpr double share_doubt = 0.1;        // sd of the share of blocks
 
-/// A smooth surface over a window, and how far the cells lie off it.
+/// A smooth surface over a window and the scatter of the cells about it.
 struct WindowFit {
   double gx = 0.0;  // gradient in the middle
   double gy = 0.0;
@@ -104,11 +104,11 @@ std::optional<WindowFit> fit_window(const Patch& patch, Cell at, Eigen::Index ra
                    0.5 * (x_row(1) + y_row(2)) / (cell_size * cell_size)};
 }
 
-/// What the cells of one kind of ground show, over all maps.
+/// Statistics of the cells of one kind of ground, over all maps.
 struct Findings {
   std::vector<double> fine;  // variances about the surface of a window, less the noise [m^2]
   std::vector<double> coarse;
-  double angle_squares = 0.0;  // less what noise adds
+  double angle_squares = 0.0;  // corrected for noise
   double steep = 0.0;
   double steep_by_noise = 0.0;
   double holes = 0.0;
@@ -135,7 +135,8 @@ void judge_cell(const Patch& patch, Cell cell, double repose, Findings& found) {
 
   const Eigen::Vector3d wide = normal_of(*coarse);
   const double angle = std::acos(std::clamp(normal_of(*fine).dot(wide), -1.0, 1.0));
-  const double upright = wide.z() * wide.z();  // a gradient turns a steep normal less
+  const double upright =
+      wide.z() * wide.z();  // on steep ground the normal turns less with the gradient
   const double gradient_noise = noise * std::max(0.0, fine->gradient_gain - coarse->gradient_gain);
   found.angle_squares += angle * angle - gradient_noise * upright * (1.0 + upright);
 
@@ -205,7 +206,7 @@ double score_of_pit(const GroundTexture& texture) {
   return ramp(texture.coarse_roughness, loose_roughness, block_roughness);
 }
 
-/// How much the ground bends over three cells in a row, all within one patch.
+/// Second differences of the height over three cells in a row, all within one patch.
 void add_bends(const Patch& patch, Eigen::Index lag, std::vector<double>& bends) {
   for_each_cell(patch.map.z, [&](Cell cell) {
     const double middle = patch.height(cell.row, cell.col);
@@ -217,9 +218,9 @@ void add_bends(const Patch& patch, Eigen::Index lag, std::vector<double>& bends)
   });
 }
 
-/// Mean edge of blocks: on one face the ground is straight, and over many blocks its bends average
-/// out, so the median bend per lag is largest at a fixed share of the size. Nothing if that lies at
-/// the first or the last lag.
+/// Mean edge of blocks. The ground is straight within one face, and over many blocks its bends
+/// average out: the median bend per lag is largest at a fixed share of the size. Nothing if the
+/// maximum lies at the first or the last lag.
 std::optional<double> size_of_blocks(const std::vector<Patch>& heap) {
   constexpr double median_of_normal = 0.6745;
   constexpr std::size_t fewest_bends = 50;
@@ -267,7 +268,7 @@ AreaMasks masks_of(const AreaChange& area, const std::vector<ChangeZone>& zones)
   return masks;
 }
 
-/// Depth of the heap where its soil lies: each cell counts with what it holds.
+/// Mean depth of the heap, weighted by the volume in each cell.
 double depth_of_heap(const VolumeChange& change, const std::vector<AreaMasks>& masks) {
   double sum = 0.0;
   double squares = 0.0;
@@ -332,7 +333,7 @@ void explain(const BlockOptions& options, BlockReport& report) {
   }
 }
 
-/// Voids between blocks of a size known to a quarter, packed as densely as is known.
+/// Volume of the voids between blocks, with the uncertainty of size and packing.
 void estimate_voids(const VolumeChange& change, double depth, const BlockOptions& options,
                     BlockReport& report) {
   if (!report.block_size) {
@@ -378,7 +379,7 @@ BlockReport assess_blocks(const std::vector<HeightMap>& after, const VolumeChang
   Findings heap;
   Findings pit;
   for (std::size_t i = 0; i < after.size(); ++i) {
-    // The difference holds the noise of two scans.
+    // The difference has the noise of two scans.
     const double noise = options.noise_sd.value_or(change.areas[i].noise_sd / std::sqrt(2.0));
     heaps.push_back({after[i], masks[i].risen, noise});
     look_at(heaps.back(), options.angle_of_repose, heap);

@@ -18,12 +18,12 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double mad_to_sd = 1.4826;             // of a normal distribution
 constexpr double clip = 4.0;                     // residuals beyond are not noise [sd]
-constexpr std::size_t fewest_stable_cells = 25;  // ours: noise and datum cannot be told from fewer
+constexpr std::size_t fewest_stable_cells = 25;  // ours: fewest for noise and datum
 constexpr int most_rounds = 8;
 constexpr std::size_t most_by_chance = 16;  // ours: unknown cells together in a sparse scan
 constexpr int stable = -1;
 
-/// A value for the middle of a distribution and the spread about it.
+/// Centre and spread of a distribution.
 struct Spread {
   double middle = 0.0;
   double sd = 0.0;
@@ -38,7 +38,7 @@ Spread median_and_mad(std::vector<double> values) {
 }
 
 /// The densest quarter of the values: finds stable ground even where most of it changed. Where two
-/// quarters are equally dense, as on maps without noise, the one nearer to no change serves.
+/// quarters are equally dense, as on maps without noise, the one nearer to zero is taken.
 Spread densest_quarter(std::vector<double> values) {
   constexpr double quarter_of_normal = 0.3186;  // sd: half of the values within 0.3186 sd
   std::sort(values.begin(), values.end());
@@ -116,7 +116,7 @@ Eigen::ArrayXXi widened(const Eigen::ArrayXXi& label, double radius) {
   return wide;
 }
 
-/// Finds zones and the noise of the ground between them, each from the other.
+/// Finds the zones and the noise of the ground between them by iteration.
 class ChangeFinder {
  public:
   ChangeFinder(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance, double cell_size,
@@ -155,8 +155,9 @@ class ChangeFinder {
     return is_known(cell) && found_.zone(cell.row, cell.col) == stable;
   }
 
-  /// Cells at the rim of what was seen hold only the points that errors moved outwards, and those
-  /// lie too low under a sensor that looks out and down: they tell neither change nor noise.
+  /// Cells at the rim of the survey contain only points that errors moved outwards; under a sensor
+  /// that points out and down these lie too low. They are used neither for the change nor for the
+  /// noise.
   void find_rim() {
     at_rim_ = found_.difference.isNaN();
     for_each_cell(found_.difference, [&](Cell cell) {
@@ -165,7 +166,7 @@ class ChangeFinder {
     });
   }
 
-  /// Cells whose points scatter more than most say less.
+  /// Cells whose points scatter more than most have less weight.
   void weigh(const Eigen::ArrayXXd& variance) {
     std::vector<double> told =
         values(variance, [&](Cell cell) { return !std::isnan(variance(cell.row, cell.col)); });
@@ -216,14 +217,14 @@ class ChangeFinder {
     found_.zone = found_.difference.isNaN().select(stable, widened(label, margin() / cell_size_));
   }
 
-  /// In a hole too large to be chance between points.
+  /// In a hole too large to be a chance gap between points.
   bool in_shadow(Cell cell) const {
     const int hole = holes_.index(cell.row, cell.col);
     return hole >= 0 && holes_.cells[static_cast<std::size_t>(hole)].size() > most_by_chance;
   }
 
-  /// A cell in a shadow belongs to the zone of the nearest cell that was seen, as far as its
-  /// filling has changed: from farther away nothing says what happened there.
+  /// A cell in a shadow belongs to the zone of the nearest cell that was seen, if its filling has
+  /// changed: there is no evidence from farther away.
   void take_in_shadows(Eigen::ArrayXXi& label) const {
     constexpr int unvisited = -3;
     for (const std::vector<Cell>& hole : holes_.cells) {
@@ -260,7 +261,8 @@ class ChangeFinder {
     return rim;
   }
 
-  /// A zone's edge below the threshold: soil that lies at 27 degrees or more, at least one cell.
+  /// Width of a zone's edge below the threshold, for soil at 27 degrees or steeper; at least one
+  /// cell.
   double margin() const {
     constexpr double gentlest = 0.5;  // ours
     return std::max({options_.margin, cell_size_, options_.growth * smooth_sd_ / gentlest});
@@ -300,7 +302,7 @@ class ChangeFinder {
     return sum / count;
   }
 
-  /// What stable ground differs by, outliers drawn in.
+  /// Differences of the stable ground, outliers clipped.
   void find_residual() {
     const double bound = clip * found_.noise_sd;
     found_.residual = found_.difference.max(-bound).min(bound);
@@ -316,7 +318,7 @@ class ChangeFinder {
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> at_rim_;  // of the survey
   Holes holes_;  // of the difference, filled by a membrane
   std::size_t known_cells_ = 0;
-  Eigen::ArrayXXd scatter_;  // what a cell's points add to the variance of a 3 x 3 mean [m^2]
+  Eigen::ArrayXXd scatter_;         // variance of a 3 x 3 mean by the scatter of the points [m^2]
   double smooth_sd_ = least_noise;  // of a 3 x 3 mean on stable ground [m]
 };
 

@@ -10,7 +10,7 @@
 
 namespace excavplan {
 
-/// Where two surveys of one area differ by more than their noise, and what that noise is.
+/// Where two surveys of one area differ by more than their noise, and that noise.
 struct ChangedGround {
   Eigen::ArrayXXd difference;     ///< after - before, less the datum, holes filled; NaN outside [m]
   Eigen::ArrayXXd residual;       ///< of stable cells, within 4 sd; NaN elsewhere [m]
@@ -22,7 +22,7 @@ struct ChangedGround {
 };
 
 /// @param difference after - before [m], NaN where unknown, at least 100 known cells
-/// @param variance of each cell of it as its own points tell, NaN where they do not [m^2]
+/// @param variance of each cell of it by the scatter of its points, NaN where unknown [m^2]
 /// @param cell_size edge of a cell [m]
 ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance,
                           double cell_size, const ChangeOptions& options);

@@ -18,7 +18,7 @@ namespace excavplan {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-/// A fitted covariance makes kriging look better than it is (Zimmerman and Cressie 1992); the
+/// Kriging with a fitted covariance underestimates its error (Zimmerman and Cressie 1992); the
 /// factor is ours, from 300 simulated surveys.
 constexpr double plug_in = 1.15;
 
@@ -46,10 +46,10 @@ Products products(const Eigen::ArrayXXd& field, Eigen::Index lag) {
   return found;
 }
 
-/// Empirical covariance by lag [cell], to twice the first lag that cannot be told from none.
+/// Empirical covariance by lag [cell], up to twice the first lag at which it is not significant.
 struct Covariances {
   std::vector<Products> at_lag;
-  std::size_t told = 1;  // lags before the first that cannot
+  std::size_t told = 1;  // lags before that one
 };
 
 Covariances empirical(const Eigen::ArrayXXd& residual) {
@@ -74,8 +74,8 @@ Covariances empirical(const Eigen::ArrayXXd& residual) {
   return found;
 }
 
-/// Weighted least squares on the variogram (Cressie 1985): its values at short lags, which tell
-/// the shape, err little, and a mean that the residuals lost does not matter.
+/// Weighted least squares on the variogram (Cressie 1985): its values at short lags, which
+/// determine the shape, have small errors, and it does not depend on the mean of the residuals.
 NoiseModel fit(const Covariances& covariances, double cell_size) {
   const double variance = covariances.at_lag[0].mean();
   const double longest = cell_size * static_cast<double>(covariances.at_lag.size());
@@ -122,7 +122,7 @@ class CovarianceTable {
  public:
   explicit CovarianceTable(const NoiseModel& noise) {
     if (noise.correlated == 0.0) return;
-    constexpr double least_log = 16.0;  // exp(-16) is nothing
+    constexpr double least_log = 16.0;  // exp(-16) is negligible
     constexpr std::size_t steps = 4096;
     const double farthest = noise.length * std::pow(least_log, 1.0 / noise.power);
     per_distance_ = static_cast<double>(steps) / farthest;
@@ -187,7 +187,7 @@ class Blocks {
   const std::vector<Block>& wanted() const { return wanted_; }
 
  private:
-  static constexpr double most_near = 900.0;  // ours, like what is near
+  static constexpr double most_near = 900.0;  // ours
   static constexpr double most_far = 250.0;   // ours
 
   void collect(const Eigen::ArrayXXd& distance) {

@@ -9,8 +9,8 @@
 #include <excavplan/ground/registration.hpp>
 
 /// @file
-/// The error of height differences: what stable ground tells of it and what that means for the
-/// zones. Private to the library.
+/// The error of height differences: estimated on stable ground, predicted for the zones. Private to
+/// the project.
 
 namespace excavplan {
 
@@ -22,20 +22,20 @@ struct NoiseModel {
   double white = 0.0;       ///< [m^2]
   double correlated = 0.0;  ///< [m^2]
   double length = 0.0;      ///< [m]
-  double power = 1.0;       ///< in (0, 2], so that every such covariance is one
+  double power = 1.0;       ///< in (0, 2], for which the covariance is valid
 
   double at(double distance) const;
   /// Integral of the correlated part over the plane [m^4].
   double integral() const;
-  /// Variance that independent cells would need for a mean over a large area to err as much [m^2].
+  /// Variance of independent cells that gives the mean over a large area the same error [m^2].
   double large_area_variance(double cell_size) const {
     return white + integral() / (cell_size * cell_size);
   }
 };
 
 /// The noise of residuals (NaN where the ground is not stable), from their empirical covariance
-/// along rows and columns. White if no lag can be told from none (Bartlett 1946), else fitted up to
-/// twice the first lag that cannot.
+/// along rows and columns. White if no lag is significant (Bartlett 1946), else fitted up to twice
+/// the first lag that is not.
 NoiseModel find_noise(const Eigen::ArrayXXd& residual, double cell_size);
 
 /// How a motion changes the height of a cell at `place` from the centre of rotation, by the
@@ -54,14 +54,14 @@ struct Gradient {
 };
 Gradient gradient_of(const HeightMap& map);
 
-/// What the zones' volumes err by, as the ground around them shows it [m^3, m^6].
+/// Errors of the volumes of zones, predicted by the ground around them [m^3, m^6].
 struct ZoneErrors {
   Eigen::VectorXd mean;  ///< expected error of each volume
   Eigen::MatrixXd correlated;
   Eigen::MatrixXd datum;
 };
 
-/// The error of height differences on one area, known on stable ground, wanted in the zones:
+/// The error of height differences on one area, known on stable ground and predicted in the zones:
 /// kriging with the motion that may be left as trend (Matheron 1969).
 struct ErrorField {
   const HeightMap& before;
@@ -74,8 +74,8 @@ struct ErrorField {
   ZoneErrors predict() const;
 };
 
-/// The highest surface below `z` whose slope is nowhere above `rise` per cell. Unknown cells bound
-/// nothing.
+/// The highest surface below `z` whose slope is nowhere above `rise` per cell. Unknown cells are no
+/// bound.
 Eigen::ArrayXXd slope_limited(const Eigen::ArrayXXd& z, double rise);
 
 }  // namespace excavplan

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 /// @file
-/// Walks over the cells of a grid. Private to the library.
+/// Visiting the cells of a grid. Private to the project.
 
 namespace excavplan {
 

@@ -83,7 +83,7 @@ double height_at(const HeightMap& map, double x, double y) {
   if (!inside || map.z.size() == 0) return nan;
   const Bracket col = bracket(u - 0.5, map.z.cols());
   const Bracket row = bracket(v - 0.5, map.z.rows());
-  // A centre of no weight must not pass on its NaN.
+  // A centre of zero weight must not contribute its NaN.
   const auto mix = [](double first, double second, double weight) {
     return weight == 0.0 ? first : (1.0 - weight) * first + weight * second;
   };

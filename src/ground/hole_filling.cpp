@@ -43,7 +43,7 @@ struct System {
   std::vector<Cell> rim;
 };
 
-/// Numbers the cells of a grid as they are met.
+/// Numbers the cells of a grid in the order in which they are visited.
 class Numbering {
  public:
   Numbering(const Eigen::ArrayXXd& grid, const std::vector<Cell>& unknown)
@@ -241,7 +241,7 @@ Holes fill_holes(Eigen::ArrayXXd& z) {
 
 double error_of_filling(const Eigen::ArrayXXd& z, const std::vector<Cell>& hole,
                         const std::vector<Cell>& summed, const std::vector<Cell>& tried) {
-  constexpr double safety = 1.5;           // ours: errors of fillings have long tails
+  constexpr double safety = 1.5;           // ours: the errors have long tails
   constexpr std::size_t most_tries = 400;  // ours
   constexpr int fewest_places = 8;         // ours
   constexpr double without_places = 0.5;   // ours: of the rim's relief times the cells

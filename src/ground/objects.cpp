@@ -65,7 +65,7 @@ bool is_part_of_heap(const std::vector<Cell>& cells, const Eigen::ArrayXXd& rise
   return !around.empty() && median(around) > of_a_heap * top;
 }
 
-/// What stands in `with` but not in `without`.
+/// Objects in `with` that are not in `without`.
 std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd& without,
                              double cell_size, double margin) {
   constexpr int free = -1;

@@ -10,22 +10,22 @@
 
 namespace excavplan {
 
-/// Something that stands in one of two scans and is no soil: a person, a truck, the bucket.
+/// An object in one of two scans that is no soil: a person, a truck, the bucket.
 struct Object {
   std::vector<Cell> cells;  ///< where it stands, with a margin
-  bool is_blunder = false;  ///< no more than a few cells that outliers spoilt
+  bool is_blunder = false;  ///< only a few cells with outliers
   bool is_before = false;   ///< in the scan before, else after
-  double volume = 0.0;      ///< of the change it makes, < 0 if it went [m^3]
+  double volume = 0.0;      ///< of the change it causes, < 0 if it was removed [m^3]
 };
 
-/// Finds objects and takes them out of their scan: their cells become unknown.
+/// Finds objects and removes them from their scan: their cells become unknown.
 ///
-/// An object stands higher above its surroundings than soil can: more than 0.5 m above the surface
-/// of slope 60 degrees laid against them, in its own scan and in the change, on ground that rose
-/// by less than a fifth of that itself. Freshly dug soil stands at 28 to 45 degrees, and in heaps
-/// of blocks as rough as those are large.
+/// An object is higher above its surroundings than soil can be: by more than 0.5 m above a surface
+/// of slope 60 degrees through them, in its own scan and in the change, where the ground itself
+/// rose by less than a fifth of that. Freshly dug soil stands at 28 to 45 degrees; heaps of blocks
+/// are as rough as the blocks are large.
 ///
-/// @param margin by which what is found is widened, 1.5 at least (ours); 0: not at all [cell]
+/// @param margin by which objects are widened, at least 1.5 (ours); 0: not at all [cell]
 std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after,
                                      double cell_size, double margin);
 

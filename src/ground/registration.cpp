@@ -28,7 +28,7 @@ constexpr double quartile_to_sd = 3.1386;  // a quarter of normal residuals is w
 constexpr double least_bend = 0.02;        // ours: a shift of rough ground bends it by no more [-]
 constexpr double significant = 11.345;     // chi-square, three degrees of freedom, 99 %
 constexpr int rounds = 25;
-constexpr std::size_t most_samples = 20000;  // while weights are sought; all in the end
+constexpr std::size_t most_samples = 20000;  // while weights are iterated; all at the end
 
 /// Half-sample mode (Robertson and Cryer 1974).
 double half_sample_mode(std::vector<double> values) {
@@ -52,7 +52,7 @@ struct Sample {
   Cell cell;
   double change;
   Motion effect;
-  double bend;  ///< how far its slope changed, but for the tilt of the whole [-]
+  double bend;  ///< change of its slope, less the tilt of the whole [-]
   double weight = 1.0;
 };
 
@@ -61,8 +61,8 @@ double tukey_weight(double sds) {
   return ratio < 1.0 ? std::pow(1.0 - ratio * ratio, 2) : 0.0;
 }
 
-/// Least squares under a prior, with the columns of the motion scaled by how much of the gradient
-/// they are made of is more than noise: on level ground noise would seem to show a shift.
+/// Least squares with a prior. The columns of the motion are scaled by the share of the gradient
+/// that is more than noise; otherwise noise on level ground would look like a shift.
 class Aligner {
  public:
   Aligner(const Surface& before, const Surface& after, const AlignmentOptions& options)
@@ -143,8 +143,8 @@ class Aligner {
     return known.empty() ? 0.0 : median(known);
   }
 
-  /// Weighs by the change of height and by that of slope: the feathered edge of a hole or a heap
-  /// has a slope and a change that fit together like those of ground that was shifted.
+  /// Weights by the change of height and by that of slope: at the thin edge of a hole or a heap,
+  /// slope and change have the same relation as on ground that was shifted.
   void reweight(const Motion& motion) {
     std::vector<double> away;
     away.reserve(samples_.size() / stride_ + 1);
@@ -216,7 +216,7 @@ class Aligner {
     return std::max(variance, scale_ * scale_);
   }
 
-  /// Keeps of the motion what is significant, and says what may be left of it.
+  /// Keeps the significant part of the motion and sets the covariance of what may be left.
   Alignment judge(const Motion& robust) {
     const double variance = inflated_variance(robust);
     const Solution full = solve(variance, all);
@@ -266,7 +266,7 @@ class Aligner {
   std::vector<Sample> samples_;
   Motion prior_;
   std::array<double, 6> reliable_ = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
-  std::size_t stride_ = 1;  // of the samples looked at
+  std::size_t stride_ = 1;  // of the samples in use
   double scale_ = 0.0;      // robust sd of a stable cell [m]
   Alignment found_;
 };

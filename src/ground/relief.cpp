@@ -36,7 +36,7 @@ class Plane {
   Eigen::Vector3d plane_;
 };
 
-/// How much of the relief of the ground before the difference shows: regression on stable ground.
+/// Share of the relief of the ground before that is in the difference: regression on stable ground.
 double share_of_relief(const Eigen::ArrayXXd& relief, const Eigen::ArrayXXd& residual) {
   constexpr double significant = 0.35;  // ours: three sd with some 70 independent patches
   const Plane trend(residual, residual);
@@ -54,7 +54,7 @@ double share_of_relief(const Eigen::ArrayXXd& relief, const Eigen::ArrayXXd& res
 }
 
 /// True if the relief under every zone is like that of stable ground: neither larger, nor higher
-/// or lower in the mean than its covariance there allows. An older hole or heap is no error.
+/// or lower in the mean than its covariance there allows. An older hole or heap is not an error.
 bool is_alike(const Eigen::ArrayXXd& relief, const ChangedGround& ground, double cell_size) {
   constexpr double largest_ratio = 2.0;  // ours: of rms
   constexpr double largest_mean = 2.5;   // ours [sd]

@@ -6,7 +6,7 @@
 #include <vector>
 
 /// @file
-/// Statistics that outliers do not move. Private to the library.
+/// Robust statistics. Private to the project.
 
 namespace excavplan {
 

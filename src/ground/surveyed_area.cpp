@@ -18,9 +18,9 @@ namespace {
 
 constexpr Eigen::Index fewest_known_cells = 100;
 constexpr double gentle = 0.5;  // ours: soil beyond the edge of a scan lies steeper [-]
-constexpr double steep = 1.0;   // ours: gentler faces have points enough to be averages [-]
-/// A lattice of points places a steep face no better than this share of its spacing, all along it
-/// alike; ours, from pits with upright walls under simulated cameras.
+constexpr double steep = 1.0;  // ours: on gentler faces the cells are averages of enough points [-]
+/// Error of the position of a steep face in a lattice of points, as a share of its spacing and the
+/// same along the whole face; ours, from pits with upright walls under simulated cameras.
 constexpr double face_place = 0.15;
 
 /// Sums the difference over each zone: area, volume, place.
@@ -50,7 +50,7 @@ void sum_zones(Area& area) {
   }
 }
 
-/// Noise of the cells of each zone: what stable ground shows, or more where their points scatter.
+/// Noise of the cells of each zone: that of stable ground, or more where their points scatter more.
 void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_variance) {
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for_each_cell(area.ground.zone, [&](Cell cell) {
@@ -62,8 +62,8 @@ void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_varian
   });
 }
 
-/// How regularly points lie: 0 if as by chance, then two cells' counts differ by the square root of
-/// their sum; towards 1 on a lattice, as that of a camera.
+/// How regularly points lie: 0 for random points, whose counts in two cells differ by the square
+/// root of their sum; towards 1 for a lattice, as of a camera.
 double regularity_of(const Eigen::ArrayXXi& points, const Eigen::ArrayXXi& zone) {
   double squares = 0.0;
   double sums = 0.0;
@@ -78,9 +78,9 @@ double regularity_of(const Eigen::ArrayXXi& points, const Eigen::ArrayXXi& zone)
   return sums > 0.0 ? std::max(0.0, 1.0 - squares / sums) : 0.0;
 }
 
-/// What a scan's steep faces may add to or take from each zone: their area seen from the side times
-/// how well the points place them. Points that lie by chance err anew in every cell, which the
-/// noise of the cells tells; rows of points along a face err alike.
+/// Error of each zone by the steep faces of a scan: their area seen from the side times the error
+/// of their position. Random points err independently in each cell, which the noise of the cells
+/// contains; rows of points along a face have the same error.
 void sum_faces(Area& area, const Surface& scan) {
   if (scan.points.size() == 0) return;
   const std::size_t zones = area.zones.size();
@@ -105,8 +105,8 @@ void sum_faces(Area& area, const Surface& scan) {
   }
 }
 
-/// What may be missing of zones that reach the edge of what was seen: from there on soil that falls
-/// or rises to the ground by a gentle slope.
+/// Volume that may be missing of zones at the edge of the survey: soil that meets the ground by a
+/// gentle slope beyond the edge.
 void sum_beyond_edge(Area& area) {
   const double cell_size = area.grid.cell_size;
   std::vector<double> missing(area.zones.size(), 0.0);
@@ -129,7 +129,7 @@ void sum_beyond_edge(Area& area) {
 struct Scans {
   HeightMap before;
   HeightMap after;
-  Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where the scans do not tell
+  Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where unknown
   Eigen::ArrayXXd variance_after;
 
   /// Of a cell of after - before - share * before.

@@ -14,20 +14,20 @@
 
 namespace excavplan {
 
-/// A zone with what the sums over zones need.
+/// Sums over one zone.
 struct ZoneSum {
   double volume = 0.0;   // [m^3]
   double area = 0.0;     // [m^2]
   double noise = 0.0;    // variance of the volume by the noise of single cells [m^6]
   double holes = 0.0;    // and by the filling of unknown ones [m^6]
-  double faces = 0.0;    // and by where points place steep faces [m^6]
+  double faces = 0.0;    // and by the position of steep faces [m^6]
   double unknown = 0.0;  // area that was filled [m^2]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Rectangle extent;
   bool is_cut = false;
 };
 
-/// One surveyed area, its zones and what they are.
+/// One surveyed area and its zones.
 struct Area {
   HeightMap grid;  // without heights
   ChangedGround ground;
@@ -38,8 +38,8 @@ struct Area {
   std::vector<Object> objects;
 };
 
-/// Surveys one area: takes out the motion and what is no soil, finds zones, fills and sums them,
-/// and takes off the error that the stable ground foretells. Zones have no kind yet.
+/// Surveys one area: corrects for motion, removes objects, finds, fills and sums zones, and
+/// subtracts the error that the stable ground predicts. The zones have no kind yet.
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid or share fewer than 100 known
 ///         cells

@@ -18,8 +18,8 @@
 namespace excavplan {
 namespace {
 
-constexpr double least_warned_share = 0.01;  // of its kind's volume: a speck at the border is none
-constexpr double least_refused_share = 0.1;  // likewise: one part of several may be unseen
+constexpr double least_warned_share = 0.01;  // of the volume of its kind; smaller ones are ignored
+constexpr double least_refused_share = 0.1;  // likewise
 constexpr double least_stable_share = 0.4;   // ours
 constexpr double largest_noise = 0.1;        // ours: of a cell; coarser than any range sensor [m]
 constexpr double least_dumped_share = 0.2;   // ours: a smaller rise away from the hole is no heap
@@ -97,8 +97,7 @@ std::string text_of(const ZoneSum& zone) {
          place_of(zone);
 }
 
-/// One warning however many there are, and none for specks that come to nothing beside the hole: a
-/// scene full of leaves must not bury what matters.
+/// One warning for all of them, and none where their volume is negligible beside the hole.
 void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
   const ZoneSum* largest = nullptr;
   int count = 0;
@@ -193,7 +192,7 @@ void warn_of_balance(VolumeChange& change) {
   }
 }
 
-/// Volume of all zones of a kind; infinite for those that do not count.
+/// Volume of all zones of a kind; infinite for the kind `other`.
 double total_of(const VolumeChange& change, ZoneKind kind) {
   switch (kind) {
     case ZoneKind::dig:
@@ -220,7 +219,7 @@ Warning object_warning(const ChangeZone& zone, bool is_before, std::size_t count
   return {"object_taken_out", std::move(message)};
 }
 
-/// Objects are reported as zones of their own that count for nothing.
+/// Objects are reported as zones of kind `other`.
 void report_objects(const Area& area, VolumeChange& change, AreaChange& result) {
   const double half = 0.5 * area.grid.cell_size;
   std::size_t count = 0;
@@ -250,7 +249,7 @@ void report_objects(const Area& area, VolumeChange& change, AreaChange& result) 
   if (largest) change.warnings.push_back(object_warning(*largest, largest_is_before, count));
 }
 
-/// Hands one area's zones over to the result.
+/// Enters the zones of one area into the result.
 void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
   const int first = static_cast<int>(change.zones.size());
   for (std::size_t i = 0; i < area.zones.size(); ++i) {

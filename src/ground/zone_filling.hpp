@@ -16,7 +16,7 @@ struct ZoneFilling {
 };
 
 /// Fills the unknown cells of the zones. A hole of one scan is filled in that scan, so that the
-/// other keeps what it saw there, or in the difference, which is free of the relief that both
+/// other keeps its heights there, or in the difference, which is free of the relief that both
 /// share: whichever errs less where it is tried on known cells.
 ZoneFilling fill_zones(Eigen::ArrayXXd before, Eigen::ArrayXXd after, const ChangedGround& ground);
 

@@ -27,40 +27,43 @@ struct Task {
   const Terrain& ground;
   bool level;  ///< no ground was given
   const PlanOptions& options;
-  PossibleGround soils{options.simulator, machine, soil, density};
+  PossibleGround possible{options.simulator, machine, soil, density};
 
   bool uncertain() const { return density.sd_percent > 0.0; }
 };
 
-void distrust(DigPlan& plan, const char* code, const std::string& message) {
+void warn(DigPlan& plan, const char* code, const std::string& message) {
   plan.warnings.push_back({code, message});
+}
+
+void distrust(DigPlan& plan, const char* code, const std::string& message) {
+  warn(plan, code, message);
   plan.trustworthy = false;
 }
 
 void judge_density(const Task& task, DigPlan& plan) {
+  const std::string& soil = task.density.soil;
   if (!task.density.trustworthy) {
     distrust(plan, "density_not_trustworthy",
              "the density is not trustworthy, so the path may not suit the soil");
   }
-  if (!task.density.soil.empty() && task.density.soil != task.soil.name) {
-    plan.warnings.push_back(
-        {"law_of_other_soil", "the density was found by the law of " + task.density.soil +
-                                  ", the path is planned in " + task.soil.name});
+  if (!soil.empty() && soil != task.soil.name) {
+    warn(plan, "law_of_other_soil",
+         "the density was found by the law of " + soil + ", the path is planned in " +
+             task.soil.name);
   }
 }
 
-// ---- Looking up -------------------------------------------------------------------------------
-
 std::shared_ptr<const PathLibrary> library_of(const Task& task) {
-  if (!task.options.library) {
+  const PlanOptions& options = task.options;
+  if (!options.library) {
     return std::make_shared<PathLibrary>(
-        shipped_library(task.machine, task.soil, task.options.data_folder));
+        shipped_library(task.machine, task.soil, options.data_folder));
   }
-  const auto& library = task.options.library;
-  const std::string& own = task.options.simulator.name;
-  require_fit(*library, task.machine, task.soil, "the library",
-              library->simulator == own ? own : default_simulator().name);
-  return library;
+  const std::string& own = options.simulator.name;
+  require_fit(*options.library, task.machine, task.soil, "the library",
+              options.library->simulator == own ? own : default_simulator().name);
+  return options.library;
 }
 
 /// The slope of the ground, and as much of it as the library covers.
@@ -86,7 +89,8 @@ std::variant<PlannedDig, std::string> known_dig(const PathLibrary& library, cons
   }
 }
 
-/// A dig of the library where it is needed, in the simulator if that is needed too.
+/// A dig of the library laid out where it is needed, and simulated if its figures do not hold
+/// there.
 std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrary& library,
                                               const PlannedDig& known, DigPlan& plan) {
   const DigLayout layout(task.machine, task.ground);
@@ -137,6 +141,7 @@ void look_up_plan(const Task& task, DigPlan& plan) {
   plan.start_rule = task.level ? "of the library" : describe(task.options.search.start_rule);
   const auto outcome = dig_here(task, *library, expected, plan);
   if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
+    plan.path = {};
     plan.reason =
         "the library's path does not work here (a search may find one): " + describe(*failure);
     return;
@@ -148,8 +153,6 @@ void look_up_plan(const Task& task, DigPlan& plan) {
   }
 }
 
-// ---- Searching --------------------------------------------------------------------------------
-
 /// The library's dig to begin with, if there is one.
 std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
   try {
@@ -159,10 +162,9 @@ std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
   } catch (const Error& error) {
     if (task.options.library) throw;
     if (error.kind() == ErrorKind::bad_file) {
-      plan.warnings.push_back(
-          {"library_unreadable",
+      warn(plan, "library_unreadable",
            std::string("the search starts from nothing, not from the shipped library: ") +
-               error.what()});
+               error.what());
     }
   }
   return {};
@@ -180,43 +182,39 @@ DigSearchOptions search_options(const Task& task, DigPlan& plan) {
   return options;
 }
 
+/// @param best  of what was found, if anything was
 template <typename Result>
-void note_failure(const Found<Result>& found, DigPlan& plan) {
-  plan.stopped = found.stopped;
-  if (found.stopped) return;
+void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan) {
+  if (best) {
+    plan.dig = best->dig;
+    plan.path = best->path;
+    plan.evaluations = found->evaluations;
+    plan.search = PlanSearch{best->worth, best->stopped_by, best->refused, best->insight.seen, {}};
+  }
+  plan.stopped = best ? best->stopped : found.stopped;
+  if (best || plan.stopped) return;
   plan.reason = "no dig inside the search ranges can be done on this ground";
   plan.nearest = found.nearest;
 }
 
-void take(const DigSearchResult& found, DigPlan& plan) {
-  plan.dig = found.dig;
-  plan.path = found.path;
-  plan.evaluations = found.evaluations;
-  plan.stopped = found.stopped;
-  plan.search = PlanSearch{found.worth, found.stopped_by, found.refused, found.insight.seen, {}};
-}
-
 void search_plan(const Task& task, DigPlan& plan) {
   const DigSearchOptions options = search_options(task, plan);
+  const std::vector<PossibleSoil>& soils = task.possible.soils();
   plan.start_rule = describe(options.start_rule);
-  if (!task.uncertain()) {
-    const SoilSimulator& simulator = *task.soils.soils().front().simulator;
-    const auto found = search_dig(task.machine, simulator, task.ground, options);
-    if (!found) return note_failure(found, plan);
-    return take(*found, plan);
+  if (task.uncertain()) {
+    const auto found = search_dig(task.machine, soils, task.ground, options);
+    take(found, found ? &found->expected : nullptr, plan);
+    if (plan.dig && !plan.stopped) plan.search->value_of_knowing = found->value_of_knowing();
+  } else {
+    const auto found = search_dig(task.machine, *soils.front().simulator, task.ground, options);
+    take(found, found ? &*found : nullptr, plan);
   }
-  const auto found = search_dig(task.machine, task.soils.soils(), task.ground, options);
-  if (!found) return note_failure(found, plan);
-  take(found->expected, plan);
-  plan.evaluations = found->evaluations;
-  if (!plan.stopped) plan.search->value_of_knowing = found->value_of_knowing();
 }
 
-// ---- What every plan gets ---------------------------------------------------------------------
-
 void add_spread(const Task& task, DigPlan& plan) {
-  plan.spread = dig_spread(task.machine, task.soils.soils(), task.ground, *plan.dig, plan.path);
-  plan.evaluations += static_cast<int>(task.soils.soils().size());
+  const std::vector<PossibleSoil>& soils = task.possible.soils();
+  plan.spread = dig_spread(task.machine, soils, task.ground, *plan.dig, plan.path);
+  plan.evaluations += static_cast<int>(soils.size());
   if (plan.spread.stall_probability <= likely_stall) return;
   distrust(plan, "may_stall",
            "the machine stalls with a probability of " +
@@ -227,9 +225,8 @@ void add_spread(const Task& task, DigPlan& plan) {
 void add_trajectory(const Task& task, DigPlan& plan) {
   auto approach = way_down(task.machine, plan.path, boom_plane_profile(task.ground));
   if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
-    plan.warnings.push_back(
-        {"approach_blocked",
-         "the trajectory begins on the ground, the way down is blocked: " + blocked->message});
+    warn(plan, "approach_blocked",
+         "the trajectory begins on the ground, the way down is blocked: " + blocked->message);
   } else {
     plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
   }
@@ -240,11 +237,8 @@ DigPlan plan_dig(const Task& task) {
   DigPlan plan;
   plan.method = task.options.method;
   judge_density(task, plan);
-  if (plan.method == PlanMethod::library) {
-    look_up_plan(task, plan);
-  } else {
-    search_plan(task, plan);
-  }
+  if (plan.method == PlanMethod::library) look_up_plan(task, plan);
+  if (plan.method == PlanMethod::search) search_plan(task, plan);
   if (!plan.dig) return plan;
   if (task.uncertain()) add_spread(task, plan);
   add_trajectory(task, plan);
@@ -261,9 +255,9 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
   try {
     file = find_data_file("libraries/" + machine.name + "-" + soil.name + ".json", data_folder);
   } catch (const Error&) {
-    throw Error(ErrorKind::bad_input, "no library of " + machine.name + " in " + soil.name +
-                                          " is shipped: a search needs none, build-path-library "
-                                          "makes one");
+    throw Error(ErrorKind::bad_input,
+                "no library of " + machine.name + " in " + soil.name +
+                    " is shipped: a search needs none, build-path-library makes one");
   }
   PathLibrary library = load_path_library(file);
   require_fit(library, machine, soil, file);

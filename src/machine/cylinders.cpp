@@ -23,12 +23,13 @@ constexpr double round_trip_error = 1e-9;  // [rad]
 constexpr double least_lever = 1e-3;       // of that in the middle of the range
 constexpr int proof_steps = 1000;
 
-/// Everything below is seen from the joint: its pin is the origin, +x the link before.
+/// All points are relative to the joint: its pin is the origin, +x the direction of the link
+/// before.
 const Vector2d joint_pin(0.0, 0.0);
 
 Vector2d quarter_turn(const Vector2d& v) { return {-v.y(), v.x()}; }
 
-/// Where a pin is once its link has turned by `joint`, clockwise.
+/// A pin after its link has turned clockwise by `joint`.
 Vector2d turned(const PolarPin& pin, double joint) {
   return pin.distance * Vector2d(std::cos(pin.angle - joint), std::sin(pin.angle - joint));
 }
@@ -114,7 +115,7 @@ Cylinder::RodEnd Cylinder::rod_end(double joint) const {
   const Vector2d link_pin = turned(bars.link.pin, joint);
   const Vector2d position =
       apex(rocker_pin_, link_pin, bars.rocker.length, bars.link.length, loop_side_);
-  // The link stays as long as it is: along it, both its ends are equally fast.
+  // The link is rigid: both its ends have the same velocity along it.
   const Vector2d link = position - link_pin;
   const Vector2d across_rocker = quarter_turn(position - rocker_pin_);
   return {position, across_rocker * (link.dot(-quarter_turn(link_pin)) / link.dot(across_rocker))};

@@ -123,8 +123,9 @@ std::optional<Infeasible> find_bad_parameter(const DigParameters& parameters, do
 
 // ---- the path -----------------------------------------------------------------------------------
 
-/// Of the poses: all of them; few, to compare start points; of these only those at the ends of
-/// penetration, drag and scoop, the same to the bit: no start point is better than they are.
+/// Which poses are laid out: all; a few in each phase, to compare start points; of these few only
+/// the first and last of penetration, drag and scoop. The poses of `ends` are those of `scan` to
+/// the bit, so their margin is an upper bound.
 enum class Sampling { full, scan, ends };
 
 /// Lays one dig out phase by phase. Every phase adds its poses and returns what stops it, if
@@ -159,7 +160,7 @@ class Layout {
 
   DigPath take() { return std::move(path_); }
 
-  /// What the choice of the start point makes as large as it can [rad].
+  /// The margin that the choice of the start point maximises [rad].
   double margin() const {
     const double joints = path_.limit_margin.margin;
     if (path_.parameters.drag_length == 0.0) return joints;
@@ -391,7 +392,7 @@ std::variant<std::vector<DigPose>, Infeasible> Layout::way_up(const DigPath& pat
 
 // ---- the start point ----------------------------------------------------------------------------
 
-/// Those that are compared.
+/// The start points that are compared.
 struct StartPoints {
   int first = 0;
   int last = -1;
@@ -403,10 +404,10 @@ struct Candidate {
   double margin = 0.0;
 };
 
-/// Of equals the one in the middle.
+/// The middle one of equal candidates.
 std::size_t middle_of(const std::vector<std::size_t>& equals) { return equals[equals.size() / 2]; }
 
-/// The start point that gets furthest where none gets to the end.
+/// Where no start point can be driven: the one whose dig gets furthest.
 double best_failing(Layout layout, const StartPoints& points) {
   using Progress = std::pair<DigPhase, double>;
   std::vector<std::pair<double, Progress>> failing;
@@ -423,8 +424,8 @@ double best_failing(Layout layout, const StartPoints& points) {
   return equals.empty() ? 0.0 : failing[middle_of(equals)].first;
 }
 
-/// Start points that can be driven, the one with the widest margin first. Most are never laid out:
-/// the ends of their phases alone keep them below the best.
+/// Start points that can be driven, the one with the largest margin first. Most are never laid
+/// out: their upper bound is below the best margin.
 class DrivableStarts {
  public:
   DrivableStarts(Layout ends, Layout scan, const StartPoints& points) : layout_(std::move(scan)) {
@@ -435,7 +436,7 @@ class DrivableStarts {
               [](const Candidate& a, const Candidate& b) { return a.margin < b.margin; });
   }
 
-  /// Of those as wide as the widest the one in the middle; nothing when all are taken.
+  /// The middle one of those with the largest margin; empty when all are taken.
   std::optional<double> take() {
     find_widest();
     if (drivable_.empty()) return std::nullopt;
@@ -466,7 +467,7 @@ class DrivableStarts {
   }
 
   Layout layout_;
-  std::vector<Candidate> promising_;  // margin: no wider than this; the widest last
+  std::vector<Candidate> promising_;  // with upper bounds; the largest last
   std::vector<Candidate> drivable_;
   double widest_ = 0.0;
 };

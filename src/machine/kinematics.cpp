@@ -25,7 +25,7 @@ double wrap_near(double angle, double center) {
   return std::abs(away) <= pi ? angle : center + std::remainder(away, 2.0 * pi);
 }
 
-/// Directions of two links that bridge a vector, the second turned clockwise from the first.
+/// Directions of two links whose sum is a vector, the second turned clockwise from the first.
 struct TwoLinks {
   double first = 0.0;  ///< direction of the first [rad]
   double bend = 0.0;   ///< from the first to the second, -pi .. 0 [rad]
@@ -55,7 +55,7 @@ std::variant<TwoLinks, Unreachable> bridge(const Vector2d& to, double first, dou
   return links;
 }
 
-/// The joints as the machine counts them, or the one that is furthest outside its limits.
+/// The joint angles, set to limits that they exceed by rounding, or the joint furthest outside.
 std::variant<JointAngles, Unreachable> within_limits(const Machine& machine, JointAngles joints) {
   Unreachable worst;
   for (int i = 0; i < 3; ++i) {

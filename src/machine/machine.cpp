@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double rounding = 1e-12;
-constexpr double longest = 100.0;  // a length beyond this is a mistake of units [m]
+constexpr double longest = 100.0;  // a larger length is an error of units [m]
 constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
 double double_area(const std::vector<Vector2d>& polygon) {
@@ -77,8 +77,8 @@ LinkMass read_link(JsonObject file) {
   return link;
 }
 
-/// Every corner lies left of every side that it is not on: this alone makes a polygon convex,
-/// counter-clockwise and free of crossings.
+/// Every corner lies to the left of every side that it is not on: then a polygon is convex,
+/// counter-clockwise and without crossings.
 bool is_convex(const std::vector<Vector2d>& profile) {
   const std::size_t n = profile.size();
   for (std::size_t i = 0; i < n; ++i) {

@@ -15,10 +15,10 @@
 namespace excavplan {
 namespace {
 
-constexpr double standstill = 1e-9;         // poses closer than this are one pose [rad]
+constexpr double standstill = 1e-9;         // poses closer than this count as one [rad]
 constexpr double largest_tolerance = 0.01;  // [m]
 // Ours, of the rounding of a corner, along the joint path to either side [rad]:
-constexpr double shortest_reach = 1e-5;  // a shorter one is as slow as a stop
+constexpr double shortest_reach = 1e-5;  // a shorter one gains nothing over a stop
 constexpr double longest_reach = 0.02;
 constexpr int steps_a_side = 4;
 constexpr double room_share = 0.4;      // of a phase that the rounding of one corner may take
@@ -55,7 +55,7 @@ TrajectoryPoint point_at(const DigPose& pose) {
   return point;
 }
 
-/// The poses of approach and dig that move on. A pose between two phases is of the earlier one.
+/// The poses of approach and dig with motion. A pose between two phases belongs to the earlier one.
 std::vector<DigPose> moving_poses(const DigPath& path) {
   std::vector<DigPose> poses;
   poses.reserve(path.approach.size() + path.poses.size());
@@ -75,8 +75,8 @@ std::vector<DigPose> moving_poses(const DigPath& path) {
   return poses;
 }
 
-/// How fast the tip moves per unit of joint motion [m/rad], or the bucket's attitude over the
-/// length of the bucket if that is more.
+/// Tip travel per joint motion [m/rad], or that of the attitude times the length of the bucket if
+/// it is larger.
 double bucket_motion(const Machine& machine, const JointAngles& joints, const JointAngles& motion) {
   const LinkPositions at = link_positions(machine, joints);
   const auto about = [&](const Eigen::Vector2d& pin) -> Eigen::Vector2d {
@@ -95,9 +95,9 @@ struct Corner {
   double reach = 0.0;                      ///< of its rounding to either side; 0: a stop [rad]
 };
 
-/// Lays the points of the trajectory out: the poses, but round the corners. There the path q(s)
-/// gets turn · (reach - |s|)² / (4 reach) added, s counted from the corner: a parabola, which
-/// leaves the path by at most turn · reach / 4, and whose curvature is turn / (2 reach).
+/// The points of the trajectory: the poses, and rounded corners. At a corner the path q(s) gets
+/// turn · (reach - |s|)² / (4 reach) added, s counted from the corner: a parabola, which leaves the
+/// path by at most turn · reach / 4, and whose curvature is turn / (2 reach).
 class Route {
  public:
   Route(const Machine& machine, const DigPath& path, double tolerance)
@@ -228,7 +228,7 @@ void Route::add_point(DigPhase phase, const JointAngles& joints) {
 
 // ---- how fast -----------------------------------------------------------------------------------
 
-/// What may be used of the machine's limits.
+/// The limits of the machine times the speed fraction.
 class Limits {
  public:
   Limits(const Machine& machine, double fraction) : states_oil_(machine.hydraulics.has_value()) {
@@ -248,7 +248,7 @@ class Limits {
 
   const JointAngles& acceleration() const { return acceleration_; }
 
-  /// The largest share of a limit of speed that these joint rates take.
+  /// Largest ratio of these joint rates to their limits of speed.
   double load(const JointAngles& rates) const {
     return rates.cwiseAbs().cwiseProduct(per_rate_).maxCoeff();
   }
@@ -282,8 +282,8 @@ class Limits {
 ///
 /// q' is taken from each segment and q'' from its change over half of both neighbours. With these,
 /// rates and accelerations that a controller forms as differences of the samples, and those between
-/// the stated rates, are averages of bounded terms: they keep the limits exactly, not nearly. So do
-/// speeds of the cylinders: each segment is bounded by its levers at both ends and by its mean.
+/// the stated rates, are averages of bounded terms: they keep the limits exactly. So do the speeds
+/// of the cylinders: each segment is bounded by its levers at both ends and by its mean.
 class Pass {
  public:
   Pass(std::vector<TrajectoryPoint>& points, const std::optional<Cylinders>& cylinders,
@@ -333,7 +333,7 @@ class Pass {
     Eigen::Vector3d levers = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   };
 
-  /// A joint that rests leaves its cylinder as it was.
+  /// A cylinder keeps its state where its joint rests.
   void place_cylinders(const Cylinders& cylinders) {
     for (std::size_t k = 0; k < points_.size(); ++k) {
       for (int i = 0; i < 3; ++i) {
@@ -399,7 +399,7 @@ class Pass {
     }
   }
 
-  /// Over one segment, from the point where the speed is known to be allowed to the other one.
+  /// Over one segment, from the point of known speed to the other one.
   void limit_growth(const Segment& segment, const Node& from, Node& to) const {
     const JointAngles highest =
         (limits_.acceleration() + segment.gain * from.squared).cwiseProduct(segment.per_drag);

@@ -55,7 +55,7 @@ TrajectoryPoint read_point(JsonObject object, bool with_cylinders) {
   return point;
 }
 
-/// Points follow each other in time, from 0 on, and in the order of the phases.
+/// Points are in the order of time, from 0 on, and of the phases.
 void check_order(const JsonObject& file, const std::vector<TrajectoryPoint>& points) {
   if (points.empty()) file.fail("points", "holds no point");
   if (points.front().time != 0.0) {

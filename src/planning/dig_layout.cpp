@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
+
+#include "simulation/swath.hpp"
 
 namespace excavplan {
 namespace {
@@ -42,13 +45,13 @@ double left_to_drive(const Infeasible& stop, const DigParameters& parameters) {
 KnownStrip::KnownStrip(const Terrain& terrain, const Machine& machine)
     : origin_(terrain.bank.origin.x()), cell_size_(terrain.bank.cell_size) {
   const HeightMap& bank = terrain.bank;
-  const double half = 0.5 * machine.bucket.width_outside;
-  const auto begin = static_cast<Index>(std::floor((-half - bank.origin.y()) / cell_size_));
-  const auto end = static_cast<Index>(std::ceil((half - bank.origin.y()) / cell_size_));
-  const bool on_map = begin >= 0 && end <= bank.z.rows() && begin < end;
+  std::optional<Swath> swath;
+  if (const double width = machine.bucket.width_outside; Swath::fits(bank, width)) {
+    swath.emplace(bank, width);
+  }
   unknown_before_ = {0};
   for (Index col = 0; col < bank.z.cols(); ++col) {
-    const bool known = on_map && !bank.z.block(begin, col, end - begin, 1).isNaN().any();
+    const bool known = swath && swath->is_known(col);
     unknown_before_.push_back(unknown_before_.back() + (known ? 0 : 1));
   }
 }

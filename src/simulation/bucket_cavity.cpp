@@ -79,8 +79,8 @@ double Cavity::capacity(double support, const HoldingSlopes& slopes) const {
       area += std::clamp(surface - slice.low, 0.0, slice.high - slice.low);
       continue;
     }
-    // The trench holds the soil beside the plates as high as the ground stands; behind the top edge
-    // is the open cut.
+    // The walls of the cut hold the soil beside the plates up to the level of the ground; behind
+    // the top edge the cut is open.
     const double side = support > 0.0 ? std::max(slice.high, support) : slice.high;
     surface = std::min(surface, top.y() + slopes.heap * std::max(0.0, top.x() - x));
     const double heap = std::max(0.0, surface - side);

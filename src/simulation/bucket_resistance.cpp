@@ -14,10 +14,11 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-// Numbers of our own choice; docs/methods.md#simulation says why.
+// Numbers of our own choice; reasons: docs/methods.md#simulation.
 constexpr double slope_reach = 0.30;  // the surface's slope is taken over this ahead of the lip [m]
 constexpr int heel_samples = 12;      // of the outline behind the lip
-constexpr double bearing_settlement = 0.1;  // of its width, at which a footing bears all it can
+constexpr double bearing_settlement =
+    0.1;  // of its width, at which a footing has its full capacity
 
 constexpr double cone_half_angle = 15.0 * pi / 180.0;  // of the standard cone (ASAE S313)
 
@@ -40,7 +41,7 @@ double bearing_capacity(const SoilState& soil, double depth, double width) {
          soil.unit_weight * width * (n_q + 1.0) * tangent;
 }
 
-/// Soil in the bucket is as loose as it gets, but moist soil keeps the cohesion of that state.
+/// Soil in the bucket is in its loosest state, with the cohesion that moist soil has there.
 SoilState dug_state(const SoilKind& soil) {
   const double density =
       (soil.void_ratio_max - soil.void_ratio_loose) / (soil.void_ratio_max - soil.void_ratio_min);
@@ -56,26 +57,10 @@ HeightMapModel::HeightMapModel(const Machine& machine_, const SoilKind& soil_,
       density_percent(density_percent_),
       bank(bank_state(soil, density_percent)),
       loose(loose_state(soil)),
-      on_steel(bank.friction_angle, bank.tool_friction_angle),
-      on_packed(bank.friction_angle, bank.friction_angle) {
+      wedges(soil, bank) {
   const double mouth = (machine.bucket.profile.back() - machine.bucket.profile.front()).norm();
   slopes.heap = std::tan(soil.angle_of_repose);
   slopes.face = std::tan(stable_slope(dug_state(soil), mouth, soil.angle_of_repose));
-}
-
-EarthmovingFactors HeightMapModel::factors(double rake, double slope, const SoilState& state,
-                                           bool packed) const {
-  if (state.friction_angle == bank.friction_angle) {
-    return (packed ? on_packed : on_steel).at(rake, slope);
-  }
-  std::call_once(uneven_made_, [&] {
-    const double end = soil.friction_loosest + soil.friction_gain;
-    const double low = std::min(soil.friction_loosest, end);
-    const double high = std::max(soil.friction_loosest, end);
-    uneven_on_steel_.emplace(low, high, soil.tool_friction_ratio);
-    uneven_on_packed_.emplace(low, high, 1.0);
-  });
-  return (packed ? *uneven_on_packed_ : *uneven_on_steel_).at(rake, slope, state.friction_angle);
 }
 
 // ---- Forces -------------------------------------------------------------------------------------
@@ -189,7 +174,7 @@ Resistance BucketResistance::push_wedge(const Vector2d& tip, Index col, const At
   return r;
 }
 
-/// What the wedge's force takes from soil and face, for a strip of any depth.
+/// Terms of the wedge's force that do not depend on the depth of the strip.
 struct BucketResistance::FaceTerms {
   FaceTerms(const SoilState& state, const EarthmovingFactors& factors, bool packed)
       : soil(state),
@@ -214,8 +199,8 @@ struct BucketResistance::FaceTerms {
 BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Vector2d& tip,
                                                     Index col, double turn) const {
   const double slope = surface_slope(col);
-  // Where the bucket rises it pushes no wedge ahead: that passive force fades with the cosine of
-  // the climb; it shears the soil above it off instead.
+  // Where the bucket rises it pushes no wedge: the passive force decreases with the cosine of the
+  // climb, and the bucket shears off the soil above it instead.
   const double fade = std::cos(turn);
   FaceForce force;
   const auto push = [&](double passive, double adhesion, const FaceTerms& t) {
@@ -223,7 +208,7 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
     force.across += fade * (passive * t.cos_face - adhesion);
   };
   const auto terms_of = [&](const SoilState& soil) {
-    return FaceTerms(soil, model_.factors(face.rake, slope, soil, face.packed), face.packed);
+    return FaceTerms(soil, model_.wedges.at(face.rake, slope, soil, face.packed), face.packed);
   };
   const FaceTerms mean = terms_of(mean_soil_at(col));
   const bool even = ground_.bank_is_even();
@@ -257,7 +242,7 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
 }
 
 /// Loose soil over the top of the wedge, as an even layer on all of it; what lies over the face is
-/// in the bucket, and payload. Where the tip runs in loose soil alone, that [m].
+/// in the bucket, and payload. In loose soil alone, all of it [m].
 double BucketResistance::loose_on_wedge(Index row, Index col, const Strip& strip,
                                         const FaceTerms& terms) const {
   if (!(strip.bank > 0.0)) return strip.loose;
@@ -303,8 +288,8 @@ void BucketResistance::press_heel(const Stretch& s, const Cavity& cavity, Resist
   if (pressed > 0.0) r.heel_point /= pressed;
 }
 
-/// What the tip has left at x behind the lip; infinite where it never was. `pose` is where to look
-/// first, and then where x was found.
+/// Level that the tip has left at x behind the lip; infinite where it has not been. `pose` is where
+/// the search starts and, afterwards, where x was found.
 double BucketResistance::swept_to(double x, std::size_t& pose) const {
   const std::vector<DigPose>& poses = path_.poses;
   while (pose > 0 && poses[pose].bucket.x < x) --pose;
@@ -315,7 +300,7 @@ double BucketResistance::swept_to(double x, std::size_t& pose) const {
   return ahead.z + share * (behind.z - ahead.z);
 }
 
-/// uncut_at() between the centres of cells, so that slopes are no stairs; -infinity where unknown.
+/// uncut_at() between the centres of cells, so that slopes have no steps; -infinity where unknown.
 double BucketResistance::uncut_between(double x) const {
   const HeightMap& map = ground_.before().bank;
   const double last = static_cast<double>(map.z.cols() - 1);

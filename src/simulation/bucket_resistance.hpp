@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <mutex>
-#include <optional>
-
 #include <Eigen/Core>
 
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/simulation/earthmoving.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/ground_window.hpp"
+#include "simulation/soil_wedges.hpp"
 #include "simulation/swath.hpp"
 
 namespace excavplan {
@@ -23,23 +20,13 @@ namespace excavplan {
 struct HeightMapModel {
   HeightMapModel(const Machine& machine, const SoilKind& soil, double density_percent);
 
-  /// Factors of the wedge on a face of steel or of packed soil, in soil of this state.
-  EarthmovingFactors factors(double rake, double slope, const SoilState& state, bool packed) const;
-
   Machine machine;
   SoilKind soil;
   double density_percent;
   SoilState bank;
   SoilState loose;
   HoldingSlopes slopes;
-  CriticalWedges on_steel;   ///< in soil as dense as `bank`
-  CriticalWedges on_packed;  ///< the same, sliding on soil
-
- private:
-  /// Tables for ground of uneven density, made when such ground is first seen.
-  mutable std::once_flag uneven_made_;
-  mutable std::optional<FrictionWedges> uneven_on_steel_;
-  mutable std::optional<FrictionWedges> uneven_on_packed_;
+  SoilWedges wedges;
 };
 
 /// One stretch of the path: the tip goes from `from` to `to` while the joints turn by `turn`.

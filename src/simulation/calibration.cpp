@@ -15,8 +15,8 @@
 namespace excavplan {
 namespace {
 
-/// Volumes do not depend on who pulls: no soil is too hard to calibrate for.
-Machine tireless(Machine machine) {
+/// Volumes do not depend on the torques of the machine: no soil is too hard to calibrate for.
+Machine with_unlimited_torque(Machine machine) {
   for (JointLimits& limits : machine.limits) {
     limits.torque = std::numeric_limits<double>::infinity();
   }
@@ -30,7 +30,7 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
   dig.simulator = options.simulator;
   const Terrain ground =
       undisturbed(flat_ground(scene_extent(machine, dig.dump_at), options.cell_size));
-  const DigScene scene = run_scene(tireless(machine), soil, density, ground, dig);
+  const DigScene scene = run_scene(with_unlimited_torque(machine), soil, density, ground, dig);
 
   DensityCalibration::Sample sample;
   sample.density_percent = density;

@@ -15,7 +15,7 @@
 
 namespace excavplan {
 
-/// What a terrain's soil is where the terrain does not say.
+/// The soil of a terrain where the terrain states no void ratio.
 struct GroundSoil {
   const SoilKind& kind;
   const SoilState& bank;
@@ -23,7 +23,7 @@ struct GroundSoil {
 };
 
 /// The part of a terrain on which a dig works: a copy of the cells near it that grows on demand, so
-/// that the size of the terrain costs nothing. Rows and columns are those of the whole terrain.
+/// that the size of the terrain does not matter. Rows and columns are those of the whole terrain.
 ///
 /// Soil that is dug or slides swells to the loose state; only loose soil that never moved is
 /// denser.
@@ -44,7 +44,7 @@ class GroundWindow {
     return block.widened(margin, whole_.loose.rows(), whole_.loose.cols());
   }
 
-  /// Where the layers hold a cell of the window, until it grows: the next row is 1 away, the next
+  /// Index of a cell in the layers, valid until the window grows: the next row is 1 away, the next
   /// column column_step().
   std::size_t at(Eigen::Index row, Eigen::Index col) const {
     return static_cast<std::size_t>((col - cells_.col_begin + 1) * stride_ + row -
@@ -56,24 +56,20 @@ class GroundWindow {
   double bank(Eigen::Index row, Eigen::Index col) const { return bank_[at(row, col)]; }
   double loose(std::size_t cell) const { return loose_[cell]; }
   double loose(Eigen::Index row, Eigen::Index col) const { return loose_[at(row, col)]; }
-  /// Of the surface; NaN where nothing moves on or off: unknown, walled, off the map.
+  /// Of the surface; NaN where no soil enters or leaves: unknown, walled, off the map.
   double height(std::size_t cell) const { return height_[cell]; }
   double height(Eigen::Index row, Eigen::Index col) const { return height_[at(row, col)]; }
 
-  /// Void ratios of a cell [-].
+  /// Of the bank [-].
   double bank_void_ratio(Eigen::Index row, Eigen::Index col) const {
     return whole_.bank_void_ratio.size() == 0 ? soil_.bank.void_ratio
                                               : whole_.bank_void_ratio(row, col);
-  }
-  double loose_void_ratio(Eigen::Index row, Eigen::Index col) const {
-    return void_ratio_.empty() ? soil_.loose.void_ratio : void_ratio_[at(row, col)];
   }
   bool bank_is_even() const { return whole_.bank_void_ratio.size() == 0; }
   /// State of a cell's bank.
   SoilState bank_state(Eigen::Index row, Eigen::Index col) const;
 
-  /// Loose thickness [m] that a thickness of the cell's bank, or of its loose layer, gives once it
-  /// has moved.
+  /// Loose thickness of a thickness of the bank, or of the loose layer, once it has moved [m].
   double swollen_bank(Eigen::Index row, Eigen::Index col, double thickness) const {
     return thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + bank_void_ratio(row, col));
   }
@@ -82,24 +78,15 @@ class GroundWindow {
                ? thickness
                : thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + void_ratio_[cell]);
   }
-  double swollen_loose(Eigen::Index row, Eigen::Index col, double thickness) const {
-    return swollen_loose(at(row, col), thickness);
-  }
 
   void lower_bank(std::size_t cell, double thickness) {
     bank_[cell] -= thickness;
     changed(cell);
   }
-  void lower_bank(Eigen::Index row, Eigen::Index col, double thickness) {
-    lower_bank(at(row, col), thickness);
-  }
   /// Never below 0.
   void lower_loose(std::size_t cell, double thickness) {
     loose_[cell] = loose_[cell] > thickness ? loose_[cell] - thickness : 0.0;
     changed(cell);
-  }
-  void lower_loose(Eigen::Index row, Eigen::Index col, double thickness) {
-    lower_loose(at(row, col), thickness);
   }
   /// Adds soil that has moved.
   void raise_loose(std::size_t cell, double thickness) {
@@ -111,7 +98,7 @@ class GroundWindow {
     raise_loose(at(row, col), thickness);
   }
 
-  /// Cells that let nothing on or off, until the next call.
+  /// Cells that no soil enters or leaves, until the next call.
   void set_wall(const CellBlock& wall);
 
   /// Whether a cell or one of its four neighbours has changed since let_sleep(): a cell that is
@@ -120,7 +107,7 @@ class GroundWindow {
   void let_sleep(std::size_t cell) { awake_[cell] = 0; }
   void wake(const CellBlock& block);
 
-  /// Dry mass of the window above a level, now and before; unknown cells weigh nothing [kg].
+  /// Dry mass of the known cells above a level, now and before [kg].
   double solids(double above) const;
   double solids_before(double above) const;
 
@@ -149,12 +136,12 @@ class GroundWindow {
   CellBlock cells_;
   CellBlock wall_;
   Eigen::Index stride_ = 0;
-  // The layers have a frame of one cell of unknown ground around them. Flags are no bytes: after
-  // writing one the compiler would have to read all members anew.
+  // The layers have a frame of one cell of unknown ground around them. Flags are not bytes, which
+  // may alias all members: the compiler would read these again after each write.
   std::vector<double> bank_;
   std::vector<double> loose_;
   std::vector<double> height_;
-  std::vector<double> void_ratio_;  ///< of the loose layer; empty if all of it is as dug soil is
+  std::vector<double> void_ratio_;  ///< of the loose layer; empty if that of dug soil
   std::vector<std::uint16_t> awake_;
   std::vector<std::uint16_t> walled_;
 };

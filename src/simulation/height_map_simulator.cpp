@@ -24,12 +24,12 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-// Numbers of our own choice; docs/methods.md#simulation says why.
+// Numbers of our own choice; reasons: docs/methods.md#simulation.
 constexpr double sweeps_per_step = 3.0;  // of slumping while the bucket moves, on 5 cm cells; as
                                          // many more as a slide takes on smaller ones
 constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
 constexpr double spread_ahead = 0.15;    // overflow lands within this ahead of the lip [m]
-constexpr double room_around = 0.5;      // of the ground looked at first, around the path [m]
+constexpr double room_around = 0.5;      // of the window around the path at first [m]
 
 /// One dig from its first pose to its end.
 class Dig {
@@ -152,6 +152,7 @@ class Dig {
     const double area = map.cell_size * map.cell_size;
     for (Index i = 0; i < swath_.rows(); ++i) {
       const Index row = swath_.first_row() + i;
+      const std::size_t cell = ground_.at(row, col);
       const double top = map.z(row, col);  // of what is still uncut
       if (std::isnan(top)) {
         throw Error(ErrorKind::bad_input,
@@ -166,10 +167,9 @@ class Dig {
       const double loose =
           std::min(ground_.loose(row, col),
                    cover * (mean_above(top + thickness, z0, z1) - mean_above(top, z0, z1)));
-      fill_ +=
-          area * (ground_.swollen_bank(row, col, bank) + ground_.swollen_loose(row, col, loose));
-      ground_.lower_bank(row, col, bank);
-      ground_.lower_loose(row, col, loose);
+      fill_ += area * (ground_.swollen_bank(row, col, bank) + ground_.swollen_loose(cell, loose));
+      ground_.lower_bank(cell, bank);
+      ground_.lower_loose(cell, loose);
       account_.result.soil.bank_cut += bank * area;
       account_.result.soil.loose_cut += loose * area;
     }

@@ -29,18 +29,6 @@ DigPath lay_out(const Machine& machine, const Terrain& ground, const SceneOption
   return std::get<DigPath>(std::move(path));
 }
 
-/// The ground that the tip passes over, as wide as the bucket.
-Rectangle strip_of(const Machine& machine, const DigPath& path) {
-  const double half_width = 0.5 * machine.bucket.width_outside;
-  Rectangle strip{path.start_x, -half_width, path.start_x, half_width};
-  for (const DigPose& pose : path.poses) {
-    if (pose.phase == DigPhase::lift) continue;
-    strip.x_min = std::min(strip.x_min, pose.bucket.x);
-    strip.x_max = std::max(strip.x_max, pose.bucket.x);
-  }
-  return strip;
-}
-
 /// Foot of the cone in which a heaped bucket comes to rest [m].
 double heap_radius(const Machine& machine, const SoilKind& soil) {
   return std::cbrt(3.0 * heaped_capacity(machine) / (pi * std::tan(soil.angle_of_repose)));
@@ -52,7 +40,7 @@ std::string text(const Eigen::Vector2d& point) {
 
 void require_clear_of_dig(const Eigen::Vector2d& dump_at, const Machine& machine,
                           const SoilKind& soil, const DigPath& path) {
-  const Rectangle strip = strip_of(machine, path);
+  const Rectangle strip = swept_strip(machine, path);
   const double beside_x = std::max({strip.x_min - dump_at.x(), dump_at.x() - strip.x_max, 0.0});
   const double beside_y = std::max({strip.y_min - dump_at.y(), dump_at.y() - strip.y_max, 0.0});
   const double distance = std::hypot(beside_x, beside_y);

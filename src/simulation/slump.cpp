@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-/// A cell by its place on the map and in the layers.
+/// A cell: its row and column on the map and its index in the layers.
 struct Place {
   Index row = 0;
   Index col = 0;
@@ -25,7 +25,7 @@ struct Place {
 
 /// How far the lower neighbour of a cell along one axis lies below, 0 if none does.
 struct Fall {
-  bool onwards = false;  ///< to the next row or column, else to the last
+  bool onwards = false;  ///< to the next row or column, else to the previous one
   double height = 0.0;
 };
 
@@ -72,7 +72,7 @@ class Slump {
   /// From height `top` in a cell to the lower neighbour on an axis, `step` away. On a flank, where
   /// the other neighbour is higher, the fall is the mean over both sides: the lower side alone
   /// looks too steep where contours are curved (by 0.35 cells / radius on a cone's diagonal). But
-  /// never much less than that side, or stairs could stand.
+  /// never much less than on that side, or steps could remain.
   Fall fall(double top, std::size_t cell, std::size_t step) const {
     constexpr double least = 0.85;  // of the fall on the lower side; ours
     const double before = drop(top, cell - step);
@@ -131,7 +131,7 @@ class Slump {
     arrive(broken * swell, at, x, y);
   }
 
-  /// What has left a cell goes down both axes.
+  /// Distributes the soil that has left a cell over both axes.
   void arrive(double thickness, const Place& from, const Fall& x, const Fall& y) {
     const double sum = x.height + y.height;
     CellBlock touched = {from.row, from.row + 1, from.col, from.col + 1};
@@ -212,7 +212,7 @@ void pour(GroundWindow& ground, const Eigen::Vector2d& at, double volume, double
     const double middle = 0.5 * (low + high);
     (poured(middle) < volume ? low : high) = middle;
   }
-  const double exact = volume > 0.0 ? volume / poured(high) : 0.0;  // takes up the last rounding
+  const double exact = volume > 0.0 ? volume / poured(high) : 0.0;  // corrects the rounding
   for (Index c = block.col_begin; c < block.col_end; ++c) {
     for (Index r = block.row_begin; r < block.row_end; ++r) {
       if (const double rise = raised(r, c, high); rise > 0.0) {

@@ -8,7 +8,7 @@
 
 namespace excavplan {
 
-/// How steep the two layers may stand.
+/// Steepest slopes of the two layers.
 struct SlopeLimits {
   double loose_slope = 0.0;  ///< tangent of the angle of repose
   bool bank_stands = false;  ///< walls of undisturbed soil are held, however high

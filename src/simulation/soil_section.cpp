@@ -45,7 +45,8 @@ CutArea cut_fresh(Column& column, double from, double to, const Below& line) {
   return {bank, all - bank, 0.0};
 }
 
-/// What the tip has passed before is cut again only as far as the line lies below its mean floor.
+/// Ground that the tip has passed before is cut again only where the line lies below its mean
+/// floor.
 CutArea cut_column(Column& column, double from, double to, const Below& line) {
   if (!(column.swept() > 0.0)) column.swept_from = column.swept_to = from;
   const double again_from = std::clamp(column.swept_from, from, to);
@@ -112,7 +113,7 @@ CellBlock cells_under(const HeightMap& map, const Swath& swath, const Reach& rea
   return cells;
 }
 
-/// These cells and the room around them that a dig looks at first.
+/// These cells and room around them, the first extent of the section.
 CellBlock with_room(const CellBlock& cells, const HeightMap& map, const Reach& reach) {
   const auto cells_in = [&](double length) {
     return static_cast<Index>(std::ceil(length / map.cell_size));
@@ -123,7 +124,7 @@ CellBlock with_room(const CellBlock& cells, const HeightMap& map, const Reach& r
   return room;
 }
 
-/// Writes back what came to rest on a section, and breaks its walls.
+/// Writes the soil at rest on a section to the map and breaks the walls of the cut.
 class MapWriter {
  public:
   MapWriter(SoilSection& section, double slope)
@@ -164,11 +165,9 @@ class MapWriter {
   }
 
   /// Walls beside the cut that are higher than they can stand break back at the friction angle;
-  /// what falls lies against their foot at the angle of repose.
+  /// the fallen soil lies at their foot at the angle of repose.
   void break_walls(Index col, const Column& column, LooseSoil& rest) {
-    const GroundSoil& soil = ground_.soil();
-    const SoilState bank =
-        ground_.bank_is_even() ? soil.bank : bank_state_of_void_ratio(soil.kind, column.void_ratio);
+    const SoilState bank = section_.bank_of(column.void_ratio);
     const double wall = column.bank_before - column.bank - column.settled - critical_height(bank);
     if (!(wall > 0.0)) return;
     const double broken_slope = std::tan(bank.friction_angle);
@@ -182,7 +181,7 @@ class MapWriter {
       const double fall = wall - foot - broken_slope * outwards;
       if (outwards < 0.0 || !(fall > 0.0) || std::isnan(map_.z(row, col))) continue;
       fallen += ground_.swollen_bank(row, col, fall) * map_.cell_size;
-      ground_.lower_bank(row, col, fall);
+      ground_.lower_bank(ground_.at(row, col), fall);
     }
     if (!(fallen > 0.0)) return;
     spread(col, fallen,
@@ -198,8 +197,8 @@ class MapWriter {
     }
   }
 
-  /// Lays a cross-section [m^2] of this shape across the rows; what finds no known cell stays
-  /// under the bucket.
+  /// Lays a cross-section [m^2] of this shape across the rows; without known cells it stays under
+  /// the bucket.
   template <typename Shape>
   void spread(Index col, double area, const Shape& shape) {
     const CellBlock rows = rows_within(2.0 * std::sqrt(area / slope_));
@@ -218,7 +217,7 @@ class MapWriter {
     }
   }
 
-  /// The rows under the bucket and so far beside it; the window is made to hold them.
+  /// The rows under the bucket and up to this distance beside it; grows the window to contain them.
   CellBlock rows_within(double outwards) {
     const double reach = 0.5 * width_ + outwards + map_.cell_size;
     const auto row_at = [&](double y) {
@@ -333,7 +332,8 @@ CutArea SoilSection::cut(Vector2d p, Vector2d q) {
   return sum;
 }
 
-/// Cuts all rows down to the one level that takes out this mean thickness; what it swells to.
+/// Cuts all rows to the common level that removes this mean thickness; returns its swollen
+/// thickness.
 double SoilSection::take_bank(Index col, double thickness) {
   if (!(thickness > 0.0)) return 0.0;
   double level = at(col).bank -= thickness;
@@ -365,12 +365,12 @@ double SoilSection::take_bank(Index col, double thickness) {
     const Index row = swath_.first_row() + r;
     const double taken = exact * swath_.cover(r) * height;
     swollen += ground_.swollen_bank(row, col, taken);
-    ground_.lower_bank(row, col, taken);
+    ground_.lower_bank(ground_.at(row, col), taken);
   }
   return swollen / rows_;
 }
 
-/// Thins the loose soil of all rows by the same share; what it swells to.
+/// Removes the same share of the loose soil of all rows; returns its swollen thickness.
 double SoilSection::take_loose(Index col, double thickness) {
   Column& mean = at(col);
   const double taken = std::min(thickness, mean.loose);
@@ -380,8 +380,9 @@ double SoilSection::take_loose(Index col, double thickness) {
   for (Index r = 0; r < swath_.rows(); ++r) {
     const Index row = swath_.first_row() + r;
     const double share = swath_.cover(r) * ground_.before().loose(row, col) / mean.loose_before;
-    swollen += ground_.swollen_loose(row, col, share * taken);
-    ground_.lower_loose(row, col, share * taken);
+    const std::size_t cell = ground_.at(row, col);
+    swollen += ground_.swollen_loose(cell, share * taken);
+    ground_.lower_loose(cell, share * taken);
   }
   return swollen / rows_;
 }

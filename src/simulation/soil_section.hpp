@@ -11,6 +11,7 @@
 #include <excavplan/simulation/terrain.hpp>
 
 #include "simulation/ground_window.hpp"
+#include "simulation/section_bucket.hpp"
 #include "simulation/swath.hpp"
 
 /// @file
@@ -20,21 +21,13 @@
 
 namespace excavplan {
 
-/// The half plane z <= height + slope * x.
-struct Below {
-  double height = 0.0;
-  double slope = 0.0;
-
-  double at(double x) const { return height + slope * x; }
-};
-
 struct Column {
   double bank_before = 0.0;   ///< mean over the width [m]
   double loose_before = 0.0;  ///< [m]
   double void_ratio = 0.0;    ///< of the bank, mean over the width [-]
   double bank = 0.0;
-  double loose = 0.0;       ///< what is left of the loose soil that lay here
-  double swept_from = 0.0;  ///< the tip has passed from here ..
+  double loose = 0.0;       ///< rest of the loose soil that lay here
+  double swept_from = 0.0;  ///< the tip has passed from here [m] ..
   double swept_to = 0.0;    ///< .. to here [m]
   double floor = 0.0;       ///< mean level of the bank where the tip has passed
   double windrow = 0.0;     ///< loose, beside the bucket on both sides together [m^2]
@@ -45,7 +38,7 @@ struct Column {
   double top() const { return bank + loose + settled; }
 };
 
-/// As they lay, and both together as they swell once they move.
+/// Areas as they lay, and of both together after they have swollen.
 struct CutArea {
   double bank = 0.0;
   double loose = 0.0;
@@ -67,17 +60,16 @@ struct Reach {
   double behind = 0.0;  ///< how far the bucket extends behind its tip
 };
 
-/// Columns are counted as the map counts them. Cut soil comes off the map's cells at once; what
-/// comes to rest lies on the section until write_back().
+/// Columns are numbered as on the map. Cut soil is removed from the map at once; soil that comes to
+/// rest stays on the section until write_back().
 class SoilSection {
  public:
-  /// Covers known ground around the reach, and grows with what comes to rest.
+  /// Covers known ground around the reach.
   /// @throws Error (bad_input) if a cell the bucket passes is off the map or unknown
   SoilSection(const Terrain& terrain, const GroundSoil& soil, double width, const Reach& reach);
 
   GroundWindow& ground() { return ground_; }
   double width() const { return width_; }
-  double cell_size() const { return cell_size_; }
   const Swath& swath() const { return swath_; }
   double rows() const { return rows_; }  ///< sum of what the bucket covers of each [-]
   Eigen::Index first_col() const { return first_col_; }
@@ -96,7 +88,7 @@ class SoilSection {
   /// The tip has come here.
   void pass(const Eigen::Vector2d& tip);
 
-  /// Takes out what lies above the line from p to q, exactly; the tip has come to q.
+  /// Removes exactly the soil above the line from p to q; the tip has come to q.
   CutArea cut(Eigen::Vector2d p, Eigen::Vector2d q);
 
   /// Through the ground up to 0.25 m ahead.
@@ -109,8 +101,8 @@ class SoilSection {
   /// beyond its start the ground.
   const std::vector<Eigen::Vector2d>& left_behind() const { return left_behind_; }
 
-  /// Sheds what stands too steep at the sides of a pile that leans against x, `high` there and
-  /// falling by `fall` per metre, into windrows; the area that the pile loses.
+  /// Sheds the sides of a pile that are too steep into windrows. The pile leans against x, where
+  /// its height is `high`, and falls by `fall` per metre. Returns the area that the pile loses.
   double shed(double x, double high, double fall, double slope);
 
   enum class Side { ahead, behind, both };
@@ -150,8 +142,9 @@ struct LooseSoil {
   double elsewhere = 0.0;
 };
 
-/// Writes back what came to rest: it lies on the rows under the bucket and slopes off beside them,
-/// windrows lie beside, walls that are too high break. `slope` is the tangent of loose soil's.
+/// Writes the soil at rest to the map: it lies on the rows under the bucket and slopes off beside
+/// them, with windrows beside; walls that are too high break. `slope` is that of loose soil, a
+/// tangent.
 LooseSoil write_back(SoilSection& section, double slope);
 
 }  // namespace excavplan

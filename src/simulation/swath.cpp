@@ -13,14 +13,32 @@ namespace excavplan {
 
 using Eigen::Index;
 
-Swath::Swath(const HeightMap& map, double width, double least_cover) : map_(map) {
+namespace {
+
+/// Edges of the bucket, in rows of the map.
+struct Edges {
+  double first;
+  double last;
+};
+
+Edges edges(const HeightMap& map, double width) {
   const double half = 0.5 * width;
-  const double first = (-half - map.origin.y()) / map.cell_size;
-  const double last = (half - map.origin.y()) / map.cell_size;
-  if (!(first >= -least_cover && last <= static_cast<double>(map.z.rows()) + least_cover)) {
-    throw Error(ErrorKind::bad_input, "dig: the bucket, y = " + number_text(-half) + " .. " +
-                                          number_text(half) + " m, must lie on the map");
+  return {(-half - map.origin.y()) / map.cell_size, (half - map.origin.y()) / map.cell_size};
+}
+
+}  // namespace
+
+bool Swath::fits(const HeightMap& map, double width, double least_cover) {
+  const auto [first, last] = edges(map, width);
+  return first >= -least_cover && last <= static_cast<double>(map.z.rows()) + least_cover;
+}
+
+Swath::Swath(const HeightMap& map, double width, double least_cover) : map_(map) {
+  if (!fits(map, width, least_cover)) {
+    throw Error(ErrorKind::bad_input, "dig: the bucket, y = " + number_text(-0.5 * width) + " .. " +
+                                          number_text(0.5 * width) + " m, must lie on the map");
   }
+  const auto [first, last] = edges(map, width);
   first_row_ = static_cast<Index>(std::floor(first + least_cover));
   const auto end = std::min(map.z.rows(), static_cast<Index>(std::ceil(last - least_cover)));
   cover_.resize(end - first_row_);

@@ -19,6 +19,9 @@ class Swath {
   /// @throws Error (bad_input) if the map does not hold the bucket's width
   Swath(const HeightMap& map, double width, double least_cover = 0.0);
 
+  /// True if the map holds the bucket's width.
+  static bool fits(const HeightMap& map, double width, double least_cover = 0.0);
+
   Eigen::Index first_row() const { return first_row_; }
   Eigen::Index rows() const { return cover_.size(); }
   Eigen::Index end_row() const { return first_row_ + cover_.size(); }

@@ -18,7 +18,7 @@
 namespace excavplan {
 namespace {
 
-constexpr double lowest_raw_percent = -1000.0;  // where the closed form runs to minus infinity
+constexpr double lowest_raw_percent = -1000.0;  // instead of minus infinity
 constexpr double smallest_r = 1e-6;
 constexpr double largest_r = 0.95;  // of a fit
 
@@ -33,7 +33,7 @@ struct Parameter {
   double highest;
 };
 
-/// What a form is: one specialisation for each alternative of DensityForm.
+/// A row of the table: one specialisation for each alternative of DensityForm.
 template <typename Form>
 struct FormRow;
 
@@ -171,7 +171,7 @@ class HyperbolaFit {
     return regress(x_, k_);
   }
 
-  /// The best r: a scan finds its neighbourhood, a simplex search the rest.
+  /// The best r, by a scan and then a local search.
   double best_r() {
     constexpr int steps = 190;
     constexpr double step = (largest_r - smallest_r) / steps;

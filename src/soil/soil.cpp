@@ -35,7 +35,7 @@ void read_cone_index(JsonObject law, SoilKind& soil) {
   law.done();
 }
 
-/// Rules that bind several keys.
+/// Rules that concern several keys.
 void check_consistency(const JsonObject& file, const SoilKind& soil) {
   const std::string e_max = number_text(soil.void_ratio_max);
   const std::string e_min = number_text(soil.void_ratio_min);

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include <excavplan/ground/bulking.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/text.hpp"
 #include "survey/paper_change.hpp"
@@ -20,19 +21,19 @@ namespace {
 
 // ---- Scans to height maps ---------------------------------------------------------------------
 
-/// The scans and what a first pass over them told.
-struct Seen {
-  SeenPair dig;
-  std::optional<SeenPair> dump;
+/// The scans with their outlines.
+struct OutlinedScans {
+  OutlinedPair dig;
+  std::optional<OutlinedPair> dump;
   double cell_size = 0.0;
 };
 
-Seen first_pass(const DigScans& scans, const DensityOptions& options) {
-  Seen seen;
-  seen.dig = see({scans.before, scans.after}, options.threads);
+OutlinedScans outline_scans(const DigScans& scans, const DensityOptions& options) {
+  OutlinedScans seen;
+  seen.dig = outlined({scans.before, scans.after}, options.threads);
   seen.cell_size = seen.dig.cell_size();
   if (scans.dump) {
-    seen.dump = see(*scans.dump, options.threads);
+    seen.dump = outlined(*scans.dump, options.threads);
     seen.cell_size = std::max(seen.cell_size, seen.dump->cell_size());
   }
   if (options.cell_size) seen.cell_size = *options.cell_size;
@@ -50,8 +51,8 @@ struct Surfaces {
   }
 };
 
-Surfaces survey(const Seen& seen, const DensityOptions& options) {
-  const auto survey_one = [&](const SeenPair& pair) {
+Surfaces survey(const OutlinedScans& seen, const DensityOptions& options) {
+  const auto survey_one = [&](const OutlinedPair& pair) {
     return survey_pair(pair, seen.cell_size, options.registered, options.threads);
   };
   Surfaces surfaces;
@@ -64,7 +65,7 @@ Surfaces survey(const Seen& seen, const DensityOptions& options) {
 
 /// Errors of the change are about what the scans show.
 template <typename Measure>
-VolumeChange about(const Seen& seen, const Measure& measure) {
+VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
   try {
     return measure();
   } catch (const Error& error) {
@@ -72,8 +73,8 @@ VolumeChange about(const Seen& seen, const Measure& measure) {
   }
 }
 
-VolumeChange surface_change(const Seen& seen, const Surfaces& surfaces,
-                            const ChangeOptions& options) {
+VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfaces,
+                                const ChangeOptions& options) {
   VolumeChange change = about(seen, [&] {
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
@@ -86,32 +87,13 @@ VolumeChange surface_change(const Seen& seen, const Surfaces& surfaces,
   return change;
 }
 
-VolumeChange paper_change(const Seen& seen, const VolumeChange& surface,
-                          const ChangeOptions& options) {
+VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& surface,
+                              const ChangeOptions& options) {
   const PaperScans scans = {seen.dig.scans, seen.dump ? &seen.dump->scans : nullptr};
   return about(seen, [&] { return paper_change(scans, surface, options, seen.cell_size); });
 }
 
 // ---- What is known beside the volumes ---------------------------------------------------------
-
-/// Mean height under the bucket, 15 cm to both sides of x: one cell's noise would move
-/// the whole path.
-GroundProfile ground_under(const HeightMap& map, double width) {
-  return [&map, width](double x) {
-    constexpr double reach = 0.15;  // [m], ours
-    double sum = 0.0;
-    int count = 0;
-    for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
-      if (std::abs(map.x(col) - x) > reach) continue;
-      for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
-        if (std::abs(map.y(row)) > 0.5 * width || std::isnan(map.z(row, col))) continue;
-        sum += map.z(row, col);
-        ++count;
-      }
-    }
-    return count > 0 ? sum / count : std::nan("");
-  };
-}
 
 /// What lies on the floor of the path that was dug.
 Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const VolumeChange& change) {
@@ -119,7 +101,7 @@ Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const Volu
   HeightMap after = realigned(surfaces.after.height, surfaces.alignment);
   after.z -= change.areas.front().datum;
   const auto path = make_dig_path(dug.machine, dug.parameters, dug.start_x,
-                                  ground_under(before, dug.machine.bucket.width_outside));
+                                  profile_under_bucket(before, dug.machine));
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
     throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
   }
@@ -205,9 +187,9 @@ void keep_registration(const Surfaces& surfaces, DensityEstimate& estimate) {
 std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& law,
                                        const DensityOptions& options,
                                        std::initializer_list<VolumeMethod> methods) {
-  const Seen seen = first_pass(scans, options);
-  const Surfaces surfaces = survey(seen, options);
-  const VolumeChange surface = surface_change(seen, surfaces, options.change);
+  const OutlinedScans seen = outline_scans(scans, options);  // extent, density of points, cell
+  const Surfaces surfaces = survey(seen, options);           // height maps on each other
+  const VolumeChange surface = surface_volumes_of(seen, surfaces, options.change);
 
   DensityEstimate known;  // whatever the method
   known.law = law;
@@ -223,11 +205,12 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     DensityEstimate& estimate = results.emplace_back(known);
     const bool by_paper = method == VolumeMethod::paper;
     estimate.method = method;
-    estimate.change = by_paper ? paper_change(seen, surface, options.change) : surface;
+    // eqs. 3 and 4: volumes before and after
+    estimate.change = by_paper ? paper_volumes_of(seen, surface, options.change) : surface;
     estimate.warnings = estimate.change.warnings;
-    estimate.bulking = bulking_factor(estimate.change);
+    estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
-    if (estimate.bulking) apply_law(estimate);
+    if (estimate.bulking) apply_law(estimate);  // freed of fallback and voids, then to density
     judge_scans(estimate);
   }
   return results;

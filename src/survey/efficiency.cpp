@@ -170,7 +170,7 @@ Payload stated(const LoggedDig& dig, const Payload& payload) {
 
 /// Volume of the heap between two scans of the dump area.
 Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency& result) {
-  const SeenPair seen = see(scans, dig.threads);
+  const OutlinedPair seen = outlined(scans, dig.threads);
   const std::string names = seen.names() + ": ";
   const double cell = dig.cell_size.value_or(seen.cell_size());
   const SurfacePair surfaces = survey_pair(seen, cell, false, dig.threads).surfaces;

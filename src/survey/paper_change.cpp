@@ -53,7 +53,7 @@ double median_height(const Cloud& cloud) {
   return *middle;
 }
 
-/// Where the hole and where the heap is looked for; nothing: everywhere.
+/// Where hole and heap are searched; nothing: everywhere.
 struct Areas {
   std::optional<Rectangle> dig;
   std::optional<Rectangle> dump;

@@ -34,7 +34,7 @@ std::string text(const Rectangle& r) {
          " .. " + readable(r.y_max) + " m";
 }
 
-Rectangle overlap(const SeenPair& pair) {
+Rectangle overlap(const OutlinedPair& pair) {
   constexpr double least = 0.2;  // [m], ours
   const Rectangle& a = *pair.before.extent;
   const Rectangle& b = *pair.after.extent;
@@ -96,14 +96,14 @@ std::string name_of(const Scan& scan) {
   return name;
 }
 
-SeenPair see(const ScanPair& scans, unsigned threads) {
+OutlinedPair outlined(const ScanPair& scans, unsigned threads) {
   const std::vector<ScanOutline> seen = outlines({scans.before, scans.after}, threads);
   require_points(scans.before, seen[0]);
   require_points(scans.after, seen[1]);
   return {scans, seen[0], seen[1]};
 }
 
-RegisteredPair survey_pair(const SeenPair& pair, double cell_size, bool registered,
+RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,
                            unsigned threads) {
   RasterOptions raster;
   raster.cell_size = cell_size;

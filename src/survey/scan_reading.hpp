@@ -22,7 +22,7 @@ Cloud gathered(const Scan& scan);
 std::string name_of(const Scan& scan);
 
 /// A pair of scans and what a first pass over each told.
-struct SeenPair {
+struct OutlinedPair {
   ScanPair scans;
   ScanOutline before;
   ScanOutline after;
@@ -32,13 +32,13 @@ struct SeenPair {
 };
 
 /// @throws Error (bad_file) if one cannot be read or holds fewer than 100 finite points
-SeenPair see(const ScanPair& scans, unsigned threads);
+OutlinedPair outlined(const ScanPair& scans, unsigned threads);
 
 /// Both on one grid over the ground that both see. If they are to be registered, the one after is
 /// brought onto the one before by the ground that did not change, as far as that is significant;
 /// else only the height of one against the other is left open.
 /// @throws FrameError if they do not overlap
-RegisteredPair survey_pair(const SeenPair& pair, double cell_size, bool registered,
+RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,
                            unsigned threads);
 
 }  // namespace excavplan

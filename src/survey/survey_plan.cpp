@@ -94,7 +94,7 @@ Shapes shapes_of(const SurveyPlan& plan) {
   return s;
 }
 
-/// How the sensor looks at one area.
+/// The view of the sensor onto one area.
 struct View {
   double range;
   double cosine;  // of the angle from the vertical

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -16,14 +17,15 @@ namespace {
 
 const Rectangle extent{2.0, -1.0, 6.0, 1.0};
 
-/// A slope of 0.1 that points show `per_area` times a square metre, but for a strip of x.
+/// A slope of 0.1 that points show `per_area` times a square metre, but for a hole
+/// a metre long.
 Scan slope(double per_area, double gap_from = 0.0, double gap_to = 0.0) {
   Random random(3);
   auto cloud = std::make_shared<Cloud>();
   for (int i = 0; i < static_cast<int>(per_area * 9.0 * 5.0); ++i) {
     const double x = random.uniform(0.0, 9.0);
     const double y = random.uniform(-2.5, 2.5);
-    if (x < gap_from || x >= gap_to) cloud->points.emplace_back(x, y, 0.1 * x);
+    if (x < gap_from || x >= gap_to || std::abs(y) > 0.5) cloud->points.emplace_back(x, y, 0.1 * x);
   }
   cloud->width = cloud->points.size();
   Scan scan;

@@ -29,7 +29,7 @@ TEST_F(Tools, CalibrateDensityGivesTheKeysOfTheContract) {
   EXPECT_GT(number(result, "/closed_form/r2"), number(result, "/line/r2"));
 }
 
-TEST_F(Tools, CalibrateDensitySaysHowFarTrueAndMeasuredFactorsPartAndWhy) {
+TEST_F(Tools, CalibrateDensityReportsTheDifferenceOfTrueAndMeasuredFactors) {
   const Words overfills = {"--path", "45deg,0.35m,2m"};
   const json result = answer("calibrate-density", overfills);
   const json& difference = result.at("largest_difference");
@@ -46,10 +46,20 @@ TEST_F(Tools, CalibrateDensitySaysHowFarTrueAndMeasuredFactorsPartAndWhy) {
               1e-6 + number(difference, "/unexplained"));
   const std::string text = run_program("calibrate-density", overfills).out;
   for (const std::string& part :
-       {"part most at " + std::to_string(static_cast<int>(percent)), std::string(" by dry mass, "),
-        std::string(" points of density too "), std::string(" % of the cut lay in the hole")}) {
+       {"differ most at " + std::to_string(static_cast<int>(percent)),
+        std::string(" by dry mass, "), std::string(" points of density too "),
+        std::string(" % of the cut lay in the hole")}) {
     EXPECT_TRUE(contains(text, part)) << part << '\n' << text;
   }
+}
+
+TEST_F(Tools, CalibrateDensityNamesTheSimulatorItDug) {
+  const json section =
+      answer("calibrate-density", {"--simulator", "section", "--densities", "0:25:100"});
+  EXPECT_TRUE(contains(section.at("source"), "section")) << section.at("source");
+  const json usual = answer("calibrate-density", {"--densities", "0:25:100"});
+  EXPECT_TRUE(contains(usual.at("source"), "height-map")) << usual.at("source");
+  EXPECT_NE(number(section, "/line/a"), number(usual, "/line/a"));
 }
 
 TEST_F(BadInput, TablesThatHoldNoSamplesAreRefused) {

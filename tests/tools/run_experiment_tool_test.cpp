@@ -58,5 +58,14 @@ TEST_F(Tools, PlannedPathBeatsTheFixedOneInEverySoil) {
   }
 }
 
+TEST_F(Tools, RunExperimentDigsInTheSimulatorAsked) {
+  const Words words = {"--densities", "40"};
+  const json usual = answer("run-experiment", words).at("conditions").at(0);
+  const json section =
+      answer("run-experiment", words + Words{"--simulator", "section"}).at("conditions").at(0);
+  EXPECT_NE(section.at("fixed").at("energy_kj"), usual.at("fixed").at("energy_kj"));
+  EXPECT_GT(number(section, "/gain_percent"), 0.0);
+}
+
 }  // namespace
 }  // namespace excavplan::test

@@ -192,6 +192,17 @@ TEST_F(Tools, ReportNeedsNothingFromElsewhere) {
 }
 
 /// The ground of the next scan is never quite that on which it was planned.
+TEST_F(Tools, SimulateDigTakesTheSimulatorAsked) {
+  const Words words = {"--density", "40"};
+  const json usual = answer("simulate-dig", words);
+  const json built_in = answer("simulate-dig", words + Words{"--simulator", "height-map"});
+  const json section = answer("simulate-dig", words + Words{"--simulator", "section"});
+  EXPECT_EQ(built_in.at("energy_kj"), usual.at("energy_kj"));
+  EXPECT_NE(section.at("energy_kj"), usual.at("energy_kj"));
+  EXPECT_NEAR(number(section, "/energy_kj"), number(usual, "/energy_kj"),
+              0.2 * number(usual, "/energy_kj"));
+}
+
 TEST_F(BadInput, ThePathOfAPlanMayComeMillimetresNearerToTheTracks) {
   const auto asked = [](double start) {
     return Words{"--density", "40", "--path", "45deg,0.35m,0.3m", "--start", std::to_string(start)};

@@ -35,7 +35,7 @@ const std::vector<Contract>& contracts() {
        "--dig-area",
        quickstart},
       {"calibrate-density",
-       {"--samples", "--soil", "--machine"},
+       {"--samples", "--soil", "--machine", "--simulator"},
        "--sample",
        "--samples",
        [](const TemporaryFolder&) {
@@ -43,7 +43,8 @@ const std::vector<Contract>& contracts() {
        }},
       {"simulate-dig",
        {"--density", "--path", "--start", "--terrain", "--dump-at", "--cell", "--seed", "--noise",
-        "--before", "--after", "--history", "--plot", "--report", "--soil", "--machine"},
+        "--before", "--after", "--history", "--plot", "--report", "--soil", "--machine",
+        "--simulator"},
        "--sede",
        "--seed",
        [](const TemporaryFolder&) {
@@ -66,7 +67,7 @@ const std::vector<Contract>& contracts() {
          return Words{"--densities", "20", "--out", folder.file("library.json")} + small_library;
        }},
       {"run-experiment",
-       {"--path", "--soil", "--machine", "--seed"},
+       {"--path", "--soil", "--machine", "--simulator", "--seed"},
        "--densitis",
        "--densities",
        [](const TemporaryFolder&) {

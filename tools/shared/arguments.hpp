@@ -18,8 +18,8 @@ namespace excavplan::tools {
 /// @throws Error (bad_input)
 [[noreturn]] void usage_error(const std::string& message);
 
-/// What a tool takes. Each option is bound to a variable that holds its default; help shows it.
-/// Names are without the dashes.
+/// The options of a tool. Each is bound to a variable that holds its default, which the help
+/// shows. Names are without the dashes.
 class Arguments {
  public:
   using Assign = std::function<void(const std::string& text)>;
@@ -45,13 +45,13 @@ class Arguments {
   void option(const std::string& name, std::optional<int>& value, const std::string& help);
   void option(const std::string& name, std::uint64_t& value, const std::string& help);
   void option(const std::string& name, std::optional<Rectangle>& value, const std::string& help);
-  /// The help of the second tells the numbers of a path too.
+  /// The help of the second names the parameters of a path too.
   void option(const std::string& name, std::optional<DigParameters>& value,
               const std::string& help);
   void option(const std::string& name, DigParameters& value, const std::string& help);
   /// "x,y"
   void option(const std::string& name, Eigen::Vector2d& value, const std::string& help);
-  /// One of a few words.
+  /// One of `words`.
   void choice(const std::string& name, std::string& value, const std::vector<std::string>& words,
               const std::string& help);
   void file(const std::string& name, std::string& value, const std::string& help);

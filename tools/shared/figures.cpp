@@ -11,7 +11,7 @@
 namespace excavplan::tools {
 namespace {
 
-// Okabe and Ito's colours, told apart by every kind of colour vision.
+// Okabe and Ito's colours, distinct for colour-blind readers too.
 const char* colour(DigPhase phase) {
   switch (phase) {
     case DigPhase::approach:
@@ -74,7 +74,7 @@ Points outline(const AreaChange& area, int zone) {
   return strokes;
 }
 
-/// The largest change inside the zones, else of all cells but the largest hundredth.
+/// The largest change inside the zones; without zones the 99th percentile of all cells.
 double colour_limit(const VolumeChange& change) {
   double largest = 0.0;
   std::vector<double> all;

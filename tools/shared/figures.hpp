@@ -10,7 +10,7 @@
 #include <excavplan/machine/dig_path.hpp>
 
 /// @file
-/// The pictures behind --plot, as SVG text.
+/// The figures that --plot writes, as SVG text.
 
 namespace excavplan::tools {
 

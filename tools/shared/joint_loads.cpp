@@ -16,8 +16,8 @@ constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::buc
 
 double larger(double a, double b) { return std::abs(b) > std::abs(a) ? b : a; }
 
-void take_in(const Cylinder& cylinder, double joint, double torque,
-             std::optional<CylinderUse>& use) {
+void add_sample(const Cylinder& cylinder, double joint, double torque,
+                std::optional<CylinderUse>& use) {
   const double length = cylinder.at(joint).length;
   if (!use) use = CylinderUse{0.0, length, length};
   use->peak_force = larger(use->peak_force, cylinder.force(joint, torque));
@@ -51,8 +51,8 @@ JointLoads joint_loads(const Machine& machine, const std::vector<ForceSample>& h
       const double torque = sample.torque[static_cast<int>(i)];
       loads[i].peak_torque = larger(loads[i].peak_torque, torque);
       if (!machine.cylinders) continue;
-      take_in((*machine.cylinders)[i], sample.joints[static_cast<int>(i)], torque,
-              loads[i].cylinder);
+      add_sample((*machine.cylinders)[i], sample.joints[static_cast<int>(i)], torque,
+                 loads[i].cylinder);
     }
   }
   return loads;

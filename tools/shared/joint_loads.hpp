@@ -13,7 +13,7 @@
 #include <excavplan/simulation/soil_simulator.hpp>
 
 /// @file
-/// What a dig asks of the joints and of the cylinders behind them, from its force history.
+/// Loads of the joints and of their cylinders in a dig, from its force history.
 
 namespace excavplan::tools {
 
@@ -26,7 +26,7 @@ struct CylinderUse {
 
 struct JointLoad {
   double peak_torque = 0.0;             ///< the largest either way, with its sign [N m]
-  std::optional<CylinderUse> cylinder;  ///< nothing if the machine's file states none
+  std::optional<CylinderUse> cylinder;  ///< empty if the machine's file has none
 };
 
 /// Boom, arm, bucket.

@@ -82,8 +82,6 @@ std::string source_line(const DigPlan& plan) {
   return "source       " + std::string(name(plan.method)) + digs + "; start: " + plan.start_rule;
 }
 
-}  // namespace
-
 GroundDensity read_density(const std::string& file) {
   const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
   const auto field = json.is_object() ? json.find("density_percent") : json.end();
@@ -99,6 +97,27 @@ GroundDensity read_density(const std::string& file) {
   density.trustworthy = trustworthy == json.end() || *trustworthy == true;
   const auto soil = json.find("law_soil");
   if (soil != json.end() && soil->is_string()) density.soil = soil->get<std::string>();
+  return density;
+}
+
+}  // namespace
+
+void check(const DensityInput& input) {
+  const auto refuse = [](const std::string& text) { throw Error(ErrorKind::bad_input, text); };
+  if (input.sd && *input.sd < 0.0) {
+    refuse("--density-sd: " + number_text(*input.sd) + " must be at least 0");
+  }
+  if (input.percent.has_value() == input.file.has_value()) {
+    refuse("give --density or --density-from, one of the two");
+  }
+  if (input.percent && !(*input.percent >= 0.0 && *input.percent <= 100.0)) {
+    refuse("--density: " + number_text(*input.percent) + " % is outside 0 .. 100");
+  }
+}
+
+GroundDensity density_of(const DensityInput& input) {
+  GroundDensity density = input.percent ? GroundDensity(*input.percent) : read_density(*input.file);
+  density.sd_percent = input.sd.value_or(density.sd_percent);
   return density;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,17 @@
 
 namespace excavplan::tools {
 
-/// From a result of estimate-density --json.
+/// A density from the command line: a number, or a result of estimate-density --json.
+struct DensityInput {
+  std::optional<double> percent;
+  std::optional<double> sd;  ///< [points]; goes before that of the file
+  std::optional<std::string> file;
+};
+
+/// What can be told before the file is read. @throws Error (bad_input)
+void check(const DensityInput& input);
 /// @throws Error (bad_file) naming file, key, value and rule
-GroundDensity read_density(const std::string& file);
+GroundDensity density_of(const DensityInput& input);
 
 /// All keys of plan-path but the time it took; "path" is null if there is no dig.
 /// @param objective  that the dig was searched for

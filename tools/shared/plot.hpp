@@ -17,7 +17,7 @@ namespace excavplan::tools {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Colours are SVG colours; "none" leaves out.
+/// Colours are SVG colours; "none" draws nothing.
 struct Style {
   std::string stroke = "#000000";
   double width = 1.5;  ///< [px]
@@ -68,7 +68,7 @@ class Panel {
   bool equal_aspect_ = true;
 };
 
-/// The key to heat_map().
+/// The colour scale of heat_map().
 struct ColourBar {
   double limit = 1.0;
   std::string label;
@@ -87,7 +87,7 @@ std::string to_svg(const Figure& figure);
 /// Text with &, <, > and quotes as XML and HTML want them.
 std::string xml_escaped(const std::string& text);
 
-/// Colour of a value from -1 to 1: red, white, blue, told apart by every kind of colour vision
+/// Colour of a value from -1 to 1: red, white, blue, distinct for colour-blind readers too
 /// (ColorBrewer's RdBu, C. Brewer).
 std::string diverging_colour(double value);
 

@@ -11,7 +11,7 @@
 #include "base/text.hpp"
 
 /// @file
-/// Numbers with units, from people and for people. `what` names the option in messages.
+/// Numbers with units on the command line. `what` names the option in messages.
 
 namespace excavplan::tools {
 

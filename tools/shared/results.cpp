@@ -46,6 +46,17 @@ nlohmann::ordered_json stall_json(const Stall& stall) {
           {"torque_nm", stall.torque}};
 }
 
+/// Volumes of height maps, which have no error.
+nlohmann::ordered_json exact_volumes_json(const HeightMapVolumes& volumes) {
+  VolumeChange exact;
+  exact.excavated.value = volumes.excavated;
+  exact.spilled.value = volumes.spilled;
+  exact.dumped.value = volumes.dumped;
+  exact.before.value = volumes.excavated;
+  exact.after.value = volumes.spilled + volumes.dumped;
+  return volumes_json(exact);
+}
+
 }  // namespace
 
 nlohmann::ordered_json volumes_json(const VolumeChange& change) {
@@ -60,23 +71,6 @@ nlohmann::ordered_json volumes_json(const VolumeChange& change) {
   add("before", change.before);
   add("after", change.after);
   return json;
-}
-
-nlohmann::ordered_json volumes_json(const HeightMapVolumes& volumes) {
-  VolumeChange exact;
-  exact.excavated.value = volumes.excavated;
-  exact.spilled.value = volumes.spilled;
-  exact.dumped.value = volumes.dumped;
-  exact.before.value = volumes.excavated;
-  exact.after.value = volumes.spilled + volumes.dumped;
-  return volumes_json(exact);
-}
-
-nlohmann::ordered_json dig_json(const PlannedDig& dig) {
-  return {
-      {"path", path_json(dig.parameters, dig.start_x)},    {"payload_mass_kg", dig.payload_mass},
-      {"payload_volume_m3", dig.payload_volume},           {"energy_kj", dig.energy / 1000.0},
-      {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()}, {"duration_s", dig.duration}};
 }
 
 std::string path_text(const PlannedDig& dig) {
@@ -112,7 +106,7 @@ nlohmann::ordered_json scene_json(const Machine& machine, const DigScene& scene)
           {"peak_force_kn", dig.peak_force / 1000.0},
           {"stalled", dig.stall.has_value()},
           {"stall", dig.stall ? stall_json(*dig.stall) : nlohmann::ordered_json()},
-          {"volume", volumes_json(scene.volumes)},
+          {"volume", exact_volumes_json(scene.volumes)},
           {"bulking_factor", scene.volumes.bulking_factor},
           {"bulking_factor_true", scene.bulking_factor_true},
           {"fallback_fraction", dig.soil.fallback_fraction},

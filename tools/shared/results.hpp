@@ -12,27 +12,23 @@
 #include <excavplan/planning/planner.hpp>
 #include <excavplan/simulation/scene.hpp>
 
+#include "library/library_file.hpp"  // dig_json()
+
 /// @file
-/// Results as the JSON keys that other programs rely on, and as lines for people.
+/// Results as JSON, with the keys of docs/formats.md, and as lines of text.
 
 namespace excavplan::tools {
 
 /// The five volumes, each with its standard deviation.
 nlohmann::ordered_json volumes_json(const VolumeChange& change);
-/// The same of height maps without error.
-nlohmann::ordered_json volumes_json(const HeightMapVolumes& volumes);
-
-/// "path" with start_x_m, payload, energy, efficiency, duration.
-nlohmann::ordered_json dig_json(const PlannedDig& dig);
-
-/// "45.0 deg, 0.350 m, 1.500 m from x = 6.05 m"
+/// "45.0 deg, 0.350 m, 1.50 m from x = 6.05 m"
 std::string path_text(const PlannedDig& dig);
 /// "; the nearest, ANGLE, ...: why it cannot be done", to follow what says that none was found.
 std::string nearest_text(const std::optional<NearestDig>& nearest);
-/// What it lifts and costs.
+/// Path, payload, energy, efficiency and duration.
 std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& spread = {});
 
-/// A simulated dig: what it lifts and costs, what it asks of the joints, where the soil goes.
+/// A simulated dig: payload, energy, loads of the joints, volumes.
 /// @param scene  with the history of its dig
 nlohmann::ordered_json scene_json(const Machine& machine, const DigScene& scene);
 std::vector<std::string> scene_lines(const Machine& machine, const DigScene& scene);

@@ -19,8 +19,8 @@
 #include "shared/arguments.hpp"
 
 /// @file
-/// How a command line tool runs: help, output, exit codes. A tool is a struct of
-/// inputs with their defaults, a function that binds the options to it, one that does the work, and
+/// How a command line tool runs: help, output, exit codes. A tool is a struct of inputs with their
+/// defaults, a function that binds the options to it, one that does the work, and
 ///
 ///     int main(int argc, char** argv) {
 ///       using namespace excavplan::tools;
@@ -45,7 +45,7 @@ struct About {
   bool can_stop_early = false;        ///< an interrupt sets Console::stop_requested() instead
 };
 
-/// What a tool hands back.
+/// Result of a tool.
 struct Outcome {
   /// Printed with --json, "tool" and "version" before it, "warnings" after it. NaN becomes null.
   nlohmann::ordered_json json;
@@ -55,14 +55,14 @@ struct Outcome {
   bool stopped_early = false;
 };
 
-/// The way to the user while a tool works: standard error.
+/// Progress and notes on standard error while a tool works.
 class Console {
  public:
   Console(bool quiet, bool terminal) : quiet_(quiet), terminal_(terminal) {}
 
   /// One line that is overwritten by the next; only on a terminal. `done` is in 0 .. 1.
   void progress(double done, const std::string& what);
-  /// A line for people. Not for warnings, which belong into the outcome.
+  /// One line of text. Warnings belong in the outcome.
   void note(const std::string& line);
   /// True once the user or the system asked a tool that can stop early to stop.
   bool stop_requested() const;

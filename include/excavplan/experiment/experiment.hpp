@@ -17,8 +17,9 @@
 
 namespace excavplan {
 
+/// What is dug and planned with.
 struct ExperimentOptions {
-  DigParameters fixed_path = paper_fixed_path();
+  DigParameters fixed_path = paper_fixed_path();  ///< of every first dig
   std::optional<PathLibrary> library = {};        ///< paths are looked up in it; empty: searched
   DigSearchOptions search = {};                   ///< if searched
   double cell_size = 0.05;                        ///< of the simulated ground [m]
@@ -38,7 +39,9 @@ struct ExperimentResult {
   /// Of the planned over the fixed dig in efficiency [%]. The shares of the path and of the start:
   /// (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
   double gain_percent() const;
+  /// Of the planned path begun as the fixed one [%].
   double path_gain_percent() const;
+  /// Of the start alone [%].
   double start_gain_percent() const;
 };
 

@@ -40,13 +40,13 @@ struct GroundTexture {
   double score = 0.0;              ///< 0: loose soil, 1: blocks; 0 with too few cells
 };
 
-/// What the ground tells of blocks.
+/// Evidence of blocks.
 struct BlockReport {
   GroundTexture heap;   ///< all that rose: dumped and spilled soil
   GroundTexture pit;    ///< the hole; its walls may be steep, so only its roughness counts
   double score = 0.0;   ///< the larger of both
   bool blocks = false;  ///< the score is 0.5 or more: the density cannot be trusted
-  std::optional<double> block_size;  ///< mean edge [m]; of the heap, if its texture tells it
+  std::optional<double> block_size;  ///< mean edge [m]; of the heap, if its texture shows it
   std::optional<Measured> voids;     ///< between the blocks, in `after` of the change [m^3]
   std::vector<std::string> reasons;  ///< for people: what was found, and the figure of loose soil
 };

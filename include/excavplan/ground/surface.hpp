@@ -8,11 +8,11 @@
 
 namespace excavplan {
 
-/// A surveyed surface: heights of the ground and what the points tell of their error.
+/// A surveyed surface: heights of the ground and their error by the points.
 struct Surface {
   HeightMap height;  ///< NaN where no point was accepted
   /// Of each cell's height, from the scatter of its own points, independent from cell to cell
-  /// [m^2]; NaN where the points do not tell it.
+  /// [m^2]; NaN where unknown.
   Eigen::ArrayXXd variance;
   Eigen::ArrayXXi points;  ///< accepted in each cell
 };

@@ -12,11 +12,12 @@
 
 namespace excavplan {
 
+/// What is dug for a calibration.
 struct CalibrationOptions {
-  std::vector<double> densities_percent = {};  ///< empty: 0, 5 .. 100, as the paper does
-  DigParameters path = paper_fixed_path();
-  double cell_size = 0.05;  ///< [m]
-  SimulatorKind simulator = default_simulator();
+  std::vector<double> densities_percent = {};     ///< empty: 0, 5 .. 100, as the paper does
+  DigParameters path = paper_fixed_path();        ///< of every dig
+  double cell_size = 0.05;                        ///< [m]
+  SimulatorKind simulator = default_simulator();  ///< that digs
 };
 
 /// Digs the simulator at every density, measures the bulking factor from its height maps as the
@@ -32,12 +33,12 @@ DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soi
 /// @throws Error (bad_input) as fit_density_forms()
 DensityCalibration calibrate_density(const std::vector<BulkingSample>& samples);
 
-/// How far the bulking factor of the height maps and the true one part, and why.
+/// Difference between the bulking factor of the height maps and the true one.
 ///
 /// Soil that fell back lies in the hole: it is missing from both volumes, and k_measured =
 /// (k - f) / (1 - f) with f the fallback fraction (docs/methods.md#density-law).
 struct BulkingDifference {
-  DensityCalibration::Sample largest;  ///< where they part most
+  DensityCalibration::Sample largest;  ///< the sample with the largest difference
   double density_points = 0.0;  ///< error of its density if k were taken for the true one [%]
   double unexplained = 0.0;     ///< largest |k - k_true| once freed of fallback, any sample
 };
