@@ -1,20 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <filesystem>
 
 #include <excavplan/library/library_build.hpp>
 
-#include "base/files.hpp"
 #include "base/text.hpp"
+#include "shared/library_results.hpp"
 #include "shared/ranks.hpp"
 #include "shared/results.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-namespace fs = std::filesystem;
 
 const About about = {
     "build-path-library",
@@ -108,8 +105,6 @@ std::vector<Warning> warnings_of(const Inputs& inputs) {
   return ignored.warnings("--method " + inputs.method + " has none");
 }
 
-std::string folder_of(const Inputs& inputs) { return inputs.cells.value_or(inputs.out + ".cells"); }
-
 LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   LibraryBuildOptions options;
   options.search = inputs.search;
@@ -117,7 +112,7 @@ LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   options.search.method = inputs.anchored;
   if (inputs.method == "paper") options.search.method = inputs.genetic;
   options.threads = static_cast<unsigned>(inputs.threads);
-  options.folder = folder_of(inputs);
+  options.folder = inputs.cells.value_or(inputs.out + ".cells");
   options.note = [&console](const std::string& line) { console.note(line); };
   options.progress = [&console](const LibraryProgress& now) {
     const std::string left =
@@ -131,74 +126,6 @@ LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   return options;
 }
 
-nlohmann::ordered_json library_json(const PathLibrary& library) {
-  auto json = nlohmann::ordered_json::parse(to_json(library));
-  for (const char* key : {"format", "version", "checksum"}) json.erase(key);
-  return json;
-}
-
-void add_lines(const PathLibrary& library, const std::string& file, Outcome& outcome) {
-  outcome.lines.push_back(file + ": " + std::to_string(library.entries.size()) + " digs of " +
-                          library.machine + " in " + library.soil + ", " +
-                          std::to_string(library.evaluations()) + " digs simulated");
-  const bool sloped = library.entries.front().slope != library.entries.back().slope;
-  for (const PathLibraryEntry& entry : library.entries) {
-    outcome.lines.push_back(readable(entry.density_percent) + " %" +
-                            (sloped ? " on " + readable(entry.slope) + " rad" : "") + ": " +
-                            path_text(entry.dig) + ", " +
-                            readable(1000.0 * entry.dig.efficiency()) + " kg/kJ");
-  }
-}
-
-Outcome report_libraries(const Inputs& inputs, const LibraryBuild& build) {
-  Outcome outcome;
-  if (build.libraries.size() == 1) {
-    const PathLibrary& library = build.libraries.front();
-    write_file(inputs.out, to_json(library));
-    outcome.json = library_json(library);
-    add_lines(library, inputs.out, outcome);
-    return outcome;
-  }
-  fs::create_directories(inputs.out);
-  int evaluations = 0;
-  for (const PathLibrary& library : build.libraries) {
-    const std::string file = inputs.out + "/" + file_name(library);
-    write_file(file, to_json(library));
-    outcome.json["libraries"].push_back({{"file", file}});
-    outcome.json["libraries"].back().update(library_json(library));
-    evaluations += library.evaluations();
-    add_lines(library, file, outcome);
-  }
-  outcome.json["evaluations"] = evaluations;
-  return outcome;
-}
-
-Outcome report_stop(const Inputs& inputs, const LibraryBuild& build) {
-  Outcome outcome;
-  outcome.stopped_early = true;
-  outcome.json = {{"cells", build.entries}, {"cells_done", build.entries_done}};
-  outcome.lines = {
-      folder_of(inputs) + ": " + std::to_string(build.entries_done) + " of " +
-          std::to_string(build.entries) + " densities",
-      inputs.cells ? "the same command goes on from there" : "--resume goes on from there"};
-  return outcome;
-}
-
-/// Now, not after the search.
-void require_writable(const std::string& out, bool several) {
-  require_folder_of(out);
-  if (!fs::exists(out) || fs::is_directory(out) == several) return;
-  throw Error(ErrorKind::bad_file,
-              out + (several ? ": is a file, several libraries need a folder"
-                             : ": is a folder, the library needs a file of its own"));
-}
-
-/// What the ranks besides the first do.
-Outcome serve(const LibraryGrid& grid, const LibrarySearch& search, Ranks& ranks) {
-  ranks.serve(library_worker(grid, search));
-  return {};
-}
-
 Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
   const Stopwatch watch;
   const LibraryGrid grid = grid_of(inputs);
@@ -207,13 +134,18 @@ Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
   if (ranks != nullptr) {
     if (options.threads == 0) options.threads = 1;
     ranks->agree(options.threads);
-    if (ranks->rank() != 0) return serve(grid, options.search, *ranks);
+    if (ranks->rank() != 0) {
+      ranks->serve(library_worker(grid, options.search));
+      return {};
+    }
     options.other_workers = ranks->workers();
   }
-  require_writable(inputs.out, grid.machines.size() * grid.soils.size() > 1);
+  require_library_place(inputs.out, grid.machines.size() * grid.soils.size() > 1);
   if (!inputs.cells && !inputs.resume) remove_library_entries(options.folder);
   const LibraryBuild build = build_path_libraries(grid, options);
-  Outcome outcome = build.stopped ? report_stop(inputs, build) : report_libraries(inputs, build);
+  Outcome outcome = build.stopped ? stopped_build(build, options.folder,
+                                                  inputs.cells ? "the same command" : "--resume")
+                                  : written_libraries(build.libraries, inputs.out);
   if (!inputs.cells && !build.stopped) remove_library_entries(options.folder);
   outcome.json["wall_time_s"] = watch.seconds();
   outcome.warnings = warnings_of(inputs);

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/library/library_build.hpp>
+
+#include "shared/tool.hpp"
+
+/// @file
+/// What build-path-library writes and prints.
+
+namespace excavplan::tools {
+
+/// What can be told of `--out` before the search.
+/// @throws Error (bad_file)
+void require_library_place(const std::string& out, bool several);
+
+/// Writes a library to the file, several to a folder of that name.
+Outcome written_libraries(const std::vector<PathLibrary>& libraries, const std::string& out);
+
+/// @param how  what goes on from there
+Outcome stopped_build(const LibraryBuild& build, const std::string& folder, const std::string& how);
+
+}  // namespace excavplan::tools
