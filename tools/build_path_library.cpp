@@ -121,7 +121,7 @@ LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   options.note = [&console](const std::string& line) { console.note(line); };
   options.progress = [&console](const LibraryProgress& now) {
     const std::string left =
-        std::isnan(now.seconds_left) ? "" : ", " + readable(now.seconds_left, 2) + " s left";
+        !std::isfinite(now.seconds_left) ? "" : ", " + readable(now.seconds_left, 2) + " s left";
     console.progress(static_cast<double>(now.entries_done) / static_cast<double>(now.entries),
                      std::to_string(now.entries_done) + " of " + std::to_string(now.entries) +
                          " densities, " + std::to_string(now.evaluations) + " digs, now " +

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -50,6 +51,15 @@ std::string read_file(const std::string& path) {
   content << in.rdbuf();
   if (!in) throw Error(ErrorKind::bad_file, path + ": cannot be read");
   return content.str();
+}
+
+std::string file_name_part(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
+    text += good ? c : '_';
+  }
+  return text.substr(0, 60);
 }
 
 }  // namespace excavplan

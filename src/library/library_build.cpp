@@ -20,8 +20,8 @@
 #include "base/parallel.hpp"
 #include "base/task_queue.hpp"
 #include "base/text.hpp"
-#include "library/library_file.hpp"
 #include "library/library_tasks.hpp"
+#include "planning/planned_digs.hpp"
 
 namespace excavplan {
 namespace {
@@ -133,8 +133,9 @@ Interpolation interpolation(const PlannedDig& below, const PlannedDig& above, do
 
 /// Lays out all tasks of a build, and has them done.
 ///
-/// Every entry is searched; then once up and once down each slope, an entry whose neighbour has a
-/// dig of another kind is searched from that dig too; then what is looked up midway is dug.
+/// Every entry is searched. Then, once up and once down each slope, an entry is searched again
+/// whose neighbour has a dig of another kind, from that dig, or which is worse than its neighbours
+/// let expect, from theirs. Then what is looked up midway is dug.
 class Build {
  public:
   Build(const LibraryGrid& grid, const LibraryBuildOptions& options)
@@ -151,7 +152,7 @@ class Build {
         }
       }
     }
-    if (std::holds_alternative<AnchoredSearch>(options.search.method)) exchange_kinds();
+    if (std::holds_alternative<AnchoredSearch>(options.search.method)) improve_rows();
     const std::size_t row = grid.densities_percent.size();
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       measure(i, {1, row, &LibraryPlace::density_percent, &Entry::to_next_density});
@@ -188,7 +189,7 @@ class Build {
   struct Entry {
     LibraryPlace place;
     LibraryAnswer first;  ///< of its own search
-    LibraryAnswer found;  ///< with its neighbours' kinds of digs
+    LibraryAnswer found;  ///< after those from its neighbours
     Interpolation to_next_density;
     Interpolation to_next_slope;
     std::size_t searched = 0;  ///< task after which `first` is known
@@ -243,35 +244,47 @@ class Build {
     return true;
   }
 
-  void exchange_kinds() {
+  void improve_rows() {
     const std::size_t row = job_.grid.densities_percent.size();
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-      if (i % row > 0) try_kind(*entries_[i], *entries_[i - 1]);
+      if (i % row > 0) improve(i, i - 1, i % row + 1 < row ? i + 1 : i - 1);
     }
     for (std::size_t i = entries_.size(); i-- > 0;) {
-      if (i % row + 1 < row) try_kind(*entries_[i], *entries_[i + 1]);
+      if (i % row + 1 < row) improve(i, i + 1, i % row > 0 ? i - 1 : i + 1);
     }
   }
 
-  void try_kind(Entry& entry, const Entry& neighbour) {
-    const auto task = [&] {
-      const bool both = entry.found.feasible && neighbour.found.feasible;
-      if (!both || !far_apart(entry.found.dig, neighbour.found.dig)) return std::string();
+  /// @param next   the neighbour whose dig may be of a better kind
+  /// @param other  the neighbour on the other side; `next` again if there is none
+  void improve(std::size_t own, std::size_t next, std::size_t other) {
+    Entry& entry = *entries_[own];
+    const Entry& near = *entries_[next];
+    const Entry& far = *entries_[other];
+    const auto task = [&entry, &near, &far] {
       LibraryTask improve{entry.place};
-      improve.starts = {neighbour.found.dig.parameters};
       improve.known = entry.found.efficiency();
-      return to_text(improve);
+      if (!entry.found.feasible || !near.found.feasible) return std::string();
+      if (far_apart(entry.found.dig, near.found.dig)) {
+        improve.starts = {near.found.dig.parameters};
+        return to_text(improve);
+      }
+      if (&near == &far || !far.found.feasible) return std::string();
+      const LibraryTask line =
+          first_search(entry.place, {{near.place.density_percent, near.found.dig},
+                                     {far.place.density_percent, far.found.dig}});
+      improve.starts = line.starts;
+      return improve.known < line.expected ? to_text(improve) : std::string();
     };
-    entry.settled =
-        queue_.add({{entry.settled, neighbour.settled}, task, [&](const std::string& text) {
-                      LibraryAnswer answer = read_answer(job_, entry.place, "task", text);
-                      answer.evaluations += entry.found.evaluations;
-                      if (answer.efficiency() > entry.found.efficiency()) {
-                        entry.found = answer;
-                      } else {
-                        entry.found.evaluations = answer.evaluations;
-                      }
-                    }});
+    entry.settled = queue_.add(
+        {{entry.settled, near.settled, far.settled}, task, [&entry, this](const std::string& text) {
+           LibraryAnswer answer = read_answer(job_, entry.place, "task", text);
+           answer.evaluations += entry.found.evaluations;
+           if (answer.efficiency() > entry.found.efficiency()) {
+             entry.found = answer;
+           } else {
+             entry.found.evaluations = answer.evaluations;
+           }
+         }});
   }
 
   /// The entries in a line along density or slope.

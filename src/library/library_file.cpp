@@ -1,15 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "library/library_file.hpp"
-
-#include <cctype>
-#include <tuple>
-
 #include <excavplan/library/path_library.hpp>
 
 #include "base/files.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
-#include "machine/dig_path_text.hpp"
+#include "planning/planned_digs.hpp"
 
 namespace excavplan {
 namespace {
@@ -64,35 +60,6 @@ PathLibraryEntry read_entry(JsonObject& object) {
 }
 
 }  // namespace
-
-std::string file_name_part(const std::string& name) {
-  std::string text;
-  for (const char c : name) {
-    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '+';
-    text += good ? c : '_';
-  }
-  return text.substr(0, 60);
-}
-
-nlohmann::ordered_json dig_json(const PlannedDig& dig) {
-  return {{"path", path_json(dig.parameters, dig.start_x)},
-          {"payload_mass_kg", dig.payload_mass},
-          {"payload_volume_m3", dig.payload_volume},
-          {"energy_kj", dig.energy / 1000.0},
-          {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()},
-          {"duration_s", dig.duration}};
-}
-
-PlannedDig read_dig(JsonObject& object) {
-  PlannedDig dig;
-  std::tie(dig.parameters, dig.start_x) = read_path(object.object("path"));
-  dig.payload_mass = object.number("payload_mass_kg", 0.0);
-  dig.payload_volume = object.number("payload_volume_m3", 0.0);
-  dig.energy = 1000.0 * object.number("energy_kj", 0.0);
-  dig.duration = object.number("duration_s", 0.0);
-  object.ignore("efficiency_kg_per_kj");
-  return dig;
-}
 
 PathLibrary load_path_library(const std::string& path) {
   JsonObject file = JsonObject::open_sealed(path, read_file(path), format, version);

@@ -8,9 +8,11 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/files.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
-#include "library/library_file.hpp"
 #include "optimisation/search_checkpoint.hpp"
+#include "planning/planned_digs.hpp"
 
 namespace excavplan {
 
@@ -39,7 +41,8 @@ constexpr double anchors[] = {0.0, 50.0, 100.0};
 constexpr double stride = 10.0;
 
 // How much below the line through two others an efficiency may be, between and beyond them; the
-// logarithm of the efficiency bends less. And what the gain must be for a dig of another kind. Ours.
+// logarithm of the efficiency bends less. And what the gain must be for a dig of another kind.
+// Ours.
 constexpr double slack_between = 0.006;
 constexpr double slack_beyond = 0.025;
 constexpr double clearly_more = 0.002;

@@ -9,16 +9,12 @@
 #include <excavplan/error.hpp>
 
 #include "base/text.hpp"
-#include "library/library_file.hpp"
+#include "planning/planned_digs.hpp"
 
 namespace excavplan {
 namespace {
 
 using Entries = std::vector<PathLibraryEntry>;
-
-// Two digs that differ by more than this fraction of a number's range may be of different kinds;
-// ours.
-constexpr double near = 0.2;
 
 [[noreturn]] void refuse(const std::string& text) {
   throw Error(ErrorKind::bad_input, "library: " + text);
@@ -109,30 +105,6 @@ std::string difference(const std::string& what, const std::string& own, const st
 }
 
 }  // namespace
-
-bool far_apart(const PlannedDig& a, const PlannedDig& b) {
-  const auto& table = dig_parameter_table();
-  return std::any_of(table.begin(), table.end(), [&](const DigParameterInfo& info) {
-    const double step = std::abs(a.parameters.*info.field - b.parameters.*info.field);
-    return step > near * (info.upper - info.lower);
-  });
-}
-
-PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool nearest) {
-  if (share == 0.0) return a;
-  if (nearest) return share < 0.5 ? a : b;
-  const auto mix = [share](double from, double to) { return from + share * (to - from); };
-  PlannedDig dig = a;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    dig.parameters.*info.field = mix(a.parameters.*info.field, b.parameters.*info.field);
-  }
-  for (double PlannedDig::*figure :
-       {&PlannedDig::start_x, &PlannedDig::payload_mass, &PlannedDig::payload_volume,
-        &PlannedDig::energy, &PlannedDig::duration}) {
-    dig.*figure = mix(a.*figure, b.*figure);
-  }
-  return dig;
-}
 
 int PathLibrary::evaluations() const {
   int sum = 0;

@@ -18,8 +18,8 @@
 
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "library/library_file.hpp"
 #include "library/library_tasks.hpp"
+#include "planning/planned_digs.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
@@ -277,7 +277,7 @@ class LibraryTasks : public LibraryBuilding {
 };
 
 TEST_F(LibraryTasks, WorseThanItsNeighboursLetExpectAnEntryIsSearchedFromNothingToo) {
-  PlannedDig near{{0.8, 0.3, 1.5}, 6.0, 400.0, 0.3, 10e3, 4.0};
+  PlannedDig near{{0.8, 0.3, 1.5}, 6.0, 100.0, 0.3, 10e3, 4.0};
   const LibraryTask modest = first_search(place_, {{40.0, near}, {50.0, near}});
   EXPECT_LE(answer(modest).evaluations, 8);
   near.payload_mass = 4e4;  // far better at 40 and 50 % than any dig can be

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
-#include <excavplan/library/path_library.hpp>
+#include <excavplan/library/plan_dig.hpp>
 #include <excavplan/planning/planner.hpp>
-#include <excavplan/simulation/simulators.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
@@ -20,10 +17,7 @@ namespace excavplan {
 /// What is dug and planned with.
 struct ExperimentOptions {
   DigParameters fixed_path = paper_fixed_path();  ///< of every first dig
-  std::optional<PathLibrary> library = {};        ///< paths are looked up in it; empty: searched
-  DigSearchOptions search = {};                   ///< if searched
-  double cell_size = 0.05;                        ///< of the simulated ground [m]
-  SimulatorKind simulator = default_simulator();  ///< digs, and plans if searched
+  PlanOptions plan = {};  ///< `simulator` and `cell_size` hold for all digs
 };
 
 /// One soil, dug along both paths.
@@ -49,8 +43,10 @@ struct ExperimentResult {
 /// factor of the height maps, plans a path for the estimate and digs along it in the true soil.
 /// All on level ground.
 ///
-/// @throws Error (bad_input) if the density is outside 0 .. 100 or the library, an option is out of
-///         range, the fixed path cannot be dug, or no dig is feasible at the estimate
+/// @throws Error (bad_input) if the density is outside 0 .. 100, the fixed path cannot be dug, or
+/// no
+///         dig is feasible at the estimate
+/// @throws Error as plan_dig()
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options = {});
 

@@ -52,11 +52,10 @@ struct LibrarySearch {
 struct LibraryProgress {
   std::size_t entries_done = 0;  ///< with their files
   std::size_t entries = 0;       ///< of the whole build
-  int evaluations = 0;           ///< by this build, those of its other workers included
-  std::string entry;             ///< last one worked on
-  double best = 0.0;             ///< efficiency found for it so far [kg/J]; NaN: none yet
+  int evaluations = 0;           ///< by the threads of this process
+  double best = 0.0;             ///< last efficiency told of a search [kg/J]; NaN: none yet
   double seconds = 0.0;          ///< since the build began
-  double seconds_left = 0.0;     ///< NaN: unknown yet
+  double seconds_left = 0.0;     ///< NaN or infinite: unknown yet
 };
 
 /// Does a task of a build: what it is asked and what it answers are texts, which may travel.

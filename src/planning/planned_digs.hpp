@@ -2,20 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
 #include <excavplan/planning/planner.hpp>
 
 #include "base/json.hpp"
 
 /// @file
-/// Digs and names in the files of libraries, and what lies between two digs. Private to the
-/// library.
+/// Planned digs as JSON, and what lies between two of them. Private to the project.
 
 namespace excavplan {
-
-/// A name as every file system takes it.
-std::string file_name_part(const std::string& name);
 
 nlohmann::ordered_json dig_json(const PlannedDig& dig);
 /// Of the keys that dig_json() writes. @throws Error (bad_file)
