@@ -17,7 +17,7 @@ namespace excavplan {
 /// What is dug and planned with.
 struct ExperimentOptions {
   DigParameters fixed_path = paper_fixed_path();  ///< of every first dig
-  PlanOptions plan = {};  ///< `simulator` and `cell_size` hold for all digs
+  PlanOptions plan = {};                          ///< `simulator` and `cell_size` hold for all digs
 };
 
 /// One soil, dug along both paths.
