@@ -76,7 +76,7 @@ endfunction()
 
 file(GLOB_RECURSE sources RELATIVE ${ROOT}
   ${ROOT}/include/*.hpp ${ROOT}/src/*.hpp ${ROOT}/src/*.cpp ${ROOT}/tools/*.hpp ${ROOT}/tools/*.cpp
-  ${ROOT}/tests/*.hpp ${ROOT}/tests/*.cpp ${ROOT}/benchmarks/*.cpp ${ROOT}/docs/*.cpp)
+  ${ROOT}/tests/*.hpp ${ROOT}/tests/*.cpp ${ROOT}/benchmarks/*.cpp ${ROOT}/examples/*.cpp)
 list(LENGTH sources count)
 if(count LESS 30)
   message(SEND_ERROR "only ${count} source files under '${ROOT}': nothing was checked")

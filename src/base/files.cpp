@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include <excavplan/error.hpp>
 
@@ -19,7 +20,9 @@ void write_file(const std::string& path, const std::string& content) {
   const bool stays = ::lstat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
   char host[65] = {};  // a folder may be shared by machines
   ::gethostname(host, sizeof host - 1);
-  const std::string beside = path + ".part-" + host + "-" + std::to_string(::getpid());
+  std::ostringstream name;
+  name << path << ".part-" << host << '-' << ::getpid() << '-' << std::this_thread::get_id();
+  const std::string beside = name.str();
   const std::string& written = stays ? path : beside;
   std::ofstream out(written, std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));

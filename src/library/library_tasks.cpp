@@ -39,11 +39,10 @@ constexpr double anchors[] = {0.0, 50.0, 100.0};
 constexpr double stride = 10.0;
 
 // How much below the line through two others an efficiency may be, between and beyond them; the
-// logarithm of the efficiency bends less. And how far below a known one a start may be to be
-// polished. Ours.
+// logarithm of the efficiency bends less. And what the gain must be for a dig of another kind. Ours.
 constexpr double slack_between = 0.006;
 constexpr double slack_beyond = 0.025;
-constexpr double slack_of_start = 0.03;
+constexpr double clearly_more = 0.002;
 
 double nearest_anchor(double density) {
   return *std::min_element(std::begin(anchors), std::end(anchors), [density](double a, double b) {
@@ -148,13 +147,16 @@ class Site {
     if (!answer_.feasible) attempt(cold_search(search_, 8));
   }
 
+  /// Half the effort, and the other half where it pays.
   void improve(const LibraryTask& task) {
-    DigSearchOptions only_the_start = warm_search(search_, task.starts);
-    only_the_start.stop.evaluations = 1;
-    attempt(only_the_start);
-    if (answer_.efficiency() > (1.0 - slack_of_start) * task.known) {
-      attempt(warm_search(search_, task.starts));
-    }
+    const double least = (1.0 + clearly_more) * task.known;
+    DigSearchOptions half = warm_search(search_, task.starts);
+    half.stop.evaluations /= 2;
+    attempt(half);
+    answer_.feasible = answer_.efficiency() > least;
+    if (!answer_.feasible) return;
+    half.start = {answer_.dig.parameters};
+    attempt(half);
   }
 
   /// Does nothing once stopped.

@@ -9,6 +9,8 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/text.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -66,10 +68,10 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
   const double seen_share = sum.area > 0.0 ? sum.seen / sum.area : 0.0;
   if (!(sum.cut > 0.0) || seen_share < least_seen) {
     throw Error(ErrorKind::bad_input,
-                "fallback: the path from x = " + std::to_string(path.start_x) + " m swept " +
-                    std::to_string(sum.area) + " m2 of the surveyed ground, of which " +
-                    std::to_string(100.0 * seen_share) + " % is known in both scans; at least " +
-                    std::to_string(100.0 * least_seen) +
+                "fallback: the path from x = " + readable(path.start_x) + " m swept " +
+                    readable(sum.area) + " m2 of the surveyed ground, of which " +
+                    readable(100.0 * seen_share) + " % is known in both scans; at least " +
+                    readable(100.0 * least_seen) +
                     " % must be: are path and scans in the site frame?");
   }
   Fallback fallback;

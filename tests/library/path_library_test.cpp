@@ -4,10 +4,8 @@
 
 #include <atomic>
 #include <cmath>
-#include <condition_variable>
 #include <filesystem>
 #include <fstream>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -19,8 +17,9 @@
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/json.hpp"
-#include "library/library_row.hpp"
-#include "library/shared_tasks.hpp"
+#include "base/text.hpp"
+#include "library/library_file.hpp"
+#include "library/library_tasks.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
@@ -32,7 +31,7 @@ using test::content_of;
 using test::TemporaryFolder;
 
 PathLibraryEntry entry(double density, const DigParameters& parameters, double mass) {
-  return {density, {parameters, 6.0, mass, 0.3, 10e3, 4.0}, 100, 0.0, {}, {}};
+  return {density, 0.0, {parameters, 6.0, mass, 0.3, 10e3, 4.0}, 100, {}, {}};
 }
 
 PathLibrary small_library() {
@@ -47,8 +46,8 @@ PathLibrary small_library() {
   library.search = "by hand";
   library.entries = {entry(0.0, {0.8, 0.30, 1.5}, 400.0), entry(50.0, {0.7, 0.40, 1.9}, 500.0),
                      entry(100.0, {1.3, 0.10, 0.3}, 300.0)};
-  library.entries[0].midway = {0.01, -0.02};
-  library.entries[1].jump = true;
+  library.entries[0].to_next_density.midway = {0.01, -0.02};
+  library.entries[1].to_next_density.nearest = true;
   return library;
 }
 
@@ -81,7 +80,7 @@ TEST(PathLibrary, LooksUpEntriesAndBlendsBetweenThem) {
   EXPECT_DOUBLE_EQ(between.payload_mass, 450.0);
 }
 
-TEST(PathLibrary, TakesTheNearerDigWhereTheOptimumJumps) {
+TEST(PathLibrary, TakesTheNearerDigWhereAMixIsWorse) {
   const PathLibrary library = small_library();
   EXPECT_DOUBLE_EQ(look_up(library, 74.0).parameters.drag_length, 1.9);
   EXPECT_DOUBLE_EQ(look_up(library, 76.0).parameters.drag_length, 0.3);
@@ -94,9 +93,9 @@ TEST(PathLibrary, BlendsBetweenSlopes) {
   EXPECT_DOUBLE_EQ(look_up(library, 25.0, 0.05).payload_mass, 562.5);
 }
 
-TEST(PathLibrary, TakesTheNearerSlopeWhereTheOptimumJumps) {
+TEST(PathLibrary, TakesTheNearerSlopeWhereAMixIsWorse) {
   PathLibrary library = sloped_library();
-  library.entries[0].jump_slope = true;
+  library.entries[0].to_next_slope.nearest = true;
   EXPECT_DOUBLE_EQ(look_up(library, 0.0, 0.09).payload_mass, 400.0);
   EXPECT_DOUBLE_EQ(look_up(library, 0.0, 0.11).payload_mass, 800.0);
   EXPECT_DOUBLE_EQ(look_up(library, 20.0, 0.09).payload_mass, 440.0) << "0 % is the nearer density";
@@ -114,8 +113,8 @@ TEST(PathLibrary, TellsItsErrorMidwayAndNoneAtItsEntries) {
 
 TEST(PathLibrary, TellsItsErrorMidwayBetweenSlopes) {
   PathLibrary library = sloped_library();
-  library.entries[0].midway_slope = {0.03, 0.01};
-  library.entries[1].midway_slope = {0.02, -0.04};
+  library.entries[0].to_next_slope.midway = {0.03, 0.01};
+  library.entries[1].to_next_slope.midway = {0.02, -0.04};
   EXPECT_DOUBLE_EQ(look_up_error(library, 0.0, 0.1).loss, 0.03);
   EXPECT_DOUBLE_EQ(look_up_error(library, 0.0, 0.05).loss, 0.0225);
   EXPECT_DOUBLE_EQ(look_up_error(library, 25.0, 0.1).loss, 0.01 + 0.03);
@@ -172,11 +171,10 @@ TEST(PathLibrary, BadFilesAreRefusedByName) {
     return error_in(sealed(text.replace(at, from.size(), to)));
   };
   EXPECT_EQ(error_in(good), "no error");
-  EXPECT_EQ(with("\"version\": 4", "\"version\": 5"),
-            ": version: is 5, this program reads version 4");
-  EXPECT_EQ(with("\"version\": 4", "\"version\": 3"),
-            ": version: is 3, this program reads version 4; build the library again: "
-            "build-path-library --out FILE");
+  EXPECT_EQ(with("\"version\": 5", "\"version\": 6"),
+            ": version: is 6, this program reads version 5");
+  EXPECT_EQ(with("\"version\": 5", "\"version\": 4"),
+            ": version: is 4, this program reads version 5");
   EXPECT_EQ(with("excavplan-path-library", "excavplan-soil"),
             ": format: is 'excavplan-soil', expected 'excavplan-path-library'");
   EXPECT_EQ(with("\"penetration_angle_rad\": 0.8", "\"penetration_angle_rad\": 8"),
@@ -198,129 +196,6 @@ TEST(PathLibrary, EveryChangedByteIsNoticed) {
     text[i] = static_cast<char>(text[i] ^ 1);
     EXPECT_NE(error_in(text), "no error") << i;
   }
-}
-
-constexpr DigParameters short_dig{1.1, 0.2, 0.5};
-constexpr DigParameters long_dig{0.85, 0.15, 1.5};
-
-CellOutcome outcome(double density, const DigParameters& dig, double mass) {
-  return {entry(density, dig, mass), 10};
-}
-
-LibraryRow row_of(const std::vector<CellOutcome>& outcomes) {
-  std::vector<double> densities;
-  for (const CellOutcome& one : outcomes) densities.push_back(one.entry->density_percent);
-  LibraryRow row({}, densities);
-  for (const CellOutcome& one : outcomes) row.take(one.entry->density_percent, one);
-  return row;
-}
-
-TEST(LibraryRow, TriesTheBetterKindOfDigOnTheOtherSideUntilItIsNot) {
-  using Better = Midway::Better;
-  LibraryRow row =
-      row_of({outcome(0, short_dig, 500), outcome(10, short_dig, 450), outcome(20, long_dig, 390),
-              outcome(30, long_dig, 359), outcome(40, long_dig, 330)});
-  EXPECT_EQ(row.unmeasured().size(), 4U);
-  for (const auto& pair : row.unmeasured()) row.take(pair, {{}, 1, Better::neither});
-  EXPECT_TRUE(row.looks_due().empty());
-  row.take({10, 20}, {{0.03, 0.0}, 2, Better::below});
-  ASSERT_EQ(row.looks_due().size(), 1U);
-  const LibraryRow::Look look = row.looks_due()[0];
-  EXPECT_EQ(look.density, 20.0);
-  const auto starts = row.starts_of(look);
-  ASSERT_EQ(starts.size(), 2U);
-  EXPECT_EQ(starts[0].entry->density_percent, 10.0);
-  EXPECT_EQ(starts[1].entry->density_percent, 0.0);
-  row.take(look, outcome(20, short_dig, 405));
-  // The border has moved: both sides of 20 % are measured anew, and 30 % is asked next.
-  EXPECT_EQ(row.unmeasured(), (std::vector<LibraryRow::Pair>{{10, 20}, {20, 30}}));
-  row.take({10, 20}, {{}, 1, Better::neither});
-  row.take({20, 30}, {{0.01, 0.0}, 2, Better::below});
-  ASSERT_EQ(row.looks_due().size(), 1U);
-  EXPECT_EQ(row.looks_due()[0].density, 30.0);
-  row.take(row.looks_due()[0], outcome(30, short_dig, 357));
-  EXPECT_TRUE(row.looks_due().empty()) << "a worse dig is not taken, nor searched twice";
-  PathLibrary library;
-  row.add_to(library);
-  EXPECT_EQ(library.entries[2].dig.payload_mass, 405.0);
-  EXPECT_EQ(library.entries[3].dig.payload_mass, 359.0);
-  EXPECT_EQ(library.evaluations(), 5 * 100 + 4 + 2 + 1 + 2 + 2 * 10) << "every dig counts";
-}
-
-TEST(LibraryRow, LooksAgainAtADigBelowTheLineThroughItsNeighbours) {
-  LibraryRow row =
-      row_of({outcome(0, short_dig, 500), outcome(5, short_dig, 475), outcome(10, short_dig, 451),
-              outcome(15, short_dig, 420), outcome(20, short_dig, 407), outcome(25, short_dig, 387),
-              outcome(30, short_dig, 367)});
-  ASSERT_EQ(row.looks_due().size(), 1U);
-  EXPECT_EQ(row.looks_due()[0].density, 15.0);
-  EXPECT_EQ(row.starts_of(row.looks_due()[0]).size(), 2U);
-  row.take(row.looks_due()[0], outcome(15, short_dig, 428));
-  EXPECT_TRUE(row.looks_due().empty());
-  // What is at the end of a line may be 1 % below it, and nothing is known where they are far
-  // apart.
-  const auto looks_at_the_end = [](double mass) {
-    return row_of({outcome(0, short_dig, mass), outcome(5, short_dig, 475),
-                   outcome(10, short_dig, 451), outcome(15, short_dig, 428)})
-        .looks_due()
-        .size();
-  };
-  EXPECT_EQ(looks_at_the_end(497), 0U);
-  EXPECT_EQ(looks_at_the_end(493), 1U);
-  const auto far_apart = {outcome(0, short_dig, 500), outcome(50, short_dig, 300),
-                          outcome(100, short_dig, 250)};
-  EXPECT_TRUE(row_of(far_apart).looks_due().empty());
-}
-
-TEST(Midway, TellsWhichKindOfDigIsBetter) {
-  using Better = Midway::Better;
-  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  const SoilKind gravel = load_soil(find_data_file("soils/gravel.json"));
-  const PathLibrary library = load_path_library(find_data_file("libraries/zx120-gravel.json"));
-  const PlannedDig loose = look_up(library, 20.0);  // short and steep
-  const PlannedDig dense = look_up(library, 80.0);  // long and flat
-  const auto better = [&](double density, const PlannedDig& below, const PlannedDig& above) {
-    const LibraryCell cell{&machine, &gravel, 0.0, density};
-    return measure_midway(cell, library.cell_size, below, above, loose.efficiency()).better;
-  };
-  EXPECT_EQ(better(25.0, loose, dense), Better::below);
-  EXPECT_EQ(better(25.0, dense, loose), Better::above);
-  EXPECT_EQ(better(75.0, loose, dense), Better::above);
-  EXPECT_EQ(better(25.0, loose, look_up(library, 25.0)), Better::neither) << "of one kind";
-}
-
-/// Digs all three by itself.
-TEST(Midway, JumpsWhereAMixIsWorseThanEitherDig) {
-  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
-  int jumps = 0;
-  int mixes = 0;
-  for (const char* soil : {"loam", "gravel"}) {
-    const SoilKind kind = load_soil(find_data_file(std::string("soils/") + soil + ".json"));
-    const PathLibrary library =
-        load_path_library(find_data_file(std::string("libraries/zx120-") + soil + ".json"));
-    for (const auto& [low, high] : {std::pair(0.0, 40.0), {20.0, 80.0}, {10.0, 30.0}}) {
-      const PlannedDig below = look_up(library, low);
-      const PlannedDig above = look_up(library, high);
-      if (!far_apart(below, above)) continue;
-      const LibraryCell cell{&machine, &kind, 0.0, 0.5 * (low + high)};
-      const auto efficiency = [&](const PlannedDig& dig) {
-        const HeightMapSimulator simulator(machine, kind, cell.density_percent);
-        const auto outcome =
-            evaluate_dig(machine, simulator, level_planning_ground(machine, library.cell_size),
-                         dig.parameters, dig.start_x);
-        return std::get<PlannedDig>(outcome).efficiency();
-      };
-      const double mix = efficiency(dig_between(below, above, 0.5, false));
-      const double worse = std::min(efficiency(below), efficiency(above));
-      const Midway found =
-          measure_midway(cell, library.cell_size, below, above, below.efficiency());
-      EXPECT_EQ(found.jump, mix < worse) << soil << low;
-      EXPECT_NEAR(found.error.loss, 1.0 - std::max(mix, worse) / below.efficiency(), 1e-9);
-      ++(found.jump ? jumps : mixes);
-    }
-  }
-  EXPECT_GT(jumps, 0);
-  EXPECT_GT(mixes, 0);
 }
 
 class LibraryBuilding : public testing::Test {
@@ -366,37 +241,88 @@ TEST_F(LibraryBuilding, AnEntryDoesNotDependOnTheOthers) {
   }
 }
 
-TEST(LibraryWatch, CountsDigsNotCalls) {
-  int told = 0;
-  LibraryBuildOptions options;
-  options.progress = [&](const LibraryProgress& now) {
-    told = now.evaluations;
-    return true;
-  };
-  LibraryWatch watch(options);
-  const auto one = watch.of("one"), other = watch.of("other");
-  SearchProgress progress;
-  for (const int evaluations : {1, 2, 2, 3}) {
-    progress.evaluations = evaluations;
-    one(progress);
-    other(progress);
+TEST_F(LibraryBuilding, ProgressCountsEveryDigOnce) {
+  for (const unsigned threads : {1U, 3U}) {
+    int told = 0;
+    std::size_t done = 0;
+    LibraryBuildOptions options = quick();
+    options.threads = threads;
+    options.progress = [&](const LibraryProgress& now) {
+      EXPECT_GE(now.evaluations, told);
+      EXPECT_LE(now.evaluations, told + 1);
+      told = now.evaluations;
+      done = now.entries_done;
+      return true;
+    };
+    const LibraryBuild build = build_path_libraries(grid({0, 10, 50}), options);
+    EXPECT_EQ(told, build.libraries[0].evaluations());
+    EXPECT_EQ(done, 3U);
+    EXPECT_EQ(build.entries, 3U);
   }
-  EXPECT_EQ(told, 6);
 }
 
-TEST_F(LibraryBuilding, ProgressOfACellIsThatOfAllItsSearches) {
-  const LibraryCell cell{&machine_, &soil_, 0.0, 30.0};
-  const DigParameters dig{0.8, 0.3, 1.5};  // far better at 40 and 50 % than any dig can be
-  const std::vector<CellOutcome> parents = {{entry(40.0, dig, 4e4), 1}, {entry(50.0, dig, 4e4), 1}};
-  int told = 0;
-  const auto outcome =
-      compute_cell(cell, quick().search, parents, [&](const SearchProgress& progress) {
-        EXPECT_GE(progress.evaluations, told);
-        told = progress.evaluations;
-        return true;
-      });
-  EXPECT_GT(outcome->evaluations, 8);  // more than the search from its neighbours may make
-  EXPECT_EQ(told, outcome->evaluations);
+/// Answers of the search for the entry of 30 %.
+class LibraryTasks : public LibraryBuilding {
+ protected:
+  LibraryAnswer answer(const LibraryTask& task) {
+    return read_answer(job_, task.place, "task", do_task(job_, to_text(task), count_));
+  }
+  const LibraryJob job_{grid({30}), quick().search};
+  const LibraryPlace place_{0, 0, 0.0, 30.0};
+  int told_ = 0;
+  const std::function<bool(int, double)> count_ = [this](int digs, double) {
+    told_ += digs;
+    return true;
+  };
+};
+
+TEST_F(LibraryTasks, WorseThanItsNeighboursLetExpectAnEntryIsSearchedFromNothingToo) {
+  PlannedDig near{{0.8, 0.3, 1.5}, 6.0, 400.0, 0.3, 10e3, 4.0};
+  const LibraryTask modest = first_search(place_, {{40.0, near}, {50.0, near}});
+  EXPECT_LE(answer(modest).evaluations, 8);
+  near.payload_mass = 4e4;  // far better at 40 and 50 % than any dig can be
+  told_ = 0;
+  const LibraryAnswer bold = answer(first_search(place_, {{40.0, near}, {50.0, near}}));
+  EXPECT_GT(bold.evaluations, 8);
+  EXPECT_EQ(told_, bold.evaluations);
+}
+
+TEST_F(LibraryTasks, ADigOfAnotherKindIsTakenOnlyWhereItIsClearlyBetter) {
+  const LibraryAnswer own = answer({place_});
+  LibraryTask other{place_};
+  other.starts = {own.dig.parameters};
+  other.known = 0.9 * own.efficiency();
+  const LibraryAnswer better = answer(other);
+  EXPECT_TRUE(better.feasible);
+  EXPECT_GE(better.efficiency(), own.efficiency());
+  other.known = 1.1 * own.efficiency();
+  const LibraryAnswer worse = answer(other);
+  EXPECT_FALSE(worse.feasible);
+  EXPECT_LE(worse.evaluations, 4) << "half the effort is enough to know";
+}
+
+TEST_F(LibraryTasks, DigsAreMeasuredAsTheyAre) {
+  const PlannedDig own = answer({place_}).dig;
+  PlannedDig nowhere = own;
+  nowhere.parameters = {0.2, 0.9, 3.0};
+  const LibraryAnswer measured = answer({place_, {own, nowhere}});
+  EXPECT_EQ(measured.evaluations, 2);
+  ASSERT_EQ(measured.measured.size(), 2U);
+  EXPECT_DOUBLE_EQ(measured.measured[0], own.efficiency());
+  EXPECT_EQ(measured.measured[1], 0.0);
+}
+
+TEST_F(LibraryTasks, AStoppedTaskHasNoAnswer) {
+  EXPECT_EQ(do_task(job_, to_text({place_}), [](int, double) { return false; }), "");
+}
+
+TEST_F(LibraryTasks, AnAnswerForAnotherPlaceIsRefused) {
+  const std::string text = do_task(job_, to_text({place_}), {});
+  LibraryPlace other = place_;
+  other.density_percent = 40.0;
+  EXPECT_NE(test::error_of([&] { read_answer(job_, other, "f", text); }, ErrorKind::bad_file)
+                .find("which is another entry than"),
+            std::string::npos);
 }
 
 TEST_F(LibraryBuilding, MorePointsThanCanBeCountedAreRefused) {
@@ -413,37 +339,11 @@ TEST_F(LibraryBuilding, AnotherSeedGivesAnotherLibrary) {
   EXPECT_NE(build(grid({20}), options), one);
 }
 
-TEST_F(LibraryBuilding, AnyShardsMergeToTheSameBytes) {
-  const LibraryGrid cells = grid({15, 20, 30, 70}, {0.0, 0.1});
-  const std::string whole = build(cells, quick());
-  for (const int count : {1, 3, 8, 11}) {
-    const TemporaryFolder folder;
-    LibraryBuildOptions options = quick();
-    options.folder = folder.file("cells");
-    for (int i = count; i >= 1; --i) build_library_shard(cells, {i, count}, options);
-    options.only_merge = true;
-    EXPECT_EQ(build(cells, options), whole) << count;
-  }
-}
-
-TEST_F(LibraryBuilding, MergingNamesACellThatIsMissing) {
-  const TemporaryFolder folder;
-  LibraryBuildOptions options = quick();
-  options.folder = folder.file("cells");
-  build_library_shard(grid({0, 100}), {1, 2}, options);
-  options.only_merge = true;
-  const std::string text = test::error_of(
-      [&] {
-        build_path_libraries(grid({0, 100}), options);
-      },
-      ErrorKind::bad_file);
-  EXPECT_NE(text.find("zx120-loam-slope0-density100-"), std::string::npos) << text;
-  EXPECT_NE(text.find("is missing: the shard"), std::string::npos) << text;
-}
-
 TEST_F(LibraryBuilding, GoesOnFromWhatIsDone) {
   const LibraryGrid cells = grid({20, 30, 40});
-  const std::string whole = build(cells, quick());
+  const PathLibrary library = build_path_libraries(cells, quick()).libraries[0];
+  const std::string whole = to_json(library);
+  const int whole_evaluations = library.evaluations();
   const TemporaryFolder folder;
   LibraryBuildOptions options = quick();
   options.folder = folder.file("cells");
@@ -452,15 +352,51 @@ TEST_F(LibraryBuilding, GoesOnFromWhatIsDone) {
     const LibraryBuild part = build_path_libraries(cells, options);
     EXPECT_TRUE(part.stopped);
     EXPECT_TRUE(part.libraries.empty());
-    EXPECT_LT(part.cells_done, part.cells);
+    EXPECT_LT(part.entries_done, part.entries);
   }
   options.progress = {};
   EXPECT_EQ(build(cells, options), whole);
-  options.only_merge = true;
+  int digs = 0;
+  options.progress = [&](const LibraryProgress& now) {
+    digs = now.evaluations;
+    return true;
+  };
   EXPECT_EQ(build(cells, options), whole);
+  EXPECT_LT(digs, whole_evaluations / 2) << "nothing but what comes after the entries";
 }
 
-TEST_F(LibraryBuilding, DamagedCellsAreNamedAndComputedAnew) {
+TEST_F(LibraryBuilding, SeveralBuildsShareAFolder) {
+  const LibraryGrid cells = grid({0, 10, 20, 35, 50, 60, 70, 85, 100}, {-0.1, 0.0, 0.1});
+  const std::string whole = build(cells, quick());
+  const TemporaryFolder folder;
+  std::vector<std::string> results(3);
+  std::vector<std::thread> builds;
+  for (std::string& result : results) {
+    builds.emplace_back([&] {
+      LibraryBuildOptions options = quick();
+      options.folder = folder.file("entries");
+      result = build(cells, options);
+    });
+  }
+  for (std::thread& one : builds) one.join();
+  for (const std::string& result : results) EXPECT_EQ(result, whole);
+}
+
+TEST_F(LibraryBuilding, RemovesItsFilesAndNoOthers) {
+  const TemporaryFolder folder;
+  LibraryBuildOptions options = quick();
+  options.folder = folder.file("entries");
+  build(grid({0}), options);
+  const std::string thesis = folder.write("entries/thesis.json", "years of work");
+  remove_library_entries(options.folder);
+  EXPECT_EQ(content_of(thesis), "years of work");
+  fs::remove(thesis);
+  EXPECT_TRUE(fs::is_empty(options.folder));
+  remove_library_entries(options.folder);
+  EXPECT_FALSE(fs::exists(options.folder));
+}
+
+TEST_F(LibraryBuilding, DamagedEntriesAreNamedAndComputedAnew) {
   const LibraryGrid cells = grid({0, 10});
   const TemporaryFolder folder;
   LibraryBuildOptions options = quick();
@@ -481,7 +417,7 @@ TEST_F(LibraryBuilding, DamagedCellsAreNamedAndComputedAnew) {
   }
 }
 
-TEST_F(LibraryBuilding, CellsOfAnotherSearchAreNotTaken) {
+TEST_F(LibraryBuilding, EntriesOfAnotherSearchAreNotTaken) {
   const TemporaryFolder folder;
   LibraryBuildOptions options = quick();
   options.search.seed = 2;
@@ -493,19 +429,21 @@ TEST_F(LibraryBuilding, CellsOfAnotherSearchAreNotTaken) {
   EXPECT_EQ(build(grid({20}), options), second);
 }
 
-TEST_F(LibraryBuilding, LooksAgainWhereNeighboursKnowBetter) {
+TEST_F(LibraryBuilding, TakesTheNeighboursKindOfDigWhereItIsBetter) {
   LibraryGrid cells = grid({20, 30, 40, 50, 60, 70, 80});
   cells.soils = {load_soil(find_data_file("soils/gravel.json"))};  // two kinds of digs compete
   LibraryBuildOptions options = quick();
   const TemporaryFolder folder;
-  options.folder = folder.file("cells");
+  options.folder = folder.file("entries");
   const PathLibrary library = build_path_libraries(cells, options).libraries[0];
   int better = 0;
   for (const auto& file : fs::directory_iterator(options.folder)) {
-    const auto cell = nlohmann::json::parse(content_of(file.path()))["entry"];
+    const auto entry_file = nlohmann::json::parse(content_of(file.path()));
     for (const PathLibraryEntry& entry : library.entries) {
-      if (cell["density_percent"] != entry.density_percent) continue;
-      const double own = cell["efficiency_kg_per_kj"].get<double>() / 1000.0;
+      const std::string place = "density " + number_text(entry.density_percent) + " %";
+      if (entry_file["identity"].get<std::string>().find(place) == std::string::npos) continue;
+      const auto& dig = entry_file["answer"]["dig"];
+      const double own = dig["payload_mass"].get<double>() / dig["energy"].get<double>();
       EXPECT_GE(entry.dig.efficiency(), own * (1.0 - 1e-12));
       better += entry.dig.efficiency() > 1.001 * own ? 1 : 0;
     }
@@ -516,13 +454,43 @@ TEST_F(LibraryBuilding, LooksAgainWhereNeighboursKnowBetter) {
   EXPECT_EQ(build(cells, options), to_json(library));
 }
 
+/// Digs all three by itself.
+TEST_F(LibraryBuilding, LooksUpTheNearerDigWhereAMixIsWorseThanBoth) {
+  int nearest = 0;
+  int mixes = 0;
+  for (const char* name : {"loam", "gravel"}) {
+    LibraryGrid cells = grid({0, 20, 40, 80});
+    cells.soils = {load_soil(find_data_file(std::string("soils/") + name + ".json"))};
+    const PathLibrary library = build_path_libraries(cells, quick()).libraries[0];
+    for (std::size_t i = 0; i + 1 < library.entries.size(); ++i) {
+      const PathLibraryEntry& entry = library.entries[i];
+      const PlannedDig& below = entry.dig;
+      const PlannedDig& above = library.entries[i + 1].dig;
+      if (!far_apart(below, above)) continue;
+      const double middle = 0.5 * (entry.density_percent + library.entries[i + 1].density_percent);
+      const auto efficiency = [&](const PlannedDig& dig) {
+        const auto outcome = evaluate_dig(
+            machine_, *default_simulator().make(machine_, cells.soils[0], middle),
+            level_planning_ground(machine_, library.cell_size), dig.parameters, dig.start_x);
+        const auto* dug = std::get_if<PlannedDig>(&outcome);
+        return dug ? dug->efficiency() : 0.0;
+      };
+      const double mix = efficiency(dig_between(below, above, 0.5, false));
+      const double worse = std::min(efficiency(below), efficiency(above));
+      EXPECT_EQ(entry.to_next_density.nearest, mix < worse) << name << middle;
+      ++(entry.to_next_density.nearest ? nearest : mixes);
+    }
+  }
+  EXPECT_GT(nearest + mixes, 0);
+}
+
 TEST_F(LibraryBuilding, MeasuresWhatIsLostMidwayBetweenSlopes) {
   const PathLibrary library =
       build_path_libraries(grid({20, 40}, {-0.1, 0.0, 0.1}), quick()).libraries[0];
   int dug_midway = 0;
   for (const PathLibraryEntry& entry : library.entries) {
     if (entry.slope == 0.1) {
-      EXPECT_EQ(entry.midway_slope.loss, 0.0);
+      EXPECT_EQ(entry.to_next_slope.midway.loss, 0.0);
       continue;
     }
     // The very dig that is looked up there, on ground of that slope.
@@ -534,29 +502,14 @@ TEST_F(LibraryBuilding, MeasuresWhatIsLostMidwayBetweenSlopes) {
         evaluate_dig(machine_, simulator, ground, looked_up.parameters, looked_up.start_x);
     if (const auto* dig = std::get_if<PlannedDig>(&dug)) {
       ++dug_midway;
-      EXPECT_NEAR(entry.midway_slope.expectation, looked_up.efficiency() / dig->efficiency() - 1.0,
-                  1e-9);
+      EXPECT_NEAR(entry.to_next_slope.midway.expectation,
+                  looked_up.efficiency() / dig->efficiency() - 1.0, 1e-9);
     }
-    EXPECT_EQ(look_up_error(library, entry.density_percent, slope).loss, entry.midway_slope.loss);
-    EXPECT_LT(entry.midway_slope.loss, 0.5);
+    EXPECT_EQ(look_up_error(library, entry.density_percent, slope).loss,
+              entry.to_next_slope.midway.loss);
+    EXPECT_LT(entry.to_next_slope.midway.loss, 0.5);
   }
   EXPECT_GT(dug_midway, 0);
-}
-
-TEST_F(LibraryBuilding, AddsDensitiesWhereTheLookUpLosesMost) {
-  LibraryBuildOptions options = quick();
-  options.refine = 0.02;
-  const PathLibrary fine = build_path_libraries(grid({0, 100}), options).libraries[0];
-  ASSERT_GE(fine.entries.size(), 11U);
-  EXPECT_LE(fine.entries.size(), 101U);
-  for (std::size_t i = 0; i + 1 < fine.entries.size(); ++i) {
-    const double width = fine.entries[i + 1].density_percent - fine.entries[i].density_percent;
-    EXPECT_GE(width, 1.0);
-    EXPECT_LE(width, 10.0);
-    EXPECT_TRUE(fine.entries[i].midway.loss <= options.refine || width < 2.0);
-  }
-  options.threads = 2;
-  EXPECT_EQ(build(grid({0, 100}), options), to_json(fine));
 }
 
 TEST_F(LibraryBuilding, MachinesAndSoilsMakeALibraryEach) {
@@ -607,16 +560,19 @@ TEST_F(LibraryBuilding, BadGridsAndOptionsAreRefused) {
   EXPECT_NE(refusal(grid({101}), quick()).find("got 101 at place 1"), std::string::npos);
   EXPECT_NE(refusal(grid({20}, {0.1, 0.1}), quick()).find("slopes [rad] must rise"),
             std::string::npos);
+}
+
+TEST_F(LibraryBuilding, AnySimulatorCanBeSearchedWith) {
   LibraryBuildOptions options = quick();
-  options.refine = 1.0;
-  EXPECT_NE(refusal(grid({20}), options).find("refine must be"), std::string::npos);
-  options = quick();
-  options.only_merge = true;
-  EXPECT_NE(refusal(grid({20}), options).find("a merge needs a folder"), std::string::npos);
-  options = quick();
-  EXPECT_THROW(build_library_shard(grid({20}), {1, 1}, options), Error);
-  options.folder = testing::TempDir() + "excavplan_never_made";
-  EXPECT_THROW(build_library_shard(grid({20}), {3, 2}, options), Error);
+  options.search.simulator = simulator_of_word("section");
+  const PathLibrary library = build_path_libraries(grid({20}), options).libraries[0];
+  EXPECT_EQ(library.simulator, options.search.simulator.name);
+  EXPECT_NE(to_json(library), build(grid({20}), quick()));
+  EXPECT_NO_THROW(require_fit(library, machine_, soil_, "l.json", options.search.simulator.name));
+  EXPECT_NE(test::error_of([&] {
+              require_fit(library, machine_, soil_, "l.json");
+            }).find("its simulator is " + options.search.simulator.name),
+            std::string::npos);
 }
 
 class ShippedLibrary : public testing::TestWithParam<const char*> {
@@ -666,7 +622,7 @@ TEST_P(ShippedLibrary, LiftsMoreThanTheFixedPathOnLevelGround) {
       EXPECT_GT(efficiency, possible->efficiency());
     }
     EXPECT_LT(efficiency, last);
-    EXPECT_LT(entry.midway.loss, 0.03) << entry.density_percent;
+    EXPECT_LT(entry.to_next_density.midway.loss, 0.03) << entry.density_percent;
     last = efficiency;
     evaluations += entry.evaluations;
   }
@@ -678,7 +634,7 @@ TEST_P(ShippedLibrary, LiftsMoreThanTheFixedPathOnLevelGround) {
 TEST_P(ShippedLibrary, LosesLittleBetweenItsSlopes) {
   std::vector<double> losses;
   for (const PathLibraryEntry& entry : library_.entries) {
-    losses.push_back(entry.midway_slope.loss);
+    losses.push_back(entry.to_next_slope.midway.loss);
   }
   const auto most = losses.begin() + static_cast<std::ptrdiff_t>(losses.size() * 9 / 10);
   std::nth_element(losses.begin(), most, losses.end());
@@ -707,87 +663,45 @@ TEST_P(ShippedLibrary, HoldsNearlyTheBestDigs) {
 
 INSTANTIATE_TEST_SUITE_P(Soils, ShippedLibrary, testing::Values("loam", "sand", "clay", "gravel"));
 
-/// Processes as threads: each gets numbers and the parcels of all.
-class Crew {
- public:
-  explicit Crew(std::size_t size) : parcels_(size) {}
-  std::size_t next() { return next_++; }
-  std::vector<std::string> exchange(std::size_t member, const std::string& mine) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    parcels_[member] = mine;
-    const std::size_t round = round_;
-    if (++arrived_ == parcels_.size()) {
-      all_ = parcels_;
-      arrived_ = 0;
-      next_ = 0;
-      ++round_;
-      everybody_.notify_all();
-    } else {
-      everybody_.wait(lock, [&] { return round_ != round; });
-    }
-    return all_;
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable everybody_;
-  std::vector<std::string> parcels_, all_;
-  std::size_t arrived_ = 0, round_ = 0;
-  std::atomic<std::size_t> next_{0};
-};
-
-class CrewMember : public WorkSharing {
- public:
-  CrewMember(Crew& crew, std::size_t member) : crew_(crew), member_(member) {}
-  std::size_t next() override { return crew_.next(); }
-  std::vector<std::string> exchange(const std::string& mine) override {
-    return crew_.exchange(member_, mine);
-  }
-
- private:
-  Crew& crew_;
-  std::size_t member_;
-};
-
-TEST_F(LibraryBuilding, SameBytesInEveryOneOfSeveralProcesses) {
+TEST_F(LibraryBuilding, SameBytesWithWorkersElsewhere) {
   const LibraryGrid cells = grid({10, 20, 35, 70});
   const std::string whole = build(cells, quick());
-  for (const std::size_t size : {2U, 4U}) {
-    Crew crew(size);
-    std::vector<std::string> results(size);
-    std::vector<std::thread> members;
-    for (std::size_t i = 0; i < size; ++i) {
-      members.emplace_back([&, i] {
-        CrewMember member(crew, i);
-        LibraryBuildOptions options = quick();
-        options.sharing = &member;
-        results[i] = build(cells, options);
-      });
-    }
-    for (std::thread& member : members) member.join();
-    for (const std::string& result : results) EXPECT_EQ(result, whole);
+  for (const std::size_t others : {1U, 3U}) {
+    LibraryBuildOptions options = quick();
+    std::atomic<int> tasks{0};
+    const LibraryWorker worker = library_worker(cells, options.search);
+    options.other_workers.assign(others, [&](const std::string& task) {
+      ++tasks;
+      return worker(task);
+    });
+    EXPECT_EQ(build(cells, options), whole);
+    EXPECT_GT(tasks, 0);
   }
 }
 
-TEST_F(LibraryBuilding, AnErrorOfOneProcessReachesAll) {
-  const TemporaryFolder folder;
-  Crew crew(2);
-  std::vector<std::string> errors(2);
-  std::vector<std::thread> members;
-  for (std::size_t i = 0; i < 2; ++i) {
-    members.emplace_back([&, i] {
-      CrewMember member(crew, i);
-      LibraryBuildOptions options = quick();
-      options.sharing = &member;
-      options.folder = folder.file("cells");
-      options.only_merge = true;
-      errors[i] =
-          test::error_of([&] { build_path_libraries(grid({20}), options); }, ErrorKind::bad_file);
-    });
-  }
-  for (std::thread& member : members) member.join();
-  EXPECT_EQ(errors[0], errors[1]);
-  EXPECT_NE(errors[0].find("is missing: the shard"), std::string::npos) << errors[0];
+TEST_F(LibraryBuilding, AnErrorOfAWorkerEndsTheBuild) {
+  LibraryBuildOptions options = quick();
+  options.other_workers = {[](const std::string&) -> std::string {
+    throw Error(ErrorKind::bad_input, "rank 1: no memory");
+  }};
+  EXPECT_EQ(test::error_of([&] {
+              build_path_libraries(grid({0, 50, 100}), options);
+            }),
+            "rank 1: no memory");
+}
+
+TEST_F(LibraryBuilding, AnAnswerForOtherNumbersIsRefused) {
+  LibraryBuildOptions options = quick();
+  LibraryGrid other = grid({0, 50, 100});
+  other.soils[0].water_content += 0.01;
+  options.other_workers = {library_worker(other, options.search)};
+  EXPECT_NE(test::error_of(
+                [&] {
+                  build_path_libraries(grid({0, 50, 100}), options);
+                },
+                ErrorKind::bad_file)
+                .find("which is another entry than"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@
 #include "support/run_program.hpp"
 
 /// @file
-/// build-path-library as jobs of a cluster use it: in shards, killed, resumed, under mpirun.
+/// build-path-library as jobs of a cluster use it: killed, resumed, several in one folder, under
+/// mpirun.
 
 namespace excavplan::test {
 namespace {
@@ -57,40 +58,32 @@ TEST_F(LibraryTool, LeavesNothingButTheLibrary) {
   }
 }
 
-TEST_F(LibraryTool, ShardsMergeToTheSameBytes) {
+TEST_F(LibraryTool, SeveralRunsShareAFolder) {
   const std::string cells = folder_.file("cells");
-  for (const char* shard : {"2/3", "1/3", "3/3"}) {
-    const ProgramResult result = build(grid + Words{"--cells", cells, "--shard", shard});
-    EXPECT_EQ(result.code, 0) << result.err;
+  std::vector<pid_t> runs;
+  for (int i = 0; i < 3; ++i) {
+    const std::string out = folder_.file("shared" + std::to_string(i) + ".json");
+    runs.push_back(started("build-path-library",
+                           grid + Words{"--cells", cells, "--out", out, "--quiet"}, [] {}));
   }
-  const ProgramResult result = build({"--merge", cells, "--out", out_});
-  EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_EQ(content_of(out_), whole_);
+  for (const pid_t run : runs) {
+    int status = -1;
+    ::waitpid(run, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(content_of(folder_.file("shared" + std::to_string(i) + ".json")), whole_);
+  }
+  EXPECT_FALSE(fs::is_empty(cells)) << "its files are kept";
 }
 
-TEST_F(LibraryTool, AMergeAddsTheDensitiesOfARefinement) {
-  const Words refined = grid + Words{"--refine", "0.5"};
-  ASSERT_EQ(build(refined + Words{"--out", folder_.file("refined.json")}).code, 0);
+TEST_F(LibraryTool, TakesOfAFolderWhatIsOfTheSameSearch) {
   const std::string cells = folder_.file("cells");
-  for (const char* shard : {"2/2", "1/2"}) {
-    EXPECT_EQ(build(refined + Words{"--cells", cells, "--shard", shard}).code, 0);
-  }
-  const ProgramResult result = build({"--merge", cells, "--out", out_});
-  EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_EQ(content_of(out_), content_of(folder_.file("refined.json")));
-  EXPECT_GT(content_of(out_).size(), whole_.size());
-}
-
-TEST_F(LibraryTool, AMergeRefusesOptionsThatItsCellsDoNotHave) {
-  const std::string cells = folder_.file("cells");
-  build(grid + Words{"--cells", cells, "--shard", "1/1"});
-  const ProgramResult sand = build({"--merge", cells, "--soil", "sand", "--out", out_});
-  EXPECT_EQ(sand.code, 2);
-  EXPECT_NE(sand.err.find("soil is \"loam\", \"sand\" is asked for"), std::string::npos)
-      << sand.err;
-  EXPECT_FALSE(fs::exists(out_));
-  EXPECT_EQ(build(grid + Words{"--merge", cells, "--out", out_}).code, 0);
+  const Words other = {"--seed", "2", "--cells", cells, "--out", folder_.file("other.json")};
+  EXPECT_EQ(build(grid + other).code, 0);
+  EXPECT_EQ(build(grid + Words{"--cells", cells, "--out", out_}).code, 0);
   EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_NE(content_of(folder_.file("other.json")), whole_);
 }
 
 TEST_F(LibraryTool, LibrariesThatCannotBeToldApartAreRefused) {
@@ -124,15 +117,17 @@ TEST_F(LibraryTool, WhereItWritesIsCheckedBeforeTheSearch) {
 TEST_F(LibraryTool, LeavesFilesOfOthersAlone) {
   const std::string cells = out_ + ".cells";
   fs::create_directory(cells);
-  const std::string thesis = folder_.write("library.json.cells/thesis.txt", "years of work");
-  const ProgramResult foreign = build(grid + Words{"--out", out_});
-  EXPECT_EQ(foreign.code, 3);
-  EXPECT_NE(foreign.err.find("is no folder of cells"), std::string::npos) << foreign.err;
-  build(grid + Words{"--cells", cells, "--shard", "1/4"});  // now it is one
+  for (const char* name : {"thesis.txt", "thesis.json"}) {
+    folder_.write(std::string("library.json.cells/") + name, "years of work");
+  }
   EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);
   EXPECT_EQ(content_of(out_), whole_);
-  EXPECT_EQ(content_of(thesis), "years of work");
-  EXPECT_FALSE(fs::exists(cells + "/job.json"));
+  std::size_t files = 0;
+  for (const auto& file : fs::directory_iterator(cells)) {
+    EXPECT_EQ(content_of(file.path()), "years of work");
+    ++files;
+  }
+  EXPECT_EQ(files, 2U);
 }
 
 TEST_F(LibraryTool, SeedsThatAFileCannotKeepAndOptionsWithoutEffectAreTold) {
@@ -143,19 +138,6 @@ TEST_F(LibraryTool, SeedsThatAFileCannotKeepAndOptionsWithoutEffectAreTold) {
   EXPECT_EQ(population.code, 0);
   EXPECT_NE(population.err.find("without effect: --population"), std::string::npos);
   EXPECT_EQ(content_of(out_), whole_);
-}
-
-TEST_F(LibraryTool, ShardsOfAnotherRunAreRefused) {
-  const std::string cells = folder_.file("cells");
-  build(grid + Words{"--cells", cells, "--shard", "1/3"});
-  const ProgramResult other =
-      build(grid + Words{"--cells", cells, "--shard", "2/3", "--seed", "2"});
-  EXPECT_EQ(other.code, 2);
-  EXPECT_NE(other.err.find("is of another run"), std::string::npos) << other.err;
-  const ProgramResult early = build({"--merge", cells, "--out", out_});
-  EXPECT_EQ(early.code, 3);
-  EXPECT_NE(early.err.find("is missing: the shard"), std::string::npos) << early.err;
-  EXPECT_FALSE(fs::exists(out_));
 }
 
 TEST_F(LibraryTool, KilledAtRandomMomentsItGoesOnToTheSameBytes) {
@@ -173,13 +155,11 @@ TEST_F(LibraryTool, KilledAtRandomMomentsItGoesOnToTheSameBytes) {
 TEST_F(LibraryTool, AnInterruptLeavesWhatResumes) {
   const Words large = {"--densities", "0:2:100", "--out", out_};
   EXPECT_EQ(interrupted("build-path-library", large, " densities, ").code, 75);
-  EXPECT_TRUE(fs::exists(out_ + ".cells/job.json"));
+  EXPECT_TRUE(fs::exists(out_ + ".cells"));
   EXPECT_FALSE(fs::exists(out_));
-  const ProgramResult other = build(grid + Words{"--out", out_, "--resume"});
-  EXPECT_EQ(other.code, 2);
-  EXPECT_NE(other.err.find("is of another run"), std::string::npos) << other.err;
   EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);  // begins anew
   EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_FALSE(fs::exists(out_ + ".cells"));
 }
 
 TEST_F(LibraryTool, SeveralSoilsMakeAFolderOfLibraries) {
@@ -201,20 +181,16 @@ TEST_F(LibraryTool, SeveralSoilsMakeAFolderOfLibraries) {
   EXPECT_NE(wrong.err.find("its soil is sand, not loam"), std::string::npos) << wrong.err;
 }
 
-TEST_F(LibraryTool, OptionsThatDoNotGoTogetherAreRefused) {
-  const auto refusal = [](const Words& words) {
-    const ProgramResult result = build(words);
-    EXPECT_EQ(result.code, 2);
-    return result.err;
-  };
-  EXPECT_NE(refusal({}).find("--out is missing"), std::string::npos);
-  EXPECT_NE(refusal({"--shard", "1/2"}).find("--shard goes with --cells"), std::string::npos);
-  const std::string cells = folder_.file("cells");
-  EXPECT_NE(refusal({"--shard", "3/2", "--cells", cells}).find("is not one of 1/N .. N/N"),
-            std::string::npos);
-  EXPECT_FALSE(fs::exists(cells)) << "refused before anything is made";
-  EXPECT_NE(refusal({"--merge", cells, "--cells", cells, "--out", out_}).find("--merge goes"),
-            std::string::npos);
+TEST_F(LibraryTool, WithoutOutItIsRefused) {
+  const ProgramResult result = build({});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("--out is missing"), std::string::npos) << result.err;
+}
+
+TEST_F(LibraryTool, AnotherSimulatorMakesAnotherLibrary) {
+  ASSERT_EQ(build(grid + Words{"--simulator", "section", "--out", out_}).code, 0);
+  EXPECT_NE(content_of(out_), whole_);
+  EXPECT_EQ(build(grid + Words{"--simulator", "magic", "--out", out_}).code, 2);
 }
 
 #ifdef EXCAVPLAN_MPIRUN
@@ -275,15 +251,13 @@ TEST_F(LibraryTool, ARankThatFailsAloneSaysWhyAndOneSpeaksForSeveral) {
   }
   EXPECT_EQ(run_ranks(ranks(3, "nowhere"), folder_.file("said")), 2);
   const std::string said = content_of(folder_.file("said"));
-  EXPECT_GE(times(said, reason), 1) << said;
-  EXPECT_LT(times(said, reason), 3) << said;  // where the first rank is late another speaks too
-  const std::string cells = " --densities 20 --cells " + folder_.file("cells") + " --shard ";
-  const std::string program = std::string(EXCAVPLAN_BIN) + "/build-path-library";
-  EXPECT_EQ(run_ranks("-n 1 " + program + cells + "1/2 : -n 1 " + program + cells + "2/2",
+  EXPECT_EQ(times(said, reason), 1) << said;
+  const std::string program = std::string(EXCAVPLAN_BIN) + "/build-path-library --densities 20 ";
+  EXPECT_EQ(run_ranks("-n 1 " + program + "--out " + out_ + " : -n 1 " + program +
+                          "--seed 2 --out " + out_,
                       folder_.file("said")),
             2);
-  EXPECT_NE(content_of(folder_.file("said")).find("give all of them the same options"),
-            std::string::npos);
+  EXPECT_EQ(times(content_of(folder_.file("said")), "give all of them the same options"), 1);
 #endif
 }
 

@@ -59,9 +59,8 @@ const std::vector<Contract>& contracts() {
          return Words{"--density", "40"};
        }},
       {"build-path-library",
-       {"--densities", "--slopes", "--soil", "--machine", "--method", "--population",
-        "--generations", "--seed", "--refine", "--threads", "--cells", "--shard", "--merge",
-        "--resume", "--out"},
+       {"--densities", "--slopes", "--soil", "--machine", "--simulator", "--method", "--population",
+        "--generations", "--seed", "--threads", "--cells", "--resume", "--out"},
        "--thread",
        "--threads",
        [](const TemporaryFolder& folder) {

@@ -14,9 +14,10 @@
 
 namespace excavplan {
 
+/// What is dug and planned with.
 struct ExperimentOptions {
-  DigParameters fixed_path = paper_fixed_path();
-  PlanOptions plan = {};  ///< `simulator` and `cell_size` hold for all digs
+  DigParameters fixed_path = paper_fixed_path();  ///< of every first dig
+  PlanOptions plan = {};  ///< of the second dig; `simulator` and `cell_size` hold for both
 };
 
 /// One soil, dug along both paths.
@@ -32,7 +33,9 @@ struct ExperimentResult {
   /// Of the planned over the fixed dig in efficiency [%]. The shares of the path and of the start:
   /// (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
   double gain_percent() const;
+  /// Of the planned path begun as the fixed one [%].
   double path_gain_percent() const;
+  /// Of the start alone [%].
   double start_gain_percent() const;
 };
 

@@ -23,8 +23,8 @@ namespace excavplan {
 
 /// The entries of a build: all machines with all soils, slopes and densities.
 struct LibraryGrid {
-  std::vector<Machine> machines;
-  std::vector<SoilKind> soils;
+  std::vector<Machine> machines;          ///< at least one
+  std::vector<SoilKind> soils;            ///< at least one
   std::vector<double> slopes = {0.0};     ///< rising away from the machine [rad], in order
   std::vector<double> densities_percent;  ///< rising
 };
@@ -43,19 +43,20 @@ struct AnchoredSearch {
 struct LibrarySearch {
   /// With a genetic algorithm, as in the paper, every density is searched from nothing.
   std::variant<AnchoredSearch, GeneticAlgorithm> method = AnchoredSearch{};
-  double cell_size = 0.05;  ///< of the simulated ground [m]
-  std::uint64_t seed = 1;
-  SimulatorKind simulator = default_simulator();
+  double cell_size = 0.05;                        ///< of the simulated ground [m]
+  std::uint64_t seed = 1;                         ///< of every search
+  SimulatorKind simulator = default_simulator();  ///< that digs
 };
 
+/// How far a build is.
 struct LibraryProgress {
-  std::size_t entries_done = 0;
-  std::size_t entries = 0;
-  int evaluations = 0;  ///< by this build, those of its other workers included
-  std::string entry;    ///< last one worked on
-  double best = 0.0;    ///< efficiency found for it so far [kg/J]; NaN: none yet
-  double seconds = 0.0;
-  double seconds_left = 0.0;  ///< NaN: unknown yet
+  std::size_t entries_done = 0;  ///< with their files
+  std::size_t entries = 0;       ///< of the whole build
+  int evaluations = 0;           ///< by this build, those of its other workers included
+  std::string entry;             ///< last one worked on
+  double best = 0.0;             ///< efficiency found for it so far [kg/J]; NaN: none yet
+  double seconds = 0.0;          ///< since the build began
+  double seconds_left = 0.0;     ///< NaN: unknown yet
 };
 
 /// Does a task of a build: what it is asked and what it answers are texts, which may travel.
@@ -65,8 +66,9 @@ using LibraryWorker = std::function<std::string(const std::string& task)>;
 /// called from several threads.
 LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search);
 
+/// How a build is made.
 struct LibraryBuildOptions {
-  LibrarySearch search;
+  LibrarySearch search;  ///< of every entry
   unsigned threads = 0;  ///< 0: one per core. The result does not depend on it.
   /// Workers besides the threads, each called from a thread of its own.
   std::vector<LibraryWorker> other_workers;
@@ -80,10 +82,11 @@ struct LibraryBuildOptions {
   std::function<void(const std::string&)> note;
 };
 
+/// What a build has made.
 struct LibraryBuild {
   std::vector<PathLibrary> libraries;  ///< one for each machine and soil; empty if stopped
   bool stopped = false;                ///< by `progress`
-  std::size_t entries_done = 0;
+  std::size_t entries_done = 0;        ///< with their files
   std::size_t entries = 0;  ///< those included that entries start from and the grid lacks
 };
 

@@ -28,7 +28,7 @@ struct MidwayError {
 
 /// From one entry to the next.
 struct Interpolation {
-  MidwayError midway;
+  MidwayError midway;  ///< of the dig looked up between the two
   /// The nearer dig is looked up and not a mix of the two: they differ so much that the mix was
   /// found worse midway.
   bool nearest = false;
@@ -36,34 +36,34 @@ struct Interpolation {
 
 /// The best dig for one density on one slope.
 struct PathLibraryEntry {
-  double density_percent = 0.0;
-  double slope = 0.0;  ///< of the ground in the boom direction, rising away from the machine [rad]
-  PlannedDig dig;
-  int evaluations = 0;            ///< digs simulated for it
+  double density_percent = 0.0;  ///< 0 .. 100
+  double slope = 0.0;   ///< of the ground in the boom direction, rising away from the machine [rad]
+  PlannedDig dig;       ///< the best one found
+  int evaluations = 0;  ///< digs simulated for it
   Interpolation to_next_density;  ///< on the same slope; nothing for the last
   Interpolation to_next_slope;    ///< at the same density; nothing on the last
 };
 
 /// A density at which no dig is feasible on its slope.
 struct PathLibraryGap {
-  double density_percent = 0.0;
-  double slope = 0.0;  ///< [rad]
+  double density_percent = 0.0;  ///< 0 .. 100
+  double slope = 0.0;            ///< [rad]
 };
 
 /// Best digs of one machine in one soil.
 struct PathLibrary {
-  std::string machine;  ///< name of the machine
-  std::string soil;     ///< name of the soil
-  std::string machine_fingerprint;
-  std::string soil_fingerprint;
-  std::string simulator;   ///< name and version
-  double cell_size = 0.0;  ///< of the ground it was computed on [m]
-  std::uint64_t seed = 0;
+  std::string machine;                    ///< name of the machine
+  std::string soil;                       ///< name of the soil
+  std::string machine_fingerprint;        ///< fingerprint() of the machine
+  std::string soil_fingerprint;           ///< fingerprint() of the soil
+  std::string simulator;                  ///< name and version
+  double cell_size = 0.0;                 ///< of the ground it was computed on [m]
+  std::uint64_t seed = 0;                 ///< of the searches
   std::string search;                     ///< how the digs were searched, for people
   std::vector<PathLibraryEntry> entries;  ///< slope rising, then density; at least one
   std::vector<PathLibraryGap> gaps;       ///< in the same order
 
-  int evaluations() const;
+  int evaluations() const;  ///< digs simulated for all entries
 };
 
 /// Reads a library file (docs/formats.md#path-library).

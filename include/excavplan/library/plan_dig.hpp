@@ -20,10 +20,12 @@
 
 namespace excavplan {
 
+/// Where the dig comes from.
 enum class PlanMethod {
   library,  ///< looked up; dug once where the ground or the simulator is not the library's
   search,   ///< searched by digs in the simulator, from the library's dig on
 };
+/// "library" or "search".
 const char* name(PlanMethod method);
 
 /// The library that excavplan ships for a machine in a soil; `data_folder` as in find_data_file().
@@ -31,8 +33,9 @@ const char* name(PlanMethod method);
 PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
                             const std::string& data_folder = data_folder_of_package);
 
+/// How plan_dig() plans.
 struct PlanOptions {
-  PlanMethod method = PlanMethod::library;
+  PlanMethod method = PlanMethod::library;  ///< where the dig comes from
   /// Null: shipped_library() of `data_folder`, read anew by every call.
   std::shared_ptr<const PathLibrary> library = nullptr;
   std::string data_folder = data_folder_of_package;  ///< as find_data_file() takes it
@@ -41,16 +44,16 @@ struct PlanOptions {
   /// mass per energy begins with the library's dig. Where `stop.evaluations` is 0 the default
   /// method makes evaluation_budget() digs.
   DigSearchOptions search = budget_search();
-  SimulatorKind simulator = default_simulator();
-  TrajectoryOptions trajectory = {};
-  double cell_size = 0.05;  ///< of the level ground, if none is given [m]
+  SimulatorKind simulator = default_simulator();  ///< digs what is searched or not on level ground
+  TrajectoryOptions trajectory = {};              ///< how fast the machine moves
+  double cell_size = 0.05;                        ///< of the level ground, if none is given [m]
 };
 
 /// How the search went.
 struct PlanSearch {
   double worth = 0.0;  ///< of the dig, by the objective, in SI; the mean for an uncertain density
-  StopReason stopped_by = StopReason::generations;
-  int refused = 0;  ///< digs that cannot be driven, not simulated
+  StopReason stopped_by = StopReason::generations;  ///< what ended the search
+  int refused = 0;                                  ///< digs that cannot be driven, not simulated
   /// Which numbers are worth 98 % of the best (SearchInsight::seen), in the order of
   /// dig_parameter_table(), the start last if searched.
   std::vector<ParameterRange> ranges;
@@ -65,6 +68,7 @@ struct PlanLookUp {
   std::optional<MidwayError> error;  ///< look_up_error(); nothing on ground unlike the library's
 };
 
+/// The next dig, or why there is none.
 struct DigPlan {
   /// Expected figures: the library's on level ground in the simulator that it was computed with,
   /// else those of the dig in `simulator`, their means if searched for an uncertain density.
@@ -73,11 +77,11 @@ struct DigPlan {
   DigSpread spread;       ///< from the density's standard deviation; zero if that is 0
   DigPath path;           ///< of the dig, with its approach
   Trajectory trajectory;  ///< of that path
-  PlanMethod method = PlanMethod::library;
-  std::string start_rule;             ///< where the dig begins, for people
-  int evaluations = 0;                ///< digs simulated for the plan
-  std::optional<PlanSearch> search;   ///< if searched
-  std::optional<PlanLookUp> look_up;  ///< if looked up
+  PlanMethod method = PlanMethod::library;  ///< where the dig comes from
+  std::string start_rule;                   ///< where the dig begins, for people
+  int evaluations = 0;                      ///< digs simulated for the plan
+  std::optional<PlanSearch> search;         ///< if searched
+  std::optional<PlanLookUp> look_up;        ///< if looked up
 
   bool stopped = false;     ///< the search was cancelled; the dig is the best until then
   bool trustworthy = true;  ///< false after a warning marked * below
@@ -101,6 +105,7 @@ struct DigPlan {
 ///         checkpoint of the search is of another one, truncated or altered
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const Terrain& terrain, const PlanOptions& options = {});
+/// The same on level ground.
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const PlanOptions& options = {});
 

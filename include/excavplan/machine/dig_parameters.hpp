@@ -34,9 +34,9 @@ struct DigParameterInfo {
   const char* unit;    ///< "rad" or "m"
   const char* text;    ///< name for people: "penetration angle"
   const char* option;  ///< word of the option for the search range: "angle" of --angle-range
-  double DigParameters::*field;
-  double lower;  ///< of the search
-  double upper;
+  double DigParameters::*field;  ///< where it is kept
+  double lower;                  ///< of the search
+  double upper;                  ///< of the search
 };
 
 /// One row per number, in order. The bounds (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m) are ours: the

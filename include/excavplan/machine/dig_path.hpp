@@ -19,22 +19,24 @@
 
 namespace excavplan {
 
+/// The parts of a dig, in their order.
 enum class DigPhase { approach, penetrate, drag, scoop, lift };
+/// "penetrate", as in files and messages.
 const char* name(DigPhase phase);
 
 /// The bucket at one point of the path and the joints that hold it there.
 struct DigPose {
-  DigPhase phase = DigPhase::penetrate;
-  BucketPose bucket;
-  JointAngles joints = JointAngles::Zero();
+  DigPhase phase = DigPhase::penetrate;      ///< that the pose is part of
+  BucketPose bucket;                         ///< place and attitude of the bucket
+  JointAngles joints = JointAngles::Zero();  ///< boom, arm and bucket [rad]
 };
 
 /// A dig that the machine can drive. Poses are in the order in which they are visited; the last
 /// pose of a phase is the first of the next and is stored once, with the earlier phase.
 struct DigPath {
-  DigParameters parameters;
-  double start_x = 0.0;   ///< where the tip meets the ground [m]
-  double ground_z = 0.0;  ///< height of the ground there [m]
+  DigParameters parameters;  ///< that it was made from
+  double start_x = 0.0;      ///< where the tip meets the ground [m]
+  double ground_z = 0.0;     ///< height of the ground there [m]
   /// The way down to the first pose, which is not repeated; empty unless set (way_down()).
   std::vector<DigPose> approach;
   std::vector<DigPose> poses;   ///< penetrate, drag, scoop, lift; at least two
@@ -45,6 +47,7 @@ struct DigPath {
 
 /// Why a dig cannot be driven: the first thing that fails.
 struct Infeasible {
+  /// Which rule it breaks.
   enum class Reason {
     bad_parameter,  ///< not finite or negative, or the angle is not in (0, pi/2)
     out_of_reach,   ///< too far or too near
@@ -55,18 +58,19 @@ struct Infeasible {
     unknown_ground,  ///< at the start point, whose x is `value`
     lift_blocked,    ///< the bucket cannot be lifted clear of the ground
   };
-  Reason reason = Reason::bad_parameter;
-  DigPhase phase = DigPhase::penetrate;
-  Joint joint = Joint::boom;  ///< for joint_limit
-  double distance = 0.0;      ///< travelled in that phase: [m], [rad] while scooping
-  double value = 0.0;         ///< what was found
-  double limit = 0.0;         ///< what was allowed, in the unit of value
-  std::string message;        ///< all of this in one sentence
+  Reason reason = Reason::bad_parameter;  ///< which rule it breaks
+  DigPhase phase = DigPhase::penetrate;   ///< in which it breaks it
+  Joint joint = Joint::boom;              ///< for joint_limit
+  double distance = 0.0;                  ///< travelled in that phase: [m], [rad] while scooping
+  double value = 0.0;                     ///< what was found
+  double limit = 0.0;                     ///< what was allowed, in the unit of value
+  std::string message;                    ///< all of this in one sentence
 };
 
 /// Height of the ground in the boom plane at x [m]; NaN where unknown.
 using GroundProfile = std::function<double(double x)>;
 
+/// Rules of a path.
 struct DigPathOptions {
   /// Largest tip travel between poses [m], > 0; at most 10000 poses a phase.
   double step = 0.025;

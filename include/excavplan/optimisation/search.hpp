@@ -20,30 +20,36 @@ namespace excavplan {
 
 /// The search space: a box in n dimensions.
 struct SearchBox {
-  Eigen::VectorXd lower;
-  Eigen::VectorXd upper;
+  Eigen::VectorXd lower;  ///< smallest value of each dimension
+  Eigen::VectorXd upper;  ///< largest value of each dimension
 };
 
 /// What the objective says of one point.
 struct Evaluation {
+  /// Whether the point counts, breaks a rule, or could not be judged.
   enum class Status { ok, infeasible, failed, timed_out };
 
-  Status status = Status::failed;
+  Status status = Status::failed;                             ///< how the point was judged
   double fitness = std::numeric_limits<double>::quiet_NaN();  ///< larger is better; if ok
   double violation = 0.0;  ///< if infeasible: >= 0, smaller is nearer to feasible
   std::string reason;      ///< for people, if not ok
 
   Evaluation() = default;
   /// ok; NaN and infinity: failed
-  Evaluation(double value);                 // NOLINT: an objective may return a bare number
+  Evaluation(double value);  // NOLINT: an objective may return a bare number
+  /// ok; nothing: infeasible
   Evaluation(std::optional<double> value);  // NOLINT: nothing is infeasible
+  /// breaks a rule by `violation`
   static Evaluation infeasible(double violation, std::string reason = {});
+  /// could not be judged
   static Evaluation failed(std::string reason);
+  /// was not judged in time
   static Evaluation timed_out(std::string reason);
 
-  bool ok() const { return status == Status::ok; }
+  bool ok() const { return status == Status::ok; }  ///< the fitness counts
 };
 
+/// The name of the enumerator, for files and messages.
 const char* name(Evaluation::Status status);
 
 /// Feasible before infeasible before failed or timed out; then less violation, then more fitness.
@@ -58,46 +64,51 @@ using Objective = std::function<Evaluation(const Eigen::VectorXd&)>;
 using Repair =
     std::function<std::variant<Eigen::VectorXd, Evaluation>(const Eigen::VectorXd& point)>;
 
+/// What is searched.
 struct SearchProblem {
-  SearchBox box;
-  Objective objective;
+  SearchBox box;            ///< every point asked is inside
+  Objective objective;      ///< to maximise
   Repair repair = nullptr;  ///< optional; its points are clipped to the box
   /// Optional: points are moved to multiples of this above the lower bounds before the repair.
   Eigen::VectorXd step = {};
   std::string fingerprint = {};  ///< all that decides the objective; checkpoints need it
 };
 
+/// How it is searched.
 struct SearchOptions : SearchSettings {
   std::vector<Eigen::VectorXd> start = {};  ///< points to begin with, clipped to the box
 };
 
 /// One point the search asked for.
 struct SearchRecord {
+  /// Who asked for the point.
   enum class Origin { given, space_filling, random, polish, crossover, mutation, immigrant };
+  /// Where its outcome comes from.
   enum class Source { simulated, cached, repair };
 
-  Eigen::VectorXd point;  ///< as evaluated
-  Evaluation outcome;
-  Origin origin = Origin::given;
+  Eigen::VectorXd point;              ///< as evaluated
+  Evaluation outcome;                 ///< what the objective or the repair said
+  Origin origin = Origin::given;      ///< who asked for it
   Source source = Source::simulated;  ///< cached: seen before; repair: refused by the repair
-  int generation = 0;
-  int polish = 0;            ///< number of the polish that asked for it, from 1; 0: none
-  std::vector<int> parents;  ///< places in the history
+  int generation = 0;                 ///< 0: the first
+  int polish = 0;                     ///< number of the polish that asked for it, from 1; 0: none
+  std::vector<int> parents;           ///< places in the history
 };
 
+/// The best point and how it was found.
 struct SearchResult {
   Eigen::VectorXd best;  ///< if nothing is feasible: the point of least violation
   Evaluation outcome;    ///< of it
-  StopReason stopped_by = StopReason::generations;
-  int asked = 0;
-  int evaluations = 0;                ///< calls of the objective
-  int cached = 0;                     ///< asked, but seen before
-  int repair = 0;                     ///< asked, but refused by the repair
-  int infeasible = 0;                 ///< of the evaluations
-  int failed = 0;                     ///< of the evaluations, time-outs included
+  StopReason stopped_by = StopReason::generations;  ///< what ended the search
+  int asked = 0;                                    ///< points, repeated ones included
+  int evaluations = 0;                              ///< calls of the objective
+  int cached = 0;                                   ///< asked, but seen before
+  int repair = 0;                                   ///< asked, but refused by the repair
+  int infeasible = 0;                               ///< of the evaluations
+  int failed = 0;                                   ///< of the evaluations, time-outs included
   std::vector<SearchRecord> history;  ///< in the order asked: enough to redraw the search
 
-  bool feasible() const { return outcome.ok(); }
+  bool feasible() const { return outcome.ok(); }  ///< the best point is
 };
 
 /// Maximises the objective.

@@ -14,16 +14,19 @@
 
 namespace excavplan {
 
+/// The name of the enumerator, for files.
 const char* name(SearchRecord::Origin origin);
+/// The name of the enumerator, for files.
 const char* name(SearchRecord::Source source);
 
 /// Every point asked, one line each: place, generation, origin, polish, parents (joined by ';'),
 /// source, status, fitness, violation, reason, coordinates.
 std::string to_csv(const SearchResult& result);
 
+/// Values of one parameter.
 struct ParameterRange {
-  double low = 0.0;
-  double high = 0.0;
+  double low = 0.0;   ///< smallest
+  double high = 0.0;  ///< largest
 };
 
 /// How sure the best point is of its place.
@@ -51,12 +54,12 @@ using NoisyObjective = std::function<Evaluation(const Eigen::VectorXd& point, in
 
 /// A point evaluated several times.
 struct RepeatedEvaluation {
-  Eigen::VectorXd point;
-  double first = 0.0;  ///< what the search saw: too good, for it was chosen for it
-  double mean = 0.0;   ///< of the repeats that were ok; NaN if none was
-  double sd = 0.0;     ///< of one evaluation; NaN for fewer than two
-  int ok = 0;
-  int repeats = 0;
+  Eigen::VectorXd point;  ///< in the box
+  double first = 0.0;     ///< what the search saw: too good, for it was chosen for it
+  double mean = 0.0;      ///< of the repeats that were ok; NaN if none was
+  double sd = 0.0;        ///< of one evaluation; NaN for fewer than two
+  int ok = 0;             ///< repeats that gave a fitness
+  int repeats = 0;        ///< evaluations made
 };
 
 /// Evaluates the best few points of a search again, all points and repeats side by side; best mean

@@ -45,31 +45,34 @@ struct MemeticSearch {
 /// after each batch of points and each round of polishes, for any number of threads; a polish that
 /// reaches the target ends at once.
 struct StopRules {
-  int evaluations = 0;
+  int evaluations = 0;                ///< of the objective, at most
   int stall = 0;                      ///< evaluations without a better point
   double seconds = 0.0;               ///< the only rule whose result depends on the clock
   std::optional<double> target = {};  ///< fitness
 };
 
+/// What ended a search.
 enum class StopReason { generations, evaluations, stall, seconds, target, cancelled };
+/// The name of the enumerator, for files and messages.
 const char* name(StopReason reason);
 
+/// How far a search is.
 struct SearchProgress {
-  int generation = 0;  ///< 0: the first
-  int evaluations = 0;
-  int planned = 0;    ///< evaluations in all, at most; an estimate
-  double best = 0.0;  ///< fitness; NaN while nothing feasible was found
+  int generation = 0;   ///< 0: the first
+  int evaluations = 0;  ///< made so far
+  int planned = 0;      ///< evaluations in all, at most; an estimate
+  double best = 0.0;    ///< fitness; NaN while nothing feasible was found
   double mean = 0.0;  ///< of the feasible of the last generation; NaN before and if there are none
-  double seconds = 0.0;
+  double seconds = 0.0;       ///< since the search began
   double seconds_left = 0.0;  ///< estimated from the pace and the stop rules; NaN if unknown
 };
 
 /// How to search, whatever is searched.
 struct SearchSettings {
-  std::variant<MemeticSearch, GeneticAlgorithm> method = MemeticSearch{};
-  std::uint64_t seed = 1;
-  StopRules stop = {};
-  unsigned threads = 0;  ///< 0: one per core. The result does not depend on it.
+  std::variant<MemeticSearch, GeneticAlgorithm> method = MemeticSearch{};  ///< and its numbers
+  std::uint64_t seed = 1;  ///< same seed, same result
+  StopRules stop = {};     ///< when the search ends
+  unsigned threads = 0;    ///< 0: one per core. The result does not depend on it.
   /// After every evaluation and, with the mean of a batch of points, after the batch; one call at a
   /// time, from any thread; false cancels.
   std::function<bool(const SearchProgress&)> progress = nullptr;

@@ -18,17 +18,17 @@ namespace excavplan {
 
 /// Between which digs a search chooses: by default those of dig_parameter_table().
 struct DigBounds {
-  DigParameters lower;
-  DigParameters upper;
+  DigParameters lower;  ///< smallest value of each
+  DigParameters upper;  ///< largest value of each
   DigBounds();
 };
 
 /// An evaluation is a dig, its fitness the dig's worth.
 struct DigSearchOptions : SearchSettings {
-  std::vector<DigParameters> start = {};  ///< known good digs to begin with
-  DigObjective objective = {};
-  DigBounds bounds = {};
-  StartRule start_rule = StartRule::Kind::least_work;
+  std::vector<DigParameters> start = {};               ///< known good digs to begin with
+  DigObjective objective = {};                         ///< what is maximised
+  DigBounds bounds = {};                               ///< of the numbers of the path
+  StartRule start_rule = StartRule::Kind::least_work;  ///< where digs begin
 };
 
 /// Settings for as many generations as a budget of evaluations allows.
@@ -39,21 +39,22 @@ DigSearchOptions budget_search();
 /// and 200 from nothing. Ours.
 int evaluation_budget(bool uncertain, bool from_known);
 
+/// The best dig found.
 struct DigSearchResult {
-  PlannedDig dig;
-  DigPath path;        ///< of the dig, without an approach
-  double worth = 0.0;  ///< of the dig, by the objective
-  int evaluations = 0;
-  int refused = 0;       ///< digs that cannot be driven, not simulated
-  int infeasible = 0;    ///< of the evaluations: the machine stalled
-  bool stopped = false;  ///< by `progress`
-  StopReason stopped_by = StopReason::generations;
+  PlannedDig dig;                                   ///< the best one
+  DigPath path;                                     ///< of the dig, without an approach
+  double worth = 0.0;                               ///< of the dig, by the objective
+  int evaluations = 0;                              ///< digs simulated
+  int refused = 0;                                  ///< digs that cannot be driven, not simulated
+  int infeasible = 0;                               ///< of the evaluations: the machine stalled
+  bool stopped = false;                             ///< by `progress`
+  StopReason stopped_by = StopReason::generations;  ///< what ended the search
   SearchInsight insight;  ///< in the order of dig_parameter_table(), the start last if searched
 };
 
 /// The dig that a search came nearest to a feasible one with.
 struct NearestDig {
-  DigParameters parameters;
+  DigParameters parameters;       ///< of its path
   std::optional<double> start_x;  ///< [m]; nothing if no start was found for it
   /// The share of the path that is left where the machine stalls, 0 .. 1; above 1 for a path that
   /// cannot be driven, more the earlier it fails.

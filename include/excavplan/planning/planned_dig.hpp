@@ -14,7 +14,7 @@ namespace excavplan {
 
 /// A dig with what it is expected to lift and to cost.
 struct PlannedDig {
-  DigParameters parameters;
+  DigParameters parameters;     ///< of its path
   double start_x = 0.0;         ///< [m]
   double payload_mass = 0.0;    ///< moist [kg]
   double payload_volume = 0.0;  ///< loose [m^3]

@@ -11,6 +11,7 @@ namespace excavplan {
 /// Where along the boom plane a dig begins. It decides the work of the links, and with it up to a
 /// third of the efficiency: paths are compared under one rule (docs/methods.md#start).
 struct StartRule {
+  /// How the start is chosen.
   enum class Kind {
     largest_margin,  ///< make_dig_path_anywhere()
     /// Least positive work of the links' own weight, on known ground and with all joints 2 degrees
@@ -20,10 +21,12 @@ struct StartRule {
     given,
     searched,  ///< one more number of the search; for search_dig() only
   };
-  Kind kind = Kind::largest_margin;
-  double x = 0.0;  ///< if given [m]
+  Kind kind = Kind::largest_margin;  ///< how the start is chosen
+  double x = 0.0;                    ///< if given [m]
 
-  StartRule(Kind rule = Kind::largest_margin) : kind(rule) {}   // NOLINT: is a rule
+  /// Chosen by a rule.
+  StartRule(Kind rule = Kind::largest_margin) : kind(rule) {}  // NOLINT: is a rule
+  /// At a given x [m].
   StartRule(double start_x) : kind(Kind::given), x(start_x) {}  // NOLINT: so is a place
 };
 
@@ -31,8 +34,8 @@ std::string describe(const StartRule& rule);
 
 /// A rule that has a word on the command line.
 struct StartRuleInfo {
-  StartRule::Kind kind = StartRule::Kind::largest_margin;
-  std::string word;         ///< "work"
+  StartRule::Kind kind = StartRule::Kind::largest_margin;  ///< that the row is of
+  std::string word;                                        ///< "work"
   std::string description;  ///< "least work of the links' own weight"
 };
 

@@ -16,8 +16,8 @@ namespace excavplan {
 
 /// One of the soils that the ground may be.
 struct PossibleSoil {
-  const SoilSimulator* simulator = nullptr;
-  double probability = 0.0;  ///< > 0; all of them add up to 1
+  const SoilSimulator* simulator = nullptr;  ///< digs in that soil; not null
+  double probability = 0.0;                  ///< > 0; all of them add up to 1
 };
 
 /// The dig that is best on average, and what it would be worth to know the soil.
@@ -64,8 +64,8 @@ DigSpread dig_spread(const Machine& machine, const std::vector<PossibleSoil>& so
 
 /// A density the ground may have.
 struct PossibleDensity {
-  double percent = 0.0;
-  double probability = 0.0;
+  double percent = 0.0;      ///< 0 .. 100
+  double probability = 0.0;  ///< > 0; all of them add up to 1
 };
 
 /// Nodes of the Gauss quadrature for a normal distribution cut off at 0 and 100 %: means over them

@@ -12,11 +12,12 @@
 
 namespace excavplan {
 
+/// What is dug for a calibration.
 struct CalibrationOptions {
-  std::vector<double> densities_percent = {};  ///< empty: 0, 5 .. 100, as the paper does
-  DigParameters path = paper_fixed_path();
-  double cell_size = 0.05;  ///< [m]
-  SimulatorKind simulator = default_simulator();
+  std::vector<double> densities_percent = {};     ///< empty: 0, 5 .. 100, as the paper does
+  DigParameters path = paper_fixed_path();        ///< of every dig
+  double cell_size = 0.05;                        ///< [m]
+  SimulatorKind simulator = default_simulator();  ///< that digs
 };
 
 /// Digs the simulator at every density, measures the bulking factor from its height maps as the

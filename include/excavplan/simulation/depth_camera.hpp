@@ -11,27 +11,27 @@
 #include <excavplan/simulation/sensors.hpp>
 
 /// @file
-/// What a depth camera or a scanning lidar sees of a surface, errors included
-/// (docs/methods.md#sensors).
+/// Scans of a surface by a depth camera or a lidar, errors included
+/// (`docs/methods.md#sensors`).
 
 namespace excavplan {
 
 /// A depth camera in the site frame.
 ///
-/// By default depth has white noise and dropouts only. The other errors of a stereo camera are off
-/// until asked for: with_errors_of() sets them all.
+/// By default depth has white noise and dropouts only; with_errors_of() sets all errors of a stereo
+/// camera.
 struct DepthCamera {
   Eigen::Vector3d position = {0.0, 0.0, 2.5};  ///< [m]
   Eigen::Vector3d target = {0.0, 0.0, 0.0};    ///< point on the optical axis [m]
   int width = 256;                             ///< pixels; the image's x axis is level
-  int height = 144;
-  double horizontal_view = 1.5184;  ///< field of view [rad]; ours: 87 deg
-  double noise = 0.0027;            ///< sd of the depth at 1 m, grows with range squared [m]; ours
-  double dropouts = 0.02;           ///< share of pixels without depth [-]
-  double max_range = 6.0;           ///< [m]; ours
-  int frames = 1;                   ///< averaged; noise and dropouts differ from frame to frame
-  double pattern_noise = 0.0;   ///< sd at 1 m of what all frames of a scan share, grows with range
-                                ///< squared [m]
+  int height = 144;                            ///< pixels
+  double horizontal_view = 1.5184;             ///< field of view [rad]; ours: 87 deg
+  double noise = 0.0027;   ///< sd of the depth at 1 m, grows with range squared [m]; ours
+  double dropouts = 0.02;  ///< share of pixels without depth [-]
+  double max_range = 6.0;  ///< [m]; ours
+  int frames = 1;          ///< averaged; noise and dropouts differ from frame to frame
+  /// sd at 1 m of the part common to all frames of a scan, grows with range squared [m].
+  double pattern_noise = 0.0;
   double pattern_length = 3.0;  ///< its covariance falls as exp(-d^2 / (2 length^2)) [pixel]
   double disparity_step = 0.0;  ///< 1 / depth comes in multiples of this [1/m]; 0: in none
   double flying_pixels = 0.0;   ///< share of the pixels at a step of depth that lie between both

@@ -7,16 +7,16 @@
 
 /// @file
 /// The error models of sensors: scans are simulated and surveys are planned with the same figures
-/// (docs/methods.md#sensors).
+/// (`docs/methods.md#sensors`).
 
 namespace excavplan {
 
 /// Errors of a sensor that sends rays at equal angles. What has no unit is a count or a share.
 struct Sensor {
   std::string name;           ///< that chooses it on the command line: "d435i"
-  double noise = 0.0;         ///< sd of one range at 1 m that differs from frame to frame [m]
-  double pattern = 0.0;       ///< sd at 1 m of what all frames of a scan share [m]
-  double pattern_rays = 0.0;  ///< rays over which it is shared: covariance exp(-n^2 / (2 rays^2))
+  double noise = 0.0;         ///< sd at 1 m of a range, independent from frame to frame [m]
+  double pattern = 0.0;       ///< sd at 1 m of the part common to all frames of a scan [m]
+  double pattern_rays = 0.0;  ///< its length in rays: covariance exp(-n^2 / (2 rays^2))
   double range_power = 0.0;   ///< both grow with range to this power: 2 for stereo, 0 for lidar
   double ray_angle = 0.0;     ///< between neighbouring rays [rad]
   double view_across = 0.0;   ///< field of view [rad]
@@ -29,12 +29,13 @@ struct Sensor {
   double flying_pixels = 0.0;   ///< share of the pixels at a step of depth that lie between both
 };
 
-/// All sensors with a model; the first is the default. Their figures and where they come from stand
-/// in src/simulation/sensors.cpp.
+/// All sensors with a model; the first is the default. Their figures and the sources are in
+/// src/simulation/sensors.cpp.
 const std::vector<Sensor>& sensors();
+/// The first of them.
 inline const Sensor& default_sensor() { return sensors().front(); }
 
-/// @throws Error (bad_input) naming the sensors there are
+/// The sensor of this name. @throws Error (bad_input) naming the sensors there are
 const Sensor& sensor_of_word(const std::string& word);
 
 }  // namespace excavplan

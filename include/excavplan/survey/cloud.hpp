@@ -17,9 +17,9 @@ namespace excavplan {
 /// Points of a scan [m]. Points that are not finite are kept in the order of the file, as an
 /// organised cloud needs them; functions that measure leave them out.
 struct Cloud {
-  std::vector<Eigen::Vector3d> points;
-  std::size_t width = 0;   ///< of an organised cloud, else points.size()
-  std::size_t height = 1;  ///< 1 unless organised
+  std::vector<Eigen::Vector3d> points;  ///< in the order of the file [m]
+  std::size_t width = 0;                ///< of an organised cloud, else points.size()
+  std::size_t height = 1;               ///< 1 unless organised
 };
 
 /// How a cloud is written.
@@ -74,12 +74,12 @@ void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);
 
 /// What is in a cloud.
 struct CloudSummary {
-  std::size_t points = 0;
-  std::size_t finite_points = 0;
+  std::size_t points = 0;                              ///< of the cloud
+  std::size_t finite_points = 0;                       ///< without NaN and infinity
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< over the finite points [m]; NaN if there
                                                        ///< are none
-  Eigen::Vector3d min = Eigen::Vector3d::Zero();
-  Eigen::Vector3d max = Eigen::Vector3d::Zero();
+  Eigen::Vector3d min = Eigen::Vector3d::Zero();  ///< smallest x, y and z of the finite points [m]
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();  ///< largest x, y and z of the finite points [m]
   double density = 0.0;     ///< points per m^2 of occupied ground; NaN if they have no area
   std::string frame_guess;  ///< "site (z up, ground near 0)", "map (large
                             ///< coordinates)", "camera (z forward)", "unknown"

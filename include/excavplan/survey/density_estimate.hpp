@@ -23,8 +23,8 @@ namespace excavplan {
 
 /// The scans of one dig.
 struct DigScans {
-  Scan before;  ///< of the whole scene or, with `dump`, of the dig area alone
-  Scan after;
+  Scan before;                        ///< of the whole scene or, with `dump`, of the dig area alone
+  Scan after;                         ///< of the same area as `before`
   std::optional<ScanPair> dump = {};  ///< of the dump area: the paper's four clouds
 };
 
@@ -36,20 +36,20 @@ enum class VolumeMethod {
 
 /// The dig as it was driven. It tells what fell back into the cut; scans must be in the site frame.
 struct DugPath {
-  Machine machine;
-  DigParameters parameters;
-  double start_x = 0.0;  ///< where the path met the ground [m]
+  Machine machine;           ///< that drove it
+  DigParameters parameters;  ///< of the path
+  double start_x = 0.0;      ///< where the path met the ground [m]
 };
 
 /// Settings of estimate_density().
 struct DensityOptions {
-  VolumeMethod method = VolumeMethod::surface;
+  VolumeMethod method = VolumeMethod::surface;  ///< how volumes are found
   std::optional<double> cell_size;  ///< of the height map, and voxel of the paper's method [m];
                                     ///< else cell_for() the sparsest scan
   bool registered = true;  ///< false: the sensor stood still, scans are not brought onto each other
   ChangeOptions change;    ///< dig area, dump area and more
-  std::optional<DugPath> dug_path;
-  unsigned threads = 0;  ///< 0: one per core; the result is the same for any number
+  std::optional<DugPath> dug_path;  ///< if it is known
+  unsigned threads = 0;             ///< 0: one per core; the result is the same for any number
 };
 
 /// How the scan after was brought onto the one before.
@@ -61,7 +61,7 @@ struct ScanRegistration {
 /// What the scans of a dig tell. Without dumped soil in the scans there are volumes but no bulking
 /// factor and no density, which a warning says.
 struct DensityEstimate {
-  VolumeMethod method = VolumeMethod::surface;
+  VolumeMethod method = VolumeMethod::surface;  ///< how volumes were found
   /// Volumes, their covariance, zones and height change. Zones and height change are those of the
   /// surface for both methods.
   VolumeChange change;
@@ -69,13 +69,13 @@ struct DensityEstimate {
   std::optional<Fallback> fallback;   ///< if the path that was dug is known
   BlockReport blocks;                 ///< voids between blocks of hard soil
   std::optional<Measured> corrected;  ///< k freed of fallback and voids, if there is either [-]
-  std::optional<RelativeDensity> density;  ///< percent, raw, sd, 95 % interval
-  double density_without_fallback = 0.0;   ///< had nothing fallen back, where k is known [%]
-  DensityLaw law;                          ///< that was used
-  bool trustworthy = true;
-  std::vector<Warning> warnings;                      ///< of volumes, density and blocks, each once
-  double cell_size = 0.0;                             ///< [m]
-  std::optional<ScanRegistration> registration;       ///< nothing if the sensor stood still
+  std::optional<RelativeDensity> density;        ///< percent, raw, sd, 95 % interval
+  double density_without_fallback = 0.0;         ///< had nothing fallen back, where k is known [%]
+  DensityLaw law;                                ///< that was used
+  bool trustworthy = true;                       ///< false: see the warnings
+  std::vector<Warning> warnings;                 ///< of volumes, density and blocks, each once
+  double cell_size = 0.0;                        ///< [m]
+  std::optional<ScanRegistration> registration;  ///< nothing if the sensor stood still
   std::optional<ScanRegistration> dump_registration;  ///< if the dump area has scans of its own
 
   /// The density for plan_dig(); nothing where there is none.
@@ -104,8 +104,8 @@ DensityEstimate estimate_density(const DigScans& scans, const SoilKind& soil,
 
 /// What both methods make of the same scans.
 struct BothEstimates {
-  DensityEstimate surface;
-  DensityEstimate paper;
+  DensityEstimate surface;  ///< by VolumeMethod::surface
+  DensityEstimate paper;    ///< by VolumeMethod::paper
 };
 
 /// As estimate_density(), whatever the options say of the method.

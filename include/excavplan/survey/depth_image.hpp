@@ -13,10 +13,10 @@ namespace excavplan {
 
 /// Pinhole intrinsics [pixel] and scale of a depth image.
 struct DepthIntrinsics {
-  double fx = 0.0;
-  double fy = 0.0;
-  double cx = 0.0;
-  double cy = 0.0;
+  double fx = 0.0;            ///< focal length along a row [pixel]
+  double fy = 0.0;            ///< focal length along a column [pixel]
+  double cx = 0.0;            ///< column of the optical axis [pixel]
+  double cy = 0.0;            ///< row of the optical axis [pixel]
   double depth_unit = 0.001;  ///< metres per count; RealSense: 0.001
   double min_depth = 0.1;     ///< nearer pixels are dropped [m]
   double max_depth = 20.0;    ///< farther pixels are dropped [m]
@@ -59,8 +59,8 @@ Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrin
 
 /// Points of a scan whose places in the site are known, pair by pair.
 struct KnownPoints {
-  std::vector<Eigen::Vector3d> in_camera;
-  std::vector<Eigen::Vector3d> in_site;
+  std::vector<Eigen::Vector3d> in_camera;  ///< [m]
+  std::vector<Eigen::Vector3d> in_site;    ///< the same points [m]
 };
 
 /// Reads them from a CSV file with the columns x_m, y_m, z_m of the site and either u_px, v_px,

@@ -15,19 +15,21 @@
 
 namespace excavplan {
 
+/// What a log records.
 enum class Spent { fuel, energy };
+/// What the payload is given in.
 enum class Lifted { volume, mass };
 
 /// What a bucket held.
 struct Payload {
-  Lifted kind = Lifted::volume;
-  Measured amount;  ///< [m^3] or [kg], > 0; the sd is NaN if it is not known
+  Lifted kind = Lifted::volume;  ///< volume or mass
+  Measured amount;               ///< [m^3] or [kg], > 0; the sd is NaN if it is not known
 };
 
 /// One dig in a log: a CSV file with the column time_s and one of fuel_flow_ml_per_s,
 /// fuel_flow_l_per_h, power_w, or boom_power_w with arm_power_w and bucket_power_w.
 struct LoggedDig {
-  std::string file;
+  std::string file;            ///< the log
   std::optional<double> from;  ///< time_s at which the dig starts [s]; else the first of the log
   std::optional<double> to;    ///< time_s at which it ends [s]; else the last of the log
   std::variant<Payload, ScanPair> lifted;  ///< or the scans of the dump area that show it
@@ -38,13 +40,13 @@ struct LoggedDig {
 
 /// Payload per fuel or energy.
 struct DigEfficiency {
-  std::string file;
-  Spent spent = Spent::fuel;
-  double cost = 0.0;      ///< fuel [mL] or energy [kJ]
-  double duration = 0.0;  ///< [s]
-  Payload payload;
-  bool trustworthy = true;  ///< false after a warning that casts doubt on it
-  std::vector<Warning> warnings;
+  std::string file;               ///< the log
+  Spent spent = Spent::fuel;      ///< what the log records
+  double cost = 0.0;              ///< fuel [mL] or energy [kJ]
+  double duration = 0.0;          ///< [s]
+  Payload payload;                ///< what was lifted
+  bool trustworthy = true;        ///< false after a warning that casts doubt on it
+  std::vector<Warning> warnings;  ///< of the log and the payload
 
   Measured value() const;      ///< payload per cost
   std::string unit() const;    ///< "m3_per_ml", "kg_per_kj"

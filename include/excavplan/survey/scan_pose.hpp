@@ -37,8 +37,9 @@ struct LevelPose {
 /// one plane, or if that plane passes the sensor within 5 cm
 LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed = 1);
 
+/// A pose found from known points.
 struct PointPose {
-  Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();
+  Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();  ///< a rigid motion
   std::vector<double> residuals;  ///< distance of every point from its place [m]
   double rms = 0.0;               ///< of the residuals [m]
 };

@@ -14,7 +14,8 @@
 #include <excavplan/ground/volume_change.hpp>
 #include <excavplan/survey/cloud.hpp>
 
-/// @file Surfaces from scans: files of any size, which are read more than once and never held, or
+/// @file
+/// Surfaces from scans: files of any size, which are read more than once and never held, or
 /// clouds in memory, which give the same bytes.
 
 namespace excavplan {
@@ -31,13 +32,14 @@ struct Scan {
 /// another frame than `site_from_scan` says.
 class FrameError : public Error {
  public:
+  /// @param message  names the scans and what does not fit
   explicit FrameError(const std::string& message) : Error(ErrorKind::bad_file, message) {}
 };
 
 /// What a first pass over a scan tells of its points inside the area.
 struct ScanOutline {
-  std::uint64_t points = 0;
-  std::uint64_t finite_points = 0;
+  std::uint64_t points = 0;         ///< finite or not
+  std::uint64_t finite_points = 0;  ///< inside the area
   std::optional<Rectangle> extent;  ///< as plan_extent(); none without finite points
   double density = 0.0;             ///< points per m^2 of occupied ground; NaN if they have no area
 };
@@ -79,13 +81,13 @@ std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Recta
 
 /// Two scans of one piece of ground.
 struct ScanPair {
-  Scan before;
-  Scan after;
+  Scan before;  ///< the dig
+  Scan after;   ///< the dig
 };
 
 /// Surfaces of a pair of scans, for measure_change().
 struct RegisteredPair {
-  SurfacePair surfaces;
+  SurfacePair surfaces;  ///< on one grid, with their alignment
   /// Takes points of the scan after to where the ground that did not change says they belong, in
   /// the frame of the scan before; the identity where nothing significant moved.
   Eigen::Matrix4d correction = Eigen::Matrix4d::Identity();

@@ -22,10 +22,10 @@ struct SurveyPlan {
   double wall_angle = 1.22;       ///< of the pit [rad]
   double angle_of_repose = 0.61;  ///< of heap and spill [rad]
   double surveyed_area = 25.0;    ///< around the dig and around the heap, each [m^2]
-  Sensor sensor = default_sensor();
-  double height = 2.5;            ///< of the sensor above the ground [m]
-  double offset = 1.0;            ///< from the middle of the area, in plan [m]
-  int frames = 30;                ///< averaged
+  Sensor sensor = default_sensor();  ///< its error model
+  double height = 2.5;               ///< of the sensor above the ground [m]
+  double offset = 1.0;               ///< from the middle of the area, in plan [m]
+  int frames = 30;                   ///< averaged
   bool registered = false;        ///< the scans are registered on stable ground: the sensor moved
   double density_slope = 161.57;  ///< of the density law, dd/dk [%]; the paper's line
 };
@@ -41,11 +41,11 @@ struct SurveyForecast {
   double datum_sd = 0.0;            ///< of the height of one scan against the other [m]
   /// Shares of the variance of the bulking factor; they sum to 1.
   double white_share = 0.0;
-  double correlated_share = 0.0;
-  double datum_share = 0.0;
-  double occlusion_share = 0.0;
-  double hidden_share = 0.0;  ///< of pit and heap, hidden behind rim and crest [-]
-  bool in_view = true;        ///< pit and spill, and the heap, fit into the field of view
+  double correlated_share = 0.0;  ///< of the variance: errors that neighbouring points share
+  double datum_share = 0.0;       ///< of the variance: the height between both scans
+  double occlusion_share = 0.0;   ///< of the variance: ground that the sensor does not see
+  double hidden_share = 0.0;      ///< of pit and heap, hidden behind rim and crest [-]
+  bool in_view = true;            ///< pit and spill, and the heap, fit into the field of view
 };
 
 /// Predicts the error of a survey; within a fifth of what 60 simulated surveys scatter at 1.6 to
