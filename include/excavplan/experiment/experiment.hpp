@@ -17,7 +17,7 @@ namespace excavplan {
 /// What is dug and planned with.
 struct ExperimentOptions {
   DigParameters fixed_path = paper_fixed_path();  ///< of every first dig
-  PlanOptions plan = {};                          ///< `simulator` and `cell_size` hold for all digs
+  PlanOptions plan = {};  ///< of the second dig; `simulator` and `cell_size` hold for both
 };
 
 /// One soil, dug along both paths.
@@ -30,12 +30,12 @@ struct ExperimentResult {
   StartRule start_rule;          ///< that puts the start of the planned dig nearest to where it is
   PlannedDig fixed_moved;        ///< the fixed path, its start by that rule
 
-  /// Of the planned over the fixed dig in efficiency [%]. The shares of the path and of the start:
+  /// Of the planned over the fixed dig in efficiency [%]. Its parts, of the path and of the start:
   /// (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
   double gain_percent() const;
-  /// Of the planned path begun as the fixed one [%].
+  /// Of the planned path over the fixed one, both begun by start_rule [%].
   double path_gain_percent() const;
-  /// Of the start alone [%].
+  /// Of the fixed path begun by start_rule over its own start [%].
   double start_gain_percent() const;
 };
 
@@ -44,8 +44,7 @@ struct ExperimentResult {
 /// All on level ground.
 ///
 /// @throws Error (bad_input) if the density is outside 0 .. 100, the fixed path cannot be dug, or
-/// no
-///         dig is feasible at the estimate
+/// no dig is feasible at the estimate
 /// @throws Error as plan_dig()
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options = {});
