@@ -9,6 +9,8 @@
 #include <memory>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/planning/dig_search.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/parallel.hpp"

@@ -48,7 +48,7 @@ struct Family {
   bool in_mean;  ///< part of the geometric mean: the excavation-like ones
 };
 
-/// One run of one optimiser: counts, and says when it is over.
+/// One run of one optimiser: counts evaluations and ends it when they are used up.
 class Trial {
  public:
   struct Over : std::exception {};

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Digs at random and says how near any of them came to the physical bound of the efficiency,
+/// Digs at random and prints how near any of them came to the physical bound of the efficiency,
 /// f <= 1 / (g dz): the payload has to rise at least from the middle of the cut to the ground. Also
 /// what a dig costs, in full and as a search asks for it.
 ///

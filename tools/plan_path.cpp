@@ -111,7 +111,9 @@ Outcome work(const Inputs& inputs, Console& console) {
   const PlanOptions options = options_of(inputs, console);
   const DigPlan plan = inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
                                             : plan_dig(machine, soil, density, options);
-  if (!plan.dig && !plan.stopped) refuse(plan.reason + nearest_text(plan.nearest));
+  if (!plan.dig && !plan.stopped) {
+    refuse(plan.reason + (plan.nearest ? "; the nearest, " + describe(*plan.nearest) : ""));
+  }
 
   Outcome outcome;
   outcome.stopped_early = plan.stopped;

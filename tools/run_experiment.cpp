@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
 #include <excavplan/data_files.hpp>
 #include <excavplan/experiment/experiment.hpp>
 
@@ -97,11 +99,16 @@ std::string line_of(const Condition& condition, const ExperimentResult& result) 
 ExperimentOptions options_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {
   ExperimentOptions options;
   options.fixed_path = inputs.path;
-  options.cell_size = inputs.cell_size;
-  options.simulator = simulator_of_word(inputs.simulator);
-  options.search.seed = inputs.seed;
-  options.search.threads = static_cast<unsigned>(inputs.threads);
-  if (!inputs.search) options.library = library_of(inputs.library, machine, soil);
+  PlanOptions& plan = options.plan;
+  plan.method = inputs.search ? PlanMethod::search : PlanMethod::library;
+  if (inputs.library || !inputs.search) {
+    plan.library = std::make_shared<PathLibrary>(inputs.library ? load_path_library(*inputs.library)
+                                                                : shipped_library(machine, soil));
+  }
+  plan.search.seed = inputs.seed;
+  plan.search.threads = static_cast<unsigned>(inputs.threads);
+  plan.simulator = simulator_of_word(inputs.simulator);
+  plan.cell_size = inputs.cell_size;
   return options;
 }
 

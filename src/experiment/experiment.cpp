@@ -12,7 +12,6 @@
 #include <excavplan/simulation/scene.hpp>
 
 #include "base/text.hpp"
-#include "machine/dig_path_text.hpp"
 
 namespace excavplan {
 namespace {
@@ -30,8 +29,8 @@ class Experiment {
         soil_(soil),
         density_(density_percent),
         options_(options),
-        ground_(level_planning_ground(machine, options.cell_size)),
-        simulator_(options.simulator.make(machine, soil, density_percent)) {}
+        ground_(level_planning_ground(machine, options.plan.cell_size)),
+        simulator_(options.plan.simulator.make(machine, soil, density_percent)) {}
 
   PlannedDig dig(const DigParameters& parameters, const StartRule& start) const {
     const auto outcome = evaluate_dig(machine_, *simulator_, ground_, parameters, start);
@@ -45,24 +44,18 @@ class Experiment {
     SceneOptions dig;
     dig.path = fixed.parameters;
     dig.start_x = fixed.start_x;
-    dig.simulator = options_.simulator;
+    dig.simulator = options_.plan.simulator;
     const Terrain ground =
-        undisturbed(flat_ground(scene_extent(machine_, dig.dump_at), options_.cell_size));
+        undisturbed(flat_ground(scene_extent(machine_, dig.dump_at), options_.plan.cell_size));
     return run_scene(machine_, soil_, density_, ground, dig).volumes;
   }
 
   PlannedDig plan(double density) const {
-    if (options_.library) return look_up(*options_.library, density);
-    const auto simulator = options_.simulator.make(machine_, soil_, density);
-    const auto found = search_dig(machine_, *simulator, ground_, options_.search);
-    if (found) return found->dig;
-    std::string nearest;
-    if (found.nearest) {
-      nearest = "; the nearest, " + path_text(found.nearest->parameters, found.nearest->start_x) +
-                ": " + found.nearest->reason;
-    }
+    const DigPlan plan = plan_dig(machine_, soil_, density, options_.plan);
+    if (plan.dig) return *plan.dig;
     throw Error(ErrorKind::bad_input,
-                "no dig can be done at a density of " + readable(density) + " %" + nearest);
+                "no path for a density of " + readable(density) + " %: " + plan.reason +
+                    (plan.nearest ? "; the nearest, " + describe(*plan.nearest) : ""));
   }
 
   /// From its own start; by the default rule if the true soil forbids that one.

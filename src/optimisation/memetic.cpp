@@ -103,7 +103,7 @@ class Polish {
 
   std::optional<double> value_at(const VectorXd& u) {
     std::optional<Evaluation> outcome;
-    // A failure says nothing of its neighbourhood: ask a little aside before believing it.
+    // A failure need not hold for its neighbourhood: a point beside it is tried too.
     for (int attempt = 0; attempt < 3; ++attempt) {
       VectorXd tried = u == start_u_ ? start_ : cube_.point(u);
       if (attempt > 0) tried = cube_.point(u + VectorXd::Constant(u.size(), aside(attempt)));

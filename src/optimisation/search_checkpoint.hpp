@@ -13,7 +13,7 @@
 
 namespace excavplan {
 
-/// All that decides the course of a method, in words.
+/// All settings that decide the course of a method, as text.
 std::string describe(const GeneticAlgorithm& method);
 
 /// An outcome as the constructors of Evaluation make it, whoever filled its fields, which a file

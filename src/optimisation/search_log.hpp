@@ -21,7 +21,7 @@
 
 namespace excavplan {
 
-/// What a call says; what it throws is a failure, with the text of a std::exception.
+/// The outcome of a call; an exception is a failed outcome, with the text of a std::exception.
 template <typename Call>
 auto caught(const Call& call) -> decltype(call()) {
   try {

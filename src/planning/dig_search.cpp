@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/planning/dig_search.hpp>
 
+#include "machine/dig_path_text.hpp"
 #include "planning/dig_problem.hpp"
 
 namespace excavplan {
@@ -11,6 +12,10 @@ DigBounds::DigBounds() {
     lower.*info.field = info.lower;
     upper.*info.field = info.upper;
   }
+}
+
+std::string describe(const NearestDig& nearest) {
+  return path_text(nearest.parameters, nearest.start_x) + ": " + nearest.reason;
 }
 
 DigSearchOptions budget_search() {

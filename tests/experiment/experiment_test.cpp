@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include <excavplan/data_files.hpp>
 
 #include "support/errors.hpp"
@@ -18,7 +20,7 @@ class ExperimentTest : public testing::Test {
   }
   ExperimentOptions looked_up() const {
     ExperimentOptions options;
-    options.library = load_path_library(find_data_file("libraries/zx120-loam.json"));
+    options.plan.library = std::make_shared<PathLibrary>(shipped_library(machine_, soil_));
     return options;
   }
 
@@ -35,7 +37,7 @@ TEST_F(ExperimentTest, PlansForTheDensityThatTheFixedDigShows) {
   EXPECT_EQ(result.estimate.percent,
             relative_density(law_, {result.volumes.bulking_factor, 0.0}).percent);
   EXPECT_EQ(to_vector(result.fixed.parameters), to_vector(paper_fixed_path()));
-  const PlannedDig plan = look_up(*options.library, result.estimate.percent);
+  const PlannedDig plan = look_up(*options.plan.library, result.estimate.percent);
   EXPECT_EQ(to_vector(result.planned.parameters), to_vector(plan.parameters));
   EXPECT_EQ(result.planned.start_x, plan.start_x);
 }
@@ -53,11 +55,12 @@ TEST_F(ExperimentTest, SplitsTheGainIntoPathAndStart) {
 
 TEST_F(ExperimentTest, DigsAndSearchesInTheSimulatorGiven) {
   ExperimentOptions options;
-  options.simulator = simulator_of_word("section");
-  options.search.stop.evaluations = 20;
+  options.plan.method = PlanMethod::search;
+  options.plan.simulator = simulator_of_word("section");
+  options.plan.search.stop.evaluations = 20;
   const ExperimentResult section = run(options);
   EXPECT_NE(section.volumes.bulking_factor, run(looked_up()).volumes.bulking_factor);
-  const auto simulator = options.simulator.make(machine_, soil_, 40.0);
+  const auto simulator = options.plan.simulator.make(machine_, soil_, 40.0);
   const auto again = evaluate_dig(machine_, *simulator, level_planning_ground(machine_),
                                   section.planned.parameters, StartRule(section.planned.start_x));
   EXPECT_EQ(std::get<PlannedDig>(again).payload_mass, section.planned.payload_mass);

@@ -468,8 +468,7 @@ TEST_F(Section, SaysWhatIsWrongWithAPath) {
   far.poses[1].bucket.x = std::nan("");
   EXPECT_EQ(message(ground, far), "dig: every pose of the path must be finite");
   Terrain narrow = undisturbed(flat_ground({1.0, -0.2, 9.0, 0.2}, 0.05));
-  EXPECT_EQ(message(narrow, path),
-            "dig: the bucket, y = -0.35 .. 0.35 m, must lie on the map");
+  EXPECT_EQ(message(narrow, path), "dig: the bucket, y = -0.35 .. 0.35 m, must lie on the map");
 }
 
 TEST_F(Section, RepeatedDigsAtOneSpotLoseNothing) {

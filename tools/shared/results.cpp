@@ -77,12 +77,6 @@ std::string path_text(const PlannedDig& dig) {
   return excavplan::path_text(dig.parameters, dig.start_x);
 }
 
-std::string nearest_text(const std::optional<NearestDig>& nearest) {
-  if (!nearest) return "";
-  return "; the nearest, " + excavplan::path_text(nearest->parameters, nearest->start_x) + ": " +
-         nearest->reason;
-}
-
 std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& spread) {
   return {
       "path         " + path_text(dig),

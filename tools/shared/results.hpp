@@ -23,8 +23,6 @@ namespace excavplan::tools {
 nlohmann::ordered_json volumes_json(const VolumeChange& change);
 /// "45.0 deg, 0.350 m, 1.50 m from x = 6.05 m"
 std::string path_text(const PlannedDig& dig);
-/// "; the nearest, ANGLE, ...: why it cannot be done", to follow what says that none was found.
-std::string nearest_text(const std::optional<NearestDig>& nearest);
 /// Path, payload, energy, efficiency and duration.
 std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& spread = {});
 

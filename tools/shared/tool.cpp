@@ -351,12 +351,4 @@ Machine machine_named(const std::string& name_or_path) {
   return load_machine(shipped_or_file("machines", name_or_path));
 }
 
-PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
-                       const SoilKind& soil) {
-  if (!file) return shipped_library(machine, soil);
-  PathLibrary library = load_path_library(*file);
-  require_fit(library, machine, soil, *file);
-  return library;
-}
-
 }  // namespace excavplan::tools

@@ -12,7 +12,6 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
-#include <excavplan/library/path_library.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -116,10 +115,5 @@ int tool_main(int argc, const char* const* argv, const About& about,
 /// Reads the soil or machine that a name or path means. @throws Error (bad_input) or (bad_file)
 SoilKind soil_named(const std::string& name_or_path);
 Machine machine_named(const std::string& name_or_path);
-
-/// The path library of this file, or the shipped one of the machine and the soil.
-/// @throws Error if it cannot be read, does not fit, or none is shipped
-PathLibrary library_of(const std::optional<std::string>& file, const Machine& machine,
-                       const SoilKind& soil);
 
 }  // namespace excavplan::tools

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
-#include <excavplan/library/path_library.hpp>
+#include <excavplan/library/plan_dig.hpp>
 #include <excavplan/planning/planner.hpp>
-#include <excavplan/simulation/simulators.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
@@ -20,10 +17,7 @@ namespace excavplan {
 /// What is dug and planned with.
 struct ExperimentOptions {
   DigParameters fixed_path = paper_fixed_path();  ///< of every first dig
-  std::optional<PathLibrary> library = {};        ///< paths are looked up in it; empty: searched
-  DigSearchOptions search = {};                   ///< if searched
-  double cell_size = 0.05;                        ///< of the simulated ground [m]
-  SimulatorKind simulator = default_simulator();  ///< digs, and plans if searched
+  PlanOptions plan = {};  ///< of the second dig; `simulator` and `cell_size` hold for both
 };
 
 /// One soil, dug along both paths.
@@ -36,12 +30,12 @@ struct ExperimentResult {
   StartRule start_rule;          ///< that puts the start of the planned dig nearest to where it is
   PlannedDig fixed_moved;        ///< the fixed path, its start by that rule
 
-  /// Of the planned over the fixed dig in efficiency [%]. The shares of the path and of the start:
+  /// Of the planned over the fixed dig in efficiency [%]. Its parts, of the path and of the start:
   /// (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
   double gain_percent() const;
-  /// Of the planned path begun as the fixed one [%].
+  /// Of the planned path over the fixed one, both begun by start_rule [%].
   double path_gain_percent() const;
-  /// Of the start alone [%].
+  /// Of the fixed path begun by start_rule over its own start [%].
   double start_gain_percent() const;
 };
 
@@ -49,8 +43,9 @@ struct ExperimentResult {
 /// factor of the height maps, plans a path for the estimate and digs along it in the true soil.
 /// All on level ground.
 ///
-/// @throws Error (bad_input) if the density is outside 0 .. 100 or the library, an option is out of
-///         range, the fixed path cannot be dug, or no dig is feasible at the estimate
+/// @throws Error (bad_input) if the density is outside 0 .. 100, the fixed path cannot be dug, or
+/// no dig is feasible at the estimate
+/// @throws Error as plan_dig()
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options = {});
 

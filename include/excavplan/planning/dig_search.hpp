@@ -61,6 +61,8 @@ struct NearestDig {
   double violation = 0.0;
   std::string reason;  ///< for people
 };
+/// "45.0 deg, 0.350 m, 1.50 m from x = 6.05 m: why it cannot be done"
+std::string describe(const NearestDig& nearest);
 
 /// The result of a search; empty if no dig was feasible.
 template <typename Result>
