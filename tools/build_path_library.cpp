@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include <excavplan/library/library_build.hpp>
 
 #include "base/text.hpp"
@@ -114,13 +112,15 @@ LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   options.threads = static_cast<unsigned>(inputs.threads);
   options.folder = inputs.cells.value_or(inputs.out + ".cells");
   options.note = [&console](const std::string& line) { console.note(line); };
-  options.progress = [&console](const LibraryProgress& now) {
-    const std::string left =
-        !std::isfinite(now.seconds_left) ? "" : ", " + readable(now.seconds_left, 2) + " s left";
-    console.progress(static_cast<double>(now.entries_done) / static_cast<double>(now.entries),
-                     std::to_string(now.entries_done) + " of " + std::to_string(now.entries) +
-                         " densities, " + std::to_string(now.evaluations) + " digs, now " +
-                         readable(1000.0 * now.best) + " kg/kJ" + left);
+  options.progress = [&console, watch = Stopwatch()](const LibraryProgress& now) {
+    const auto done = static_cast<double>(now.entries_done);
+    const auto all = static_cast<double>(now.entries);
+    const double seconds = watch.seconds() * (all - done) / done;
+    const std::string left = done > 0.0 ? ", " + readable(seconds, 2) + " s left" : "";
+    console.progress(done / all, std::to_string(now.entries_done) + " of " +
+                                     std::to_string(now.entries) + " densities, " +
+                                     std::to_string(now.evaluations) + " digs, now " +
+                                     readable(1000.0 * now.best) + " kg/kJ" + left);
     return !console.stop_requested();
   };
   return options;

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <random>
@@ -62,10 +60,9 @@ class Watch {
   explicit Watch(const LibraryBuildOptions& options) : options_(options) {}
 
   void expect_entry() { ++now_.entries; }
-  void entry_done(bool computed) {
+  void entry_done() {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++now_.entries_done;
-    computed_ += computed ? 1 : 0;
     tell();
   }
   bool dug(int digs, double best) {
@@ -84,18 +81,12 @@ class Watch {
 
  private:
   void tell() {
-    if (!options_.progress || stopped_) return;
-    now_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    now_.seconds_left = now_.seconds * static_cast<double>(now_.entries - now_.entries_done) /
-                        static_cast<double>(computed_);  // 0 / 0 or infinite at first
-    if (!options_.progress(now_)) stopped_ = true;
+    if (options_.progress && !stopped_ && !options_.progress(now_)) stopped_ = true;
   }
 
   const LibraryBuildOptions& options_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
   LibraryProgress now_;
-  int computed_ = 0;
   std::atomic<bool> stopped_{false};
 };
 
@@ -175,7 +166,7 @@ class Build {
         });
     for (const LibraryWorker& other : options_.other_workers) {
       workers.push_back(
-          [&](const std::string& task) { return watch_.stopped() ? std::string() : other(task); });
+          [this, &other](const std::string& task) { return watch_.stopped() ? "" : other(task); });
     }
     LibraryBuild build;
     build.stopped = !queue_.run(workers);
@@ -216,7 +207,7 @@ class Build {
          [=, &entry](const std::string& text) {
            entry.first = entry.found = read_answer(job_, entry.place, "task", text);
            if (!options_.folder.empty()) write_file(file, text);
-           watch_.entry_done(true);
+           watch_.entry_done();
          }});
     return entry;
   }
@@ -224,9 +215,8 @@ class Build {
   static std::string first_task(const Entry& entry, const std::vector<const Entry*>& parents) {
     std::vector<std::pair<double, PlannedDig>> digs;
     for (const Entry* parent : parents) {
-      if (parent->first.feasible) {
-        digs.push_back({parent->place.density_percent, parent->first.dig});
-      }
+      if (!parent->first.feasible) continue;
+      digs.push_back({parent->place.density_percent, parent->first.dig});
     }
     return to_text(first_search(entry.place, digs));
   }
@@ -240,7 +230,7 @@ class Build {
       watch_.note(std::string(e.what()) + "; it is computed anew");
       return false;
     }
-    watch_.entry_done(false);
+    watch_.entry_done();
     return true;
   }
 

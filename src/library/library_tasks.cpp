@@ -53,12 +53,6 @@ double nearest_anchor(double density) {
   });
 }
 
-std::string describe(const AnchoredSearch& method) {
-  return "anchors: " + std::to_string(method.points) + " points, " + std::to_string(method.basins) +
-         " basins, polish of " + std::to_string(method.polish_evaluations) +
-         "; others: " + std::to_string(method.inherited_evaluations) + " from neighbours";
-}
-
 /// All that decides what the first search for a place finds; the seed of all its searches.
 std::string identity(const LibraryJob& job, const LibraryPlace& place) {
   const LibrarySearch& search = job.search;
@@ -70,48 +64,36 @@ std::string identity(const LibraryJob& job, const LibraryPlace& place) {
          describe(DigSearchOptions{}.start_rule);
 }
 
+DigSearchOptions memetic(int points, int basins, int polish_evaluations) {
+  MemeticSearch method;
+  method.first_generation = points;
+  method.generations = 0;
+  method.basins = basins;
+  method.polish_evaluations = polish_evaluations;
+  DigSearchOptions options;
+  options.method = method;
+  return options;
+}
+
 /// From nothing.
 /// @param effort  number of times as many points as usual
 DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
-  DigSearchOptions options;
-  if (const auto* genetic = std::get_if<GeneticAlgorithm>(&search.method)) {
-    options.method = *genetic;
-    return options;
+  if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
+    return memetic(effort * anchored->points, anchored->basins, anchored->polish_evaluations);
   }
-  const auto& anchored = std::get<AnchoredSearch>(search.method);
-  MemeticSearch method;
-  method.first_generation = effort * anchored.points;
-  method.basins = anchored.basins;
-  method.polish_evaluations = anchored.polish_evaluations;
-  method.generations = 0;
-  options.method = method;
+  DigSearchOptions options;
+  options.method = std::get<GeneticAlgorithm>(search.method);
   return options;
 }
 
 /// A polish, and one more from its best with the simplex spread again.
 DigSearchOptions warm_search(const LibrarySearch& search,
                              const std::vector<DigParameters>& starts) {
-  const auto& anchored = std::get<AnchoredSearch>(search.method);
-  MemeticSearch method;
-  method.first_generation = 0;
-  method.generations = 0;
-  method.basins = 1;
-  method.polish_evaluations = anchored.inherited_evaluations / 2;
-  DigSearchOptions options;
-  options.method = method;
+  const int evaluations = std::get<AnchoredSearch>(search.method).inherited_evaluations;
+  DigSearchOptions options = memetic(0, 1, evaluations / 2);
   options.start = starts;
-  options.stop.evaluations = anchored.inherited_evaluations;
+  options.stop.evaluations = evaluations;
   return options;
-}
-
-/// Starts that ask less of the machine.
-std::vector<DigParameters> shallower(const DigParameters& start) {
-  std::vector<DigParameters> starts;
-  for (const double share : {0.85, 0.7}) {
-    starts.push_back(start);
-    starts.back().penetration_length *= share;
-  }
-  return starts;
 }
 
 /// Does the tasks of one place.
@@ -143,8 +125,11 @@ class Site {
  private:
   void search(const LibraryTask& task) {
     if (!task.starts.empty()) attempt(warm_search(search_, task.starts));
-    if (!answer_.feasible && !task.starts.empty()) {
-      attempt(warm_search(search_, shallower(task.starts.back())));
+    if (!task.starts.empty() && !answer_.feasible) {
+      std::vector<DigParameters> shallower(2, task.starts.back());
+      shallower[0].penetration_length *= 0.85;
+      shallower[1].penetration_length *= 0.7;
+      attempt(warm_search(search_, shallower));
     }
     if (!answer_.feasible || answer_.efficiency() < task.expected) attempt(cold_search(search_, 1));
     if (!answer_.feasible) attempt(cold_search(search_, 8));
@@ -248,7 +233,11 @@ LibraryTask first_search(const LibraryPlace& place,
 }
 
 std::string describe(const LibrarySearch& search) {
-  return std::visit([](const auto& method) { return describe(method); }, search.method);
+  if (const auto* method = std::get_if<GeneticAlgorithm>(&search.method)) return describe(*method);
+  const auto& method = std::get<AnchoredSearch>(search.method);
+  return "anchors: " + std::to_string(method.points) + " points, " + std::to_string(method.basins) +
+         " basins, polish of " + std::to_string(method.polish_evaluations) +
+         "; others: " + std::to_string(method.inherited_evaluations) + " from neighbours";
 }
 
 std::string entry_file_name(const LibraryJob& job, const LibraryPlace& place) {

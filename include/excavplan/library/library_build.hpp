@@ -16,7 +16,7 @@
 ///
 /// A library has an entry for each density on each slope. An entry has a seed of its own, and its
 /// search starts from the digs of at most two other densities, which depend on its density alone.
-/// So what is found for an entry depends on nothing else, and a library has the same bytes for any
+/// Then neighbours are compared, in an order that is fixed. So a library has the same bytes for any
 /// number of workers, interrupted and resumed.
 
 namespace excavplan {
@@ -54,8 +54,6 @@ struct LibraryProgress {
   std::size_t entries = 0;       ///< of the whole build
   int evaluations = 0;           ///< by the threads of this process
   double best = 0.0;             ///< last efficiency told of a search [kg/J]; NaN: none yet
-  double seconds = 0.0;          ///< since the build began
-  double seconds_left = 0.0;     ///< NaN or infinite: unknown yet
 };
 
 /// Does a task of a build: what it is asked and what it answers are texts, which may travel.
