@@ -89,6 +89,7 @@ TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
   const json plan = answer("plan-path", {"--soil", "sand", "--density", "50", "--library", file});
   EXPECT_EQ(plan.at("path"), library.at("entries").at(1).at("path"));
   EXPECT_EQ(plan.at("energy_kj"), library["entries"][1].at("energy_kj"));
+  refused(2, file + ": does not fit", "plan-path", {"--density", "40", "--library", file});
 }
 
 TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
