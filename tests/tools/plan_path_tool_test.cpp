@@ -89,7 +89,6 @@ TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
   const json plan = answer("plan-path", {"--soil", "sand", "--density", "50", "--library", file});
   EXPECT_EQ(plan.at("path"), library.at("entries").at(1).at("path"));
   EXPECT_EQ(plan.at("energy_kj"), library["entries"][1].at("energy_kj"));
-  refused(2, file + ": does not fit", "plan-path", {"--density", "40", "--library", file});
 }
 
 TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
@@ -369,6 +368,11 @@ TEST_F(BadInput, APlanDoesNotTrustAResultWhoseTrustIsNoTruthValue) {
   const std::string file =
       folder.write("result.json", R"({"density_percent": 40, "trustworthy": "yes"})");
   answer("plan-path", {"--density-from", file, "--strict"}, 4);
+}
+
+TEST_F(BadInput, ALibraryOfAnotherSoilIsNamedByItsFile) {
+  const std::string file = shipped("libraries/zx120-sand.json");
+  refused(2, file + ": does not fit", "plan-path", {"--density", "40", "--library", file});
 }
 
 TEST_F(BadInput, SearchOptionsAreRefusedByName) {
