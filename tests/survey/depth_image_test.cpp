@@ -365,7 +365,7 @@ TEST_F(DepthTool, PosesExcludeEachOther) {
     EXPECT_EQ(result.code, 2);
     EXPECT_NE(result.err.find(text), string::npos) << result.err;
   };
-  refused({"--level", "--points", "p.csv"}, "--pose, --level and --points exclude each other");
+  refused({"--level", "--points", "p.csv"}, "--pose, --level and --points are mutually exclusive");
   refused({"--pose-out", "p.txt"}, "--pose-out needs --level or --points");
 }
 

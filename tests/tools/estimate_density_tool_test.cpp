@@ -203,7 +203,7 @@ TEST_F(BadInput, HalfATaskIsRefused) {
   refused(2, "--dug-path and --dug-start go together", tool,
           {scan, later_scan, "--dug-start", "6"});
   refused(2, "takes no scans", tool, {scan, later_scan, "--plan-survey", "height=2"});
-  refused(2, "'hight' is not understood; it takes", tool, {"--plan-survey", "hight=2"});
+  refused(2, "'hight' is not a key of --plan-survey: ", tool, {"--plan-survey", "hight=2"});
   refused(2, "frames is 1.5, must be a whole number", tool, {"--plan-survey", "frames=1.5"});
   refused(2, "'height' must be KEY=VALUE", tool, {"--plan-survey", "height"});
 }

@@ -22,7 +22,7 @@ struct DensityInput {
   std::optional<std::string> file;
 };
 
-/// What can be told before the file is read. @throws Error (bad_input)
+/// Checks made before the file is read. @throws Error (bad_input)
 void check(const DensityInput& input);
 /// @throws Error (bad_file) naming file, key, value and rule
 GroundDensity density_of(const DensityInput& input);

@@ -33,7 +33,7 @@ struct SearchInputs {
 
 void declare_search(Arguments& arguments, SearchInputs& inputs);
 
-/// What can be told to be wrong before anything is read. @throws Error (bad_input)
+/// Checks made before anything is read. @throws Error (bad_input)
 void check(const SearchInputs& inputs);
 
 /// What is done with the options of a search.
