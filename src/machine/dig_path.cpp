@@ -49,7 +49,7 @@ std::string explain_cause(const Infeasible& stop) {
       return std::string("the ") + name(stop.joint) + " would be at " + degrees(stop.value) +
              ", its limit is " + degrees(stop.limit);
     case Reason::heel_contact:
-      return "the bucket floor stands at " + degrees(stop.value) +
+      return "the bucket floor is at " + degrees(stop.value) +
              " to the cut, its heel needs at least " + degrees(stop.limit);
     case Reason::too_deep:
       return "the tip is " + metres(stop.value) + " below the ground at the start, it may go " +
@@ -66,7 +66,7 @@ std::string explain_cause(const Infeasible& stop) {
     case Reason::bad_parameter:
       break;
   }
-  return "a parameter breaks its rule";
+  return "a parameter is out of range";
 }
 
 std::string explain(const Infeasible& stop) {

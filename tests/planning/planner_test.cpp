@@ -429,7 +429,7 @@ class DigCheckpoint : public Planner {
     return test::error_of([&] { search(simulator, terrain, true); }, ErrorKind::bad_file);
   }
   bool refuses(const SoilSimulator& simulator) const {
-    return refusal(simulator).find("which is another one") != std::string::npos;
+    return refusal(simulator).find("which differs from") != std::string::npos;
   }
   HeightMapSimulator in(const char* soil, double density) const {
     return {machine_, load_soil(find_data_file(std::string("soils/") + soil + ".json")), density};

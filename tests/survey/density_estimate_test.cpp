@@ -181,7 +181,7 @@ TEST(EstimateDensity, ScansThatCannotBeComparedAreRefused) {
   scans = whole_scene();
   std::swap(scans.before, scans.after);
   EXPECT_NE(error_of([&] { estimate_density(scans, paper_law()); }, ErrorKind::bad_file)
-                .find("look swapped"),
+                .find("are probably swapped"),
             std::string::npos);
   scans = whole_scene();
   scans.before.area = Rectangle{0.0, 0.0, 0.1, 0.1};

@@ -8,7 +8,7 @@
 #include "support/tool_answers.hpp"
 
 /// @file
-/// estimate-density, from two scans to the density and how far it is to be trusted.
+/// estimate-density, from two scans to the density and its trustworthiness.
 
 namespace excavplan::test {
 namespace {
@@ -209,7 +209,7 @@ TEST_F(BadInput, HalfATaskIsRefused) {
 }
 
 TEST_F(BadInput, SwappedScansAreRefused) {
-  refused(3, "before and after look swapped", "estimate-density",
+  refused(3, "before and after are probably swapped", "estimate-density",
           {later_scan, scan, "--plot", plot});
 }
 
