@@ -61,7 +61,7 @@ struct BestForEach {
   }
 };
 
-/// Side by side, each from nothing: the best dig for one soil need not be near that for another.
+/// In parallel, without a warm start: the best digs of two soils may be far apart.
 BestForEach best_for_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
                           const Terrain& terrain, const DigSearchOptions& options) {
   BestForEach best;

@@ -31,7 +31,7 @@ struct CloudFileFormat {
   std::string name;                  ///< CloudFormat::name
   std::string title;                 ///< for people: "XYZ text"
   std::vector<std::string> endings;  ///< of file names, in small letters; at least one
-  /// True if a file is of this format, told from its first bytes without going past them.
+  /// True if a file is of this format, detected from its first bytes without consuming them.
   bool (*holds)(FileStream& file);
   /// Reads a file of this format. @throws Error (bad_file)
   CloudShape (*stream)(FileStream& file, PointSink& sink);

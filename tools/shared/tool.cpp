@@ -155,7 +155,7 @@ struct ParsedWords {
 };
 
 /// CLI11 only sorts the words. Conversion and missing options come after the check for unknown
-/// ones, so that "--denisty 40" is told to be misspelt rather than --density to be missing.
+/// ones, so that "--denisty 40" is reported as misspelt rather than --density as missing.
 ParsedWords sort_words(int argc, const char* const* argv,
                        const std::vector<Arguments::Entry>& entries) {
   CLI::App app;

@@ -24,7 +24,7 @@ struct SearchBox {
   Eigen::VectorXd upper;  ///< largest value of each dimension
 };
 
-/// What the objective says of one point.
+/// Outcome of the objective at one point.
 struct Evaluation {
   /// Whether the point counts, breaks a rule, or could not be judged.
   enum class Status { ok, infeasible, failed, timed_out };
@@ -55,8 +55,8 @@ const char* name(Evaluation::Status status);
 /// Feasible before infeasible before failed or timed out; then less violation, then more fitness.
 bool better(const Evaluation& a, const Evaluation& b);
 
-/// Must say the same of the same point, and may be called from several threads. What it throws is a
-/// failed evaluation, with the text of a std::exception; the search goes on. So is an outcome that
+/// Must be deterministic, and may be called from several threads. An exception is a failed
+/// evaluation, with the text of a std::exception; the search continues. So is an outcome that
 /// the constructors of Evaluation would not make, such as a violation that is not finite.
 using Objective = std::function<Evaluation(const Eigen::VectorXd&)>;
 
@@ -81,9 +81,9 @@ struct SearchOptions : SearchSettings {
 
 /// One point the search asked for.
 struct SearchRecord {
-  /// Who asked for the point.
+  /// Which step of the search requested the point.
   enum class Origin { given, space_filling, random, polish, crossover, mutation, immigrant };
-  /// Where its outcome comes from.
+  /// Source of its outcome.
   enum class Source { simulated, cached, repair };
 
   Eigen::VectorXd point;              ///< as evaluated

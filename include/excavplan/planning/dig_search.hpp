@@ -11,8 +11,8 @@
 #include <excavplan/planning/planned_dig.hpp>
 
 /// @file
-/// Which dig suits the soil: the path of the highest worth, by default of the highest efficiency
-/// f = payload mass / energy.
+/// Search for the best dig in a soil: the path of the highest worth, by default of the highest
+/// efficiency f = payload mass / energy.
 
 namespace excavplan {
 

@@ -38,7 +38,7 @@ struct SoilLedger {
   double solids_after = 0.0;   ///< the same plus what is in the bucket [kg]
 };
 
-/// A joint lacked the torque to go on. A result, not an error.
+/// A joint lacked the torque to continue. A result, not an error.
 struct Stall {
   DigPhase phase = DigPhase::penetrate;  ///< in which the dig ended
   Joint joint = Joint::boom;             ///< that lacked torque

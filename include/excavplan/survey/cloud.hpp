@@ -29,7 +29,7 @@ struct CloudFormat {
 };
 
 /// Reads PCD (ascii, binary, binary_compressed), PLY (ascii, binary little and big endian) or XYZ
-/// text; the format is told from the content, not from the name.
+/// text; the format is detected from the content, not from the name.
 ///
 /// x, y and z may be float32, float64 or integers; other fields are skipped. Every rule of
 /// docs/formats.md#clouds is checked before memory is asked for; a file that would take more than
@@ -59,7 +59,7 @@ void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format
 /// The format a file name asks for: .pcd and .ply binary, .xyz .txt .asc text.
 /// @throws Error (bad_input) for any other ending
 CloudFormat cloud_format_of_name(const std::string& path);
-/// The endings it knows, for help: ".pcd, .ply, .xyz, .txt or .asc".
+/// The supported endings, for help: ".pcd, .ply, .xyz, .txt or .asc".
 std::string cloud_endings();
 
 /// Reads a 4 x 4 matrix of text that takes a scan into the site frame.
