@@ -3,8 +3,8 @@
 
 /// @file
 /// A controller without knowledge of its soil: it plans a dig, digs, scans, estimates the density
-/// and plans the next dig on the ground as it is left. Simulator and camera stand in for the
-/// machine; take their two lines out and put yours in.
+/// and plans the next dig on the ground as it is left. The simulator and its camera replace
+/// the machine here: substitute your own in their two lines.
 
 #include <cstdio>
 #include <memory>

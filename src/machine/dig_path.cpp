@@ -236,7 +236,7 @@ std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
   return std::nullopt;
 }
 
-/// The tip goes down a straight line with the bucket floor along it. An empty line still gives the
+/// The tip moves down a straight line with the bucket floor along it. An empty line still gives the
 /// first pose of the path.
 std::optional<Infeasible> Layout::penetrate() {
   const double angle = path_.parameters.penetration_angle;

@@ -95,7 +95,7 @@ VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& sur
 
 // ---- What is known beside the volumes ---------------------------------------------------------
 
-/// What lies on the floor of the path that was dug.
+/// Loose soil on the floor of the path that was dug.
 Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const VolumeChange& change) {
   const HeightMap& before = surfaces.before.height;
   HeightMap after = realigned(surfaces.after.height, surfaces.alignment);
@@ -122,7 +122,7 @@ Measured freed_of(const Measured& bulking, const Measured& fallback) {
           std::hypot((1.0 - fallback.value) * bulking.sd, (1.0 - bulking.value) * fallback.sd)};
 }
 
-/// The bulking factor that the law is asked for, if it is not that of the scans.
+/// The bulking factor for the law, if it differs from that of the scans.
 std::optional<Measured> corrected(const DensityEstimate& estimate) {
   if (!estimate.blocks.voids && !estimate.fallback) return std::nullopt;
   Measured k = *estimate.bulking;

@@ -115,7 +115,7 @@ double integral(const std::vector<double>& time, const std::vector<double>& rate
   return sum;
 }
 
-/// Longest pause between two rows of the dig, if it stands out from the others.
+/// Longest interval between two rows of the dig, if it is an outlier.
 std::optional<Warning> gap_in(const std::vector<double>& time, const Interval& dig,
                               const std::string& file) {
   constexpr double most_usual_steps = 10.0;  // ours

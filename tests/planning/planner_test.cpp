@@ -95,7 +95,7 @@ TEST_F(Planner, EvaluatesThePapersFixedPath) {
   EXPECT_LT(dig.duration, 8.0);
 }
 
-/// Energy and stall as told.
+/// Energy and stall as given.
 class Told : public SoilSimulator {
  public:
   Told(double energy, bool stalls) : energy_(energy), stalls_(stalls) {}
@@ -589,7 +589,7 @@ TEST_F(UncertainSearch, WhatIsKnownIsNotSimulatedAgain) {
         if (line.find("\"point\"") != std::string::npos) known += i == 0 ? 3 : 1;
       }
     }
-    EXPECT_GT(known, call * 3 / 4);  // the progress is told of generations, too
+    EXPECT_GT(known, call * 3 / 4);  // the progress is reported for generations, too
     EXPECT_EQ(digs_of([&] { run(options()); }), whole - known) << call;
   }
 }

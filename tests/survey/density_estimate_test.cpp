@@ -58,7 +58,7 @@ void expect_same(const DensityEstimate& a, const DensityEstimate& b) {
   EXPECT_EQ(a.cell_size, b.cell_size);
   EXPECT_EQ(a.change.excavated.value, b.change.excavated.value);
   EXPECT_EQ(a.change.dumped.value, b.change.dumped.value);
-  if (a.method == VolumeMethod::surface) {  // the paper's knows no error
+  if (a.method == VolumeMethod::surface) {  // the paper's gives no error
     EXPECT_EQ(a.change.after.sd, b.change.after.sd);
   }
   ASSERT_TRUE(a.density && b.density);

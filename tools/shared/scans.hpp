@@ -19,7 +19,7 @@ struct ScanFrames {
 /// @throws Error (bad_file) if a matrix cannot be read
 ScanPair scan_pair(const std::string& before, const std::string& after, const ScanFrames& frames);
 
-/// Runs `work`, and says with an error about the frame of a scan which options mend it.
+/// Runs `work`, and adds to an error about the frame of a scan the options that correct it.
 template <typename Work>
 auto with_frame_hint(const std::string& hint, const Work& work) {
   try {

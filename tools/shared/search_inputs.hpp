@@ -13,7 +13,7 @@
 
 namespace excavplan::tools {
 
-/// How a dig is searched, as said on the command line.
+/// Settings of a search for a dig, from the command line.
 struct SearchInputs {
   std::string goal = dig_goals().front().word;
   double rest_of_cycle = 0.0;

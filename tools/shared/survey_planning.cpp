@@ -16,7 +16,7 @@ namespace {
 
 struct Request {
   SurveyPlan plan;
-  double target = 5.0;  ///< standard deviation of the density asked for [points]
+  double target = 5.0;  ///< required standard deviation of the density [points]
 };
 
 struct Key {
@@ -81,7 +81,7 @@ Request parse(const std::string& text) {
 }
 
 std::string text_of(const std::optional<double>& value, const std::string& unit) {
-  return value ? readable(*value, 2) + unit : "n/a (not sufficient alone)";
+  return value ? readable(*value, 2) + unit : "n/a (insufficient alone)";
 }
 
 nlohmann::ordered_json json_of(const Request& request, const SurveyForecast& f,
@@ -126,8 +126,8 @@ std::vector<std::string> lines_of(const Request& request, const SurveyForecast& 
               " hidden ground",
           "for " + readable(request.target, 2) + " points, either",
           "  range    at most " + text_of(needs.range, " m at this angle of view"),
-          "  frames   at least " +
-              (needs.frames ? std::to_string(*needs.frames) : std::string("n/a (not sufficient alone)")),
+          "  frames   at least " + (needs.frames ? std::to_string(*needs.frames)
+                                                 : std::string("n/a (insufficient alone)")),
           "  noise    at most " + text_of(needs.noise, " times that of this sensor")};
 }
 

@@ -19,8 +19,8 @@ const char* name(SearchRecord::Origin origin);
 /// The name of the enumerator, for files.
 const char* name(SearchRecord::Source source);
 
-/// Every point asked, one line each: place, generation, origin, polish, parents (joined by ';'),
-/// source, status, fitness, violation, reason, coordinates.
+/// Every requested point, one line each: place, generation, origin, polish, parents (joined by
+/// ';'), source, status, fitness, violation, reason, coordinates.
 std::string to_csv(const SearchResult& result);
 
 /// Values of one parameter.

@@ -45,7 +45,7 @@ using DensityForm = std::variant<DensityLine, DensityClosedForm>;
 /// A law with its origin.
 struct DensityLaw {
   std::string name;    ///< "paper"
-  std::string source;  ///< for people: what it was fitted to
+  std::string source;  ///< text: what it was fitted to
   DensityForm form;    ///< that relative_density() uses
   /// For k corrected by free_of_fallback(): the counterpart of an "..._as_measured" form if the
   /// file has one, else `form` itself.

@@ -50,7 +50,7 @@ struct DigEfficiency {
 
   Measured value() const;      ///< payload per cost
   std::string unit() const;    ///< "m3_per_ml", "kg_per_kj"
-  std::string symbol() const;  ///< the same for people: "m3/mL"
+  std::string symbol() const;  ///< the same for display: "m3/mL"
 };
 
 /// Integrates the log by the trapezoid rule over the dig, negative power of a joint counted as 0,
