@@ -102,10 +102,10 @@ DensityOptions options_of(const Inputs& inputs) {
 
 Outcome work_on_scans(const Inputs& inputs) {
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
-    throw Error(ErrorKind::bad_input, "--dump-before and --dump-after go together");
+    throw Error(ErrorKind::bad_input, "--dump-before and --dump-after must be given together");
   }
   if (inputs.dug_path.has_value() != inputs.dug_start.has_value()) {
-    throw Error(ErrorKind::bad_input, "--dug-path and --dug-start go together");
+    throw Error(ErrorKind::bad_input, "--dug-path and --dug-start must be given together");
   }
   const DensityLaw law = law_named(inputs.law);
   const DigScans scans = scans_of(inputs);

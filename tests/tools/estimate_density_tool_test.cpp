@@ -200,7 +200,7 @@ TEST_F(BadInput, HalfATaskIsRefused) {
   const std::string tool = "estimate-density";
   refused(2, "AFTER is missing", tool, {scan});
   refused(2, "BEFORE is missing", tool, {});
-  refused(2, "--dug-path and --dug-start go together", tool,
+  refused(2, "--dug-path and --dug-start must be given together", tool,
           {scan, later_scan, "--dug-start", "6"});
   refused(2, "takes no scans", tool, {scan, later_scan, "--plan-survey", "height=2"});
   refused(2, "'hight' is not a key of --plan-survey: ", tool, {"--plan-survey", "hight=2"});

@@ -57,7 +57,7 @@ void RunInputs::check() const {
   go_together(dump_after && !dump_before, "dump-after", "dump-before");
   const int ways = int{volume.has_value()} + int{mass.has_value()} + int{dump_before.has_value()};
   if (ways != 1) {
-    throw Error(ErrorKind::bad_input, "what did " + *log + " lift? Give one of " +
+    throw Error(ErrorKind::bad_input, "payload of " + *log + ": give exactly one of " +
                                           option("volume") + ", " + option("mass") + ", or " +
                                           option("dump-before") + " with " + option("dump-after"));
   }

@@ -108,7 +108,7 @@ void check(const DensityInput& input) {
     refuse("--density-sd: " + number_text(*input.sd) + " must be at least 0");
   }
   if (input.percent.has_value() == input.file.has_value()) {
-    refuse("give --density or --density-from, one of the two");
+    refuse("give either --density or --density-from");
   }
   if (input.percent && !(*input.percent >= 0.0 && *input.percent <= 100.0)) {
     refuse("--density: " + number_text(*input.percent) + " % is outside 0 .. 100");

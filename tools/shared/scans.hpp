@@ -30,6 +30,6 @@ auto with_frame_hint(const std::string& hint, const Work& work) {
 }
 
 inline constexpr const char* pair_frame_hint =
-    "--before-frame and --after-frame bring them into one frame";
+    "--before-frame and --after-frame transform them into one frame";
 
 }  // namespace excavplan::tools
