@@ -64,6 +64,7 @@ PathLibraryEntry read_entry(JsonObject& object) {
 PathLibrary load_path_library(const std::string& path) {
   JsonObject file = JsonObject::open_sealed(path, read_file(path), format, version);
   PathLibrary library;
+  library.file = path;
   library.machine = file.text("machine");
   library.soil = file.text("soil");
   library.machine_fingerprint = file.text("machine_fingerprint");

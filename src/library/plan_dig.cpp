@@ -61,7 +61,8 @@ std::shared_ptr<const PathLibrary> library_of(const Task& task) {
         shipped_library(task.machine, task.soil, options.data_folder));
   }
   const std::string& own = options.simulator.name;
-  require_fit(*options.library, task.machine, task.soil, "the library",
+  const std::string& file = options.library->file;
+  require_fit(*options.library, task.machine, task.soil, file.empty() ? "the library" : file,
               options.library->simulator == own ? own : default_simulator().name);
   return options.library;
 }

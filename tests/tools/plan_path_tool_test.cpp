@@ -371,6 +371,11 @@ TEST_F(BadInput, APlanDoesNotTrustAResultWhoseTrustIsNoTruthValue) {
   answer("plan-path", {"--density-from", file, "--strict"}, 4);
 }
 
+TEST_F(BadInput, ALibraryOfAnotherSoilIsNamedByItsFile) {
+  const std::string file = shipped("libraries/zx120-sand.json");
+  refused(2, file + ": does not fit", "plan-path", {"--density", "40", "--library", file});
+}
+
 TEST_F(BadInput, SearchOptionsAreRefusedByName) {
   const Words search = {"--density", "40", "--search"};
   refused(2, "--goal: 'speed'", "plan-path", search + Words{"--goal", "speed"});

@@ -12,7 +12,7 @@
 #include <excavplan/planning/planner.hpp>
 #include <excavplan/simulation/scene.hpp>
 
-#include "library/library_file.hpp"  // dig_json()
+#include "planning/planned_digs.hpp"  // dig_json()
 
 /// @file
 /// Results as JSON, with the keys of docs/formats.md, and as lines of text.

@@ -62,6 +62,7 @@ struct PathLibrary {
   std::string search;                     ///< how the digs were searched, for people
   std::vector<PathLibraryEntry> entries;  ///< slope rising, then density; at least one
   std::vector<PathLibraryGap> gaps;       ///< in the same order
+  std::string file = {};                  ///< that it was read from; empty: none
 
   int evaluations() const;  ///< digs simulated for all entries
 };
