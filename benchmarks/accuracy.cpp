@@ -40,7 +40,7 @@ struct Kind {
   std::string name;
   ScanErrors errors;
   double camera_height = 0.0;  ///< above the ground [m]; 0: points spread evenly
-  bool registered = true;      ///< else the sensor is known to have stood still
+  bool registered = true;      ///< else the sensor is known not to have moved
   bool blocks = false;         ///< the heap is one of blocks, another for every seed
   void (*shape)(Dig&) = [](Dig&) {};
 };

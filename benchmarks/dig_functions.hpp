@@ -17,11 +17,11 @@ namespace excavplan {
 struct DigCondition {
   double density = 0.0;  ///< [%]
   double rise = 0.0;     ///< of the ground away from the machine [-]
-  long scanned = 0;      ///< digs looked at for the maximum
+  long scanned = 0;      ///< digs examined for the maximum
   double maximum = 0.0;  ///< best of them [kg/J]
 
   std::string name() const;
-  /// Every seed flips other axes, so that no optimiser is helped by where it begins to look.
+  /// Every seed flips other axes, so that no optimiser profits from its start.
   functions::Function function(std::uint64_t seed) const;
 };
 

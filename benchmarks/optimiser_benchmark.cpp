@@ -185,7 +185,7 @@ struct PagmoProblem {
   }
 };
 
-/// Starts anew whenever the algorithm thinks that it is done.
+/// Restarts whenever the algorithm has converged.
 template <typename Make>
 Optimiser from_pagmo(const std::string& name, unsigned population, const Make& make) {
   return {"pagmo " + name, [=](Trial& trial, std::uint64_t seed) {

@@ -31,5 +31,5 @@ int main(int count, char** words) {
   if (!estimate.density) return 1;  // no dumped soil in the scans, says a warning
   std::printf("bulking factor %.3f +- %.3f, density %.1f +- %.1f %%, %s\n", estimate.bulking->value,
               estimate.bulking->sd, estimate.density->percent, estimate.density->sd_percent,
-              estimate.trustworthy ? "to be trusted" : "not to be trusted");
+              estimate.trustworthy ? "trustworthy" : "not trustworthy");
 }

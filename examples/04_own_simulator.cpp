@@ -41,7 +41,7 @@ class SpecificEnergySimulator : public SoilSimulator {
     const double lifted = swollen * result.soil.bank_cut + result.soil.loose_cut;
     result.payload_volume = result.soil.payload = std::min(lifted, heaped_capacity(machine_));
     result.payload_mass = result.payload_volume * loose_.bulk_density;
-    // What does not fit was cut for nothing, and pushing the bucket along costs its part.
+    // Soil that does not fit was cut in vain; pushing the bucket also costs energy.
     result.energy.total = result.energy.soil =
         energy_per_volume_ * result.soil.bank_cut + friction_ * path.parameters.drag_length;
     return result;

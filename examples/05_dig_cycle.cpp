@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// A controller that knows nothing of its soil: it plans a dig, digs, scans, estimates the density
-/// and plans the next dig on the ground as it is left. Simulator and camera stand in for the
-/// machine; take their two lines out and put yours in.
+/// A controller without knowledge of its soil: it plans a dig, digs, scans, estimates the density
+/// and plans the next dig on the ground as it is left. The simulator and its camera replace
+/// the machine here: substitute your own in their two lines.
 
 #include <cstdio>
 #include <memory>
@@ -21,7 +21,7 @@ using namespace excavplan;
 
 namespace {
 
-constexpr double true_density = 60.0;  ///< which only the simulator is told [%]
+constexpr double true_density = 60.0;  ///< known to the simulator only [%]
 constexpr int digs = 3;
 
 Scan scan_of(std::vector<Eigen::Vector3d> points) {

@@ -13,13 +13,13 @@ namespace {
 
 const About about = {
     "build-path-library",
-    "searches the dig of the highest efficiency for each density of a soil by digging the "
-    "simulator, and writes them to a library that plan-path looks up. Several machines, soils and "
-    "slopes make a library for each machine and soil. It works in parallel by threads and under "
-    "mpirun, with the same result.",
+    "searches in the simulator for the dig of highest efficiency at each density of a soil, and "
+    "writes the digs to a path library for plan-path. Several machines, soils and slopes give one "
+    "library per machine and soil. Runs in parallel in threads and under mpirun, with the same "
+    "result.",
     {{"build-path-library --out loam.json", "the default: 0, 5 .. 100 % in loam with the ZX120"},
-     {"build-path-library --soil sand --densities 20:10:80 --out sand.json", "a coarser one"},
-     {"build-path-library --out loam.json --resume", "go on after an interrupt"},
+     {"build-path-library --soil sand --densities 20:10:80 --out sand.json", "a coarser library"},
+     {"build-path-library --out loam.json --resume", "resume an interrupted build"},
      {"build-path-library --soil loam,sand,clay --slopes=-10deg,0,10deg --out libraries",
       "three libraries of three slopes each in the folder libraries"},
      {"mpirun -n 4 build-path-library --out loam.json", "in four processes"}},
@@ -52,24 +52,24 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("machine", "NAME,..", inputs.machines, "zx120 or machine files");
   arguments.simulator(inputs.simulator);
   arguments.choice("method", inputs.method, {"memetic", "paper"},
-                   "memetic: three densities searched from nothing, the others from neighbours; "
+                   "memetic: three densities without a warm start, the others from neighbours; "
                    "paper: a genetic algorithm for each");
   arguments.option("points", inputs.anchored.points,
-                   "memetic: digs that the search from nothing begins with");
+                   "memetic: initial digs of a search without a warm start");
   arguments.option("polish", inputs.anchored.polish_evaluations,
-                   "memetic: digs of one Nelder-Mead search");
+                   "memetic: simulated digs of one Nelder-Mead search");
   arguments.option("inherited", inputs.anchored.inherited_evaluations,
-                   "memetic: digs of a density that starts from its neighbours");
-  arguments.option("population", inputs.genetic.population, "paper: individuals of a generation");
+                   "memetic: simulated digs of a density that starts from its neighbours");
+  arguments.option("population", inputs.genetic.population, "paper: population of a generation");
   arguments.option("generations", inputs.genetic.generations, "paper: generations of a search");
   arguments.option("cell", inputs.search.cell_size, Quantity::length,
-                   "cell of the simulated ground");
+                   "cell size of the simulated ground");
   arguments.option("seed", inputs.search.seed, "seed; the same seed gives the same file");
   arguments.option("threads", inputs.threads, "threads, 0 for one per core; same file for any");
   arguments.file("cells", inputs.cells,
-                 "folder for the file of each density, kept; what it holds is not computed again, "
-                 "and several runs may use it (default: beside --out, removed at the end)");
-  arguments.flag("resume", inputs.resume, "keep what an interrupted run with this --out computed");
+                 "folder for the results of each density; kept, reused by later runs and shared "
+                 "by parallel ones (default: beside --out, removed at the end)");
+  arguments.flag("resume", inputs.resume, "reuse results of an interrupted run with this --out");
   arguments.file("out", inputs.out,
                  "library to write; with several machines or soils a folder for "
                  "MACHINE-SOIL.json of each");

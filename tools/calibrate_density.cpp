@@ -16,11 +16,11 @@ namespace {
 
 const About about = {
     "calibrate-density",
-    "finds the law that turns a bulking factor into a relative density: from digs of the simulator "
-    "at known densities, or from measured samples.",
-    {{"calibrate-density --out loam.json", "dig the simulator at 0, 5 .. 100 %"},
+    "fits the density law, which gives the relative density for a bulking factor: from simulated "
+    "digs at known densities or from measured samples.",
+    {{"calibrate-density --out loam.json", "simulated digs at 0, 5 .. 100 %"},
      {"calibrate-density --samples digs.csv --out site.json",
-      "fit your own digs; the file has the columns bulking_factor,density_percent"},
+      "fit measured digs; columns bulking_factor,density_percent"},
      {"estimate-density before.pcd after.pcd --law site.json", "use the law"}}};
 
 struct Inputs {
@@ -41,7 +41,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
-                 "relative densities to dig [%], or a list a,b,c");
+                 "relative densities of the simulated digs [%], or a list a,b,c");
   arguments.option("path", inputs.path, "dig path");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   arguments.file("out", inputs.out, "law file to write, for estimate-density --law");
@@ -91,20 +91,18 @@ nlohmann::ordered_json difference_json(const BulkingDifference& difference) {
 std::vector<std::string> difference_lines(const BulkingDifference& difference) {
   const DensityCalibration::Sample& at = difference.largest;
   if (std::abs(difference.density_points) < 0.05) {
-    return {"true and measured k      agree at every density, within 0.05 points of it"};
+    return {"true and measured k      agree at every density within 0.05 points of density"};
   }
-  return {
-      "true and measured k      differ most at " + readable(at.density_percent) +
-          " %: " + readable(at.bulking_factor_true, 4) + " by dry mass, " +
-          readable(at.bulking_factor_measured, 4) + " from the height maps; taken for true, " +
-          readable(std::abs(difference.density_points), 2) + " points of density too " +
-          (difference.density_points > 0.0 ? "many" : "few"),
-      "why                      " + readable(100.0 * at.fallback_fraction) +
-          " % of the cut lay in the hole as loose soil: height maps see neither it nor the hole "
-          "under it",
-      "                         freed of it, k is within " +
-          (difference.unexplained < 1e-5 ? "0.00001" : readable(difference.unexplained, 2)) +
-          " of the true one at every density"};
+  return {"true and measured k      largest difference at " + readable(at.density_percent) +
+              " %: " + readable(at.bulking_factor_true, 4) + " by dry mass, " +
+              readable(at.bulking_factor_measured, 4) + " from the height maps; density " +
+              readable(std::abs(difference.density_points), 2) + " points too " +
+              (difference.density_points > 0.0 ? "high" : "low"),
+          "why                      " + readable(100.0 * at.fallback_fraction) +
+              " % of the cut soil fell back into the hole, where height maps cannot measure it",
+          "                         corrected for it, k is within " +
+              (difference.unexplained < 1e-5 ? "0.00001" : readable(difference.unexplained, 2)) +
+              " of the true one at every density"};
 }
 
 Outcome work(const Inputs& inputs) {
@@ -126,7 +124,7 @@ Outcome work(const Inputs& inputs) {
     for (std::string& line : difference_lines(*difference)) {
       outcome.lines.push_back(std::move(line));
     }
-    outcome.lines.push_back("Scans see no more than height maps do: the law for them is " +
+    outcome.lines.push_back("Scans measure what height maps measure: the law for scans is " +
                             calibration.use + ".");
   }
   return outcome;

@@ -29,35 +29,35 @@ const About about = {
     "a cloud in the site frame. The intrinsics are a JSON file {\"format\": "
     "\"excavplan-depth-intrinsics\", \"version\": 1, \"fx\": 615.5, \"fy\": 615.5, \"cx\": 320, "
     "\"cy\": 240} in pixels, optionally with depth_unit_m (0.001), min_depth_m (0.1) and "
-    "max_depth_m (20). Where the camera stood is given (--pose), found from known points "
-    "(--points), or, up and height alone, from the plane of the ground (--level). Scans before and "
-    "after a dig need one pose: find it once with --pose-out and give it to the second with "
+    "max_depth_m (20). The camera pose is given (--pose), found from known points "
+    "(--points), or, for tilt and height alone, from the ground plane (--level). Scans before and "
+    "after a dig must share one pose: write it with --pose-out and pass it to the second scan with "
     "--pose.",
     {{"depth-to-cloud depth.png --intrinsics d435i.json --pose camera_pose.txt --out scan.pcd",
-      "the pose takes the camera (x right, y down, z forward) into the site frame"},
+      "the pose transforms the camera frame (x right, y down, z forward) into the site frame"},
      {"depth-to-cloud first.png --average frames --intrinsics d435i.json --level --pose-out "
       "pose.txt --out before.pcd",
       "averages first.png and all .png files of the folder frames; z = 0 is the ground"},
      {"depth-to-cloud depth.png --intrinsics d435i.json --points markers.csv --out scan.pcd",
-      "markers.csv has the columns u_px,v_px,x_m,y_m,z_m: pixel and place in the site"},
+      "markers.csv has the columns u_px,v_px,x_m,y_m,z_m: pixel and position in the site frame"},
      {"depth-to-cloud depth.png --intrinsics d435i.json --out camera.ply",
-      "a cloud that stays in the camera frame"}}};
+      "a cloud in the camera frame"}}};
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("IMAGE", inputs.image, "depth image, 16-bit PNG");
   arguments.file("intrinsics", inputs.intrinsics, "camera intrinsics, JSON");
   arguments.require("intrinsics");
   arguments.text("average", "FILES", inputs.average,
-                 "more frames of the same view, averaged with IMAGE pixel by pixel: files with "
-                 "commas between them, or a folder, which stands for its .png files");
+                 "more frames of the same view, averaged with IMAGE pixel by pixel: files "
+                 "separated by commas, or a folder, for all its .png files");
   arguments.file("pose", inputs.pose,
-                 "4 x 4 text matrix that takes the camera into the site frame");
+                 "4 x 4 text matrix that transforms the camera frame into the site frame");
   arguments.flag("level", inputs.level,
-                 "level the cloud by the plane of the ground: origin on the ground below the "
-                 "camera, z up, x where the camera looks");
+                 "level the cloud by the ground plane: origin on the ground below the camera, z "
+                 "up, x along the view direction");
   arguments.file("points", inputs.points,
                  "CSV of 3 or more known points: u_px,v_px (or camera_x_m,camera_y_m,camera_z_m) "
-                 "and x_m,y_m,z_m in the site");
+                 "and x_m,y_m,z_m in the site frame");
   arguments.file("pose-out", inputs.pose_out, "write the pose found, for --pose of the next scan");
   arguments.file("out", inputs.out, "cloud to write: " + cloud_endings());
   arguments.require("out");
@@ -94,10 +94,10 @@ std::optional<FoundPose> find_pose(const Inputs& inputs, const Cloud& cloud,
 
 void check(const Inputs& inputs) {
   if ((inputs.pose ? 1 : 0) + (inputs.level ? 1 : 0) + (inputs.points ? 1 : 0) > 1) {
-    throw Error(ErrorKind::bad_input, "--pose, --level and --points exclude each other");
+    throw Error(ErrorKind::bad_input, "--pose, --level and --points are mutually exclusive");
   }
   if (inputs.pose_out && !inputs.level && !inputs.points) {
-    throw Error(ErrorKind::bad_input, "--pose-out needs --level or --points, which find a pose");
+    throw Error(ErrorKind::bad_input, "--pose-out needs --level or --points");
   }
 }
 
@@ -134,7 +134,7 @@ Outcome convert(const Inputs& inputs) {
                                 "camera frame"});
   }
   if (summary.finite_points == 0) {
-    outcome.warnings.push_back({"no_finite_points", inputs.image + " holds no depth in range"});
+    outcome.warnings.push_back({"no_finite_points", inputs.image + " has no depth in range"});
   }
   return outcome;
 }

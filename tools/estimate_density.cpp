@@ -20,11 +20,11 @@ const About about = {
      {"estimate-density dig0.ply dig1.ply --dump-before heap0.ply --dump-after heap1.ply",
       "separate scans of the dig area and of the dump area"},
      {"estimate-density before.pcd after.pcd --dug-path 45deg,0.35m,1.5m --dug-start 6.05",
-      "the path is known: soil that fell back into the cut is taken into account"},
+      "known path: corrects for soil that fell back into the cut"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
-      "no scans yet: how well a D435i on a mast of 2.5 m will tell the density"},
+      "without scans: expected density error of a D435i on a 2.5 m mast"},
      {"estimate-density before.pcd after.pcd --json --plot change.svg",
-      "figures for a program, a picture for you"}},
+      "JSON output, and a plot of the height change"}},
     true};
 
 struct Inputs {
@@ -47,37 +47,37 @@ struct Inputs {
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("BEFORE", inputs.before, "cloud before the dig: PCD, PLY or XYZ");
-  arguments.positional("AFTER", inputs.after, "cloud after it");
+  arguments.positional("AFTER", inputs.after, "cloud after the dig");
   arguments.file("dump-before", inputs.dump_before,
                  "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
   arguments.file("dump-after", inputs.dump_after, "cloud of the dump area after");
   arguments.option("area", inputs.frames.area,
-                   "leave out everything outside (default: what both see)");
+                   "ignore points outside this area (default: where both scans have points)");
   arguments.option("dig-area", inputs.options.change.dig_area,
-                   "where the hole is (default: found)");
+                   "area of the hole (default: detected)");
   arguments.option("dump-area", inputs.options.change.dump_area,
-                   "where the heap is (default: found)");
+                   "area of the heap (default: detected)");
   arguments.file("before-frame", inputs.frames.before,
-                 "4 x 4 matrix that takes the clouds before into the site frame");
+                 "4 x 4 matrix that transforms the clouds before into the site frame");
   arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
   arguments.choice("method", inputs.method, {"surface", "paper"},
                    "surface: signed change of one height map; paper: the pipeline as published");
   arguments.flag("no-register", inputs.still,
-                 "the sensor stood still between the scans: do not bring them onto each other");
-  arguments.flag("compare-methods", inputs.compare, "show what both methods give");
+                 "do not register the scans: the sensor did not move between them");
+  arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
   arguments.option("cell", inputs.options.cell_size, Quantity::length,
-                   "cell of the height map, voxel of the paper's method (default: from the density "
-                   "of the points, at least 0.05)");
+                   "cell size of the height map, voxel size of --method paper (default: from the "
+                   "point density, at least 0.05)");
   arguments.text("law", "NAME|FILE", inputs.law,
                  "density law: default (built-in simulator, ZX120 in loam), paper, or a law file");
   arguments.option(
       "dug-path", inputs.dug_path,
-      "the path that was dug: finds the soil that fell back into the cut and frees the "
-      "bulking factor of it; needs scans in the site frame");
+      "the path that was dug: estimates the soil that fell back into the cut and corrects the "
+      "bulking factor for it; needs scans in the site frame");
   arguments.option("dug-start", inputs.dug_start, Quantity::length,
-                   "x where that path met the ground");
+                   "x at which that path enters the ground");
   arguments.machine(inputs.machine);
-  arguments.plot(inputs.plot, "the height change with its zones");
+  arguments.plot(inputs.plot, "the height change and its zones");
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
 
@@ -102,10 +102,10 @@ DensityOptions options_of(const Inputs& inputs) {
 
 Outcome work_on_scans(const Inputs& inputs) {
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
-    throw Error(ErrorKind::bad_input, "--dump-before and --dump-after go together");
+    throw Error(ErrorKind::bad_input, "--dump-before and --dump-after must be given together");
   }
   if (inputs.dug_path.has_value() != inputs.dug_start.has_value()) {
-    throw Error(ErrorKind::bad_input, "--dug-path and --dug-start go together");
+    throw Error(ErrorKind::bad_input, "--dug-path and --dug-start must be given together");
   }
   const DensityLaw law = law_named(inputs.law);
   const DigScans scans = scans_of(inputs);
@@ -128,7 +128,7 @@ Outcome work_on_scans(const Inputs& inputs) {
 Outcome work(const Inputs& inputs) {
   if (inputs.plan_survey) {
     if (inputs.before || inputs.after) {
-      throw Error(ErrorKind::bad_input, "--plan-survey takes no scans: it plans them");
+      throw Error(ErrorKind::bad_input, "--plan-survey takes no scans");
     }
     return planned_survey(*inputs.plan_survey, law_named(inputs.law));
   }

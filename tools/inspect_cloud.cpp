@@ -18,18 +18,18 @@ struct Inputs {
 
 const About about = {
     "inspect-cloud",
-    "Shows what is in a scan (PCD, PLY or XYZ text, told from the content), and writes it in "
+    "Summarises a scan (PCD, PLY or XYZ text, detected from the content), and converts it to "
     "another format or frame.",
-    {{"inspect-cloud scan.pcd", "points, extent, density and a guess of the frame"},
-     {"inspect-cloud scan.xyz --out scan.ply", "the same, and the points as binary PLY"},
+    {{"inspect-cloud scan.pcd", "points, extent, point density and a guess of the frame"},
+     {"inspect-cloud scan.xyz --out scan.ply", "the summary, and the points as binary PLY"},
      {"inspect-cloud scan.pcd --frame scan_frame.txt --out site.pcd", "into the site frame"}}};
 
 void declare(Arguments& arguments, Inputs& inputs) {
-  arguments.positional("FILE", inputs.file, "scan to examine");
+  arguments.positional("FILE", inputs.file, "scan to summarise");
   arguments.file("frame", inputs.frame,
-                 "4 x 4 text matrix that takes the scan into the site frame; applied first");
+                 "4 x 4 text matrix that transforms the scan into the site frame; applied first");
   arguments.file("out", inputs.out, "write the cloud here: " + cloud_endings());
-  arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text with every digit");
+  arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text, with full precision");
 }
 
 nlohmann::ordered_json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -63,7 +63,7 @@ std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& clo
 
 Outcome inspect(const Inputs& inputs) {
   if (inputs.ascii && !inputs.out) {
-    throw Error(ErrorKind::bad_input, "--ascii says how to write --out, which is missing");
+    throw Error(ErrorKind::bad_input, "--ascii needs --out");
   }
   CloudFormat format;
   if (inputs.out) format = cloud_format_of_name(*inputs.out);
@@ -87,7 +87,7 @@ Outcome inspect(const Inputs& inputs) {
   if (inputs.out) outcome.json["out"] = *inputs.out;
   outcome.lines = lines_for_people(inputs, cloud, summary);
   if (summary.finite_points == 0) {
-    outcome.warnings.push_back({"no_finite_points", inputs.file + " holds no finite point"});
+    outcome.warnings.push_back({"no_finite_points", inputs.file + " has no finite points"});
   }
   return outcome;
 }

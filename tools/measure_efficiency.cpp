@@ -15,13 +15,12 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 const About about = {
     "measure-efficiency",
-    "measures what a real dig lifts per fuel or energy, and by how much a second dig is better. A "
+    "measures the soil that a real dig lifts per fuel or energy, and the gain of a second dig. A "
     "log is a CSV file with the column time_s and one of: fuel_flow_ml_per_s; fuel_flow_l_per_h; "
-    "power_w; boom_power_w, arm_power_w and bucket_power_w (power a joint gives back does not "
-    "count).",
+    "power_w; boom_power_w, arm_power_w and bucket_power_w (negative joint power counts as 0).",
     {{"measure-efficiency fixed.csv planned.csv --volume 0.42 --second-volume 0.41",
-      "fuel logs of two digs and the soil each left in the bucket"},
-     {"measure-efficiency day.csv --from 61.5 --to 70 --mass 780kg", "one dig out of a longer log"},
+      "fuel logs of two digs and the soil volume in the bucket after each"},
+     {"measure-efficiency day.csv --from 61.5 --to 70 --mass 780kg", "one dig of a longer log"},
      {"measure-efficiency dig.csv --dump-before heap0.pcd --dump-after heap1.pcd",
       "the volume from scans of the dump area"}},
     true};
@@ -36,15 +35,14 @@ struct Inputs {
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("RUN.csv", inputs.first.log, "log of a dig");
   arguments.require("RUN.csv");
-  arguments.positional("SECOND.csv", inputs.second.log, "log of the dig to compare with it");
+  arguments.positional("SECOND.csv", inputs.second.log, "log of a second dig to compare");
   inputs.first.declare(arguments, "", "");
   inputs.second.declare(arguments, "second-", ", second dig");
   arguments.file("before-frame", inputs.frames.before,
-                 "4 x 4 matrix that takes the clouds before into the site frame");
+                 "4 x 4 matrix that transforms the clouds before into the site frame");
   arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
   arguments.option("cell", inputs.cell_size, Quantity::length,
-                   "cell of the height maps (default: from the density of the points, at least "
-                   "0.05)");
+                   "cell size of the height maps (default: from the point density, at least 0.05)");
 }
 
 nlohmann::ordered_json to_json(const DigEfficiency& run) {

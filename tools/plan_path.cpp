@@ -18,14 +18,14 @@ namespace {
 
 const About about = {
     "plan-path",
-    "plans the dig that lifts most soil per energy in soil of a relative density: looked up in a "
-    "path library, or searched by digging the simulator.",
-    {{"plan-path --density 40", "look the path up in the shipped library"},
+    "plans the dig with the highest mass of soil per energy at a given relative density, by "
+    "look-up in a path library or by a search in the simulator.",
+    {{"plan-path --density 40", "look up the path in the shipped library"},
      {"plan-path --density-from result.json --trajectory dig.csv",
-      "go on from estimate-density --json, write joint angles over time"},
-     {"plan-path --density 40 --search --terrain after.pcd", "search on the ground as scanned"},
+      "use a result of estimate-density --json, write the joint trajectory"},
+     {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
      {"plan-path --density 40 --density-sd 8 --search",
-      "the path best on average, and what knowing the density would be worth"}},
+      "the path of highest expected efficiency, and the value of knowing the density"}},
     true,
     true};
 
@@ -48,22 +48,22 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "relative density of the ground");
   arguments.option(
       "density-sd", inputs.density.sd, Quantity::percent,
-      "standard deviation of the density: how much the figures scatter; with --search the path "
-      "that is best on average");
+      "standard deviation of the density, propagated to the results; --search then finds the "
+      "path with the best expected goal value");
   arguments.file(
       "density-from", inputs.density.file,
       "take the density and its uncertainty from this result of estimate-density --json");
   arguments.file("library", inputs.library,
                  "path library (default: the shipped one of the machine and the soil)");
-  arguments.flag("search", inputs.search, "search the path instead of looking it up");
+  arguments.flag("search", inputs.search, "search for the path instead of looking it up");
   arguments.file("terrain", inputs.terrain.cloud,
                  "cloud of the ground in the site frame (default: level)");
   arguments.file("terrain-frame", inputs.terrain.frame,
-                 "4 x 4 matrix that takes the terrain cloud into the site frame");
+                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell of the simulated ground");
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   declare_search(arguments, inputs.dig_search);
   arguments.file("trajectory", inputs.trajectory,
                  "write the joint trajectory, CSV, or JSON as .json");
@@ -72,7 +72,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
 
 [[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
 
-/// What can be told before anything is read.
+/// Checks made before anything is read.
 void check(const Inputs& inputs) {
   check(inputs.density);
   if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {

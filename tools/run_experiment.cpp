@@ -13,12 +13,12 @@ namespace {
 
 const About about = {
     "run-experiment",
-    "repeats the paper's simulation experiment (section 3): dig once along the fixed path, "
-    "estimate "
-    "the density from the height maps, dig again along the path planned for it, compare.",
+    "repeats the paper's simulation experiment (section 3): digs along the fixed path, "
+    "estimates the density from the height maps, digs along the path planned for that density and "
+    "compares the two digs.",
     {{"run-experiment", "soft, medium and hard loam (10, 40, 80 %), paths from the library"},
-     {"run-experiment --search --densities 0:10:100", "search each path, eleven densities"},
-     {"run-experiment --json", "all figures for a program"}}};
+     {"run-experiment --search --densities 0:10:100", "search for each path, at eleven densities"},
+     {"run-experiment --json", "all results as JSON"}}};
 
 struct Inputs {
   std::string densities = "paper";
@@ -42,7 +42,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text(
       "law", "NAME|FILE", inputs.law,
       "density law: default (the shipped one of the machine and the soil), paper, or a law file");
-  arguments.flag("search", inputs.search, "search each path instead of looking it up");
+  arguments.flag("search", inputs.search, "search for each path instead of looking it up");
   arguments.option("path", inputs.path, "fixed path");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
@@ -57,7 +57,7 @@ struct Condition {
   double density = 0.0;
 };
 
-/// The densities of the paper's Table 1 are not published as text: these are ours.
+/// Ours: the densities of the paper's Table 1 are not published as text.
 std::vector<Condition> conditions_of(const Inputs& inputs) {
   if (inputs.densities == "paper") return {{"soft", 10.0}, {"medium", 40.0}, {"hard", 80.0}};
   std::vector<Condition> conditions;

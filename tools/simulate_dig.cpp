@@ -20,12 +20,12 @@ namespace {
 
 const About about = {
     "simulate-dig",
-    "digs once in soil of a known density: what the bucket lifts, what that costs, where the soil "
-    "goes, and, if asked, what a depth camera sees before and after.",
+    "simulates one dig in soil of known density: payload, energy, joint loads and soil volumes. "
+    "Optionally writes depth-camera scans of the ground before and after the dig.",
     {{"simulate-dig --density 40", "the paper's fixed path in medium loam"},
-     {"simulate-dig --density 80 --path 43deg,0.2m,2.6m --plot dig.svg", "another path, drawn"},
+     {"simulate-dig --density 80 --path 43deg,0.2m,2.6m --plot dig.svg", "own path, with plot"},
      {"simulate-dig --density 40 --path-from plan.json", "the path that plan-path --json planned"},
-     {"simulate-dig --density 40 --before b.pcd --after a.pcd --seed 7", "make a pair of scans"}}};
+     {"simulate-dig --density 40 --before b.pcd --after a.pcd --seed 7", "write a pair of scans"}}};
 
 struct Inputs {
   double density = 0.0;
@@ -47,7 +47,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    dig_path_form().names + " (default: the paper's " +
                        dig_path_argument(paper_fixed_path()) + ")");
   arguments.option("start", inputs.scene.start_x, Quantity::length,
-                   "x where the tip meets the ground (default: planned)");
+                   "x at which the tip enters the ground (default: planned)");
   arguments.file("path-from", inputs.path_from,
                  "take path and start from this result of plan-path --json");
   arguments.soil(inputs.soil);
@@ -56,15 +56,15 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("terrain", inputs.terrain.cloud,
                  "cloud of the ground in the site frame (default: level)");
   arguments.file("terrain-frame", inputs.terrain.frame,
-                 "4 x 4 matrix that takes the terrain cloud into the site frame");
-  arguments.option("dump-at", inputs.scene.dump_at, "where the payload is dumped");
+                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
-  arguments.file("before", inputs.before, "write the scene before, as a depth camera sees it");
-  arguments.file("after", inputs.after, "write the scene after");
+  arguments.file("before", inputs.before, "write a depth-camera scan of the ground before the dig");
+  arguments.file("after", inputs.after, "write a depth-camera scan after the dig");
   arguments.option("seed", inputs.seed, "seed of the scans' noise");
   arguments.option("noise", inputs.camera.noise, Quantity::length,
-                   "depth noise of the scans at 1 m, growing with range squared");
-  arguments.file("history", inputs.history, "write forces, torques, cylinders of each step, CSV");
+                   "depth noise of the scans at 1 m; grows with range squared");
+  arguments.file("history", inputs.history, "write the loads of each step, CSV");
   arguments.plot(inputs.plot, "the section of the dig");
   arguments.file("report", inputs.report, "write an HTML report");
 }
@@ -75,19 +75,19 @@ SceneOptions options_of(const Inputs& inputs) {
   options.simulator = simulator_of_word(inputs.simulator);
   options.history = true;
   if (!inputs.path_from) return options;
-  if (inputs.path || options.start_x) usage_error("--path-from goes without --path and --start");
+  if (inputs.path || options.start_x) usage_error("--path-from excludes --path and --start");
   std::tie(options.path, options.start_x) = read_planned_path(*inputs.path_from);
   options.rules = rules_for_planned_path();
   return options;
 }
 
-/// What is wrong with a name is told before anything is written.
+/// Reports bad names before anything is written.
 void check_outputs(const Inputs& inputs) {
   for (const auto& file : {inputs.before, inputs.after}) {
     if (file) cloud_format_of_name(*file);
   }
   if (inputs.before && inputs.before == inputs.after) {
-    usage_error("--before and --after are one file, " + *inputs.before);
+    usage_error("--before and --after name the same file, " + *inputs.before);
   }
   for (const auto& file :
        {inputs.before, inputs.after, inputs.history, inputs.plot, inputs.report}) {

@@ -31,7 +31,7 @@ std::string find_data_file(const std::string& relative_path,
 /// Path of the file that a name or a path means: "loam" in the folder "soils" is the shipped
 /// "soils/loam.json"; what holds a '.' or a '/', or exists, is a path and returned as it is.
 ///
-/// @throws Error (bad_input) if it looks like a name but none of that name is shipped
+/// @throws Error (bad_input) if it is a plain name but no file of that name is shipped
 std::string shipped_or_file(const std::string& folder, const std::string& name_or_path,
                             const std::string& package_folder = data_folder_of_package);
 

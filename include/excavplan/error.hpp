@@ -10,7 +10,7 @@ namespace excavplan {
 /// What the caller did wrong.
 enum class ErrorKind {
   bad_input,  ///< an argument or an option breaks its documented rule
-  bad_file,   ///< a file is missing, unreadable or not what it claims to be
+  bad_file,   ///< a file is missing, unreadable or of the wrong format or content
 };
 
 /// The only exception that this library throws on purpose.
@@ -32,7 +32,7 @@ class Error : public std::runtime_error {
 /// A doubt about a result that is given all the same.
 struct Warning {
   std::string code;     ///< stable, for programs: "density_above_range"
-  std::string message;  ///< for people: what was found, its value, what it means
+  std::string message;  ///< text: what was found, its value and its meaning
 };
 
 }  // namespace excavplan

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file of the running program; empty if the system does not tell.
+/// The file of the running program; empty if the system does not provide it.
 fs::path program_file() {
   std::error_code none;
   return fs::read_symlink("/proc/self/exe", none);

@@ -20,7 +20,7 @@ void require_folder_of(const std::string& path);
 /// The whole content of a regular file. @throws Error (bad_file)
 std::string read_file(const std::string& path);
 
-/// A name as every file system takes it.
+/// A name that is valid on every file system.
 std::string file_name_part(const std::string& name);
 
 }  // namespace excavplan

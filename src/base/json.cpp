@@ -25,7 +25,7 @@ json parse(const std::string& path, const std::string& content) {
     } else if (event == json::parse_event_t::key &&
                !keys.back().insert(parsed.get<std::string>()).second) {
       throw Error(ErrorKind::bad_file,
-                  path + ": key '" + parsed.get<std::string>() + "' stands twice");
+                  path + ": key '" + parsed.get<std::string>() + "' appears twice");
     }
     return true;
   };
@@ -66,7 +66,7 @@ JsonObject JsonObject::open_sealed(const std::string& name, const std::string& c
   JsonObject top = of_text(name, content, format, version);
   const std::size_t seal = sealed("").size();
   if (content.size() < seal || sealed(content.substr(0, content.size() - seal)) != content) {
-    top.fail("checksum", "does not fit the content: the file was altered");
+    top.fail("checksum", "does not match the content: the file was modified");
   }
   top.ignore("checksum");
   return top;

@@ -39,7 +39,7 @@ class JsonObject {
   JsonObject object(const std::string& key);
   std::vector<JsonObject> objects(const std::string& key);
 
-  /// Marks a key as read without reading it ("sources" and other text for people).
+  /// Marks a key as read without reading it ("sources" and other free text).
   void ignore(const std::string& key) { read_.insert(key); }
   /// @throws Error (bad_file) if a key was not read
   void done() const;

@@ -47,7 +47,7 @@ Table Table::read(const std::string& path) {
       for (std::size_t i = 0; i < words.size(); ++i) {
         if (std::find(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(i), words[i]) !=
             words.begin() + static_cast<std::ptrdiff_t>(i)) {
-          throw Error(ErrorKind::bad_file, place + "column '" + words[i] + "' stands twice");
+          throw Error(ErrorKind::bad_file, place + "column '" + words[i] + "' appears twice");
         }
       }
       table.columns_.resize(words.size());

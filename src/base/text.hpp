@@ -6,7 +6,7 @@
 #include <string>
 
 /// @file
-/// Numbers as text, for files and for people, and checksums of text. Private to the project.
+/// Numbers as text, for files and for messages, and checksums of text. Private to the project.
 
 namespace excavplan {
 
@@ -17,7 +17,8 @@ constexpr std::uint64_t most_exact = 9007199254740992;
 std::string number_text(double value);
 /// The number with so many digits after the point: "0.350".
 std::string decimals(double value, int digits);
-/// A number for people: at least so many significant digits, never an exponent; "unknown" if NaN.
+/// A human-readable number: at least so many significant digits, never an exponent; "unknown" if
+/// NaN.
 std::string readable(double value, int digits = 3);
 /// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
 std::string readable(double value, double sd);

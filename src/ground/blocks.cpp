@@ -315,10 +315,10 @@ std::string texture_text(const char* what, const GroundTexture& texture) {
 }
 
 std::string steepness_text(const GroundTexture& texture, double repose) {
-  return tenths(100.0 * texture.steep_share) + " % of the heap stand steeper than " +
-         tenths((repose + steepness_margin) / degree) + " deg and its faces lean " +
+  return tenths(100.0 * texture.steep_share) + " % of the heap are steeper than " +
+         tenths((repose + steepness_margin) / degree) + " deg and its faces are inclined by " +
          tenths(texture.normal_dispersion / degree) +
-         " deg from the ground around them (loose soil: under 10 % and 15 deg)";
+         " deg to the ground around them (loose soil: under 10 % and 15 deg)";
 }
 
 void explain(const BlockOptions& options, BlockReport& report) {
@@ -329,7 +329,7 @@ void explain(const BlockOptions& options, BlockReport& report) {
   if (report.pit.score >= 0.5) report.reasons.push_back(texture_text("the pit", report.pit));
   if (report.heap.hole_share > 0.05) {
     report.reasons.push_back(tenths(100.0 * report.heap.hole_share) +
-                             " % of the heap were not seen, beyond what was not seen around it");
+                             " % of the heap were not seen, in addition to the share around it");
   }
 }
 
@@ -338,14 +338,14 @@ void estimate_voids(const VolumeChange& change, double depth, const BlockOptions
                     BlockReport& report) {
   if (!report.block_size) {
     report.reasons.emplace_back(
-        "blocks too small for the cells, or too few: their size and voids cannot be told");
+        "blocks too small for the cells, or too few: their size and voids cannot be estimated");
     return;
   }
   const double relative_size = *report.block_size / depth;
   if (!(relative_size < largest_size)) {
     report.reasons.push_back("blocks of " + tenths(100.0 * *report.block_size) + " cm in a heap " +
                              tenths(100.0 * depth) +
-                             " cm deep: the voids between them cannot be told");
+                             " cm deep: the voids between them cannot be estimated");
     return;
   }
   const double share = report.heap.rough_share;
@@ -356,7 +356,7 @@ void estimate_voids(const VolumeChange& change, double depth, const BlockOptions
                                share_doubt * options.packed_voids * thinned);
   const double after = change.after.value;
   report.voids = Measured{after * of_volume, std::hypot(after * sd, change.after.sd * of_volume)};
-  report.reasons.push_back("blocks of some " + tenths(100.0 * *report.block_size) +
+  report.reasons.push_back("blocks of about " + tenths(100.0 * *report.block_size) +
                            " cm: voids are " + tenths(100.0 * of_volume) + " +- " +
                            tenths(100.0 * sd) + " % of the heap");
 }
@@ -369,7 +369,7 @@ BlockReport assess_blocks(const std::vector<HeightMap>& after, const VolumeChang
   if (after.front().cell_size > largest_cell) {
     BlockReport unjudged;
     unjudged.reasons.push_back("cells of " + number_text(after.front().cell_size) +
-                               " m are too large to tell blocks, at most " +
+                               " m are too large to detect blocks, at most " +
                                number_text(largest_cell) + " m");
     return unjudged;
   }

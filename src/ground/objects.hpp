@@ -12,7 +12,7 @@ namespace excavplan {
 
 /// An object in one of two scans that is no soil: a person, a truck, the bucket.
 struct Object {
-  std::vector<Cell> cells;  ///< where it stands, with a margin
+  std::vector<Cell> cells;  ///< that it covers, with a margin
   bool is_blunder = false;  ///< only a few cells with outliers
   bool is_before = false;   ///< in the scan before, else after
   double volume = 0.0;      ///< of the change it causes, < 0 if it was removed [m^3]

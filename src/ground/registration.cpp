@@ -62,7 +62,7 @@ double tukey_weight(double sds) {
 }
 
 /// Least squares with a prior. The columns of the motion are scaled by the share of the gradient
-/// that is more than noise; otherwise noise on level ground would look like a shift.
+/// that is more than noise; otherwise noise on level ground would be taken for a shift.
 class Aligner {
  public:
   Aligner(const Surface& before, const Surface& after, const AlignmentOptions& options)

@@ -97,7 +97,7 @@ std::string text_of(const ZoneSum& zone) {
          place_of(zone);
 }
 
-/// One warning for all of them, and none where their volume is negligible beside the hole.
+/// One warning for all of them, and none where their volume is negligible relative to the hole.
 void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
   const ZoneSum* largest = nullptr;
   int count = 0;
@@ -113,10 +113,10 @@ void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
   }
   if (!(sum > least_warned_share * change.excavated.value)) return;
   std::string message =
-      text_of(*largest) + " is neither hole, spill nor heap: left out of every volume";
+      text_of(*largest) + " is neither hole, spill nor heap: excluded from all volumes";
   if (count > 1) {
-    message += ", like what changed at " + std::to_string(count - 1) + " more places, " +
-               litres_as_m3(sum) + " in all";
+    message += "; with " + std::to_string(count - 1) + " more such zones " + litres_as_m3(sum) +
+               " in total";
   }
   change.warnings.push_back({"other_change", message});
 }
@@ -125,21 +125,22 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
                   std::vector<Warning>& warnings) {
   const std::string what = text_of(zone);
   if (zone.is_cut) {
-    warnings.push_back({"zone_at_border", what + " reaches the edge of the surveyed ground: part "
-                                                 "of it may be missing from its volume"});
+    warnings.push_back({"zone_at_border", what + " reaches the edge of the surveyed ground: its "
+                                                 "volume may be incomplete"});
   }
   const double share = zone.unknown / zone.area;
   if (share > options.refused_unknown_share && matters) {
     warnings.push_back({"zone_unseen", what + " was seen by no scan in " +
-                                           hundredths(100.0 * share) + " % of its cells, over " +
+                                           hundredths(100.0 * share) +
+                                           " % of its cells, more than " +
                                            hundredths(100.0 * options.refused_unknown_share) +
-                                           " %: its volume is not to be trusted, so the bulking "
+                                           " %: its volume is not trustworthy, so the bulking "
                                            "factor is unknown"});
   } else if (share > options.max_unknown_share) {
-    warnings.push_back({"zone_partly_unseen",
-                        what + " was seen by no scan in " + hundredths(100.0 * share) +
-                            " % of its cells, which were filled; more than " +
-                            hundredths(100.0 * options.max_unknown_share) + " % is uncertain"});
+    warnings.push_back(
+        {"zone_partly_unseen", what + " was seen by no scan in " + hundredths(100.0 * share) +
+                                   " % of its cells, which were interpolated; the limit is " +
+                                   hundredths(100.0 * options.max_unknown_share) + " %"});
   }
 }
 
@@ -147,14 +148,15 @@ void warn_of_ground(const ChangedGround& ground, std::vector<Warning>& warnings)
   if (ground.stable_share < least_stable_share) {
     warnings.push_back(
         {"little_stable_ground", "only " + hundredths(100.0 * ground.stable_share) +
-                                     " % of the surveyed ground did not change, under " +
+                                     " % of the surveyed ground did not change, less than " +
                                      hundredths(100.0 * least_stable_share) +
-                                     " %: a part that rose or fell evenly could pass for it"});
+                                     " %: an area that rose or fell evenly could be "
+                                     "mistaken for stable ground"});
   }
   if (ground.noise_sd > largest_noise) {
     warnings.push_back({"scans_do_not_fit",
                         "ground that did not change differs by " + hundredths(ground.noise_sd) +
-                            " m from scan to scan (one standard deviation), more than " +
+                            " m between the scans (one standard deviation), more than " +
                             hundredths(largest_noise) + " m: are both scans in one frame?"});
   }
 }
@@ -165,7 +167,7 @@ void warn_of_balance(VolumeChange& change) {
   if (!(before > 0.0)) {
     change.warnings.push_back({"no_hole_found",
                                "no ground fell by more than the noise of the scans: no hole was "
-                               "found, all volumes of it are 0"});
+                               "found, its volumes are 0"});
     return;
   }
   const double dumped = change.dumped.value;
@@ -185,10 +187,11 @@ void warn_of_balance(VolumeChange& change) {
   const bool shrank = ratio < least_bulking && before - after > 2.0 * error;
   if (shrank || ratio > largest_bulking) {
     change.warnings.push_back(
-        {"looks_swapped", "before and after look swapped: " + litres_as_m3(before) +
-                              " were dug and " + litres_as_m3(after) + " lie beside it, a factor " +
-                              hundredths(ratio) + "; dug soil has " + hundredths(least_bulking) +
-                              " to " + hundredths(largest_bulking) + " times its volume"});
+        {"looks_swapped", "before and after are probably swapped: " + litres_as_m3(before) +
+                              " were dug, " + litres_as_m3(after) +
+                              " were deposited, a factor of " + hundredths(ratio) +
+                              "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
+                              hundredths(largest_bulking) + " times that of the hole"});
   }
 }
 
@@ -211,11 +214,11 @@ double total_of(const VolumeChange& change, ZoneKind kind) {
 Warning object_warning(const ChangeZone& zone, bool is_before, std::size_t count) {
   const Eigen::Vector2d centre(0.5 * (zone.extent.x_min + zone.extent.x_max),
                                0.5 * (zone.extent.y_min + zone.extent.y_max));
-  std::string message = std::string("something too steep for soil stands in the scan ") +
+  std::string message = std::string("an object too steep for soil is in the scan ") +
                         (is_before ? "before" : "after") + " around (" + hundredths(centre.x()) +
                         ", " + hundredths(centre.y()) + ") m, over " + hundredths(zone.area) +
-                        " m^2: taken out of the scan, the ground under it is counted as unseen";
-  if (count > 1) message += ", like " + std::to_string(count - 1) + " smaller ones";
+                        " m^2: it was removed, and the ground under it counts as unseen";
+  if (count > 1) message += "; so were " + std::to_string(count - 1) + " smaller ones";
   return {"object_taken_out", std::move(message)};
 }
 

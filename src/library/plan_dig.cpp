@@ -45,11 +45,11 @@ void judge_density(const Task& task, DigPlan& plan) {
   const std::string& soil = task.density.soil;
   if (!task.density.trustworthy) {
     distrust(plan, "density_not_trustworthy",
-             "the density is not trustworthy, so the path may not suit the soil");
+             "the density is not trustworthy, so the path may be wrong for the soil");
   }
   if (!soil.empty() && soil != task.soil.name) {
     warn(plan, "law_of_other_soil",
-         "the density was found by the law of " + soil + ", the path is planned in " +
+         "the density was estimated by the law of " + soil + ", the path is planned in " +
              task.soil.name);
   }
 }
@@ -110,20 +110,19 @@ std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrar
   return dig_along(task.machine, *simulator, task.ground, plan.path);
 }
 
-/// Warns where the library knows no ground like this. @return whether it does
+/// Warns where the ground is unlike that of the library. @return whether it is alike
 bool suits_ground(const Slope& slope, const PlannedDig& expected, DigPlan& plan) {
-  const std::string remedy = "; a search finds a path that suits the ground";
+  const std::string remedy = "; use a search for this ground";
   if (std::abs(slope.ground - slope.covered) > much_steeper) {
     distrust(plan, "slope_outside_library",
-             "the ground slopes by " + readable(slope.ground, 2) +
-                 " rad, the library is looked up at " + readable(slope.covered, 2) + " rad" +
-                 remedy);
+             "the slope of the ground is " + readable(slope.ground, 2) + " rad, the look-up used " +
+                 readable(slope.covered, 2) + " rad" + remedy);
     return false;
   }
   if (plan.dig->efficiency() < (1.0 - far_below) * expected.efficiency()) {
     distrust(plan, "ground_unlike_library",
-             "the path looked up does " + readable(1000.0 * plan.dig->efficiency()) +
-                 " kg/kJ here, against " + readable(1000.0 * expected.efficiency()) +
+             "the path from the library reaches " + readable(1000.0 * plan.dig->efficiency()) +
+                 " kg/kJ on this ground, but " + readable(1000.0 * expected.efficiency()) +
                  " kg/kJ on the even ground of the library" + remedy);
     return false;
   }
@@ -164,8 +163,7 @@ std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
     if (task.options.library) throw;
     if (error.kind() == ErrorKind::bad_file) {
       warn(plan, "library_unreadable",
-           std::string("the search starts from nothing, not from the shipped library: ") +
-               error.what());
+           std::string("the search has no warm start from the shipped library: ") + error.what());
     }
   }
   return {};
@@ -220,14 +218,15 @@ void add_spread(const Task& task, DigPlan& plan) {
   distrust(plan, "may_stall",
            "the machine stalls with a probability of " +
                readable(100.0 * plan.spread.stall_probability, 2) +
-               " %; the figures are of the digs in which it does not");
+               " %; the results are those of the digs without a stall");
 }
 
 void add_trajectory(const Task& task, DigPlan& plan) {
   auto approach = way_down(task.machine, plan.path, boom_plane_profile(task.ground));
   if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
     warn(plan, "approach_blocked",
-         "the trajectory begins on the ground, the way down is blocked: " + blocked->message);
+         "the trajectory begins on the ground, because the approach is blocked: " +
+             blocked->message);
   } else {
     plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
   }
@@ -258,7 +257,7 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
   } catch (const Error&) {
     throw Error(ErrorKind::bad_input,
                 "no library of " + machine.name + " in " + soil.name +
-                    " is shipped: a search needs none, build-path-library makes one");
+                    " is shipped: use a search, or make one with build-path-library");
   }
   PathLibrary library = load_path_library(file);
   require_fit(library, machine, soil, file);

@@ -49,7 +49,7 @@ std::string explain_cause(const Infeasible& stop) {
       return std::string("the ") + name(stop.joint) + " would be at " + degrees(stop.value) +
              ", its limit is " + degrees(stop.limit);
     case Reason::heel_contact:
-      return "the bucket floor stands at " + degrees(stop.value) +
+      return "the bucket floor is at " + degrees(stop.value) +
              " to the cut, its heel needs at least " + degrees(stop.limit);
     case Reason::too_deep:
       return "the tip is " + metres(stop.value) + " below the ground at the start, it may go " +
@@ -66,7 +66,7 @@ std::string explain_cause(const Infeasible& stop) {
     case Reason::bad_parameter:
       break;
   }
-  return "a parameter breaks its rule";
+  return "a parameter is out of range";
 }
 
 std::string explain(const Infeasible& stop) {
@@ -236,7 +236,7 @@ std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
   return std::nullopt;
 }
 
-/// The tip goes down a straight line with the bucket floor along it. An empty line still gives the
+/// The tip moves down a straight line with the bucket floor along it. An empty line still gives the
 /// first pose of the path.
 std::optional<Infeasible> Layout::penetrate() {
   const double angle = path_.parameters.penetration_angle;

@@ -45,7 +45,7 @@ void check(const DigPath& path, const TrajectoryOptions& options) {
   check_finite(path.poses, "dig path");
 }
 
-// ---- where the trajectory goes ------------------------------------------------------------------
+// ---- geometry of the trajectory -----------------------------------------------------------------
 
 TrajectoryPoint point_at(const DigPose& pose) {
   TrajectoryPoint point;

@@ -176,7 +176,7 @@ class Memetic {
     polish(separate(places, method_.basins), first_step);
   }
 
-  /// A simplex that has shrunk at a cliff or a step may go on from there when spread again.
+  /// A simplex that has shrunk at a cliff or a step may improve further when spread again.
   void restart() {
     if (method_.basins > 0) polish({log_.best()}, restart_step);
   }

@@ -150,7 +150,7 @@ void SearchCheckpoint::load(std::size_t dimensions) {
   JsonObject file = JsonObject::open_sealed(file_, read_file(file_), format);
   for (const auto& [key, own] : {std::pair{"problem", problem_}, std::pair{"search", search_}}) {
     if (const std::string text = file.text(key); text != own) {
-      file.fail(key, "is '" + text + "', which is another one than '" + own + "'");
+      file.fail(key, "is '" + text + "', which differs from '" + own + "'");
     }
   }
   for (JsonObject& entry : file.objects("evaluations")) {

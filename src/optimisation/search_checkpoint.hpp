@@ -33,7 +33,8 @@ class SearchCheckpoint {
   /// The outcome an earlier run noted for a point.
   const Evaluation* find(const Eigen::VectorXd& point) const;
   void add(const Eigen::VectorXd& point, const Evaluation& outcome);
-  /// Writes the file, whole or not at all; does nothing if none was asked for or nothing is new.
+  /// Writes the file, whole or not at all; does nothing without a checkpoint file or new
+  /// evaluations.
   void save();
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int certain = 20;  // failures in a row from the start that say all will fail; ours
+constexpr int certain = 20;  // consecutive failures from the start that end the search; ours
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 bool failed(const Evaluation& outcome) {

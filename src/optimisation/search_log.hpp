@@ -16,7 +16,7 @@
 #include "optimisation/search_points.hpp"
 
 /// @file
-/// The part of a search that knows nothing of its method: evaluates points, remembers them, counts,
+/// The part of a search that is independent of its method: evaluates points, records them, counts,
 /// stops. Private to the library.
 
 namespace excavplan {
@@ -33,7 +33,7 @@ auto caught(const Call& call) -> decltype(call()) {
   }
 }
 
-/// A point that a method wants to know about.
+/// A point that a method requests.
 struct Candidate {
   Eigen::VectorXd point;
   SearchRecord::Origin origin = SearchRecord::Origin::given;
@@ -48,11 +48,11 @@ class SearchLog {
   /// @param planned  evaluations that the method will about make, for the progress
   SearchLog(const SearchProblem& problem, const SearchOptions& options, double planned);
 
-  /// Evaluates candidates side by side; returns the places of their records. Fewer than asked if a
+  /// Evaluates candidates in parallel; returns the places of their records. Fewer than asked if a
   /// stop rule cut it short.
   std::vector<int> evaluate(int generation, const std::vector<Candidate>& candidates);
 
-  /// Runs tasks side by side that each evaluate one point after another, at most `evaluations`
+  /// Runs tasks in parallel that each evaluate one point after another, at most `evaluations`
   /// each; their records follow each other in the order of the tasks.
   void run_strands(int generation, int evaluations,
                    const std::vector<std::function<void(Strand&)>>& tasks);
@@ -115,7 +115,7 @@ class SearchLog {
   StopReason halted_by_ = StopReason::cancelled;
 };
 
-/// One of several chains of evaluations that run side by side.
+/// One of several chains of evaluations that run in parallel.
 class SearchLog::Strand {
  public:
   /// @return nothing if the strand has used up its evaluations or the target is reached

@@ -32,7 +32,7 @@ const std::vector<DigGoalInfo>& dig_goals() {
   static const std::vector<DigGoalInfo> goals = {
       {Goal::mass_per_energy, "energy", "mass per energy", "kg/kJ", 1000.0, mass_per_energy},
       {Goal::mass_per_time, "time", "mass per time", "kg/s", 1.0, mass_per_time},
-      {Goal::priced, "priced", "mass per energy, a second costing so much", "kg/kJ", 1000.0, priced,
+      {Goal::priced, "priced", "mass per energy, with a price per second", "kg/kJ", 1000.0, priced,
        &DigObjective::time_price, "WATT"},
   };
   return goals;

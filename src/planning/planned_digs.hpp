@@ -7,7 +7,7 @@
 #include "base/json.hpp"
 
 /// @file
-/// Planned digs as JSON, and what lies between two of them. Private to the project.
+/// Planned digs as JSON, and the interpolation between two of them. Private to the project.
 
 namespace excavplan {
 

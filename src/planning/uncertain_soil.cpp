@@ -23,8 +23,8 @@ std::string checkpoint_of_soil(const std::string& checkpoint, std::size_t i) {
   return checkpoint.empty() ? checkpoint : checkpoint + ".soil" + std::to_string(i + 1);
 }
 
-/// Of an earlier search: should this one end before it has written all of its own, resuming it
-/// would meet them.
+/// Removes those of an earlier search, which a resume would otherwise read if this search ends
+/// before it has written its own.
 void remove_checkpoints(const std::string& checkpoint, std::size_t soils) {
   std::vector<std::string> files = {checkpoint};
   for (std::size_t i = 0; i < soils; ++i) files.push_back(checkpoint_of_soil(checkpoint, i));
@@ -36,7 +36,7 @@ void remove_checkpoints(const std::string& checkpoint, std::size_t soils) {
 
 struct BestForEach {
   std::vector<Found<DigSearchResult>> soils;
-  bool stopped = false;  ///< by `progress`, which then is not asked again
+  bool stopped = false;  ///< by `progress`, which then is not called again
 
   std::vector<DigParameters> digs() const {
     std::vector<DigParameters> all;
@@ -61,7 +61,7 @@ struct BestForEach {
   }
 };
 
-/// Side by side, each from nothing: the best dig for one soil need not be near that for another.
+/// In parallel, without a warm start: the best digs of two soils may be far apart.
 BestForEach best_for_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
                           const Terrain& terrain, const DigSearchOptions& options) {
   BestForEach best;

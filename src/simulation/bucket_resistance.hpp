@@ -16,7 +16,7 @@
 
 namespace excavplan {
 
-/// What HeightMapSimulator knows before it sees any ground.
+/// Data of HeightMapSimulator that do not depend on the ground.
 struct HeightMapModel {
   HeightMapModel(const Machine& machine, const SoilKind& soil, double density_percent);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index spare = 8;  // cells by which a window grows beyond what is asked; ours
+constexpr Index spare = 8;  // cells by which a window grows beyond the requested extent; ours
 
 double dry_density(const SoilKind& kind, double void_ratio) {
   return kind.specific_gravity * water_density / (1.0 + void_ratio);

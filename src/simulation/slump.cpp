@@ -71,7 +71,7 @@ class Slump {
 
   /// From height `top` in a cell to the lower neighbour on an axis, `step` away. On a flank, where
   /// the other neighbour is higher, the fall is the mean over both sides: the lower side alone
-  /// looks too steep where contours are curved (by 0.35 cells / radius on a cone's diagonal). But
+  /// appears too steep where contours are curved (by 0.35 cells / radius on a cone's diagonal). But
   /// never much less than on that side, or steps could remain.
   Fall fall(double top, std::size_t cell, std::size_t step) const {
     constexpr double least = 0.85;  // of the fall on the lower side; ours

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-/// @file What the points of one cell say about the ground in it. Private to the library.
+/// @file The ground in one cell, from its points. Private to the library.
 
 namespace excavplan {
 
@@ -59,14 +59,14 @@ struct Band {
   bool contains(double z) const { return z >= low && z <= high; }
 };
 
-/// A mean height and what it rests on.
+/// A mean height and the data behind it.
 struct CellHeight {
   double height = std::numeric_limits<double>::quiet_NaN();
   double variance = std::numeric_limits<double>::quiet_NaN();
   int points = 0;
 };
 
-/// What the levels of the 3 x 3 cells around say.
+/// Levels of the 3 x 3 cells around.
 struct Surroundings {
   double low = 0.0;  ///< extreme levels, but for the farthest on each side where
                      ///< five are known

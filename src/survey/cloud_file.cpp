@@ -130,7 +130,7 @@ void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format
                                   [&](const CloudFileFormat& f) { return f.name == format.name; });
   if (known == formats.end()) {
     throw Error(ErrorKind::bad_input,
-                path + ": '" + format.name + "' is no format that clouds are written in");
+                path + ": '" + format.name + "' is not a supported output format");
   }
   write_file(path, known->content(cloud, format.text));
 }

@@ -20,7 +20,7 @@ namespace excavplan {
 constexpr std::size_t longest_header = 65536;  ///< of a PCD or PLY file [byte]
 constexpr std::size_t most_fields = 64;        ///< of a point
 
-/// What a file says of the order of its points.
+/// Order of the points in a file.
 struct CloudShape {
   std::uint64_t width = 0;
   std::uint64_t height = 1;
@@ -29,9 +29,9 @@ struct CloudShape {
 /// A format of cloud files.
 struct CloudFileFormat {
   std::string name;                  ///< CloudFormat::name
-  std::string title;                 ///< for people: "XYZ text"
+  std::string title;                 ///< for messages: "XYZ text"
   std::vector<std::string> endings;  ///< of file names, in small letters; at least one
-  /// True if a file is of this format, told from its first bytes without going past them.
+  /// True if a file is of this format, detected from its first bytes without consuming them.
   bool (*holds)(FileStream& file);
   /// Reads a file of this format. @throws Error (bad_file)
   CloudShape (*stream)(FileStream& file, PointSink& sink);

@@ -9,7 +9,7 @@
 #include <excavplan/random.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
-/// @file What can be told of points that come once and are not kept. Private to the library.
+/// @file Summary of a stream of points that are not stored. Private to the library.
 
 namespace excavplan {
 

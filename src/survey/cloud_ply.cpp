@@ -138,7 +138,7 @@ Words next_header_line(LineReader& lines) {
 
 Header read_header(LineReader& lines) {
   Header header;
-  lines.next();  // "ply", by which the format was told
+  lines.next();  // "ply", by which the format was detected
   header.encoding = read_encoding(next_header_line(lines), lines);
   std::size_t properties = 0;
   for (Words words = next_header_line(lines); words[0] != "end_header";

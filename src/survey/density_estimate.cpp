@@ -95,7 +95,7 @@ VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& sur
 
 // ---- What is known beside the volumes ---------------------------------------------------------
 
-/// What lies on the floor of the path that was dug.
+/// Loose soil on the floor of the path that was dug.
 Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const VolumeChange& change) {
   const HeightMap& before = surfaces.before.height;
   HeightMap after = realigned(surfaces.after.height, surfaces.alignment);
@@ -122,7 +122,7 @@ Measured freed_of(const Measured& bulking, const Measured& fallback) {
           std::hypot((1.0 - fallback.value) * bulking.sd, (1.0 - bulking.value) * fallback.sd)};
 }
 
-/// The bulking factor that the law is asked for, if it is not that of the scans.
+/// The bulking factor for the law, if it differs from that of the scans.
 std::optional<Measured> corrected(const DensityEstimate& estimate) {
   if (!estimate.blocks.voids && !estimate.fallback) return std::nullopt;
   Measured k = *estimate.bulking;
@@ -143,8 +143,8 @@ void apply_law(DensityEstimate& estimate) {
     k.sd = 0.0;
     estimate.warnings.push_back(
         {"volume_error_unknown",
-         "this method tells no error of its volumes: the interval of the density holds the "
-         "scatter of the law only"});
+         "this method gives no error of its volumes: the density interval contains only the "
+         "scatter of the law"});
   }
   estimate.density = relative_density(law, k);
   estimate.trustworthy = known_error && estimate.density->trustworthy;
@@ -152,17 +152,17 @@ void apply_law(DensityEstimate& estimate) {
 }
 
 Warning warning_of(const BlockReport& report) {
-  std::string message = "the soil lies in blocks (score " + readable(report.score) + " of 1): ";
+  std::string message = "the soil is in blocks (score " + readable(report.score) + " of 1): ";
   for (std::size_t i = 0; i < report.reasons.size(); ++i) {
     message += (i > 0 ? "; " : "") + report.reasons[i];
   }
-  message += report.voids ? "; the voids between them were estimated and taken out"
-                          : "; the voids between them are in the volume, and their size cannot be "
-                            "told";
-  return {"blocks", message + ": the density is not to be trusted"};
+  message += report.voids ? "; the voids between them were estimated and subtracted"
+                          : "; the voids between them are part of the volume, and their size "
+                            "cannot be estimated";
+  return {"blocks", message + ": the density is not trustworthy"};
 }
 
-/// Takes back the trust that the scans do not deserve.
+/// Marks the estimate as not trustworthy where the scans do not support it.
 void judge_scans(DensityEstimate& estimate) {
   if (estimate.blocks.blocks) {
     estimate.warnings.push_back(warning_of(estimate.blocks));
@@ -210,7 +210,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     estimate.warnings = estimate.change.warnings;
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
-    if (estimate.bulking) apply_law(estimate);  // freed of fallback and voids, then to density
+    if (estimate.bulking) apply_law(estimate);  // corrected for fallback and voids, then to density
     judge_scans(estimate);
   }
   return results;

@@ -16,7 +16,7 @@ namespace {
 
 // ---- What was spent ---------------------------------------------------------------------------
 
-/// A way in which a log tells what was spent.
+/// A kind of column in which a log records what was spent.
 struct Meter {
   std::vector<std::string> columns;
   Spent spent = Spent::fuel;
@@ -115,7 +115,7 @@ double integral(const std::vector<double>& time, const std::vector<double>& rate
   return sum;
 }
 
-/// Longest pause between two rows of the dig, if it stands out from the others.
+/// Longest interval between two rows of the dig, if it is an outlier.
 std::optional<Warning> gap_in(const std::vector<double>& time, const Interval& dig,
                               const std::string& file) {
   constexpr double most_usual_steps = 10.0;  // ours
@@ -129,7 +129,7 @@ std::optional<Warning> gap_in(const std::vector<double>& time, const Interval& d
   if (!(longest > most_usual_steps * *middle)) return std::nullopt;
   return Warning{"gap_in_log", file + ": no row for " + readable(longest) + " s, where " +
                                    readable(*middle) +
-                                   " s are usual: what was spent in it is a guess"};
+                                   " s are usual: the consumption during the gap is interpolated"};
 }
 
 void read_cost(const LoggedDig& dig, DigEfficiency& result) {

@@ -5,7 +5,7 @@
 #include <excavplan/ground/volume_change.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
-/// @file The paper's method on scans that nobody cut by hand. Private to the library.
+/// @file The paper's method on scans that were not cropped by hand. Private to the library.
 
 namespace excavplan {
 

@@ -20,7 +20,7 @@ namespace excavplan {
 class PointSink {
  public:
   virtual ~PointSink() = default;
-  /// Asked before the points come, where a file says how many there are at most, and before more
+  /// Called before the points, where a file says how many there are at most, and before more
   /// than the points at hand is held for them. @throws Error (bad_file) if that is too much
   virtual void require_memory(std::uint64_t points, std::uint64_t more_bytes) = 0;
   virtual void take(const std::vector<Eigen::Vector3d>& points) = 0;
@@ -28,7 +28,7 @@ class PointSink {
 
 constexpr std::size_t points_at_a_time = 2048;  ///< stay in the second cache
 
-/// Hands on points that come one by one.
+/// Passes on points one by one.
 class PointBatch {
  public:
   explicit PointBatch(PointSink& sink) : sink_(sink) { points_.reserve(points_at_a_time); }
@@ -64,23 +64,23 @@ inline bool is_integer(ScalarType type) { return type < ScalarType::float32; }
 /// The number at `bytes`, of the machine's byte order or, with `swapped`, the other one.
 double load_scalar(ScalarType type, const char* bytes, bool swapped);
 
-/// Where x, y and z of the points stand in a block of memory.
+/// Offsets of x, y and z of the points in a block of memory.
 struct Columns {
   std::array<ScalarType, 3> type{};
   std::array<std::size_t, 3> offset{};  ///< of the first point [byte]
   std::array<std::size_t, 3> stride{};  ///< from point to point [byte]
 };
-/// Hands on `count` points that stand one behind the other in a file.
+/// Passes on `count` points that are contiguous in a file.
 void stream_rows(FileStream& file, std::uint64_t count, const Columns& columns, bool swapped,
                  PointSink& sink);
-/// Hands on points that stand in memory.
+/// Passes on points in memory.
 void stream_block(const char* block, std::uint64_t count, const Columns& columns, PointSink& sink);
 
 /// One point a line, each number as the shortest text that reads back the same.
 std::string text_rows(const std::vector<Eigen::Vector3d>& points);
 /// True if float32 would move a point by more than 0.1 mm.
 bool needs_double(const std::vector<Eigen::Vector3d>& points);
-/// Points as they stand in memory, little-endian float64 or float32.
+/// Points in memory, little-endian float64 or float32.
 std::string binary_rows(const std::vector<Eigen::Vector3d>& points, bool is_double);
 
 }  // namespace excavplan

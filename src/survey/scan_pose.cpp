@@ -130,7 +130,7 @@ Ground find_ground(const std::vector<Eigen::Vector3d>& points, std::uint64_t see
     ground.share = static_cast<double>(away.size()) / static_cast<double>(points.size());
     if (ground.share < least_share) {
       refuse("only " + number_text(std::round(1000.0 * ground.share) / 10.0) +
-             " % of its points lie on one plane, less than 20 %: no ground to level it by");
+             " % of its points lie on one plane, less than 20 %: no ground plane to level it");
     }
     ground.sd = mad_to_sd * median(std::move(away));
     width = std::max(within * ground.sd, 0.1 * plane_width * median_range(points));
@@ -179,8 +179,8 @@ LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed) {
   pose.residual_sd = ground.sd;
   pose.ground_share = ground.share;
   if (pose.height < least_height) {
-    refuse("its largest plane passes the sensor at " + number_text(pose.height) +
-           " m, nearer than 0.05 m: that is not the ground");
+    refuse("its largest plane is " + number_text(pose.height) +
+           " m from the sensor, less than 0.05 m: it is not the ground");
   }
   const Eigen::Vector3d look = Eigen::Vector3d::UnitZ();
   pose.tilt = std::acos(std::clamp(-look.dot(up), -1.0, 1.0));
@@ -204,7 +204,7 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
   if (!(svd.singularValues()(1) > thin * thin * svd.singularValues()(0))) {
-    refuse("the known points lie on one line, about which it could turn freely");
+    refuse("the known points lie on one line, so the rotation about it is undetermined");
   }
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();
   sign.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;

@@ -10,7 +10,7 @@
 
 namespace excavplan {
 
-/// Hands on the points of a scan in the site frame, without those outside its area; those that are
+/// Passes on the points of a scan in the site frame, without those outside its area; those that are
 /// not finite may be among them. The same on every call. @throws Error (bad_file)
 void visit_scan(const Scan& scan, const PointVisitor& visit);
 
@@ -21,7 +21,7 @@ Cloud gathered(const Scan& scan);
 /// Its files, for messages.
 std::string name_of(const Scan& scan);
 
-/// A pair of scans and what a first pass over each told.
+/// A pair of scans and their outlines.
 struct OutlinedPair {
   ScanPair scans;
   ScanOutline before;
@@ -35,8 +35,8 @@ struct OutlinedPair {
 OutlinedPair outlined(const ScanPair& scans, unsigned threads);
 
 /// Both on one grid over the ground that both see. If they are to be registered, the one after is
-/// brought onto the one before by the ground that did not change, as far as that is significant;
-/// else only the height of one against the other is left open.
+/// registered to the one before on the ground that did not change, as far as the motion is
+/// significant; else only their relative height is undetermined.
 /// @throws FrameError if they do not overlap
 RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,
                            unsigned threads);

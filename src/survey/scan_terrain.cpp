@@ -61,7 +61,7 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
     result.warnings.push_back(
         {"unseen_ground", name_of(scan) + ": the scan does not see " + readable(unseen, 2) +
                               " m2 of the ground within reach, in gaps wider than " +
-                              readable(widest_gap, 2) + " m; no dig goes there"});
+                              readable(widest_gap, 2) + " m; no dig is planned there"});
   }
   if (raster.cell_size > cell_size) {
     result.warnings.push_back(

@@ -99,7 +99,7 @@ struct View {
   double range;
   double cosine;  // of the angle from the vertical
   double sine;
-  double across;  // width of what it sees on the ground [m]
+  double across;  // width of its footprint on the ground [m]
   double along;   // length of it
 };
 

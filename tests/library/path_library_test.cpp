@@ -184,7 +184,7 @@ TEST(PathLibrary, BadFilesAreRefusedByName) {
   EXPECT_EQ(with("\"soil\"", "\"sole\""), ": soil: is missing");
   EXPECT_EQ(with("\"seed\": 7", "\"seed\": 7, \"colour\": 3"),
             ": colour: is not a key of this file");
-  EXPECT_EQ(with("\"seed\": 7", "\"seed\": 7, \"seed\": 8"), ": key 'seed' stands twice");
+  EXPECT_EQ(with("\"seed\": 7", "\"seed\": 7, \"seed\": 8"), ": key 'seed' appears twice");
   EXPECT_NE(error_in(good.substr(0, good.size() / 2)).find("not valid JSON"), std::string::npos);
   EXPECT_THROW(load_path_library("/nowhere/library.json"), Error);
 }

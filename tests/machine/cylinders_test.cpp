@@ -248,7 +248,7 @@ TEST(Zx120Cylinders, GiveThePowerThatTheJointTakes) {
 }
 
 // Any four-bar that is accepted is right: the parts have their lengths, and length and joint angle
-// tell each other.
+// determine each other.
 TEST(Cylinder, WhatIsAcceptedIsOneToOne) {
   Random random(4);
   int accepted = 0;

@@ -763,7 +763,7 @@ TEST_F(SearchCheckpointFile, IsRefusedForAnotherSearch) {
   SearchProblem other = with_fingerprint(hartmann);
   other.fingerprint = "hartmann 6";
   EXPECT_EQ(error_about([&] { search(other, options()); }, file_),
-            "problem: is 'hartmann 3, box 0 0 0 to 1 1 1', which is another one than "
+            "problem: is 'hartmann 3, box 0 0 0 to 1 1 1', which differs from "
             "'hartmann 6, box 0 0 0 to 1 1 1'");
   SearchOptions seeded = options();
   seeded.seed = 5;
@@ -793,7 +793,7 @@ TEST_F(SearchCheckpointFile, TruncatedOrAlteredIsRefusedAtEveryByte) {
   EXPECT_EQ(with("\"version\": 1", "\"version\": 2"),
             ": version: is 2, this program reads version 1");
   EXPECT_EQ(with("\"fitness\":", "\"fitness\":1"),
-            ": checksum: does not fit the content: the file was altered");
+            ": checksum: does not match the content: the file was modified");
   EXPECT_EQ(with("excavplan-search", "excavplan-soil"),
             ": format: is 'excavplan-soil', expected 'excavplan-search'");
 }

@@ -95,7 +95,7 @@ TEST_F(Planner, EvaluatesThePapersFixedPath) {
   EXPECT_LT(dig.duration, 8.0);
 }
 
-/// Energy and stall as told.
+/// Energy and stall as given.
 class Told : public SoilSimulator {
  public:
   Told(double energy, bool stalls) : energy_(energy), stalls_(stalls) {}
@@ -429,7 +429,7 @@ class DigCheckpoint : public Planner {
     return test::error_of([&] { search(simulator, terrain, true); }, ErrorKind::bad_file);
   }
   bool refuses(const SoilSimulator& simulator) const {
-    return refusal(simulator).find("which is another one") != std::string::npos;
+    return refusal(simulator).find("which differs from") != std::string::npos;
   }
   HeightMapSimulator in(const char* soil, double density) const {
     return {machine_, load_soil(find_data_file(std::string("soils/") + soil + ".json")), density};
@@ -589,7 +589,7 @@ TEST_F(UncertainSearch, WhatIsKnownIsNotSimulatedAgain) {
         if (line.find("\"point\"") != std::string::npos) known += i == 0 ? 3 : 1;
       }
     }
-    EXPECT_GT(known, call * 3 / 4);  // the progress is told of generations, too
+    EXPECT_GT(known, call * 3 / 4);  // the progress is reported for generations, too
     EXPECT_EQ(digs_of([&] { run(options()); }), whole - known) << call;
   }
 }

@@ -245,7 +245,7 @@ TEST(Lidar, WideBeamsMixTheReturnsOfAnEdge) {
   };
   const int sharp = between(0.0, 0.6);
   EXPECT_GT(between(0.03, 0.6), 3 * sharp + 50);
-  // A short pulse tells both apart: the first return counts.
+  // A short pulse separates both: the first return counts.
   EXPECT_LT(between(0.03, 0.05), between(0.03, 0.6) / 2);
 }
 

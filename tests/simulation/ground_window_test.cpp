@@ -167,7 +167,7 @@ TEST(Slump, UnevenBankFailsWhereItIsLoose) {
   EXPECT_LT(terrain.bank.z(35, 39), 0.3);
 }
 
-// Digs and heaps at the rim of a window look as in the middle of one.
+// Digs and heaps at the rim of a window are the same as in the middle of one.
 TEST(GroundWindow, GrowsWithWhatSlides) {
   Terrain small = undisturbed(flat_ground({0, 0, 6, 6}, 0.05));
   small.loose.block(55, 55, 10, 10) += 1.0;
@@ -184,7 +184,7 @@ TEST(GroundWindow, GrowsWithWhatSlides) {
 
 TEST(GroundWindow, RefusesLayersThatCannotBeWhereItLooks) {
   Terrain terrain = undisturbed(flat_ground({0, 0, 4, 4}, 0.05));
-  terrain.loose(79, 79) = -1.0;  // far away: nobody looks
+  terrain.loose(79, 79) = -1.0;  // far away: not read
   const Ground ground;
   const GroundSoil soil = {ground.kind, ground.bank, ground.loose};
   EXPECT_NO_THROW(GroundWindow(terrain, soil, {0, 10, 0, 10}));

@@ -237,7 +237,7 @@ TEST_F(Simulator, UnsettledGroundIsStillSliding) {
   EXPECT_EQ(unsettled.payload_mass, settled.payload_mass);
 }
 
-// Ground that says how dense it is digs like ground the simulator was told of.
+// A density in the ground gives the same dig as the same density of the simulator.
 TEST_F(Simulator, DensityOfTheCellsCountsLikeTheSimulatorsOwn) {
   const SoilKind loam = soil_kind("loam");
   const Terrain plain = level_planning_ground(machine_);

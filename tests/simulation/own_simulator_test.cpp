@@ -4,7 +4,7 @@
 /// @file
 /// How to plug in a soil simulator of your own: derive from SoilSimulator, implement dig(), and run
 /// the contract suite on it. Anything in this library that takes a SoilSimulator then takes yours.
-/// Its identity() tells the checkpoints of its searches apart.
+/// Its identity() distinguishes the checkpoints of its searches.
 
 #include <algorithm>
 #include <cmath>

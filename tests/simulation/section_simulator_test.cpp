@@ -110,7 +110,7 @@ TEST_F(Section, CapacityIsTheVolumeUnderTheSlopes) {
   // Counts small cubes instead of clipping.
   const HoldingSlopes slopes = {2.0, 0.7};
   const auto& profile = machine_.bucket.profile;
-  for (const double phi3 : {-1.2, -1.7, -2.2, -2.7, -3.1}) {  // the mouth looks ahead, then up
+  for (const double phi3 : {-1.2, -1.7, -2.2, -2.7, -3.1}) {  // the mouth faces ahead, then up
     std::vector<Eigen::Vector2d> corners;
     for (const Eigen::Vector2d& corner : profile) {
       corners.push_back(Eigen::Rotation2Dd(phi3) * (corner - profile.front()));
@@ -339,7 +339,7 @@ TEST_F(Section, EqualVoidRatiosAreThatDensity) {
 }
 
 TEST_F(Section, SoilSwellsFromTheCellItComesFrom) {
-  // Dense and loose rows side by side, on rough ground: nothing overflows, so the bucket holds what
+  // Adjacent dense and loose rows, on rough ground: nothing overflows, so the bucket holds what
   // the cells lost, each at its own ratio.
   const SoilKind soil = soil_kind("loam");
   Terrain ground = rough_ground(machine_, 8);

@@ -786,7 +786,7 @@ TEST(WriteCloud, AFormatThatIsNoneIsAnError) {
   const string path = "a.las";
   EXPECT_EQ(error_about([&] { write_cloud(path, sample_cloud(1.0, false), {"las"}); }, path,
                         ErrorKind::bad_input),
-            "'las' is no format that clouds are written in");
+            "'las' is not a supported output format");
 }
 
 TEST(WriteCloud, TheNameAsksForTheFormat) {

@@ -58,7 +58,7 @@ void expect_same(const DensityEstimate& a, const DensityEstimate& b) {
   EXPECT_EQ(a.cell_size, b.cell_size);
   EXPECT_EQ(a.change.excavated.value, b.change.excavated.value);
   EXPECT_EQ(a.change.dumped.value, b.change.dumped.value);
-  if (a.method == VolumeMethod::surface) {  // the paper's knows no error
+  if (a.method == VolumeMethod::surface) {  // the paper's gives no error
     EXPECT_EQ(a.change.after.sd, b.change.after.sd);
   }
   ASSERT_TRUE(a.density && b.density);
@@ -181,7 +181,7 @@ TEST(EstimateDensity, ScansThatCannotBeComparedAreRefused) {
   scans = whole_scene();
   std::swap(scans.before, scans.after);
   EXPECT_NE(error_of([&] { estimate_density(scans, paper_law()); }, ErrorKind::bad_file)
-                .find("look swapped"),
+                .find("are probably swapped"),
             std::string::npos);
   scans = whole_scene();
   scans.before.area = Rectangle{0.0, 0.0, 0.1, 0.1};

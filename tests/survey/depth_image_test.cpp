@@ -285,7 +285,7 @@ class DepthTool : public testing::Test {
   static double depth(int v) {
     return height / (std::cos(tilt) + std::sin(tilt) * (v - 30) / focal);
   }
-  /// Where a pixel is in a site in which the camera stands above (4, 1) and looks along x.
+  /// Where a pixel is in a site with the camera above (4, 1), facing along x.
   static Eigen::Vector3d place(int u, int v) {
     const double z = depth(v);
     const double down = (v - 30) / focal * z;
@@ -365,7 +365,7 @@ TEST_F(DepthTool, PosesExcludeEachOther) {
     EXPECT_EQ(result.code, 2);
     EXPECT_NE(result.err.find(text), string::npos) << result.err;
   };
-  refused({"--level", "--points", "p.csv"}, "--pose, --level and --points exclude each other");
+  refused({"--level", "--points", "p.csv"}, "--pose, --level and --points are mutually exclusive");
   refused({"--pose-out", "p.txt"}, "--pose-out needs --level or --points");
 }
 

@@ -187,7 +187,7 @@ TEST(ScanSurface, UnseenCellsAreUnknown) {
   EXPECT_EQ(surface.height.z.isNaN().count(), 4);
   EXPECT_NEAR(surface.height.z(0, 0), 0.7, 1e-6);
   EXPECT_NEAR(surface.height.z(0, 2), 1.1, 1e-6);
-  EXPECT_TRUE(std::isnan(surface.variance(0, 0)));  // one point tells nothing
+  EXPECT_TRUE(std::isnan(surface.variance(0, 0)));  // one point has no scatter
   EXPECT_NEAR(surface.variance(0, 2), 0.01, 1e-6);  // 0.2^2 / 2 / 2
   EXPECT_TRUE(std::isnan(surface.variance(0, 1)));
   EXPECT_EQ(surface.points.sum(), 3);

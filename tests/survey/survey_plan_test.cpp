@@ -89,7 +89,7 @@ struct Sums {
   double risen = 0.0;
 };
 
-/// Truth tells the zones, 10 cm wider than what changed; a cell that no point fell into takes the
+/// Zones from the truth, 10 cm wider than what changed; a cell that no point fell into takes the
 /// mean of its known neighbours.
 Sums sum_zones(const Eigen::ArrayXXd& change, const HeightMap& truth) {
   constexpr Eigen::Index margin = 2;

@@ -46,9 +46,9 @@ TEST_F(Tools, CalibrateDensityReportsTheDifferenceOfTrueAndMeasuredFactors) {
               1e-6 + number(difference, "/unexplained"));
   const std::string text = run_program("calibrate-density", overfills).out;
   for (const std::string& part :
-       {"differ most at " + std::to_string(static_cast<int>(percent)),
-        std::string(" by dry mass, "), std::string(" points of density too "),
-        std::string(" % of the cut lay in the hole")}) {
+       {"largest difference at " + std::to_string(static_cast<int>(percent)),
+        std::string(" by dry mass, "), std::string(" points too "),
+        std::string(" % of the cut soil fell back into the hole")}) {
     EXPECT_TRUE(contains(text, part)) << part << '\n' << text;
   }
 }

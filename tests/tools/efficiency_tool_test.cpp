@@ -165,7 +165,7 @@ TEST_F(MeasureEfficiency, ScansAreBroughtIntoTheSiteFrame) {
   EXPECT_EQ(
       refusal(3, words),
       "before.xyz and after.xyz do not overlap: x 24.0 .. 28.0, y -2.00 .. 1.98 m and x 4.00 .. "
-      "7.98, y -2.00 .. 1.98 m; --before-frame and --after-frame bring them into one frame");
+      "7.98, y -2.00 .. 1.98 m; --before-frame and --after-frame transform them into one frame");
   Words both = words;
   both.insert(both.end(), {"--after-frame", far});
   EXPECT_NEAR(measured(both).at("runs").at(0).at("volume_m3").get<double>(), 0.3016, 0.002);
@@ -267,15 +267,15 @@ TEST_F(MeasureEfficiency, ColumnsMustTellFuelOrEnergyOnce) {
             "a.csv: power_w adds up to 0 kJ from 0 to 1 s, must be above 0");
 }
 
-TEST_F(MeasureEfficiency, BucketContentIsToldInOneWay) {
+TEST_F(MeasureEfficiency, PayloadIsGivenInOneWay) {
   const std::string a = log("a.csv", "power_w", "0,1\n1,1\n");
   const std::string ask =
-      "what did a.csv lift? Give one of --volume, --mass, or --dump-before with "
+      "payload of a.csv: give exactly one of --volume, --mass, or --dump-before with "
       "--dump-after";
   EXPECT_EQ(refusal(2, {a}), ask);
   EXPECT_EQ(refusal(2, {a, "--volume", "1", "--mass", "1"}), ask);
   EXPECT_EQ(refusal(2, {a, a, "--mass", "1"}),
-            "what did a.csv lift? Give one of --second-volume, --second-mass, or "
+            "payload of a.csv: give exactly one of --second-volume, --second-mass, or "
             "--second-dump-before with --second-dump-after");
   EXPECT_EQ(refusal(2, {a, "--dump-before", "x"}),
             "--dump-before needs --dump-after, which is missing");

@@ -8,7 +8,7 @@
 #include "support/tool_answers.hpp"
 
 /// @file
-/// estimate-density, from two scans to the density and how far it is to be trusted.
+/// estimate-density, from two scans to the density and its trustworthiness.
 
 namespace excavplan::test {
 namespace {
@@ -200,16 +200,16 @@ TEST_F(BadInput, HalfATaskIsRefused) {
   const std::string tool = "estimate-density";
   refused(2, "AFTER is missing", tool, {scan});
   refused(2, "BEFORE is missing", tool, {});
-  refused(2, "--dug-path and --dug-start go together", tool,
+  refused(2, "--dug-path and --dug-start must be given together", tool,
           {scan, later_scan, "--dug-start", "6"});
   refused(2, "takes no scans", tool, {scan, later_scan, "--plan-survey", "height=2"});
-  refused(2, "'hight' is not understood; it takes", tool, {"--plan-survey", "hight=2"});
+  refused(2, "'hight' is not a key of --plan-survey: ", tool, {"--plan-survey", "hight=2"});
   refused(2, "frames is 1.5, must be a whole number", tool, {"--plan-survey", "frames=1.5"});
   refused(2, "'height' must be KEY=VALUE", tool, {"--plan-survey", "height"});
 }
 
 TEST_F(BadInput, SwappedScansAreRefused) {
-  refused(3, "before and after look swapped", "estimate-density",
+  refused(3, "before and after are probably swapped", "estimate-density",
           {later_scan, scan, "--plot", plot});
 }
 

@@ -157,7 +157,7 @@ TEST_F(LibraryTool, AnInterruptLeavesWhatResumes) {
   EXPECT_EQ(interrupted("build-path-library", large, " densities, ").code, 75);
   EXPECT_TRUE(fs::exists(out_ + ".cells"));
   EXPECT_FALSE(fs::exists(out_));
-  EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);  // begins anew
+  EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);  // starts again
   EXPECT_EQ(content_of(out_), whole_);
   EXPECT_FALSE(fs::exists(out_ + ".cells"));
 }
@@ -216,7 +216,7 @@ TEST_F(LibraryTool, SameBytesForOneToFourRanks) {
     ASSERT_EQ(run_ranks(words, folder_.file("said")), 0) << content_of(folder_.file("said"));
     EXPECT_EQ(content_of(out_), whole_) << ranks;
     const std::string said = content_of(folder_.file("said"));
-    EXPECT_EQ(said.find(out_), said.rfind(out_)) << said;  // one rank speaks
+    EXPECT_EQ(said.find(out_), said.rfind(out_)) << said;  // one rank prints
     fs::remove(out_);
   }
 #endif
@@ -242,7 +242,7 @@ TEST_F(LibraryTool, ARankThatFailsAloneSaysWhyAndOneSpeaksForSeveral) {
               2);
     const std::string said = "\n" + content_of(folder_.file("said"));
     EXPECT_EQ(times(said, reason), 1) << said;
-    // mpirun's own words on the end of a rank may come before the rank's.
+    // mpirun's message on the end of a rank may come before that of the rank.
     int speakers = 0;
     for (int rank = 1; rank <= others; ++rank) {
       speakers += times(said, "\nrank " + std::to_string(rank) + ": " + reason);

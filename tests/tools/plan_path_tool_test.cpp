@@ -360,8 +360,9 @@ TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
     refused(3, reason, "plan-path", {"--density-from", file, "--plot", plot});
   }
   refused(3, "none.json: ", "plan-path", {"--density-from", folder.file("none.json")});
-  refused(2, "one of the two", "plan-path", {});
-  refused(2, "one of the two", "plan-path", {"--density", "40", "--density-from", file});
+  refused(2, "give either --density or --density-from", "plan-path", {});
+  refused(2, "give either --density or --density-from", "plan-path",
+          {"--density", "40", "--density-from", file});
 }
 
 TEST_F(BadInput, APlanDoesNotTrustAResultWhoseTrustIsNoTruthValue) {

@@ -36,8 +36,7 @@ TEST(Quantity, JunkAndWrongKindsAreRefused) {
   EXPECT_EQ(error_of([] { parse_quantity("--cell", "5deg", Quantity::length); }),
             "--cell: '5deg' is an angle, expected a length such as 0.05, 5cm or 50mm");
   EXPECT_EQ(error_of([] { parse_quantity("--density", "4x", Quantity::percent); }),
-            "--density: '4x' ends in 'x', which is no unit known here, expected a percentage such "
-            "as 40 or 40%");
+            "--density: '4x' has the unknown unit 'x', expected a percentage such as 40 or 40%");
   for (const char* junk :
        {"", "x", "nan", "inf", "-", "+", "+-3", "1e999", "0,5", "5cm cm", "--3"}) {
     EXPECT_NE(error_of([&] { parse_quantity("--cell", junk, Quantity::length); }), "no error")
@@ -143,7 +142,7 @@ TEST(Tool, WrongUsageEndsWithTwoAndSaysWhy) {
   const std::vector<std::pair<std::vector<const char*>, std::string>> cases = {
       {{"a.pcd"}, "--density is missing: density of the ground [%]"},
       {{"--density", "4"}, "BEFORE is missing: a scan"},
-      {{"a", "b", "--density", "4"}, "'b' is one argument too many"},
+      {{"a", "b", "--density", "4"}, "unexpected argument 'b'"},
       {{"a", "--density", "4", "--density", "5"}, "--density is given more than once"},
       {{"a", "--density", "--json"}, "--density needs a value, got --json"},
       {{"a", "--density", "4", "--seed", "-1"}, "--seed: '-1' is not a whole number, 0 or more"},

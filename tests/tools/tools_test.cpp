@@ -222,7 +222,7 @@ TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
 }
 
 TEST_F(BadInput, SurplusAndRepeatedArgumentsAreRefused) {
-  refused(2, "'b.pcd' is one argument too many", "inspect-cloud", {scan, "b.pcd"});
+  refused(2, "unexpected argument 'b.pcd'", "inspect-cloud", {scan, "b.pcd"});
   refused(2, "--density is given more than once", "plan-path",
           {"--density", "40", "--density", "50"});
   refused(2, "AFTER is missing", "estimate-density", {scan});

@@ -152,13 +152,13 @@ void Arguments::text(const std::string& name, const std::string& placeholder,
 }
 
 void Arguments::soil(std::string& name) {
-  text("soil", "NAME|FILE", name, "kind of soil: loam, sand, clay, gravel, or a soil file");
+  text("soil", "NAME|FILE", name, "soil: loam, sand, clay, gravel, or a soil file");
 }
 
 void Arguments::simulator(std::string& word) {
   std::vector<std::string> words;
   for (const SimulatorKind& kind : simulator_kinds()) words.push_back(kind.word);
-  choice("simulator", word, words, "engine that digs; section: quick, in the boom plane alone");
+  choice("simulator", word, words, "simulator; section: faster, two-dimensional in the boom plane");
 }
 
 void Arguments::machine(std::string& name) {
@@ -166,7 +166,7 @@ void Arguments::machine(std::string& name) {
 }
 
 void Arguments::plot(std::optional<std::string>& path, const std::string& shows) {
-  add({"plot", "FILE.svg", "draw " + shows + " into this file", "", false, false,
+  add({"plot", "FILE.svg", "plot " + shows + " into this file", "", false, false,
        [&path](const std::string& text) {
          if (std::filesystem::path(text).extension() != ".svg") {
            usage_error("--plot: '" + text + "' must end in .svg, plots are written as SVG only");

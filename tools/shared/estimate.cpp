@@ -31,7 +31,7 @@ nlohmann::ordered_json blocks_json(const BlockReport& report) {
   return json;
 }
 
-/// Null where the sensor stood still and said so.
+/// Null without a registration.
 nlohmann::ordered_json registration_json(const std::optional<ScanRegistration>& registration) {
   if (!registration) return nullptr;
   const Alignment& alignment = registration->found;
@@ -120,7 +120,7 @@ std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
                                     "spill      " + volume(estimate.change.spilled),
                                     "heap       " + volume(estimate.change.dumped)};
   if (!estimate.bulking) {
-    lines.emplace_back("bulking    unknown, and so is the density");
+    lines.emplace_back("bulking    unknown; density unknown");
     return lines;
   }
   const RelativeDensity& d = *estimate.density;
@@ -136,7 +136,7 @@ std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
   }
   if (estimate.corrected) {
     lines.push_back("corrected  " + readable(estimate.corrected->value, estimate.corrected->sd) +
-                    ", bulking freed of this");
+                    ", bulking factor corrected for this");
   }
   lines.push_back("density    " + readable(d.percent, d.sd_percent) + " %, 95 % interval " +
                   readable(d.interval_percent[0]) + " .. " + readable(d.interval_percent[1]) +
@@ -146,10 +146,9 @@ std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
   const double bias = estimate.density_without_fallback - d.raw_percent;
   if (!estimate.fallback && std::abs(bias) > 0.05) {
     lines.push_back(
-        "           holds for digs whose bucket spilled as in its calibration; had nothing "
-        "fallen back, " +
+        "           assumes as much fallback as in the calibration of the law; without fallback, " +
         readable(std::clamp(estimate.density_without_fallback, 0.0, 100.0)) +
-        " % (--dug-path finds out)");
+        " % (--dug-path measures it)");
   }
   return lines;
 }

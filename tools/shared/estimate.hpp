@@ -7,7 +7,7 @@
 #include "shared/tool.hpp"
 
 /// @file
-/// What scans tell of a dig, as JSON and as lines for people.
+/// Results of a density estimate, as JSON and as text lines.
 
 namespace excavplan::tools {
 

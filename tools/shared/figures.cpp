@@ -44,7 +44,7 @@ ZoneLook look(ZoneKind kind) {
     case ZoneKind::other:
       break;
   }
-  return {"other change, left out", {"#777777", 1.0}};
+  return {"other change, excluded", {"#777777", 1.0}};
 }
 
 /// Borders between the cells of one zone and all others, as strokes.

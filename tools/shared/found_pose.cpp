@@ -40,7 +40,7 @@ FoundPose pose_from_points(const std::string& path, const Cloud& cloud,
   return {pose.site_from_scan,
           {{"method", "points"}, {"residuals_m", pose.residuals}, {"residual_rms_m", pose.rms}},
           std::to_string(points.in_site.size()) + " known points fit within " +
-              millimetres(pose.rms) + " (rms), the worst within " + millimetres(worst)};
+              millimetres(pose.rms) + " (rms), the worst one within " + millimetres(worst)};
 }
 
 }  // namespace excavplan::tools

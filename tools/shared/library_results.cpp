@@ -39,9 +39,8 @@ void add_lines(const PathLibrary& library, const std::string& file, Outcome& out
 void require_library_place(const std::string& out, bool several) {
   require_folder_of(out);
   if (!fs::exists(out) || fs::is_directory(out) == several) return;
-  throw Error(ErrorKind::bad_file,
-              out + (several ? ": is a file, several libraries need a folder"
-                             : ": is a folder, the library needs a file of its own"));
+  throw Error(ErrorKind::bad_file, out + (several ? ": is a file, several libraries need a folder"
+                                                  : ": is a folder, the library needs a file"));
 }
 
 Outcome written_libraries(const std::vector<PathLibrary>& libraries, const std::string& out) {
@@ -74,7 +73,7 @@ Outcome stopped_build(const LibraryBuild& build, const std::string& folder,
   outcome.json = {{"cells", build.entries}, {"cells_done", build.entries_done}};
   outcome.lines = {folder + ": " + std::to_string(build.entries_done) + " of " +
                        std::to_string(build.entries) + " densities",
-                   how + " goes on from there"};
+                   how + " continues from there"};
   return outcome;
 }
 

@@ -14,14 +14,14 @@
 
 namespace excavplan::tools {
 
-/// What can be told of `--out` before the search.
+/// Checks of `--out` made before the search.
 /// @throws Error (bad_file)
 void require_library_place(const std::string& out, bool several);
 
 /// Writes a library to the file, several to a folder of that name.
 Outcome written_libraries(const std::vector<PathLibrary>& libraries, const std::string& out);
 
-/// @param how  what goes on from there
+/// @param how  the command or option that continues the build
 Outcome stopped_build(const LibraryBuild& build, const std::string& folder, const std::string& how);
 
 }  // namespace excavplan::tools

@@ -15,7 +15,7 @@ void RunInputs::declare(Arguments& arguments, const std::string& its_prefix,
   arguments.option(prefix + "mass", mass, Quantity::mass, "or its mass" + whose);
   arguments.option(prefix + "mass-sd", mass_sd, Quantity::mass, "its standard deviation, if known");
   arguments.file(prefix + "dump-before", dump_before,
-                 "or measure the heap: cloud of the dump area before" + whose);
+                 "or volume from scans: cloud of the dump area before" + whose);
   arguments.file(prefix + "dump-after", dump_after, "cloud of the dump area after" + whose);
   arguments.option(prefix + "from", from, Quantity::time,
                    "time_s at which the dig starts" + whose + " (default: the log's first)");
@@ -57,7 +57,7 @@ void RunInputs::check() const {
   go_together(dump_after && !dump_before, "dump-after", "dump-before");
   const int ways = int{volume.has_value()} + int{mass.has_value()} + int{dump_before.has_value()};
   if (ways != 1) {
-    throw Error(ErrorKind::bad_input, "what did " + *log + " lift? Give one of " +
+    throw Error(ErrorKind::bad_input, "payload of " + *log + ": give exactly one of " +
                                           option("volume") + ", " + option("mass") + ", or " +
                                           option("dump-before") + " with " + option("dump-after"));
   }

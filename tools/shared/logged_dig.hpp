@@ -12,7 +12,7 @@
 
 namespace excavplan::tools {
 
-/// One dig as the command line tells it.
+/// One dig as given on the command line.
 struct RunInputs {
   std::string prefix;  ///< of its options: empty or "second-"
   std::optional<std::string> log;
@@ -29,7 +29,7 @@ struct RunInputs {
   void declare(Arguments& arguments, const std::string& its_prefix, const std::string& whose);
   /// True if any of these options is given.
   bool any() const;
-  /// @throws Error (bad_input) if it is not told, or told twice, what the bucket held
+  /// @throws Error (bad_input) unless the payload is given exactly once
   LoggedDig dig(const ScanFrames& frames) const;
 
  private:

@@ -60,9 +60,9 @@ nlohmann::ordered_json spread_json(const DigSpread& spread, double density_sd) {
 
 std::string expected_line(const PlanSearch& search, const DigGoalInfo& goal, double density_sd) {
   std::string line = "expected     " + readable(goal.per_si * search.worth) + " " + goal.unit +
-                     " on average over " + readable(density_sd) + " points of standard deviation";
+                     " at a standard deviation of " + readable(density_sd) + " points of density";
   if (!search.value_of_knowing) return line;
-  return line + "; knowing the density would add " + readable(100.0 * *search.value_of_knowing, 2) +
+  return line + "; value of knowing the density: " + readable(100.0 * *search.value_of_knowing, 2) +
          " %";
 }
 
@@ -72,8 +72,8 @@ std::string look_up_line(const PlanLookUp& look_up) {
   std::string line = "looked up    ";
   if (look_up.slope != 0.0) line += "on a slope of " + readable(look_up.slope, 2) + " rad";
   if (look_up.error->loss == 0.0) return line;
-  return line + (look_up.slope != 0.0 ? ", " : "") + "between entries, which loses up to " +
-         readable(100.0 * look_up.error->loss, 2) + " % of the best efficiency";
+  return line + (look_up.slope != 0.0 ? ", " : "") + "between entries, up to " +
+         readable(100.0 * look_up.error->loss, 2) + " % below the best efficiency";
 }
 
 std::string source_line(const DigPlan& plan) {
@@ -108,7 +108,7 @@ void check(const DensityInput& input) {
     refuse("--density-sd: " + number_text(*input.sd) + " must be at least 0");
   }
   if (input.percent.has_value() == input.file.has_value()) {
-    refuse("give --density or --density-from, one of the two");
+    refuse("give either --density or --density-from");
   }
   if (input.percent && !(*input.percent >= 0.0 && *input.percent <= 100.0)) {
     refuse("--density: " + number_text(*input.percent) + " % is outside 0 .. 100");

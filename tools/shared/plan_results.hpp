@@ -11,18 +11,18 @@
 #include <excavplan/library/plan_dig.hpp>
 
 /// @file
-/// A plan as JSON and as lines for people, and the density it is made for from an estimate's JSON.
+/// A plan as JSON and as text lines, and the density it is made for from an estimate's JSON.
 
 namespace excavplan::tools {
 
 /// A density from the command line: a number, or a result of estimate-density --json.
 struct DensityInput {
   std::optional<double> percent;
-  std::optional<double> sd;  ///< [points]; goes before that of the file
+  std::optional<double> sd;  ///< [points]; overrides that of the file
   std::optional<std::string> file;
 };
 
-/// What can be told before the file is read. @throws Error (bad_input)
+/// Checks made before the file is read. @throws Error (bad_input)
 void check(const DensityInput& input);
 /// @throws Error (bad_file) naming file, key, value and rule
 GroundDensity density_of(const DensityInput& input);

@@ -11,7 +11,7 @@
 #include <excavplan/ground/height_map.hpp>
 
 /// @file
-/// Plots as SVG text: panels with axes side by side, then a colour bar, a legend and lines of text.
+/// Plots as SVG text: panels with axes in a row, then a colour bar, a legend and lines of text.
 
 namespace excavplan::tools {
 

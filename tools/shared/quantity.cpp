@@ -98,7 +98,7 @@ double parse_quantity(const std::string& what, const std::string& text, Quantity
   const auto known =
       std::find_if(units.begin(), units.end(), [&](const Unit& row) { return suffix == row.text; });
   if (known == units.end()) {
-    refuse("ends in '" + suffix + "', which is no unit known here");
+    refuse("has the unknown unit '" + suffix + "'");
   } else if (known->quantity != quantity) {
     refuse(std::string("is ") + info(known->quantity).kind);
   }

@@ -19,7 +19,7 @@ struct ScanFrames {
 /// @throws Error (bad_file) if a matrix cannot be read
 ScanPair scan_pair(const std::string& before, const std::string& after, const ScanFrames& frames);
 
-/// Runs `work`, and says with an error about the frame of a scan which options mend it.
+/// Runs `work`, and adds to an error about the frame of a scan the options that correct it.
 template <typename Work>
 auto with_frame_hint(const std::string& hint, const Work& work) {
   try {
@@ -30,6 +30,6 @@ auto with_frame_hint(const std::string& hint, const Work& work) {
 }
 
 inline constexpr const char* pair_frame_hint =
-    "--before-frame and --after-frame bring them into one frame";
+    "--before-frame and --after-frame transform them into one frame";
 
 }  // namespace excavplan::tools

@@ -73,7 +73,7 @@ std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inpu
   return paper;
 }
 
-/// Shows a search on the console. @return whether it may go on
+/// Shows a search on the console. @return whether it may continue
 bool report(Console& console, const SearchProgress& p, const DigGoalInfo& goal) {
   console.progress(static_cast<double>(p.evaluations) / p.planned,
                    "generation " + std::to_string(p.generation) + ": best " +
@@ -90,32 +90,36 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
                    return usage(goal) + ": " + goal.description;
                  }));
   arguments.option("rest-of-cycle", inputs.rest_of_cycle, Quantity::time,
-                   "swing, dump and return, added to the time of the dig");
-  arguments.text("start", "RULE|LENGTH", inputs.start,
-                 "where the dig begins: work (least work of the links), margin (farthest from the "
-                 "joint limits), search (with the path), or x");
+                   "time of swing, dump and return, added to that of the dig");
+  arguments.text(
+      "start", "RULE|LENGTH", inputs.start,
+      "start point of the dig: work (least work of the links), margin (largest margin to "
+      "the joint limits), search (together with the path), or its x");
   for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
     const DigParameterInfo& info = dig_parameter_table()[i];
     arguments.text(range_option(info), "FROM,TO", inputs.ranges[i],
-                   std::string(info.text) + "s searched");
+                   "search range of the " + std::string(info.text));
   }
   arguments.choice("method", inputs.method, {"default", "paper"},
-                   "of the search; paper: the paper's genetic algorithm");
+                   "search method; paper: the paper's genetic algorithm");
   arguments.option("population", inputs.population,
-                   "individuals, --method paper (default: " +
+                   "population of --method paper (default: " +
                        std::to_string(GeneticAlgorithm{}.population) + ")");
-  arguments.option("generations", inputs.generations,
-                   "of the search, 0 for as many as the evaluations allow, or the paper's");
-  arguments.option("evaluations", inputs.evaluations,
-                   "digs simulated at most in one search, 0 for the method's own: 400 (100 for "
-                   "each of several densities, 200 without a library's dig to begin with), or all "
-                   "the paper's generations");
+  arguments.option(
+      "generations", inputs.generations,
+      "generations of the search, 0 for as many as --evaluations allows, or the paper's");
+  arguments.option(
+      "evaluations", inputs.evaluations,
+      "largest number of simulated digs per search, 0 for the default of the method: 400 "
+      "(for each of several densities 100, or 200 without a library dig to start "
+      "from), or all generations of the paper");
   arguments.file("checkpoint", inputs.checkpoint,
-                 "keep the digs simulated in this file, those of a search for each of several "
-                 "densities in FILE.soil1, FILE.soil2, ...");
-  arguments.flag("resume", inputs.resume, "go on from the checkpoint if it exists");
+                 "save the simulated digs in this file; for several densities also in FILE.soil1, "
+                 "FILE.soil2, ...");
+  arguments.flag("resume", inputs.resume, "continue from the checkpoint if it exists");
   arguments.option("seed", inputs.seed, "seed of the search");
-  arguments.option("threads", inputs.threads, "threads, 0 for one per core; same path for any");
+  arguments.option("threads", inputs.threads,
+                   "threads, 0 for one per core; the path does not depend on it");
 }
 
 StartRule start_rule_of(const SearchInputs& inputs) {

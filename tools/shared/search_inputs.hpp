@@ -13,7 +13,7 @@
 
 namespace excavplan::tools {
 
-/// How a dig is searched, as said on the command line.
+/// Settings of a search for a dig, from the command line.
 struct SearchInputs {
   std::string goal = dig_goals().front().word;
   double rest_of_cycle = 0.0;
@@ -33,7 +33,7 @@ struct SearchInputs {
 
 void declare_search(Arguments& arguments, SearchInputs& inputs);
 
-/// What can be told to be wrong before anything is read. @throws Error (bad_input)
+/// Checks made before anything is read. @throws Error (bad_input)
 void check(const SearchInputs& inputs);
 
 /// What is done with the options of a search.

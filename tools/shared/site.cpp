@@ -13,10 +13,10 @@ namespace excavplan::tools {
 
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell) {
   if (terrain.frame && !terrain.cloud) {
-    throw Error(ErrorKind::bad_input, "--terrain-frame goes with --terrain");
+    throw Error(ErrorKind::bad_input, "--terrain-frame needs --terrain");
   }
   if (!(cell >= finest_cell && cell <= coarsest_cell)) {
-    throw Error(ErrorKind::bad_input, "--cell: the cell is " + number_text(cell) +
+    throw Error(ErrorKind::bad_input, "--cell: the cell size is " + number_text(cell) +
                                           " m, must be in " + number_text(finest_cell) + " .. " +
                                           number_text(coarsest_cell) + " m");
   }
@@ -24,7 +24,7 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
   Scan scan;
   scan.files = {*terrain.cloud};
   if (terrain.frame) scan.site_from_scan = read_frame(*terrain.frame);
-  ScannedTerrain seen = with_frame_hint("--terrain-frame brings another frame in",
+  ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
                                         [&] { return terrain_from_scan(scan, extent, cell); });
   return {std::move(seen.terrain), std::move(seen.warnings)};
 }

@@ -15,10 +15,10 @@ namespace excavplan::tools {
 struct TerrainInput {
   std::optional<std::string> cloud;
   std::optional<std::string>
-      frame;  ///< file with the matrix that takes the cloud into the site frame
+      frame;  ///< file with the matrix that transforms the cloud into the site frame
 };
 
-/// Ground to dig on and what is to be said about it.
+/// Ground to dig on, with its warnings.
 struct Site {
   Terrain ground;
   std::vector<Warning> warnings;

@@ -16,7 +16,7 @@ namespace {
 
 struct Request {
   SurveyPlan plan;
-  double target = 5.0;  ///< standard deviation of the density asked for [points]
+  double target = 5.0;  ///< required standard deviation of the density [points]
 };
 
 struct Key {
@@ -28,8 +28,9 @@ struct Key {
 
 constexpr std::array<Key, 6> keys = {{
     {"height", Quantity::length, &SurveyPlan::height, "of the sensor above the ground"},
-    {"offset", Quantity::length, &SurveyPlan::offset, "of the sensor from the middle of the area"},
-    {"volume", Quantity::volume, &SurveyPlan::dig_volume, "that is dug"},
+    {"offset", Quantity::length, &SurveyPlan::offset,
+     "of the sensor from the centre of the area, horizontal"},
+    {"volume", Quantity::volume, &SurveyPlan::dig_volume, "of the dig"},
     {"depth", Quantity::length, &SurveyPlan::dig_depth, "of the dig"},
     {"area", Quantity::area, &SurveyPlan::surveyed_area, "around dig and heap, each"},
     {"k", Quantity::ratio, &SurveyPlan::bulking_factor, "bulking factor expected"},
@@ -64,7 +65,7 @@ void set(Request& request, const std::string& name, const std::string& value) {
   } else if (name == "target") {
     request.target = parse_quantity(what, value, Quantity::percent);
   } else {
-    refuse("'" + name + "' is not understood; it takes " + survey_keys());
+    refuse("'" + name + "' is not a key of --plan-survey: " + survey_keys());
   }
 }
 
@@ -80,7 +81,7 @@ Request parse(const std::string& text) {
 }
 
 std::string text_of(const std::optional<double>& value, const std::string& unit) {
-  return value ? readable(*value, 2) + unit : "not by this alone";
+  return value ? readable(*value, 2) + unit : "n/a (insufficient alone)";
 }
 
 nlohmann::ordered_json json_of(const Request& request, const SurveyForecast& f,
@@ -115,25 +116,25 @@ std::vector<std::string> lines_of(const Request& request, const SurveyForecast& 
                                   const SurveyNeeds& needs) {
   const auto percent = [](double share) { return readable(100.0 * share, 2) + " %"; };
   return {"sensor     " + request.plan.sensor.name + ", " + readable(f.range, 3) +
-              " m from the middle of the area, a ray every " + readable(1000.0 * f.ray_spacing, 2) +
+              " m from the centre of the area, ray spacing " + readable(1000.0 * f.ray_spacing, 2) +
               " mm",
           "bulking    sd " + readable(f.bulking_sd, 2),
           "density    sd " + readable(f.density_sd_percent, 2) +
-              " points, one standard deviation, the law's own scatter not in it",
+              " points (one standard deviation, without the scatter of the law)",
           "  of which " + percent(f.white_share) + " noise, " + percent(f.correlated_share) +
               " pattern, " + percent(f.datum_share) + " datum, " + percent(f.occlusion_share) +
               " hidden ground",
           "for " + readable(request.target, 2) + " points, either",
           "  range    at most " + text_of(needs.range, " m at this angle of view"),
-          "  frames   at least " +
-              (needs.frames ? std::to_string(*needs.frames) : std::string("not by this alone")),
+          "  frames   at least " + (needs.frames ? std::to_string(*needs.frames)
+                                                 : std::string("n/a (insufficient alone)")),
           "  noise    at most " + text_of(needs.noise, " times that of this sensor")};
 }
 
 }  // namespace
 
 std::string survey_keys() {
-  std::string text = "no scans: how well a survey will tell the density. Keys: sensor=";
+  std::string text = "predict the density error of a survey, without scans. Keys: sensor=";
   for (const Sensor& sensor : sensors()) {
     text += (&sensor == &default_sensor() ? "" : "|") + sensor.name;
   }
@@ -154,8 +155,8 @@ Outcome planned_survey(const std::string& text, const DensityLaw& law) {
   outcome.lines = lines_of(request, forecast, needs);
   if (!forecast.in_view) {
     outcome.warnings.push_back({"not_in_view",
-                                "pit, spill and heap do not fit into the field of view from there; "
-                                "at this angle they do from " +
+                                "pit, spill and heap do not fit into the field of view; at this "
+                                "angle they fit from a range of " +
                                     readable(needs.nearest_range, 3) + " m"});
   }
   return outcome;

@@ -13,8 +13,8 @@ namespace excavplan::tools {
 /// What --plan-survey understands, for its help.
 std::string survey_keys();
 
-/// How well the survey that `text` describes, "height=2.5,offset=1.2", will tell the density, and
-/// what it takes to tell it to `target` points.
+/// Predicted density error of the survey that `text` describes, "height=2.5,offset=1.2", and the
+/// requirements for an error of `target` points.
 /// @throws Error (bad_input) naming the key and its rule
 Outcome planned_survey(const std::string& text, const DensityLaw& law);
 

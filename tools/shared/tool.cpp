@@ -117,7 +117,7 @@ std::string help_text(const About& about, const std::vector<Arguments::Entry>& e
   }
   std::string codes =
       "Exit codes: 0 done; 1 internal error; 2 wrong usage; 3 a file cannot be read or written, or "
-      "is not what it claims";
+      "has the wrong format or content";
   if (about.can_be_untrustworthy) codes += "; 4 result not trustworthy, with --strict";
   if (about.can_stop_early) codes += "; 75 stopped early, can be resumed";
   return text + '\n' + wrapped(codes + ".", 0) + '\n';
@@ -134,11 +134,12 @@ struct Common {
 };
 
 void declare_common(Arguments& arguments, const About& about, Common& common) {
-  arguments.flag("json", common.json, "print one JSON object on standard output, nothing else");
+  arguments.flag("json", common.json, "print only one JSON object on standard output");
   if (about.can_be_untrustworthy) {
-    arguments.flag("strict", common.strict, "exit with 4 if the result should not be trusted");
+    arguments.flag("strict", common.strict, "exit with 4 if the result is not trustworthy");
   }
-  arguments.flag("quiet", common.quiet, "no summary, notes, progress or warnings; errors stay");
+  arguments.flag("quiet", common.quiet,
+                 "print no summary, notes, progress or warnings, only errors");
   arguments.flag("version", common.version, "print the version and exit");
   arguments.flag("help", common.help, "print this help and exit");
 }
@@ -154,7 +155,7 @@ struct ParsedWords {
 };
 
 /// CLI11 only sorts the words. Conversion and missing options come after the check for unknown
-/// ones, so that "--denisty 40" is told to be misspelt rather than --density to be missing.
+/// ones, so that "--denisty 40" is reported as misspelt rather than --density as missing.
 ParsedWords sort_words(int argc, const char* const* argv,
                        const std::vector<Arguments::Entry>& entries) {
   CLI::App app;
@@ -193,7 +194,7 @@ void refuse_left_over(const std::vector<std::string>& left_over,
   for (const std::string& word : left_over) {
     const std::size_t start = word.find_first_not_of('-');
     if (start == std::string::npos) continue;
-    if (start == 0) usage_error("'" + word + "' is one argument too many");
+    if (start == 0) usage_error("unexpected argument '" + word + "'");
     const std::string option = word.substr(0, word.find('='));
     const auto meant = nearest(option.substr(start), names);
     usage_error("unknown option " + option + (meant ? ", did you mean --" + *meant + "?" : ""));

@@ -48,7 +48,7 @@ struct About {
 struct Outcome {
   /// Printed with --json, "tool" and "version" before it, "warnings" after it. NaN becomes null.
   nlohmann::ordered_json json;
-  std::vector<std::string> lines;  ///< for people, without --json
+  std::vector<std::string> lines;  ///< printed without --json
   std::vector<Warning> warnings;
   bool trustworthy = true;
   bool stopped_early = false;

@@ -48,7 +48,7 @@ struct BlockReport {
   bool blocks = false;  ///< the score is 0.5 or more: the density cannot be trusted
   std::optional<double> block_size;  ///< mean edge [m]; of the heap, if its texture shows it
   std::optional<Measured> voids;     ///< between the blocks, in `after` of the change [m^3]
-  std::vector<std::string> reasons;  ///< for people: what was found, and the figure of loose soil
+  std::vector<std::string> reasons;  ///< text: what was found, and the value for loose soil
 };
 
 /// Looks for blocks in the ground that changed. Where their size can be found, it estimates the
@@ -59,7 +59,7 @@ struct BlockReport {
 /// size to 8 %, voids to 5 % of the volume of the heap; to 15 % and 7 % where blocks are flat or
 /// long, for which it was not tuned. No heap of real blocks was measured. Voids are not estimated
 /// where the heap shows no blocks, or blocks smaller than three cells or larger than the heap is
-/// deep. With cells above 0.2 m the score is 0 and `reasons` says so.
+/// deep. With cells above 0.2 m the score is 0, with a reason.
 ///
 /// @param after height map of each area of `change`, on the grid of its difference
 /// @param change from measure_change()

@@ -11,7 +11,7 @@ namespace excavplan {
 /// Bulking factor k = V_after / V_before (the paper's eq. 1) and its standard deviation by the
 /// delta method, covariance included: u_k^2 = u_a^2 + u_b^2 - 2 cov / (V_a V_b).
 ///
-/// @param change volumes of a dig; its warnings say why there is no bulking factor
+/// @param change volumes of a dig; its warnings give the reason for a missing bulking factor
 /// @return nothing if no hole was found, no dumped soil is in the scans, or too much of a zone was
 ///         not seen
 std::optional<Measured> bulking_factor(const VolumeChange& change);

@@ -20,12 +20,12 @@ struct Measured {
   double sd = 0.0;     ///< standard deviation, likewise
 };
 
-/// What a change of the ground is.
+/// Kind of a change of the ground.
 enum class ZoneKind {
   dig,    ///< the hole
   spill,  ///< soil that rose beside the hole
   dump,   ///< soil that rose away from the hole
-  other,  ///< changed, but neither: left out of every volume
+  other,  ///< changed, but neither: excluded from all volumes
 };
 
 /// "dig", "spill", "dump" or "other".

@@ -20,7 +20,7 @@
 
 namespace excavplan {
 
-/// Where the dig comes from.
+/// Source of the dig.
 enum class PlanMethod {
   library,  ///< looked up; dug once where the ground or the simulator is not the library's
   search,   ///< searched by digs in the simulator, from the library's dig on
@@ -36,7 +36,7 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
 /// How plan_dig() plans.
 struct PlanOptions {
   PlanMethod method = PlanMethod::library;  ///< where the dig comes from
-  /// Null: shipped_library() of `data_folder`, read anew by every call.
+  /// Null: shipped_library() of `data_folder`, read again by every call.
   std::shared_ptr<const PathLibrary> library = nullptr;
   std::string data_folder = data_folder_of_package;  ///< as find_data_file() takes it
   /// `progress` reports and cancels, the seed fixes the result for any number of `threads`, and
@@ -49,7 +49,7 @@ struct PlanOptions {
   double cell_size = 0.05;                        ///< of the level ground, if none is given [m]
 };
 
-/// How the search went.
+/// Results of the search.
 struct PlanSearch {
   double worth = 0.0;  ///< of the dig, by the objective, in SI; the mean for an uncertain density
   StopReason stopped_by = StopReason::generations;  ///< what ended the search
@@ -62,7 +62,7 @@ struct PlanSearch {
   std::optional<double> value_of_knowing;
 };
 
-/// How the dig was looked up.
+/// Details of a look-up.
 struct PlanLookUp {
   double slope = 0.0;                ///< of the ground, as far as the library goes [rad]
   std::optional<MidwayError> error;  ///< look_up_error(); nothing on ground unlike the library's
@@ -78,7 +78,7 @@ struct DigPlan {
   DigPath path;           ///< of the dig, with its approach
   Trajectory trajectory;  ///< of that path
   PlanMethod method = PlanMethod::library;  ///< where the dig comes from
-  std::string start_rule;                   ///< where the dig begins, for people
+  std::string start_rule;                   ///< rule of the start, human-readable
   int evaluations = 0;                      ///< digs simulated for the plan
   std::optional<PlanSearch> search;         ///< if searched
   std::optional<PlanLookUp> look_up;        ///< if looked up

@@ -38,7 +38,7 @@ struct FourBar {
 
 /// Where the cylinders of one joint are fixed.
 struct CylinderGeometry {
-  int count = 1;  ///< cylinders side by side that share the work
+  int count = 1;  ///< parallel cylinders that share the load
   PolarPin foot;  ///< on the link before the joint; before the boom: from +x
   /// Where the rod acts: a pin on the link after the joint, or a four-bar.
   std::variant<PolarPin, FourBar> rod;
@@ -74,7 +74,7 @@ class Cylinder {
   /// Force of each cylinder for a torque of the joint [N m]; positive pushes [N].
   double force(double joint, double torque) const;
 
-  int count() const { return geometry_.count; }           ///< cylinders side by side
+  int count() const { return geometry_.count; }           ///< parallel cylinders
   double shortest() const { return shortest_; }           ///< [m]
   double longest() const { return longest_; }             ///< [m]
   double stroke() const { return longest_ - shortest_; }  ///< over the joint's range [m]

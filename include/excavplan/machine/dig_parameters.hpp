@@ -32,7 +32,7 @@ DigParameters paper_fixed_path();
 struct DigParameterInfo {
   const char* name;    ///< key in JSON, ends in the unit: "penetration_angle_rad"
   const char* unit;    ///< "rad" or "m"
-  const char* text;    ///< name for people: "penetration angle"
+  const char* text;    ///< readable name: "penetration angle"
   const char* option;  ///< word of the option for the search range: "angle" of --angle-range
   double DigParameters::*field;  ///< where it is kept
   double lower;                  ///< of the search

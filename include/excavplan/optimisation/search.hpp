@@ -24,7 +24,7 @@ struct SearchBox {
   Eigen::VectorXd upper;  ///< largest value of each dimension
 };
 
-/// What the objective says of one point.
+/// Outcome of the objective at one point.
 struct Evaluation {
   /// Whether the point counts, breaks a rule, or could not be judged.
   enum class Status { ok, infeasible, failed, timed_out };
@@ -32,7 +32,7 @@ struct Evaluation {
   Status status = Status::failed;                             ///< how the point was judged
   double fitness = std::numeric_limits<double>::quiet_NaN();  ///< larger is better; if ok
   double violation = 0.0;  ///< if infeasible: >= 0, smaller is nearer to feasible
-  std::string reason;      ///< for people, if not ok
+  std::string reason;      ///< human-readable, if not ok
 
   Evaluation() = default;
   /// ok; NaN and infinity: failed
@@ -55,8 +55,8 @@ const char* name(Evaluation::Status status);
 /// Feasible before infeasible before failed or timed out; then less violation, then more fitness.
 bool better(const Evaluation& a, const Evaluation& b);
 
-/// Must say the same of the same point, and may be called from several threads. What it throws is a
-/// failed evaluation, with the text of a std::exception; the search goes on. So is an outcome that
+/// Must be deterministic, and may be called from several threads. An exception is a failed
+/// evaluation, with the text of a std::exception; the search continues. So is an outcome that
 /// the constructors of Evaluation would not make, such as a violation that is not finite.
 using Objective = std::function<Evaluation(const Eigen::VectorXd&)>;
 
@@ -66,7 +66,7 @@ using Repair =
 
 /// What is searched.
 struct SearchProblem {
-  SearchBox box;            ///< every point asked is inside
+  SearchBox box;            ///< every requested point is inside
   Objective objective;      ///< to maximise
   Repair repair = nullptr;  ///< optional; its points are clipped to the box
   /// Optional: points are moved to multiples of this above the lower bounds before the repair.
@@ -79,19 +79,19 @@ struct SearchOptions : SearchSettings {
   std::vector<Eigen::VectorXd> start = {};  ///< points to begin with, clipped to the box
 };
 
-/// One point the search asked for.
+/// One point that the search requested.
 struct SearchRecord {
-  /// Who asked for the point.
+  /// Which step of the search requested the point.
   enum class Origin { given, space_filling, random, polish, crossover, mutation, immigrant };
-  /// Where its outcome comes from.
+  /// Source of its outcome.
   enum class Source { simulated, cached, repair };
 
   Eigen::VectorXd point;              ///< as evaluated
-  Evaluation outcome;                 ///< what the objective or the repair said
-  Origin origin = Origin::given;      ///< who asked for it
+  Evaluation outcome;                 ///< of the objective or the repair
+  Origin origin = Origin::given;      ///< step that requested it
   Source source = Source::simulated;  ///< cached: seen before; repair: refused by the repair
   int generation = 0;                 ///< 0: the first
-  int polish = 0;                     ///< number of the polish that asked for it, from 1; 0: none
+  int polish = 0;                     ///< number of the polish that requested it, from 1; 0: none
   std::vector<int> parents;           ///< places in the history
 };
 
@@ -102,11 +102,11 @@ struct SearchResult {
   StopReason stopped_by = StopReason::generations;  ///< what ended the search
   int asked = 0;                                    ///< points, repeated ones included
   int evaluations = 0;                              ///< calls of the objective
-  int cached = 0;                                   ///< asked, but seen before
-  int repair = 0;                                   ///< asked, but refused by the repair
+  int cached = 0;                                   ///< requested, but seen before
+  int repair = 0;                                   ///< requested, but refused by the repair
   int infeasible = 0;                               ///< of the evaluations
   int failed = 0;                                   ///< of the evaluations, time-outs included
-  std::vector<SearchRecord> history;  ///< in the order asked: enough to redraw the search
+  std::vector<SearchRecord> history;                ///< in the order requested
 
   bool feasible() const { return outcome.ok(); }  ///< the best point is
 };

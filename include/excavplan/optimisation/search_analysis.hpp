@@ -10,7 +10,7 @@
 #include <excavplan/optimisation/search.hpp>
 
 /// @file
-/// What a search found out beyond its best point.
+/// Analysis of a search beyond its best point.
 
 namespace excavplan {
 
@@ -19,8 +19,8 @@ const char* name(SearchRecord::Origin origin);
 /// The name of the enumerator, for files.
 const char* name(SearchRecord::Source source);
 
-/// Every point asked, one line each: place, generation, origin, polish, parents (joined by ';'),
-/// source, status, fitness, violation, reason, coordinates.
+/// Every requested point, one line each: place, generation, origin, polish, parents (joined by
+/// ';'), source, status, fitness, violation, reason, coordinates.
 std::string to_csv(const SearchResult& result);
 
 /// Values of one parameter.
@@ -29,7 +29,7 @@ struct ParameterRange {
   double high = 0.0;  ///< largest
 };
 
-/// How sure the best point is of its place.
+/// Uncertainty of the best point.
 struct SearchInsight {
   /// Place in the history of the best point of another basin: farther from the best than the
   /// radius, and no better point within the radius around it.
@@ -49,20 +49,20 @@ struct SearchInsight {
 SearchInsight explain(const SearchBox& box, const SearchResult& result, double share = 0.98,
                       double radius = 0.2);
 
-/// An objective with noise; must say the same of the same point and repeat.
+/// An objective with noise; deterministic for a given point and repeat.
 using NoisyObjective = std::function<Evaluation(const Eigen::VectorXd& point, int repeat)>;
 
 /// A point evaluated several times.
 struct RepeatedEvaluation {
   Eigen::VectorXd point;  ///< in the box
-  double first = 0.0;     ///< what the search saw: too good, for it was chosen for it
+  double first = 0.0;     ///< fitness in the search; biased upwards by the selection
   double mean = 0.0;      ///< of the repeats that were ok; NaN if none was
   double sd = 0.0;        ///< of one evaluation; NaN for fewer than two
   int ok = 0;             ///< repeats that gave a fitness
   int repeats = 0;        ///< evaluations made
 };
 
-/// Evaluates the best few points of a search again, all points and repeats side by side; best mean
+/// Evaluates the best few points of a search again, all points and repeats in parallel; best mean
 /// first. Exceptions count as repeats that are not ok.
 ///
 /// @throws Error (bad_input) if `best` or `repeats` is < 1

@@ -16,7 +16,7 @@ namespace excavplan {
 
 /// The paper's genetic algorithm (section 2.3.3): the best individual is kept, parents are chosen
 /// by tournament among the rest, segments of two parents are exchanged between two points, genes
-/// are drawn anew within their limits. The paper's Table 2 is not published as text: the numbers
+/// are redrawn within their limits. The paper's Table 2 is not published as text: the numbers
 /// are ours, after docs/methods.md#planning. Given points are the first of the first generation,
 /// which is as large as it must be to hold all of them.
 struct GeneticAlgorithm {
@@ -24,24 +24,24 @@ struct GeneticAlgorithm {
   int generations = 20;    ///< including the first, >= 1
   int tournament = 3;      ///< individuals drawn for one parent, >= 1
   double crossover = 0.9;  ///< probability that two parents exchange a segment [0, 1]
-  double mutation = 0.3;   ///< probability that a gene is drawn anew [0, 1]
+  double mutation = 0.3;   ///< probability that a gene is redrawn [0, 1]
 };
 
 /// Given points are polished first (bounded Nelder-Mead); then a space-filling first generation,
 /// polish of its best separate basins and once more of the best; then generations of mutants of the
-/// best and fresh space-filling immigrants, with a polish wherever a new basin looks good.
+/// best and fresh space-filling immigrants, with a polish of every promising new basin.
 struct MemeticSearch {
   int first_generation = 16;    ///< points, >= 0; 0 only with given points
   int generations = 4;          ///< after the polish, >= 0; some 50 evaluations each
   int generation_size = 12;     ///< points, >= 1
   double immigrants = 0.25;     ///< share of a generation [0, 1]
   int basins = 3;               ///< polished of the first generation, >= 0
-  int polish_evaluations = 45;  ///< of one polish, >= 0; 15 for each dimension do well
+  int polish_evaluations = 45;  ///< of one polish, >= 0; 15 per dimension suffice
   double basin_radius = 0.2;    ///< two basins are farther apart than this share of the box, > 0
 };
 
 /// The search ends at the first that is seen to hold. 0: no such rule. `evaluations` is never
-/// exceeded, and none begins once one has ended after `seconds`. `stall` and `target` are looked at
+/// exceeded, and none begins once one has ended after `seconds`. `stall` and `target` are checked
 /// after each batch of points and each round of polishes, for any number of threads; a polish that
 /// reaches the target ends at once.
 struct StopRules {
@@ -79,7 +79,7 @@ struct SearchSettings {
   /// File that holds the evaluations made, for a search that was cancelled or killed; empty: none.
   std::string checkpoint = {};
   double checkpoint_interval = 1.0;  ///< at least this long between two writes of it [s]
-  bool resume = false;               ///< go on from the checkpoint if the file exists
+  bool resume = false;               ///< continue from the checkpoint if the file exists
 
   SearchSettings() {}  // NOLINT: of an aggregate, GCC 12 wrongly calls temporaries uninitialized
 };

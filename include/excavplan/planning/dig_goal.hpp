@@ -9,7 +9,7 @@
 
 namespace excavplan {
 
-/// What makes one dig better than another.
+/// The objective that a search of digs maximises.
 struct DigObjective {
   /// What is maximised.
   enum class Goal {

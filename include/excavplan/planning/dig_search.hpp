@@ -11,8 +11,8 @@
 #include <excavplan/planning/planned_dig.hpp>
 
 /// @file
-/// Which dig suits the soil: the path of the highest worth, by default of the highest efficiency
-/// f = payload mass / energy.
+/// Search for the best dig in a soil: the path of the highest worth, by default of the highest
+/// efficiency f = payload mass / energy.
 
 namespace excavplan {
 
@@ -59,7 +59,7 @@ struct NearestDig {
   /// The share of the path that is left where the machine stalls, 0 .. 1; above 1 for a path that
   /// cannot be driven, more the earlier it fails.
   double violation = 0.0;
-  std::string reason;  ///< for people
+  std::string reason;  ///< human-readable
 };
 /// "45.0 deg, 0.350 m, 1.50 m from x = 6.05 m: why it cannot be done"
 std::string describe(const NearestDig& nearest);

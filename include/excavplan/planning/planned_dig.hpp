@@ -12,7 +12,7 @@
 
 namespace excavplan {
 
-/// A dig with what it is expected to lift and to cost.
+/// A dig with its expected payload and cost.
 struct PlannedDig {
   DigParameters parameters;     ///< of its path
   double start_x = 0.0;         ///< [m]

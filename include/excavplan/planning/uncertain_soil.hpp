@@ -20,7 +20,7 @@ struct PossibleSoil {
   double probability = 0.0;                  ///< > 0; all of them add up to 1
 };
 
-/// The dig that is best on average, and what it would be worth to know the soil.
+/// The dig of highest expected worth, and the value of knowing the soil.
 struct UncertainDigSearchResult {
   /// Its dig has the means of mass, volume, energy and duration, its worth is the mean of the
   /// worths. A soil in which the machine stalls counts as worth 0.
@@ -37,8 +37,8 @@ struct UncertainDigSearchResult {
 /// search for the i-th soil has the i-th seed from the one given on.
 ///
 /// Of a checkpoint FILE the search for the first soil keeps FILE.soil1, that for the second
-/// FILE.soil2 and so on, the last search FILE itself; without `resume` all of them begin anew. What
-/// is stopped before the last search gives the best on average of the digs found so far.
+/// FILE.soil2 and so on, the last search FILE itself; without `resume` all of them start again.
+/// What is stopped before the last search gives the best on average of the digs found so far.
 ///
 /// @throws Error as for one soil, and (bad_input) unless the probabilities are positive and add up
 ///         to 1
@@ -47,8 +47,8 @@ Found<UncertainDigSearchResult> search_dig(const Machine& machine,
                                            const Terrain& terrain,
                                            const DigSearchOptions& options = {});
 
-/// How much the figures of a dig scatter because the soil is uncertain: standard deviations over
-/// the soils in which the machine does not stall.
+/// Standard deviations of the results of a dig because the soil is uncertain, over the soils in
+/// which the machine does not stall.
 struct DigSpread {
   double payload_mass = 0.0;       ///< [kg]
   double energy = 0.0;             ///< [J]

@@ -12,7 +12,7 @@
 
 namespace excavplan {
 
-/// What is dug for a calibration.
+/// Digs of a calibration.
 struct CalibrationOptions {
   std::vector<double> densities_percent = {};     ///< empty: 0, 5 .. 100, as the paper does
   DigParameters path = paper_fixed_path();        ///< of every dig
@@ -21,9 +21,9 @@ struct CalibrationOptions {
 };
 
 /// Digs the simulator at every density, measures the bulking factor from its height maps as the
-/// paper does (section 3.1), and fits the forms of a law to it: once as measured, once freed of the
-/// soil that fell back into the cut. The as-measured closed form is the one to use with scans,
-/// which cannot see what lies under fallen soil.
+/// paper does (section 3.1), and fits the forms of a law to it: once as measured, once corrected
+/// for the soil that fell back into the cut. The as-measured closed form is the one to use with
+/// scans, which cannot see what lies under fallen soil.
 ///
 /// @throws Error (bad_input) if the path cannot be driven or fewer than 4 densities are given
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
@@ -39,8 +39,8 @@ DensityCalibration calibrate_density(const std::vector<BulkingSample>& samples);
 /// (k - f) / (1 - f) with f the fallback fraction (docs/methods.md#density-law).
 struct BulkingDifference {
   DensityCalibration::Sample largest;  ///< the sample with the largest difference
-  double density_points = 0.0;  ///< error of its density if k were taken for the true one [%]
-  double unexplained = 0.0;     ///< largest |k - k_true| once freed of fallback, any sample
+  double density_points = 0.0;         ///< error of its density if k were used as the true one [%]
+  double unexplained = 0.0;  ///< largest |k - k_true| once corrected for fallback, any sample
 };
 
 /// Nothing if the true factor of some sample is not known, as in measured samples.

@@ -37,8 +37,8 @@ struct DepthCamera {
   double flying_pixels = 0.0;   ///< share of the pixels at a step of depth that lie between both
 };
 
-/// A camera that looks down on a patch of ground from 2.8 m, a little from the side, its long image
-/// axis along x; ours: near enough for 1 % of bulking factor, high enough to see a dig whole.
+/// A camera that faces down on a patch of ground from 2.8 m, a little from the side, its long image
+/// axis along x; ours: near enough for 1 % of bulking factor, high enough to see the whole dig.
 DepthCamera camera_above(const Eigen::Vector2d& ground_point, double ground_z);
 
 /// The same camera with the pixels and the errors of a sensor of the table, which must be a camera;

@@ -26,7 +26,7 @@ struct SimulatorKind {
       make;
 };
 
-/// All that excavplan knows of; the first is the default.
+/// All built-in simulators; the first is the default.
 const std::vector<SimulatorKind>& simulator_kinds();
 inline const SimulatorKind& default_simulator() { return simulator_kinds().front(); }
 

@@ -38,7 +38,7 @@ struct SoilLedger {
   double solids_after = 0.0;   ///< the same plus what is in the bucket [kg]
 };
 
-/// A joint lacked the torque to go on. A result, not an error.
+/// A joint lacked the torque to continue. A result, not an error.
 struct Stall {
   DigPhase phase = DigPhase::penetrate;  ///< in which the dig ended
   Joint joint = Joint::boom;             ///< that lacked torque
@@ -66,7 +66,7 @@ struct DigResult {
   double peak_force = 0.0;           ///< largest force of the soil on the bucket [N]
   std::optional<Stall> stall;        ///< nothing: the machine finished the path
   bool given_up = false;             ///< ended early: DigOptions::give_up_below
-  std::vector<ForceSample> history;  ///< empty unless asked for
+  std::vector<ForceSample> history;  ///< empty unless requested
 
   /// The whole terrain afterwards.
   Terrain after(const Terrain& before) const {

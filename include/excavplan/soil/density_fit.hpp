@@ -44,7 +44,7 @@ std::vector<DensityFit> fit_density_forms(const std::vector<BulkingSample>& samp
 /// What a law file holds: the forms with the samples they were fitted to.
 struct DensityCalibration {
   std::string name;    ///< of the law
-  std::string source;  ///< for people: where the samples come from
+  std::string source;  ///< text: origin of the samples
   std::string soil;    ///< name of the soil; empty: not known
   std::string use;     ///< key of the form to use
   /// Fitted to k corrected for fallback where that is known; the keys of those fitted to k as

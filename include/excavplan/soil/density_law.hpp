@@ -45,7 +45,7 @@ using DensityForm = std::variant<DensityLine, DensityClosedForm>;
 /// A law with its origin.
 struct DensityLaw {
   std::string name;    ///< "paper"
-  std::string source;  ///< for people: what it was fitted to
+  std::string source;  ///< text: what it was fitted to
   DensityForm form;    ///< that relative_density() uses
   /// For k corrected by free_of_fallback(): the counterpart of an "..._as_measured" form if the
   /// file has one, else `form` itself.
@@ -96,7 +96,7 @@ struct GroundDensity {
   double percent = 0.0;     ///< 0 .. 100
   double sd_percent = 0.0;  ///< standard deviation, >= 0; 0: taken as known
   bool trustworthy = true;  ///< false: who estimated it does not trust it
-  std::string soil = {};    ///< name of the soil whose law gave it; empty: not told
+  std::string soil = {};    ///< name of the soil whose law gave it; empty: unknown
 
   /// Implicit: a density is a number that may come with more.
   GroundDensity(double d, double sd = 0.0) : percent(d), sd_percent(sd) {}  // NOLINT: is a density

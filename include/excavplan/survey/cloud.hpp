@@ -29,10 +29,10 @@ struct CloudFormat {
 };
 
 /// Reads PCD (ascii, binary, binary_compressed), PLY (ascii, binary little and big endian) or XYZ
-/// text; the format is told from the content, not from the name.
+/// text; the format is detected from the content, not from the name.
 ///
 /// x, y and z may be float32, float64 or integers; other fields are skipped. Every rule of
-/// docs/formats.md#clouds is checked before memory is asked for; a file that would take more than
+/// docs/formats.md#clouds is checked before memory is allocated; a file that would take more than
 /// `memory_limit` [byte] in all is refused.
 ///
 /// @throws Error (bad_file) naming file, line or byte, what was found and what was expected
@@ -56,13 +56,13 @@ void stream_cloud(const std::string& path, const PointVisitor& visit);
 /// height do not fit its points, or the format is none
 void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format);
 
-/// The format a file name asks for: .pcd and .ply binary, .xyz .txt .asc text.
+/// The format of a file name: .pcd and .ply binary, .xyz .txt .asc text.
 /// @throws Error (bad_input) for any other ending
 CloudFormat cloud_format_of_name(const std::string& path);
-/// The endings it knows, for help: ".pcd, .ply, .xyz, .txt or .asc".
+/// The supported endings, for help: ".pcd, .ply, .xyz, .txt or .asc".
 std::string cloud_endings();
 
-/// Reads a 4 x 4 matrix of text that takes a scan into the site frame.
+/// Reads a 4 x 4 matrix of text that transforms a scan into the site frame.
 /// @throws Error (bad_file) if it is not 16 numbers, the last row is not 0 0 0 1, or it is not
 /// rigid to 1e-4
 Eigen::Matrix4d read_frame(const std::string& path);
@@ -85,7 +85,7 @@ struct CloudSummary {
                             ///< coordinates)", "camera (z forward)", "unknown"
 };
 
-/// The frame is a guess for people, never acted upon: "map" if the centroid is over 10 km from the
+/// The frame is a guess for display only: "map" if the centroid is over 10 km from the
 /// origin in plan, "camera" if nearly all points lie within 60 degrees of the z axis, ahead, "site"
 /// if the layer of 0.25 m with most points is within 0.5 m of zero and the cloud is wider than
 /// high.

@@ -16,8 +16,8 @@
 #include <excavplan/survey/scan_surface.hpp>
 
 /// @file
-/// From the scans of one dig to the relative density of the ground, with what is known about its
-/// error (docs/methods.md#density-law).
+/// From the scans of one dig to the relative density of the ground and its error
+/// (docs/methods.md#density-law).
 
 namespace excavplan {
 
@@ -34,11 +34,12 @@ enum class VolumeMethod {
   paper,    ///< paper_volumes(), as published, in the areas that the first finds
 };
 
-/// The dig as it was driven. It tells what fell back into the cut; scans must be in the site frame.
+/// The dig as driven, to estimate the soil that fell back into the cut. Scans must be in the site
+/// frame.
 struct DugPath {
   Machine machine;           ///< that drove it
   DigParameters parameters;  ///< of the path
-  double start_x = 0.0;      ///< where the path met the ground [m]
+  double start_x = 0.0;      ///< where the path enters the ground [m]
 };
 
 /// Settings of estimate_density().
@@ -46,36 +47,36 @@ struct DensityOptions {
   VolumeMethod method = VolumeMethod::surface;  ///< how volumes are found
   std::optional<double> cell_size;  ///< of the height map, and voxel of the paper's method [m];
                                     ///< else cell_for() the sparsest scan
-  bool registered = true;  ///< false: the sensor stood still, scans are not brought onto each other
-  ChangeOptions change;    ///< dig area, dump area and more
+  bool registered = true;           ///< false: the sensor did not move, scans are not registered
+  ChangeOptions change;             ///< dig area, dump area and more
   std::optional<DugPath> dug_path;  ///< if it is known
   unsigned threads = 0;             ///< 0: one per core; the result is the same for any number
 };
 
-/// How the scan after was brought onto the one before.
+/// Registration of the scan after to the scan before.
 struct ScanRegistration {
   Eigen::Matrix4d correction = Eigen::Matrix4d::Identity();  ///< as in RegisteredPair
   Alignment found;                                           ///< before anything was corrected
 };
 
-/// What the scans of a dig tell. Without dumped soil in the scans there are volumes but no bulking
-/// factor and no density, which a warning says.
+/// Result of estimate_density(). Without dumped soil in the scans it holds volumes, a warning, and
+/// neither bulking factor nor density.
 struct DensityEstimate {
   VolumeMethod method = VolumeMethod::surface;  ///< how volumes were found
   /// Volumes, their covariance, zones and height change. Zones and height change are those of the
   /// surface for both methods.
   VolumeChange change;
-  std::optional<Measured> bulking;    ///< k as the scans give it [-]
-  std::optional<Fallback> fallback;   ///< if the path that was dug is known
-  BlockReport blocks;                 ///< voids between blocks of hard soil
-  std::optional<Measured> corrected;  ///< k freed of fallback and voids, if there is either [-]
+  std::optional<Measured> bulking;               ///< k as the scans give it [-]
+  std::optional<Fallback> fallback;              ///< if the path that was dug is known
+  BlockReport blocks;                            ///< voids between blocks of hard soil
+  std::optional<Measured> corrected;             ///< k corrected for fallback and voids, if any [-]
   std::optional<RelativeDensity> density;        ///< percent, raw, sd, 95 % interval
-  double density_without_fallback = 0.0;         ///< had nothing fallen back, where k is known [%]
+  double density_without_fallback = 0.0;         ///< assuming no fallback, where k is known [%]
   DensityLaw law;                                ///< that was used
   bool trustworthy = true;                       ///< false: see the warnings
   std::vector<Warning> warnings;                 ///< of volumes, density and blocks, each once
   double cell_size = 0.0;                        ///< [m]
-  std::optional<ScanRegistration> registration;  ///< nothing if the sensor stood still
+  std::optional<ScanRegistration> registration;  ///< none without a registration
   std::optional<ScanRegistration> dump_registration;  ///< if the dump area has scans of its own
 
   /// The density for plan_dig(); nothing where there is none.
@@ -84,31 +85,31 @@ struct DensityEstimate {
 
 /// Estimates the density of the ground before a dig.
 ///
-/// Scans become height maps, brought onto each other by the ground that did not change; their
-/// change gives the volumes (the paper's eqs. 3, 4) and the bulking factor (eq. 1), freed of the
-/// soil that fell back and of the voids between blocks as far as these are known, each with its
-/// error; the law gives the density. It is not trustworthy if a zone was cut off or partly unseen,
-/// if the soil lies in blocks, if the error of the volumes is not known, or if the density is
-/// further outside 0 .. 100 % than the error explains.
+/// Scans become height maps, registered on the ground that did not change. Their change gives the
+/// volumes (the paper's eqs. 3, 4) and the bulking factor (eq. 1), corrected for the soil that fell
+/// back and for the voids between blocks as far as these are known, each with its error; the law
+/// gives the density. It is not trustworthy if a zone was cut off or partly unseen, if the soil
+/// lies in blocks, if the error of the volumes is not known, or if the density is further outside 0
+/// .. 100 % than the error explains.
 ///
 /// @throws Error (bad_file) naming the scans if one cannot be read, holds fewer than 100 finite
-/// points, or they do not overlap (FrameError) or look swapped; (bad_input) if an option is out of
-/// range or the path that was dug cannot be driven
+/// points, or they do not overlap (FrameError) or are probably swapped; (bad_input) if an option is
+/// out of range or the path that was dug cannot be driven
 DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
                                  const DensityOptions& options = {});
 
-/// The same by density_law_of() the soil, which knows nothing of soil that falls back: give the
+/// The same by density_law_of() the soil, which does not include soil that falls back: give the
 /// path that was dug, or a calibrated law.
 DensityEstimate estimate_density(const DigScans& scans, const SoilKind& soil,
                                  const DensityOptions& options = {});
 
-/// What both methods make of the same scans.
+/// Results of both methods for the same scans.
 struct BothEstimates {
   DensityEstimate surface;  ///< by VolumeMethod::surface
   DensityEstimate paper;    ///< by VolumeMethod::paper
 };
 
-/// As estimate_density(), whatever the options say of the method.
+/// As estimate_density() by both methods; `options.method` is ignored.
 BothEstimates estimate_by_both(const DigScans& scans, const DensityLaw& law,
                                const DensityOptions& options = {});
 

@@ -39,7 +39,7 @@ struct AveragedDepth {
   std::vector<int> frames;  ///< averaged into each pixel, 0 where unknown
 };
 
-/// Averages depth images of a camera that stood still, pixel by pixel: the mean of the depths
+/// Averages depth images of a camera that did not move, pixel by pixel: the mean of the depths
 /// within 3 robust sd (1.4826 MAD, at least one count) of their median; unknown where fewer than
 /// half of the frames agree. Noise falls with the square root of the frames; what all frames have
 /// in common (a stereo camera's fixed pattern) stays.

@@ -11,7 +11,7 @@
 #include <excavplan/survey/scan_surface.hpp>
 
 /// @file
-/// What a real dig lifts for what it takes: a log of fuel or power, and what the bucket held.
+/// Efficiency of a real dig, from a log of fuel or power and the payload of the bucket.
 
 namespace excavplan {
 
@@ -20,7 +20,7 @@ enum class Spent { fuel, energy };
 /// What the payload is given in.
 enum class Lifted { volume, mass };
 
-/// What a bucket held.
+/// Payload of a bucket.
 struct Payload {
   Lifted kind = Lifted::volume;  ///< volume or mass
   Measured amount;               ///< [m^3] or [kg], > 0; the sd is NaN if it is not known
@@ -50,10 +50,10 @@ struct DigEfficiency {
 
   Measured value() const;      ///< payload per cost
   std::string unit() const;    ///< "m3_per_ml", "kg_per_kj"
-  std::string symbol() const;  ///< the same for people: "m3/mL"
+  std::string symbol() const;  ///< the same for display: "m3/mL"
 };
 
-/// Integrates the log by the trapezoid rule over the dig, power that a joint gives back left out,
+/// Integrates the log by the trapezoid rule over the dig, negative power of a joint counted as 0,
 /// and divides the payload by it. The volume of scans is that of the heap which rose between them.
 ///
 /// Warnings: gap_in_log (a pause of more than 10 usual steps), implausible_fuel (more than a 12-t

@@ -10,15 +10,15 @@
 #include <excavplan/survey/cloud.hpp>
 
 /// @file
-/// Where a sensor stood, told from its own scan: upright from the plane of the ground, or wholly
-/// from points whose place in the site is known.
+/// Pose of a sensor from its own scan: tilt and height from the ground plane, or all six degrees
+/// of freedom from points of known position.
 
 namespace excavplan {
 
-/// A pose that knows which way is up, how high the sensor stands, and nothing else.
+/// A pose of which only tilt and height are determined.
 struct LevelPose {
-  /// Origin on the ground below the sensor, z up from the ground, x where the sensor looks (its z
-  /// axis; where it looks down within 5 deg, the upper side of its image, -y).
+  /// Origin on the ground below the sensor, z up from the ground, x along the view direction (its z
+  /// axis; within 5 deg of straight down, the upper side of its image, -y).
   Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();
   double height = 0.0;        ///< of the sensor above the ground [m]
   double tilt = 0.0;          ///< between the sensor's axis and straight down [rad]
@@ -40,12 +40,12 @@ LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed = 1);
 /// A pose found from known points.
 struct PointPose {
   Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();  ///< a rigid motion
-  std::vector<double> residuals;  ///< distance of every point from its place [m]
+  std::vector<double> residuals;  ///< distance of every point from its known position [m]
   double rms = 0.0;               ///< of the residuals [m]
 };
 
-/// The rigid motion (no scale) that takes points of a scan nearest to their known places, in least
-/// squares (Kabsch 1976, Umeyama 1991).
+/// The rigid motion (no scale) from points of a scan to their known positions, by least squares
+/// (Kabsch 1976, Umeyama 1991).
 ///
 /// @throws Error (bad_input) with fewer than three pairs, lists of different length, a coordinate
 /// that is not finite, or points on one line

@@ -28,15 +28,15 @@ struct Scan {
   std::vector<std::shared_ptr<const Cloud>> clouds = {};  ///< in the frame of the files; not null
 };
 
-/// The error (bad_file) of scans that lie elsewhere than they must, mostly because they are in
-/// another frame than `site_from_scan` says.
+/// The error (bad_file) of scans outside the expected area, mostly because `site_from_scan` does
+/// not match their frame.
 class FrameError : public Error {
  public:
   /// @param message  names the scans and what does not fit
   explicit FrameError(const std::string& message) : Error(ErrorKind::bad_file, message) {}
 };
 
-/// What a first pass over a scan tells of its points inside the area.
+/// Summary of the points of a scan inside the area, from a first pass.
 struct ScanOutline {
   std::uint64_t points = 0;         ///< finite or not
   std::uint64_t finite_points = 0;  ///< inside the area
@@ -49,7 +49,7 @@ struct ScanOutline {
 /// @throws Error (bad_file) as read_cloud()
 ScanOutline outline(const Scan& scan);
 
-/// One outline for each scan, found side by side (0 threads: one per core).
+/// One outline for each scan, found in parallel (0 threads: one per core).
 std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threads = 0);
 
 /// Cell for scans that are to be compared, from the sparsest of them [m]: so large that it holds 12
@@ -58,14 +58,14 @@ std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threa
 /// more of what a bucket does (docs/methods.md#volumes).
 double cell_for(const std::vector<ScanOutline>& outlines);
 
-/// The surface of a scan on the grid of rasterise(), which says how outliers are told.
+/// The surface of a scan on the grid of rasterise(), which documents the outlier test.
 ///
 /// Within a cell the points are averaged by tiles of equal area as far as they are enough, so that
 /// neither a wall with few points nor a rim with many pulls the mean; then moved to the cell's
-/// centre by their own slope or, where they do not tell it, by that of the cells around. Where
+/// centre by their own slope or, where they do not determine it, by that of the cells around. Where
 /// points lie on two levels one above the other, as with plants on the ground, and no cell around
-/// shows the upper level as its ground, the lower one counts; the two levels of a wall lie side by
-/// side and both count. The variance is that of the mean, from the scatter about the plane, not
+/// shows the upper level as its ground, the lower one counts; the two levels of a wall are
+/// adjacent and both count. The variance is that of the mean, from the scatter about the plane, not
 /// below (0.1 mm)^2; NaN for a cell with one accepted point.
 ///
 /// The result does not depend on how a scan is parted into files.
@@ -74,7 +74,7 @@ double cell_for(const std::vector<ScanOutline>& outlines);
 Surface survey_surface(const Scan& scan, const Rectangle& extent,
                        const RasterOptions& options = {});
 
-/// One surface for each scan on one grid, found side by side (0 threads: one per core); the same
+/// One surface for each scan on one grid, found in parallel (0 threads: one per core); the same
 /// for any number of threads.
 std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
                                      const RasterOptions& options = {}, unsigned threads = 0);
@@ -88,14 +88,14 @@ struct ScanPair {
 /// Surfaces of a pair of scans, for measure_change().
 struct RegisteredPair {
   SurfacePair surfaces;  ///< on one grid, with their alignment
-  /// Takes points of the scan after to where the ground that did not change says they belong, in
-  /// the frame of the scan before; the identity where nothing significant moved.
+  /// Transforms points of the scan after into the frame of the scan before, by the ground that did
+  /// not change; the identity where the motion is not significant.
   Eigen::Matrix4d correction = Eigen::Matrix4d::Identity();
   Alignment first;  ///< what align() found before anything was corrected
 };
 
-/// Surveys both scans and brings the one after onto the one before, by align() on cells of at least
-/// `registration_cell`: smaller ones of a sparse scan do not show slopes. A motion that moves
+/// Surveys both scans and registers the one after to the one before, by align() on cells of at
+/// least `registration_cell`: smaller ones of a sparse scan do not show slopes. A motion that moves
 /// points by more than half a cell in plan, or at all where those cells are larger than the
 /// survey's, is taken off the points, which are then surveyed again.
 /// @throws Error as survey_surface() and align()

@@ -7,8 +7,8 @@
 #include <excavplan/simulation/sensors.hpp>
 
 /// @file
-/// How well a survey will tell the density, before anybody goes out: from the size of the dig, the
-/// errors of the sensor and where it stands (docs/methods.md#survey-planning).
+/// Predicted error of the density of a planned survey, from the size of the dig, the errors of the
+/// sensor and its position (docs/methods.md#survey-planning).
 
 namespace excavplan {
 
@@ -24,15 +24,15 @@ struct SurveyPlan {
   double surveyed_area = 25.0;    ///< around the dig and around the heap, each [m^2]
   Sensor sensor = default_sensor();  ///< its error model
   double height = 2.5;               ///< of the sensor above the ground [m]
-  double offset = 1.0;               ///< from the middle of the area, in plan [m]
+  double offset = 1.0;               ///< from the centre of the area, horizontal [m]
   int frames = 30;                   ///< averaged
   bool registered = false;        ///< the scans are registered on stable ground: the sensor moved
   double density_slope = 161.57;  ///< of the density law, dd/dk [%]; the paper's line
 };
 
-/// What to expect: one standard deviation, scan errors alone (the law's own scatter is not in it).
+/// Predicted standard deviations, from scan errors alone (without the scatter of the law).
 struct SurveyForecast {
-  double range = 0.0;               ///< from the sensor to the middle of an area [m]
+  double range = 0.0;               ///< from the sensor to the centre of an area [m]
   double ray_spacing = 0.0;         ///< on the ground [m]
   double excavated_sd = 0.0;        ///< [m^3]
   double after_sd = 0.0;            ///< spill and heap [m^3]
