@@ -121,7 +121,7 @@ if(pkg_config)
   string(STRIP "${output}" output)
   separate_arguments(output)
   separate_arguments(flags UNIX_COMMAND "${FLAGS}")
-  run(${CXX} ${flags} ${PROGRAM} ${output} -o ${WORK}/by-pkg-config)
+  run(${CXX} -std=c++17 ${flags} ${PROGRAM} ${output} -o ${WORK}/by-pkg-config)
   check_program(${WORK}/by-pkg-config)
 endif()
 
