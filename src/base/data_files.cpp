@@ -34,7 +34,9 @@ fs::path shared_library_file() {
 
 std::vector<fs::path> data_folders(const std::string& package_folder) {
   std::vector<fs::path> folders;
-  if (const char* named = std::getenv("EXCAVPLAN_DATA")) folders.emplace_back(named);
+  if (const char* named = std::getenv("EXCAVPLAN_DATA"); named != nullptr && *named != '\0') {
+    folders.emplace_back(named);
+  }
   if (const fs::path library = shared_library_file(); !library.empty()) {
     folders.push_back(library.parent_path() / EXCAVPLAN_DATA_FROM_LIBRARY);
   }

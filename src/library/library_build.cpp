@@ -402,9 +402,13 @@ void remove_library_entries(const std::string& folder) {
   if (!fs::is_directory(folder)) return;
   for (const auto& file : fs::directory_iterator(folder)) {
     const std::string name = file.path().filename();
-    if (name.find(entry_file_end) != std::string::npos) fs::remove(file.path());
+    std::error_code taken_by_another_run;
+    if (name.find(entry_file_end) != std::string::npos) {
+      fs::remove(file.path(), taken_by_another_run);
+    }
   }
-  if (fs::is_empty(folder)) fs::remove(folder);
+  std::error_code not_empty;
+  fs::remove(folder, not_empty);
 }
 
 }  // namespace excavplan

@@ -268,7 +268,11 @@ LibraryAnswer read_answer(const LibraryJob& job, const LibraryPlace& place, cons
     file.fail("identity",
               "is '" + own + "', which is another entry than '" + identity(job, place) + "'");
   }
-  return nlohmann::json::parse(text).at("answer").get<LibraryAnswer>();
+  try {
+    return nlohmann::json::parse(text).at("answer").get<LibraryAnswer>();
+  } catch (const nlohmann::json::exception& e) {
+    file.fail("answer", e.what());
+  }
 }
 
 }  // namespace excavplan

@@ -27,9 +27,9 @@ struct Task {
   const Terrain& ground;
   bool level;  ///< no ground was given
   const PlanOptions& options;
-  PossibleGround possible{options.simulator, machine, soil, density};
 
   bool uncertain() const { return density.sd_percent > 0.0; }
+  PossibleGround possible_ground() const { return {options.simulator, machine, soil, density}; }
 };
 
 void warn(DigPlan& plan, const char* code, const std::string& message) {
@@ -159,6 +159,7 @@ std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
     const auto library = library_of(task);
     const auto known = known_dig(*library, task, slope_in(*library, task));
     if (const auto* dig = std::get_if<PlannedDig>(&known)) return {dig->parameters};
+    if (task.options.library) throw Error(ErrorKind::bad_input, std::get<std::string>(known));
   } catch (const Error& error) {
     if (task.options.library) throw;
     if (error.kind() == ErrorKind::bad_file) {
@@ -198,7 +199,8 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
 
 void search_plan(const Task& task, DigPlan& plan) {
   const DigSearchOptions options = search_options(task, plan);
-  const std::vector<PossibleSoil>& soils = task.possible.soils();
+  const PossibleGround ground = task.possible_ground();
+  const std::vector<PossibleSoil>& soils = ground.soils();
   plan.start_rule = describe(options.start_rule);
   if (task.uncertain()) {
     const auto found = search_dig(task.machine, soils, task.ground, options);
@@ -211,7 +213,8 @@ void search_plan(const Task& task, DigPlan& plan) {
 }
 
 void add_spread(const Task& task, DigPlan& plan) {
-  const std::vector<PossibleSoil>& soils = task.possible.soils();
+  const PossibleGround ground = task.possible_ground();
+  const std::vector<PossibleSoil>& soils = ground.soils();
   plan.spread = dig_spread(task.machine, soils, task.ground, *plan.dig, plan.path);
   plan.evaluations += static_cast<int>(soils.size());
   if (plan.spread.stall_probability <= likely_stall) return;
@@ -234,6 +237,7 @@ void add_trajectory(const Task& task, DigPlan& plan) {
 }
 
 DigPlan plan_dig(const Task& task) {
+  require_density(task.density);
   DigPlan plan;
   plan.method = task.options.method;
   judge_density(task, plan);

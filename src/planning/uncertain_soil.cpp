@@ -215,12 +215,16 @@ std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_p
   return densities;
 }
 
-PossibleGround::PossibleGround(const SimulatorKind& simulator, const Machine& machine,
-                               const SoilKind& soil, const GroundDensity& density) {
+void require_density(const GroundDensity& density) {
   require(density.percent >= 0.0 && density.percent <= 100.0, "the density", density.percent,
           "in 0 .. 100 %");
   require(density.sd_percent >= 0.0 && std::isfinite(density.sd_percent),
           "the standard deviation of the density", density.sd_percent, "at least 0 and finite");
+}
+
+PossibleGround::PossibleGround(const SimulatorKind& simulator, const Machine& machine,
+                               const SoilKind& soil, const GroundDensity& density) {
+  require_density(density);
   std::vector<PossibleDensity> densities = {{density.percent, 1.0}};
   if (density.sd_percent > 0.0) {
     densities = possible_densities(density.percent, density.sd_percent);

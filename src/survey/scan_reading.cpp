@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <excavplan/error.hpp>
+
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "survey/cloud_outline.hpp"
@@ -62,6 +64,9 @@ void visit_scan(const Scan& scan, const PointVisitor& visit) {
     }
     visit(kept);
   };
+  if (std::find(scan.clouds.begin(), scan.clouds.end(), nullptr) != scan.clouds.end()) {
+    throw Error(ErrorKind::bad_input, "scan: one of its clouds is a null pointer");
+  }
   const bool as_it_is = !is_moved && !scan.area;
   for (const std::string& file : scan.files) stream_cloud(file, as_it_is ? visit : bring_in);
   for (const auto& cloud : scan.clouds) {

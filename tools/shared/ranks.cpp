@@ -165,8 +165,17 @@ class MpiRanks : public Ranks {
   // Every thread of this process comes here: one at a time, and not for long.
 
   void send(int rank, int lane, const std::string& text) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, rank, lane, MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      MPI_Isend(text.data(), static_cast<int>(text.size()), MPI_CHAR, rank, lane, MPI_COMM_WORLD,
+                &request);
+    }
+    for (int sent = 0;; std::this_thread::sleep_for(between_polls)) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      MPI_Test(&request, &sent, MPI_STATUS_IGNORE);
+      if (sent != 0) return;
+    }
   }
 
   std::string received(int rank, int lane) {

@@ -11,21 +11,21 @@
 
 namespace excavplan::tools {
 
-Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell) {
+Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
   if (terrain.frame && !terrain.cloud) {
     throw Error(ErrorKind::bad_input, "--terrain-frame needs --terrain");
   }
-  if (!(cell >= finest_cell && cell <= coarsest_cell)) {
-    throw Error(ErrorKind::bad_input, "--cell: the cell size is " + number_text(cell) +
+  if (!(cell_size >= finest_cell && cell_size <= coarsest_cell)) {
+    throw Error(ErrorKind::bad_input, "--cell: the cell size is " + number_text(cell_size) +
                                           " m, must be in " + number_text(finest_cell) + " .. " +
                                           number_text(coarsest_cell) + " m");
   }
-  if (!terrain.cloud) return {undisturbed(flat_ground(extent, cell)), {}};
+  if (!terrain.cloud) return {undisturbed(flat_ground(extent, cell_size)), {}};
   Scan scan;
   scan.files = {*terrain.cloud};
   if (terrain.frame) scan.site_from_scan = read_frame(*terrain.frame);
   ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
-                                        [&] { return terrain_from_scan(scan, extent, cell); });
+                                        [&] { return terrain_from_scan(scan, extent, cell_size); });
   return {std::move(seen.terrain), std::move(seen.warnings)};
 }
 

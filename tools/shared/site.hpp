@@ -29,6 +29,6 @@ struct Site {
 ///
 /// @throws Error (bad_file) if the cloud cannot be read or holds hardly a point in the extent
 /// @throws Error (bad_input) if a frame is given without a cloud
-Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell);
+Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size);
 
 }  // namespace excavplan::tools

@@ -99,8 +99,9 @@ struct DigPlan {
 /// What the site decides is in the plan: no feasible dig, a density that the library lacks, a path
 /// that does not suit the ground.
 ///
-/// @throws Error (bad_input) if the density or an option is out of range, the library does not fit
-///         machine and soil, or none is shipped for them and the method is `library`
+/// @throws Error (bad_input) if the density or an option is out of range, a library given does not
+///         fit machine and soil or lacks the density of a search, or none is shipped for them and
+///         the method is `library`
 /// @throws Error (bad_file) if the shipped library cannot be read and the method is `library`, or a
 ///         checkpoint of the search is of another one, truncated or altered
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,

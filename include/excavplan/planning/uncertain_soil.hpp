@@ -75,11 +75,14 @@ struct PossibleDensity {
 std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_percent,
                                                 int count = 3);
 
+/// @throws Error (bad_input) unless the density is in 0 .. 100 % and its sd finite and >= 0
+void require_density(const GroundDensity& density);
+
 /// The soils that ground of a density may be, each with its simulator.
 class PossibleGround {
  public:
   /// At the possible_densities(), or at the one density if that is taken as known.
-  /// @throws Error (bad_input) unless the density is in 0 .. 100 % and its sd finite and >= 0
+  /// @throws Error (bad_input) as require_density()
   PossibleGround(const SimulatorKind& simulator, const Machine& machine, const SoilKind& soil,
                  const GroundDensity& density);
 
