@@ -47,7 +47,7 @@ class JsonObject {
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;
 
  private:
-  JsonObject(std::string file, std::string where, nlohmann::json json);
+  JsonObject(std::string file, std::string where, nlohmann::json object);
   static JsonObject of_text(const std::string& name, const std::string& content,
                             const std::string& format, int version);
   const nlohmann::json& at(const std::string& key);

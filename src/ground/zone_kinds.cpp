@@ -66,9 +66,9 @@ void set_kind(Area& area, const Chosen& chosen, ZoneKind kind) {
 
 Chosen classify_hole(Area& area, const ChangeOptions& options) {
   const auto all = [](std::size_t) { return true; };
-  const Chosen hole = main_zones(area, -1.0, choose(area, -1.0, all), options.dig_area, options);
+  Chosen hole = main_zones(area, -1.0, choose(area, -1.0, all), options.dig_area, options);
   if (!any(hole)) return hole;
-  const Chosen beside = near(area, hole, options);
+  Chosen beside = near(area, hole, options);
   set_kind(area, choose(area, 1.0, [&](std::size_t i) { return beside[i]; }), ZoneKind::spill);
   set_kind(area, hole, ZoneKind::dig);
   return beside;

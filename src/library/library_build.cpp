@@ -165,7 +165,7 @@ class Build {
                          [this](int digs, double best) { return watch_.dug(digs, best); });
         });
     for (const LibraryWorker& other : options_.other_workers) {
-      workers.push_back(
+      workers.emplace_back(
           [this, &other](const std::string& task) { return watch_.stopped() ? "" : other(task); });
     }
     LibraryBuild build;
@@ -216,7 +216,7 @@ class Build {
     std::vector<std::pair<double, PlannedDig>> digs;
     for (const Entry* parent : parents) {
       if (!parent->first.feasible) continue;
-      digs.push_back({parent->place.density_percent, parent->first.dig});
+      digs.emplace_back(parent->place.density_percent, parent->first.dig);
     }
     return to_text(first_search(entry.place, digs));
   }
@@ -295,6 +295,7 @@ class Build {
     if (own > 0) around.push_back(entries_[i - line.step]);
     if (own + 2 < line.count) around.push_back(entries_[i + 2 * line.step]);
     std::vector<std::size_t> after;
+    after.reserve(around.size());
     for (const Entry* entry : around) after.push_back(entry->settled);
     LibraryPlace middle = below.place;
     middle.*line.along = 0.5 * (below.place.*line.along + above.place.*line.along);
@@ -304,7 +305,7 @@ class Build {
                   std::vector<std::pair<double, double>> known;
                   for (const Entry* entry : around) {
                     if (!entry->found.feasible) continue;
-                    known.push_back({entry->place.*line.along, entry->found.efficiency()});
+                    known.emplace_back(entry->place.*line.along, entry->found.efficiency());
                   }
                   below.*line.to_next =
                       interpolation(below.found.dig, above.found.dig,

@@ -53,7 +53,7 @@ struct LibraryAnswer {
 std::string to_text(const LibraryTask& task);
 
 /// Does a task. @return the answer; empty if stopped
-std::string do_task(const LibraryJob& job, const std::string& task,
+std::string do_task(const LibraryJob& job, const std::string& text,
                     const std::function<bool(int digs, double best)>& progress);
 
 /// @param name  of the text, for messages

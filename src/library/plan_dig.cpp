@@ -137,7 +137,7 @@ void look_up_plan(const Task& task, DigPlan& plan) {
     plan.reason = *reason;
     return;
   }
-  const PlannedDig& expected = std::get<PlannedDig>(known);
+  const auto& expected = std::get<PlannedDig>(known);
   plan.start_rule = task.level ? "of the library" : describe(task.options.search.start_rule);
   const auto outcome = dig_here(task, *library, expected, plan);
   if (const auto* failure = std::get_if<DigFailure>(&outcome)) {

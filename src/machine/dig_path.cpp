@@ -148,7 +148,7 @@ class Layout {
     path_.poses.clear();
     path_.limit_margin = {std::numeric_limits<double>::infinity(), Joint::boom};
     if (!std::isfinite(path_.ground_z)) {
-      return stop(Reason::unknown_ground, first_phase(), 0.0, start_x, 0.0);
+      return stop(Reason::unknown_ground, start_x, 0.0, first_phase(), 0.0);
     }
     if (auto stopped = penetrate()) return stopped;
     if (auto stopped = drag()) return stopped;
@@ -179,8 +179,8 @@ class Layout {
     return path_.parameters.drag_length > 0.0 ? DigPhase::drag : DigPhase::scoop;
   }
 
-  static Infeasible stop(Reason reason, DigPhase phase, double distance, double value,
-                         double limit) {
+  static Infeasible stop(Reason reason, double value, double limit, DigPhase phase,
+                         double distance) {
     Infeasible stopped;
     stopped.reason = reason;
     stopped.phase = phase;
@@ -192,8 +192,8 @@ class Layout {
 
   static Infeasible stop(DigPhase phase, double distance, const Unreachable& unreachable) {
     const bool by_joint = unreachable.reason == Unreachable::Reason::joint_limit;
-    Infeasible stopped = stop(by_joint ? Reason::joint_limit : Reason::out_of_reach, phase,
-                              distance, unreachable.value, unreachable.limit);
+    Infeasible stopped = stop(by_joint ? Reason::joint_limit : Reason::out_of_reach,
+                              unreachable.value, unreachable.limit, phase, distance);
     stopped.joint = unreachable.joint;
     return stopped;
   }
@@ -224,11 +224,11 @@ int Layout::steps(double tip_travel) const {
 std::optional<Infeasible> Layout::add(double distance, const DigPose& pose) {
   const double depth = path_.ground_z - pose.bucket.z;
   if (depth > options_.max_depth) {
-    return stop(Reason::too_deep, pose.phase, distance, depth, options_.max_depth);
+    return stop(Reason::too_deep, depth, options_.max_depth, pose.phase, distance);
   }
   const double foremost = machine_.track_front + options_.track_margin;
   if (pose.bucket.x < foremost) {
-    return stop(Reason::too_near_tracks, pose.phase, distance, pose.bucket.x, foremost);
+    return stop(Reason::too_near_tracks, pose.bucket.x, foremost, pose.phase, distance);
   }
   const LimitMargin margin = limit_margin(machine_, pose.joints);
   if (margin.margin < path_.limit_margin.margin) path_.limit_margin = margin;
@@ -279,13 +279,13 @@ std::optional<Infeasible> Layout::drag() {
     if (i == 0 && (pose.joints - start.joints).norm() > same_posture) {  // arm folded past the tip
       const double nearest =
           std::hypot(pose.bucket.x - machine_.boom_pin.x(), pose.bucket.z - machine_.boom_pin.y());
-      return stop(Reason::out_of_reach, pose.phase, s, nearest, nearest);
+      return stop(Reason::out_of_reach, nearest, nearest, pose.phase, s);
     }
     pose.bucket.floor_angle += start.joints.sum() - pose.joints.sum();
     path_.heel_clearance = std::min(path_.heel_clearance, pose.bucket.floor_angle);
     if (pose.bucket.floor_angle < options_.min_heel_clearance) {
-      return stop(Reason::heel_contact, pose.phase, s, pose.bucket.floor_angle,
-                  options_.min_heel_clearance);
+      return stop(Reason::heel_contact, pose.bucket.floor_angle, options_.min_heel_clearance,
+                  pose.phase, s);
     }
     if (i == 0) continue;  // stored by the penetration
     if (auto stopped = add(s, pose)) return stopped;
@@ -311,8 +311,8 @@ std::optional<Infeasible> Layout::scoop() {
                    start.bucket.floor_angle - turned};
     if (auto stopped = add(turned, pose)) return stopped;
     if (turn * i / count > allowed) {
-      Infeasible stopped = stop(Reason::joint_limit, DigPhase::scoop, allowed,
-                                start.joints[2] + turn, machine_.limits[2].upper);
+      Infeasible stopped = stop(Reason::joint_limit, start.joints[2] + turn,
+                                machine_.limits[2].upper, DigPhase::scoop, allowed);
       stopped.joint = Joint::bucket;
       return stopped;
     }
@@ -361,7 +361,7 @@ std::optional<Infeasible> Layout::raise(DigPose pose) {
     const bool bucket_ends = bucket > machine_.limits[2].upper && height <= 0.0;
     if (boom_ends || bucket_ends) {
       Infeasible stopped =
-          stop(Reason::lift_blocked, pose.phase, travelled, height, options_.lift_clearance);
+          stop(Reason::lift_blocked, height, options_.lift_clearance, pose.phase, travelled);
       stopped.joint = boom_ends ? Joint::boom : Joint::bucket;
       return stopped;
     }

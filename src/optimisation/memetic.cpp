@@ -27,7 +27,7 @@ class SpaceFilling {
   SpaceFilling(Eigen::Index dimensions, std::uint64_t seed)
       : first_(dimensions), step_(dimensions) {
     double root = 2.0;  // of x^(n + 1) = x + 1
-    const double n = static_cast<double>(dimensions);
+    const auto n = static_cast<double>(dimensions);
     for (int i = 0; i < 60; ++i) root = std::pow(1.0 + root, 1.0 / (1.0 + n));
     Random random(seed, 0);
     for (Eigen::Index i = 0; i < dimensions; ++i) {
@@ -162,6 +162,7 @@ class Memetic {
 
   void first_generation(const std::optional<Evaluation>& inherited) {
     std::vector<Candidate> points;
+    points.reserve(static_cast<std::size_t>(method_.first_generation));
     for (int i = 0; i < method_.first_generation; ++i) {
       points.push_back({cube_.point(sequence_.next()), Origin::space_filling, {}});
     }
@@ -257,6 +258,7 @@ class Memetic {
       if (promises(log_[start].outcome)) polishes.emplace_back(cube_, log_[start], start, step);
     }
     std::vector<std::function<void(SearchLog::Strand&)>> tasks;
+    tasks.reserve(polishes.size());
     for (Polish& one : polishes) tasks.emplace_back(std::ref(one));
     log_.run_strands(generation_, method_.polish_evaluations, tasks);
     polished_.insert(polished_.end(), starts.begin(), starts.end());

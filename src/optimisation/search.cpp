@@ -82,7 +82,7 @@ std::vector<VectorXd> clipped(const std::vector<VectorXd>& points, const SearchB
             static_cast<double>(point.size()));
     for (const double number : point)
       require(std::isfinite(number), "a start must be finite", number);
-    inside.push_back(point.cwiseMax(box.lower).cwiseMin(box.upper));
+    inside.emplace_back(point.cwiseMax(box.lower).cwiseMin(box.upper));
   }
   return inside;
 }

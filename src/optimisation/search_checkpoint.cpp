@@ -148,11 +148,13 @@ std::string SearchCheckpoint::text() const {
 
 void SearchCheckpoint::load(std::size_t dimensions) {
   JsonObject file = JsonObject::open_sealed(file_, read_file(file_), format);
-  for (const auto& [key, own] : {std::pair{"problem", problem_}, std::pair{"search", search_}}) {
+  const auto check = [&file](const char* key, const std::string& own) {
     if (const std::string text = file.text(key); text != own) {
       file.fail(key, "is '" + text + "', which differs from '" + own + "'");
     }
-  }
+  };
+  check("problem", problem_);
+  check("search", search_);
   for (JsonObject& entry : file.objects("evaluations")) {
     const std::vector<double> point = entry.numbers("point", dimensions);
     earlier_.emplace(point, read_outcome(entry));

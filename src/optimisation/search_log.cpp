@@ -222,7 +222,7 @@ void SearchLog::run_strands(int generation, int evaluations,
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const int limit = std::min(evaluations, room_left);
     room_left -= limit;
-    strands.push_back(Strand(*this, generation, ++strand_count_, limit));
+    strands.push_back(Strand(*this, generation, limit));
   }
   parallel_for(tasks.size(), options_.threads, [&](std::size_t i) { tasks[i](strands[i]); });
   for (Strand& strand : strands) {

@@ -123,8 +123,8 @@ class SearchLog::Strand {
 
  private:
   friend class SearchLog;
-  Strand(SearchLog& log, int generation, int number, int limit)
-      : log_(log), generation_(generation), number_(number), limit_(limit) {}
+  Strand(SearchLog& log, int generation, int limit)
+      : log_(log), generation_(generation), number_(++log.strand_count_), limit_(limit) {}
 
   const Evaluation* remembered(const PointKey& key) const;
 

@@ -42,7 +42,7 @@ class DigLayout {
 
  private:
   std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
-  std::variant<DigPath, Infeasible> known(std::variant<DigPath, Infeasible> path) const;
+  std::variant<DigPath, Infeasible> known(std::variant<DigPath, Infeasible> found) const;
 
   const Machine& machine_;
   GroundProfile ground_;

@@ -12,7 +12,7 @@ namespace excavplan {
 
 std::string describe(const DigFailure& failure) {
   if (const auto* infeasible = std::get_if<Infeasible>(&failure)) return infeasible->message;
-  const Stall& stall = std::get<Stall>(failure);
+  const auto& stall = std::get<Stall>(failure);
   return std::string("the ") + name(stall.joint) + " stalls in the phase " + name(stall.phase) +
          " after " + decimals(stall.travelled, 3) + " m: the required torque is " +
          decimals(std::abs(stall.torque) / 1000.0, 1) + " kN m";

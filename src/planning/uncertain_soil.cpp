@@ -208,6 +208,7 @@ std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_p
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(jacobi);
   std::vector<PossibleDensity> densities;
+  densities.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     densities.push_back(
         {middle + half * solved.eigenvalues()(i), std::pow(solved.eigenvectors()(0, i), 2)});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/angles.hpp"
 
@@ -50,10 +51,9 @@ SoilState dug_state(const SoilKind& soil) {
 
 }  // namespace
 
-HeightMapModel::HeightMapModel(const Machine& machine_, const SoilKind& soil_,
-                               double density_percent_)
-    : machine(machine_),
-      soil(soil_),
+HeightMapModel::HeightMapModel(Machine machine_, SoilKind soil_, double density_percent_)
+    : machine(std::move(machine_)),
+      soil(std::move(soil_)),
       density_percent(density_percent_),
       bank(bank_state(soil, density_percent)),
       loose(loose_state(soil)),
@@ -303,7 +303,7 @@ double BucketResistance::swept_to(double x, std::size_t& pose) const {
 /// uncut_at() between the centres of cells, so that slopes have no steps; -infinity where unknown.
 double BucketResistance::uncut_between(double x) const {
   const HeightMap& map = ground_.before().bank;
-  const double last = static_cast<double>(map.z.cols() - 1);
+  const auto last = static_cast<double>(map.z.cols() - 1);
   const double at = std::clamp((x - map.origin.x()) / map.cell_size - 0.5, 0.0, last);
   const auto col = static_cast<Index>(at);
   const double t = at - static_cast<double>(col);

@@ -18,7 +18,7 @@ namespace excavplan {
 
 /// Data of HeightMapSimulator that do not depend on the ground.
 struct HeightMapModel {
-  HeightMapModel(const Machine& machine, const SoilKind& soil, double density_percent);
+  HeightMapModel(Machine machine, SoilKind soil, double density_percent);
 
   Machine machine;
   SoilKind soil;

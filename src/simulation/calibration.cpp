@@ -45,6 +45,7 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
 std::vector<BulkingSample> pairs(const std::vector<DensityCalibration::Sample>& samples,
                                  double DensityCalibration::Sample::*factor) {
   std::vector<BulkingSample> pairs;
+  pairs.reserve(samples.size());
   for (const auto& sample : samples) pairs.push_back({sample.*factor, sample.density_percent});
   return pairs;
 }

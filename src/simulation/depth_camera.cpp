@@ -154,9 +154,10 @@ void let_pixels_fly(Eigen::ArrayXXd& depth, double share, std::uint64_t seed) {
   }
 }
 
-/// Normal deviates of variance 1 whose covariance falls as exp(-d^2 / (2 length^2)).
-Eigen::ArrayXXd smooth_noise(Eigen::Index rows, Eigen::Index cols, double length,
+/// Normal deviates of variance 1 whose covariance falls as exp(-d^2 / (2 pattern_length^2)).
+Eigen::ArrayXXd smooth_noise(Eigen::Index rows, Eigen::Index cols, const DepthCamera& camera,
                              std::uint64_t seed) {
+  const double length = camera.pattern_length;
   const auto reach = static_cast<Eigen::Index>(std::ceil(2.2 * length));
   Eigen::ArrayXXd white(rows + 2 * reach, cols + 2 * reach);
   for (Eigen::Index row = 0; row < white.rows(); ++row) {
@@ -186,8 +187,7 @@ Eigen::ArrayXXd measured(Eigen::ArrayXXd depth, const DepthCamera& camera, std::
   if (camera.flying_pixels > 0.0) let_pixels_fly(depth, camera.flying_pixels, seed);
   Eigen::ArrayXXd pattern = Eigen::ArrayXXd::Zero(depth.rows(), depth.cols());
   if (camera.pattern_noise > 0.0) {
-    pattern = camera.pattern_noise *
-              smooth_noise(depth.rows(), depth.cols(), camera.pattern_length, seed);
+    pattern = camera.pattern_noise * smooth_noise(depth.rows(), depth.cols(), camera, seed);
   }
   Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(depth.rows(), depth.cols());
   Eigen::ArrayXXi count = Eigen::ArrayXXi::Zero(depth.rows(), depth.cols());
@@ -307,7 +307,7 @@ std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const DepthC
   for (Eigen::Index v = 0; v < depth.rows(); ++v) {
     for (Eigen::Index u = 0; u < depth.cols(); ++u) {
       if (std::isnan(depth(v, u))) continue;
-      points.push_back(camera.position + depth(v, u) * (axes * plane.pixel(v, u)));
+      points.emplace_back(camera.position + depth(v, u) * (axes * plane.pixel(v, u)));
     }
   }
   return points;
@@ -329,7 +329,7 @@ std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const Lidar&
       const Beam beam = beam_at(azimuth, elevation);
       const double range = mixed_range(surface, top, lidar, beam);
       if (std::isnan(range)) continue;
-      points.push_back(lidar.position + (range + lidar.range_noise * noise) * beam.direction);
+      points.emplace_back(lidar.position + (range + lidar.range_noise * noise) * beam.direction);
     }
   }
   return points;

@@ -161,7 +161,7 @@ CriticalWedges::CriticalWedges(double friction, double tool_friction)
   // Ground that falls away as steeply as it can stand needs no force: stay 5 deg from there.
   lowest_slope_ = -std::max(0.0, friction - 5.0 * degree);
   slope_step_ = (highest_slope - lowest_slope_) / (slopes - 1);
-  failure_.reserve(rakes * slopes);
+  failure_.reserve(std::size_t{rakes} * slopes);
   for (int i = 0; i < rakes; ++i) {
     for (int j = 0; j < slopes; ++j) {
       const CuttingWedge wedge{std::min(lowest_rake + i * rake_step, highest_rake_), friction,
@@ -210,7 +210,7 @@ FrictionWedges::FrictionWedges(double lowest, double highest, double tool_ratio)
 
 EarthmovingFactors FrictionWedges::at(double rake, double slope, double friction) const {
   if (tables_.size() == 1) return tables_.front().at(rake, slope);
-  const double last = static_cast<double>(tables_.size() - 1);
+  const auto last = static_cast<double>(tables_.size() - 1);
   const double u = std::clamp((friction - lowest_) / step_, 0.0, last);
   const auto i = static_cast<std::size_t>(std::min(u, last - 1.0));
   const double t = u - static_cast<double>(i);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <excavplan/simulation/earthmoving.hpp>
@@ -301,9 +302,9 @@ class SoilResistance {
 
 }  // namespace
 
-SectionModel::SectionModel(const Machine& machine_, const SoilKind& kind_, double density_percent_)
-    : machine(machine_),
-      kind(kind_),
+SectionModel::SectionModel(Machine machine_, SoilKind kind_, double density_percent_)
+    : machine(std::move(machine_)),
+      kind(std::move(kind_)),
       density_percent(density_percent_),
       bank(bank_state(kind, density_percent)),
       loose(loose_state(kind)),

@@ -17,7 +17,7 @@ namespace excavplan {
 
 /// Data of SectionSimulator that do not depend on the ground.
 struct SectionModel {
-  SectionModel(const Machine& machine, const SoilKind& kind, double density_percent);
+  SectionModel(Machine machine, SoilKind kind, double density_percent);
 
   Machine machine;
   SoilKind kind;

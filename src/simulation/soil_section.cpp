@@ -24,10 +24,8 @@ constexpr double growth = 0.5;       // by which a section grows, and its room a
 
 double square(double value) { return value * value; }
 
-/// Area between `top` and a line from `from` to `to` where the line lies below.
-double area_above_line(double length, double from, double to, double top) {
-  const double a = top - from;
-  const double b = top - to;
+/// Area between a level and the part of a line below it; the line's ends lie `a` and `b` below.
+double area_above_line(double length, double a, double b) {
   if (a <= 0.0 && b <= 0.0) return 0.0;
   if (a >= 0.0 && b >= 0.0) return 0.5 * (a + b) * length;
   return 0.5 * square(std::max(a, b)) / std::abs(a - b) * length;
@@ -38,8 +36,10 @@ CutArea cut_fresh(Column& column, double from, double to, const Below& line) {
   if (!(length > 0.0)) return {};
   const double at_from = line.at(from);
   const double at_to = line.at(to);
-  const double bank = area_above_line(length, at_from, at_to, column.bank_before);
-  const double all = area_above_line(length, at_from, at_to, column.top_before());
+  const double bank =
+      area_above_line(length, column.bank_before - at_from, column.bank_before - at_to);
+  const double top = column.top_before();
+  const double all = area_above_line(length, top - at_from, top - at_to);
   const double swept = column.swept();
   column.floor = (column.floor * swept + column.bank_before * length - bank) / (swept + length);
   return {bank, all - bank, 0.0};
@@ -411,7 +411,7 @@ double SoilSection::uncut(double x) const {
 GroundAhead SoilSection::ahead(double x) const {
   const Index last = column_at(x);
   const Index first = column_at(x - look_ahead + 0.5 * cell_size_);
-  const double n = static_cast<double>(last - first + 1);
+  const auto n = static_cast<double>(last - first + 1);
   GroundAhead mean;
   double moment = 0.0;
   double inertia = 0.0;

@@ -3,11 +3,12 @@
 #include "simulation/soil_wedges.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace excavplan {
 
-SoilWedges::SoilWedges(const SoilKind& kind, const SoilState& bank)
-    : kind_(kind),
+SoilWedges::SoilWedges(SoilKind kind, const SoilState& bank)
+    : kind_(std::move(kind)),
       friction_(bank.friction_angle),
       on_steel_(bank.friction_angle, bank.tool_friction_angle),
       on_soil_(bank.friction_angle, bank.friction_angle) {}

@@ -13,7 +13,7 @@ namespace excavplan {
 /// Earthmoving factors at the critical failure angle for all states of a soil's bank.
 class SoilWedges {
  public:
-  SoilWedges(const SoilKind& kind, const SoilState& bank);
+  SoilWedges(SoilKind kind, const SoilState& bank);
 
   /// Factors of a wedge that slides on steel, or on soil as strong as itself, in soil of this
   /// state.

@@ -156,8 +156,10 @@ class CellMean {
     const std::size_t step = 1 + points_.size() / most_points;
     std::vector<double> shares(points_.size());
     for (std::size_t node = 0; node < along * along; ++node) {
-      const double x = (static_cast<double>(node / along) + 0.5) / along - 0.5;
-      const double y = (static_cast<double>(node % along) + 0.5) / along - 0.5;
+      const std::size_t column = node / along;
+      const std::size_t row = node % along;
+      const double x = (static_cast<double>(column) + 0.5) / along - 0.5;
+      const double y = (static_cast<double>(row) + 0.5) / along - 0.5;
       std::size_t nearest = 0;
       double least = std::numeric_limits<double>::infinity();
       for (std::size_t i = 0; i < points_.size(); i += step) {

@@ -171,7 +171,7 @@ Eigen::Matrix4d read_frame(const std::string& path) {
     file.fail("a frame", found, expected);
   };
   if (numbers.size() != 16) refuse(std::to_string(numbers.size()) + " numbers", "4 rows of 4");
-  const Eigen::Matrix4d frame =
+  Eigen::Matrix4d frame =
       Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
   if (!frame.allFinite()) refuse("a number that is not finite", "finite numbers");
   if (frame.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {

@@ -149,7 +149,8 @@ class PointsByCell {
       most = std::max(most, points);
     }
     bands_.push_back(counts_.size());
-    points_.reset(new CellPoint[most]);
+    // make_unique would write zeros over the whole block first.
+    points_.reset(new CellPoint[most]);  // NOLINT(modernize-make-unique)
   }
 
   void load(std::size_t band) {
@@ -287,7 +288,7 @@ Ceilings lower_to_ground(PointsByCell& points, Levels& levels, double cell_size)
   return ceilings;
 }
 
-Surface surface_of(const PointSource& source, HeightMap map, const RasterOptions& options) {
+Surface surface_of(const PointSource& source, const HeightMap& map, const RasterOptions& options) {
   PointsByCell points(source, map, options.memory);
   Levels levels = find_levels(points, map);
   const Ceilings ceilings = lower_to_ground(points, levels, map.cell_size);

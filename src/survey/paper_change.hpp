@@ -20,6 +20,6 @@ struct PaperScans {
 /// result are those of the surface.
 /// @throws Error (bad_file) naming the scans
 VolumeChange paper_change(const PaperScans& scans, const VolumeChange& surface,
-                          const ChangeOptions& areas, double leaf);
+                          const ChangeOptions& given, double leaf);
 
 }  // namespace excavplan

@@ -9,6 +9,7 @@
 
 #include <pcl/filters/statistical_outlier_removal.h>
 #include <pcl/filters/voxel_grid.h>
+#include <pcl/memory.h>
 #include <pcl/octree/octree_pointcloud_changedetector.h>
 #include <pcl/point_types.h>
 
@@ -96,7 +97,7 @@ PclCloud::Ptr changed_points(const PclCloud::Ptr& before, const PclCloud::Ptr& a
   pcl::Indices indices;
   octree.getPointIndicesFromNewVoxels(indices);
   std::sort(indices.begin(), indices.end());
-  return PclCloud::Ptr(new PclCloud(*after, indices));
+  return pcl::make_shared<PclCloud>(*after, indices);
 }
 
 PclCloud::Ptr without_outliers(const PclCloud::Ptr& cloud, const PaperMethodOptions& options) {

@@ -95,7 +95,7 @@ std::string rows_of(const std::vector<Eigen::Vector3d>& points) {
   std::string rows;
   rows.reserve(points.size() * 3 * sizeof(T));
   for (const Eigen::Vector3d& point : points) {
-    const Eigen::Matrix<T, 3, 1> row = point.cast<T>();
+    const Eigen::Matrix<T, 3, 1>& row = point.cast<T>();
     rows.append(reinterpret_cast<const char*>(row.data()), 3 * sizeof(T));
   }
   return rows;

@@ -54,6 +54,7 @@ double median(std::vector<double> values) {
 
 double median_range(const std::vector<Eigen::Vector3d>& points) {
   std::vector<double> ranges;
+  ranges.reserve(points.size());
   for (const Eigen::Vector3d& p : points) ranges.push_back(p.norm());
   return median(std::move(ranges));
 }

@@ -111,9 +111,9 @@ std::map<int, std::string> colour_runs(const HeightMap& map, double limit) {
       const Eigen::Index start = col;
       while (col < map.z.cols() && level(row, col) == of_run) ++col;
       if (of_run == unknown) continue;
-      const std::string length = std::to_string(col - start);
-      paths[of_run] += "M" + std::to_string(start) + ' ' + std::to_string(row) + "h" + length +
-                       "v1h-" + length + "z";
+      const Eigen::Index length = col - start;
+      paths[of_run] += "M" + std::to_string(start) + ' ' + std::to_string(row) + "h" +
+                       std::to_string(length) + "v1h-" + std::to_string(length) + "z";
     }
   }
   return paths;
@@ -270,7 +270,7 @@ class SvgWriter {
   }
 
   Frame frame_of(const Panel& panel, const Eigen::Vector2d& corner) const {
-    const double count = static_cast<double>(figure_.panels.size());
+    const auto count = static_cast<double>(figure_.panels.size());
     Frame frame;
     frame.data = panel.shown();
     frame.left = corner.x() + 62.0;
