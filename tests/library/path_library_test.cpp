@@ -325,6 +325,16 @@ TEST_F(LibraryTasks, AnAnswerForAnotherPlaceIsRefused) {
             std::string::npos);
 }
 
+TEST_F(LibraryTasks, AnAnswerThatLacksAKeyIsRefused) {
+  auto json = nlohmann::ordered_json::parse(do_task(job_, to_text({place_}), {}));
+  json.erase("checksum");
+  json["answer"].erase("feasible");
+  EXPECT_EQ(test::error_of([&] { read_answer(job_, place_, "f", sealed_text(json)); },
+                           ErrorKind::bad_file)
+                .find("f: answer: "),
+            0U);
+}
+
 TEST_F(LibraryBuilding, MorePointsThanCanBeCountedAreRefused) {
   LibraryBuildOptions options = quick();
   std::get<AnchoredSearch>(options.search.method).points = 300000000;

@@ -69,6 +69,32 @@ class PlanDig : public testing::Test {
   const SoilKind loam_ = load_soil(find_data_file("soils/loam.json"));
 };
 
+// ---- What is refused --------------------------------------------------------------------------
+
+TEST_F(PlanDig, DensitiesThatAreNoneAreRefused) {
+  for (const double percent : {-1.0, 101.0, std::nan("")}) {
+    EXPECT_EQ(test::error_of([&] { plan(percent); }).find("the density is "), 0U) << percent;
+  }
+  EXPECT_EQ(test::error_of([&] {
+              plan({40.0, -1.0});
+            }),
+            "the standard deviation of the density is -1, must be at least 0 and finite");
+}
+
+TEST_F(PlanDig, ASearchRefusesALibraryThatLacksItsDensity) {
+  auto library = std::make_shared<PathLibrary>(shipped_library(machine_, loam_));
+  auto& entries = library->entries;
+  entries.erase(std::remove_if(entries.begin(), entries.end(),
+                               [](const auto& entry) { return entry.density_percent > 30.0; }),
+                entries.end());
+  PlanOptions options = searched(10);
+  options.library = library;
+  EXPECT_NE(test::error_of([&] { plan(80.0, options); }).find("80 is outside its range"),
+            std::string::npos);
+  options.method = PlanMethod::library;  // a value where it is looked up
+  EXPECT_NE(plan(80.0, options).reason.find("80 is outside its range"), std::string::npos);
+}
+
 // ---- Looking up -------------------------------------------------------------------------------
 
 TEST_F(PlanDig, LooksUpOnLevelGroundWithoutADig) {

@@ -187,6 +187,10 @@ TEST(EstimateDensity, ScansThatCannotBeComparedAreRefused) {
   scans.before.area = Rectangle{0.0, 0.0, 0.1, 0.1};
   EXPECT_EQ(error_of([&] { estimate_density(scans, paper_law()); }, ErrorKind::bad_file),
             "a scan in memory: holds fewer than 100 finite points inside the area");
+  scans = whole_scene();
+  scans.after.clouds.push_back(nullptr);
+  EXPECT_EQ(error_of([&] { estimate_density(scans, paper_law()); }),
+            "scan: one of its clouds is a null pointer");
 }
 
 TEST(EstimateDensity, APathThatWasNotDugHereIsRefused) {
