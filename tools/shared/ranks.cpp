@@ -90,7 +90,7 @@ class MpiRanks : public Ranks {
     std::vector<LibraryWorker> all;
     for (int rank = 1; rank < size_; ++rank) {
       for (int lane = 0; lane < lanes_; ++lane) {
-        all.push_back([this, rank, lane](const std::string& task) {
+        all.emplace_back([this, rank, lane](const std::string& task) {
           send(rank, lane, task);
           return result_in(received(rank, lane), rank);
         });

@@ -136,7 +136,7 @@ std::vector<std::string> scene_lines(const Machine& machine, const DigScene& sce
 }
 
 std::vector<double> parse_densities(const std::string& what, const std::string& text) {
-  const std::vector<double> densities = parse_series(what, text, Quantity::percent);
+  std::vector<double> densities = parse_series(what, text, Quantity::percent);
   for (const double density : densities) {
     if (density >= 0.0 && density <= 100.0) continue;
     throw Error(ErrorKind::bad_input,

@@ -205,21 +205,22 @@ std::string shown_name(const Arguments::Entry& entry) {
   return entry.positional ? entry.name : "--" + entry.name;
 }
 
-void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words) {
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const Arguments::Entry& entry = entries[i];
-    const auto& [times, text] = words.of_entry[i];
-    const std::string name = shown_name(entry);
-    if (times == 0) continue;
-    if (!entry.placeholder.empty()) {
-      if (times > 1) usage_error(name + " is given more than once");
-      if (text.empty()) usage_error(name + " is empty");
-      if (!entry.positional && text.rfind("--", 0) == 0) {
-        usage_error(name + " needs a value, got " + text);
-      }
+void assign(const Arguments::Entry& entry, const ParsedWords::Given& given) {
+  const auto& [times, text] = given;
+  const std::string name = shown_name(entry);
+  if (times == 0) return;
+  if (!entry.placeholder.empty()) {
+    if (times > 1) usage_error(name + " is given more than once");
+    if (text.empty()) usage_error(name + " is empty");
+    if (!entry.positional && text.rfind("--", 0) == 0) {
+      usage_error(name + " needs a value, got " + text);
     }
-    entry.assign(text);
   }
+  entry.assign(text);
+}
+
+void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words) {
+  for (std::size_t i = 0; i < entries.size(); ++i) assign(entries[i], words.of_entry[i]);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].required && words.of_entry[i].times == 0) {
       usage_error(shown_name(entries[i]) + " is missing: " + entries[i].help);
