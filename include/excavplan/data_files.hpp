@@ -28,10 +28,15 @@ constexpr const char* data_folder_of_package = EXCAVPLAN_DATA_DIR;
 std::string find_data_file(const std::string& relative_path,
                            const std::string& package_folder = data_folder_of_package);
 
+/// Whether one of the places of find_data_file() has this folder, such as "libraries".
+bool has_data_folder(const std::string& folder,
+                     const std::string& package_folder = data_folder_of_package);
+
 /// Path of the file that a name or a path means: "loam" in the folder "soils" is the shipped
 /// "soils/loam.json"; what holds a '.' or a '/', or exists, is a path and returned as it is.
 ///
 /// @throws Error (bad_input) if it is a plain name but no file of that name is shipped
+/// @throws Error (bad_file) as find_data_file() if the folder is not found at all
 std::string shipped_or_file(const std::string& folder, const std::string& name_or_path,
                             const std::string& package_folder = data_folder_of_package);
 

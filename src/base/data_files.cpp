@@ -4,6 +4,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -61,6 +62,14 @@ std::string find_data_file(const std::string& relative_path, const std::string& 
   throw Error(ErrorKind::bad_file, relative_path + ": not found in any of" + searched);
 }
 
+bool has_data_folder(const std::string& folder, const std::string& package_folder) {
+  const std::vector<fs::path> places = data_folders(package_folder);
+  return std::any_of(places.begin(), places.end(), [&](const fs::path& place) {
+    std::error_code none;
+    return fs::is_directory(place / folder, none);
+  });
+}
+
 std::string shipped_or_file(const std::string& folder, const std::string& name_or_path,
                             const std::string& package_folder) {
   if (name_or_path.find_first_of("/.") != std::string::npos || fs::exists(name_or_path)) {
@@ -69,6 +78,7 @@ std::string shipped_or_file(const std::string& folder, const std::string& name_o
   try {
     return find_data_file(folder + "/" + name_or_path + ".json", package_folder);
   } catch (const Error&) {
+    if (!has_data_folder(folder, package_folder)) throw;
     throw Error(ErrorKind::bad_input, "'" + name_or_path + "' is neither a file nor one of the " +
                                           folder + " that excavplan ships");
   }

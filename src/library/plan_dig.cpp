@@ -16,7 +16,8 @@
 namespace excavplan {
 namespace {
 
-constexpr double much_steeper = 0.04;  // than the library's slopes [rad]; ours, docs/libraries.md
+constexpr double much_steeper =
+    0.04;  // than the library's slopes [rad]; ours, docs/formats.md#warning-codes
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
 constexpr double likely_stall = 0.05;  // probability; ours
 
@@ -259,6 +260,7 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
   try {
     file = find_data_file("libraries/" + machine.name + "-" + soil.name + ".json", data_folder);
   } catch (const Error&) {
+    if (!has_data_folder("libraries", data_folder)) throw;
     throw Error(ErrorKind::bad_input,
                 "no library of " + machine.name + " in " + soil.name +
                     " is shipped: use a search, or make one with build-path-library");

@@ -100,10 +100,11 @@ void check(const DigSearchOptions& options) {
   for (const DigParameterInfo& info : dig_parameter_table()) {
     const double lower = options.bounds.lower.*info.field;
     const double upper = options.bounds.upper.*info.field;
-    const std::string what = std::string("the search range of ") + info.name;
-    require(lower >= 0.0 && std::isfinite(lower), what + " from", lower, "finite and at least 0");
-    require(upper >= lower && std::isfinite(upper), what + " to", upper,
-            "finite and not below its lower end");
+    const std::string what = std::string("the search range of the ") + info.text;
+    require(lower >= 0.0 && std::isfinite(lower), "the lower end of " + what, lower,
+            "finite and at least 0");
+    require(upper >= lower && std::isfinite(upper), "the upper end of " + what, upper,
+            "finite and not below the lower end");
   }
   const DigObjective& objective = options.objective;
   require(objective.time_price >= 0.0 && std::isfinite(objective.time_price), "the price of time",

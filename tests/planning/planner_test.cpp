@@ -222,9 +222,10 @@ TEST_F(Planner, PathsThatCannotBeDrivenCostNoDig) {
 TEST_F(Planner, RangesOfTheSearchAreChecked) {
   DigSearchOptions options;
   options.bounds.upper.drag_length = 0.1;
-  EXPECT_EQ(test::error_of([&] { search_dig(machine_, simulator(40.0), level_, options); }),
-            "the search range of drag_length_m to is 0.1, must be finite and not below its "
-            "lower end");
+  EXPECT_EQ(
+      test::error_of([&] { search_dig(machine_, simulator(40.0), level_, options); }),
+      "the upper end of the search range of the drag length is 0.1, must be finite and not below "
+      "the lower end");
   options = {};
   options.objective.time_price = -1.0;
   EXPECT_THROW(search_dig(machine_, simulator(40.0), level_, options), Error);
