@@ -64,6 +64,7 @@ std::string identity(const LibraryJob& job, const LibraryPlace& place) {
          describe(DigSearchOptions{}.start_rule);
 }
 
+// In the order of AnchoredSearch. NOLINTNEXTLINE(bugprone-easily-swappable-parameters)
 DigSearchOptions memetic(int points, int basins, int polish_evaluations) {
   MemeticSearch method;
   method.first_generation = points;
