@@ -369,6 +369,14 @@ class Build {
   std::vector<Entry*> entries_;  ///< of the grid: machine, soil, slope, density
 };
 
+/// Also if a killed run left it half written.
+bool is_entry_file(const std::string& name) {
+  const std::string end = entry_file_end;
+  const std::size_t at = name.find(end);
+  return at != std::string::npos &&
+         (at + end.size() == name.size() || name.compare(at + end.size(), 6, ".part-") == 0);
+}
+
 }  // namespace
 
 void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
@@ -404,9 +412,7 @@ void remove_library_entries(const std::string& folder) {
   for (const auto& file : fs::directory_iterator(folder)) {
     const std::string name = file.path().filename();
     std::error_code taken_by_another_run;
-    if (name.find(entry_file_end) != std::string::npos) {
-      fs::remove(file.path(), taken_by_another_run);
-    }
+    if (is_entry_file(name)) fs::remove(file.path(), taken_by_another_run);
   }
   std::error_code not_empty;
   fs::remove(folder, not_empty);

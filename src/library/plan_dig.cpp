@@ -75,7 +75,7 @@ struct Slope {
 };
 
 Slope slope_in(const PathLibrary& library, const Task& task) {
-  if (task.level) return {};
+  if (task.level || library.entries.empty()) return {};
   const double slope = boom_plane_slope(task.ground, task.machine.track_front);
   return {slope, std::clamp(std::isnan(slope) ? 0.0 : slope, library.entries.front().slope,
                             library.entries.back().slope)};

@@ -398,9 +398,14 @@ TEST_F(LibraryBuilding, RemovesItsFilesAndNoOthers) {
   options.folder = folder.file("entries");
   build(grid({0}), options);
   const std::string thesis = folder.write("entries/thesis.json", "years of work");
+  const std::string copy = folder.write("entries/a.entry.json.old", "a copy");
+  const std::string part = folder.write("entries/a.entry.json.part-host-1-2", "half");
   remove_library_entries(options.folder);
   EXPECT_EQ(content_of(thesis), "years of work");
+  EXPECT_EQ(content_of(copy), "a copy");
+  EXPECT_FALSE(fs::exists(part));
   fs::remove(thesis);
+  fs::remove(copy);
   EXPECT_TRUE(fs::is_empty(options.folder));
   remove_library_entries(options.folder);
   EXPECT_FALSE(fs::exists(options.folder));

@@ -218,6 +218,9 @@ TEST_F(LibraryTool, SameBytesForOneToFourRanks) {
     const std::string said = content_of(folder_.file("said"));
     EXPECT_EQ(said.find(out_), said.rfind(out_)) << said;  // one rank prints
     fs::remove(out_);
+    EXPECT_EQ(run_ranks(words + " --json", folder_.file("said")), 0)
+        << content_of(folder_.file("said"));
+    fs::remove(out_);
   }
 #endif
 }

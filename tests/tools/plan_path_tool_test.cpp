@@ -380,7 +380,8 @@ TEST_F(BadInput, SearchOptionsAreRefusedByName) {
   const Words search = {"--density", "40", "--search"};
   refused(2, "--goal: 'speed'", "plan-path", search + Words{"--goal", "speed"});
   refused(2, "--drag-range: '2' is not FROM,TO", "plan-path", search + Words{"--drag-range", "2"});
-  refused(2, "drag_length_m", "plan-path", search + Words{"--drag-range", "2,1"});
+  refused(2, "upper end of the search range of the drag length is 1,", "plan-path",
+          search + Words{"--drag-range", "2,1"});
   refused(2, "--resume needs --checkpoint", "plan-path", search + Words{"--resume"});
   refused(2, "--start search needs --search", "plan-path",
           {"--density", "40", "--start", "search"});

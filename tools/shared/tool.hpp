@@ -47,7 +47,7 @@ struct About {
 /// Result of a tool.
 struct Outcome {
   /// Printed with --json, "tool" and "version" before it, "warnings" after it. NaN becomes null.
-  nlohmann::ordered_json json;
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
   std::vector<std::string> lines;  ///< printed without --json
   std::vector<Warning> warnings;
   bool trustworthy = true;
