@@ -30,7 +30,6 @@ struct Task {
   const PlanOptions& options;
 
   bool uncertain() const { return density.sd_percent > 0.0; }
-  PossibleGround possible_ground() const { return {options.simulator, machine, soil, density}; }
 };
 
 void warn(DigPlan& plan, const char* code, const std::string& message) {
@@ -198,10 +197,8 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
   plan.nearest = found.nearest;
 }
 
-void search_plan(const Task& task, DigPlan& plan) {
+void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
   const DigSearchOptions options = search_options(task, plan);
-  const PossibleGround ground = task.possible_ground();
-  const std::vector<PossibleSoil>& soils = ground.soils();
   plan.start_rule = describe(options.start_rule);
   if (task.uncertain()) {
     const auto found = search_dig(task.machine, soils, task.ground, options);
@@ -213,9 +210,7 @@ void search_plan(const Task& task, DigPlan& plan) {
   }
 }
 
-void add_spread(const Task& task, DigPlan& plan) {
-  const PossibleGround ground = task.possible_ground();
-  const std::vector<PossibleSoil>& soils = ground.soils();
+void add_spread(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
   plan.spread = dig_spread(task.machine, soils, task.ground, *plan.dig, plan.path);
   plan.evaluations += static_cast<int>(soils.size());
   if (plan.spread.stall_probability <= likely_stall) return;
@@ -242,10 +237,14 @@ DigPlan plan_dig(const Task& task) {
   DigPlan plan;
   plan.method = task.options.method;
   judge_density(task, plan);
+  std::optional<PossibleGround> ground;  // not for a density taken as known that is looked up
+  if (plan.method == PlanMethod::search || task.uncertain()) {
+    ground.emplace(task.options.simulator, task.machine, task.soil, task.density);
+  }
   if (plan.method == PlanMethod::library) look_up_plan(task, plan);
-  if (plan.method == PlanMethod::search) search_plan(task, plan);
+  if (plan.method == PlanMethod::search) search_plan(task, ground->soils(), plan);
   if (!plan.dig) return plan;
-  if (task.uncertain()) add_spread(task, plan);
+  if (task.uncertain()) add_spread(task, ground->soils(), plan);
   add_trajectory(task, plan);
   return plan;
 }
