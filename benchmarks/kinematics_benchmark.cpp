@@ -18,7 +18,7 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/machine/trajectory.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "base/angles.hpp"
 

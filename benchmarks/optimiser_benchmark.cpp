@@ -21,7 +21,7 @@
 #endif
 
 #include <excavplan/optimisation/search.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "dig_functions.hpp"
 #include "support/search_functions.hpp"

@@ -5,7 +5,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/library/path_library.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
-#include <excavplan/simulation/section_simulator.hpp>
+#include "simulation/section_simulator.hpp"
 
 namespace excavplan {
 namespace {

@@ -22,10 +22,12 @@
 #include <vector>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/planning/planner.hpp>
-#include <excavplan/random.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
-#include <excavplan/simulation/section_simulator.hpp>
+#include "base/random.hpp"
+#include "simulation/section_simulator.hpp"
 
 namespace excavplan {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include <excavplan/random.hpp>
 #include <excavplan/survey/scan_surface.hpp>
+#include "base/random.hpp"
 
 namespace excavplan {
 namespace {

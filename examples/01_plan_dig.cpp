@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/library/plan_dig.hpp>
+#include <excavplan/plan/plan_dig.hpp>
 
 using namespace excavplan;
 

@@ -10,7 +10,7 @@
 #include <cstdio>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/library/plan_dig.hpp>
+#include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/survey/scan_terrain.hpp>
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/library/plan_dig.hpp>
+#include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/soil/soil.hpp>
 
 using namespace excavplan;

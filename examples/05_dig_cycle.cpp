@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/library/plan_dig.hpp>
+#include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/scene.hpp>
 #include <excavplan/survey/density_estimate.hpp>

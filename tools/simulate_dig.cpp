@@ -3,7 +3,7 @@
 #include <tuple>
 #include <utility>
 
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/scene.hpp>
 #include <excavplan/survey/cloud.hpp>
 

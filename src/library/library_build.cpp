@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/library/library_build.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -14,6 +15,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/parallel.hpp"
 #include "base/task_queue.hpp"
@@ -54,22 +56,18 @@ void require_unlike(const std::string& what, const std::vector<Named>& all) {
   }
 }
 
-/// What the user sees of a build, and whether he stopped it.
+/// What the user sees of a build, and whether it was stopped.
 class Watch {
  public:
   explicit Watch(const LibraryBuildOptions& options) : options_(options) {}
 
   void expect_entry() { ++now_.entries; }
-  void entry_done() {
+  /// @return false once stopped
+  template <typename Change>
+  bool tell(const Change& change) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    ++now_.entries_done;
-    tell();
-  }
-  bool dug(int digs, double best) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    now_.evaluations += digs;
-    now_.best = best;
-    tell();
+    change(now_);
+    if (options_.progress && !stopped_ && !options_.progress(now_)) stopped_ = true;
     return !stopped_;
   }
   void note(const std::string& line) {
@@ -80,10 +78,6 @@ class Watch {
   const LibraryProgress& now() const { return now_; }
 
  private:
-  void tell() {
-    if (options_.progress && !stopped_ && !options_.progress(now_)) stopped_ = true;
-  }
-
   const LibraryBuildOptions& options_;
   std::mutex mutex_;
   LibraryProgress now_;
@@ -161,8 +155,12 @@ class Build {
     }
     std::vector<TaskQueue::Worker> workers(
         thread_count(options_.threads), [this](const std::string& task) {
-          return do_task(job_, task,
-                         [this](int digs, double best) { return watch_.dug(digs, best); });
+          return do_task(job_, task, [this](int digs, double best) {
+            return watch_.tell([=](LibraryProgress& now) {
+              now.evaluations += digs;
+              now.best = best;
+            });
+          });
         });
     for (const LibraryWorker& other : options_.other_workers) {
       workers.emplace_back(
@@ -207,7 +205,7 @@ class Build {
          [=, &entry](const std::string& text) {
            entry.first = entry.found = read_answer(job_, entry.place, "task", text);
            if (!options_.folder.empty()) write_file(file, text);
-           watch_.entry_done();
+           watch_.tell([](LibraryProgress& now) { ++now.entries_done; });
          }});
     return entry;
   }
@@ -227,10 +225,10 @@ class Build {
     try {
       entry.first = entry.found = read_answer(job_, entry.place, file, read_file(file));
     } catch (const Error& e) {
-      watch_.note(std::string(e.what()) + "; it is computed anew");
+      watch_.note(std::string(e.what()) + "; it is computed again");
       return false;
     }
-    watch_.entry_done();
+    watch_.tell([](LibraryProgress& now) { ++now.entries_done; });
     return true;
   }
 
@@ -384,16 +382,15 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
   require_unlike("soil", grid.soils);
   require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
   require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
-  require(search.seed <= most_exact, "the seed must be at most " + std::to_string(most_exact) +
-                                         ", the largest whole number " +
-                                         "that the file keeps, got " + std::to_string(search.seed));
+  require(search.seed <= most_exact, "seed of a library", static_cast<double>(search.seed),
+          "at most " + std::to_string(most_exact) + ", which its file keeps");
   if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
-    require(anchored->points <= most_points, "points must be <= " + std::to_string(most_points) +
-                                                 ", got " + std::to_string(anchored->points));
+    require(anchored->points <= most_points, "points of a library search", anchored->points,
+            "at most " + std::to_string(most_points));
   }
   require(search.cell_size >= finest_cell && search.cell_size <= coarsest_cell,
-          "the cell of the ground must be in " + number_text(finest_cell) + " .. " +
-              number_text(coarsest_cell) + " m, got " + number_text(search.cell_size));
+          "cell size of a library's ground [m]", search.cell_size,
+          "in " + number_text(finest_cell) + " .. " + number_text(coarsest_cell));
 }
 
 LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {

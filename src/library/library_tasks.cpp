@@ -7,26 +7,18 @@
 #include <iterator>
 
 #include <excavplan/error.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "optimisation/search_checkpoint.hpp"
+#include "planning/dig_attempts.hpp"
 #include "planning/planned_digs.hpp"
 
 namespace excavplan {
 
 // As text between processes and in files: every number as it is.
-void to_json(nlohmann::json& json, const DigParameters& dig) {
-  for (const DigParameterInfo& info : dig_parameter_table()) json[info.name] = dig.*info.field;
-}
-void from_json(const nlohmann::json& json, DigParameters& dig) {
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    json.at(info.name).get_to(dig.*info.field);
-  }
-}
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PlannedDig, parameters, start_x, payload_mass, payload_volume,
-                                   energy, duration)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryPlace, machine, soil, slope, density_percent)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryTask, place, digs, starts, expected, known)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryAnswer, feasible, dig, evaluations, measured)
@@ -97,100 +89,64 @@ DigSearchOptions warm_search(const LibrarySearch& search,
   return options;
 }
 
-/// Does the tasks of one place.
-class Site {
+/// Does the searches of one place, all with the same seed.
+class EntrySearch {
  public:
-  Site(const LibraryJob& job, const LibraryPlace& place,
-       const std::function<bool(int, double)>& progress)
-      : search_(job.search),
-        seed_(checksum(identity(job, place))),
-        machine_(job.grid.machines[place.machine]),
-        simulator_(
-            search_.simulator.make(machine_, job.grid.soils[place.soil], place.density_percent)),
-        ground_(sloped_planning_ground(machine_, place.slope, search_.cell_size)),
-        progress_(progress) {}
+  EntrySearch(const LibrarySearch& search, std::uint64_t seed, DigAttempts& attempts)
+      : search_(search), seed_(seed), attempts_(attempts) {}
 
-  LibraryAnswer answer(const LibraryTask& task) {
-    for (const PlannedDig& dig : task.digs) measure(dig);
-    if (!task.digs.empty()) return answer_;
-    if (task.known > 0.0) {
-      improve(task);
-    } else {
-      search(task);
-    }
-    return answer_;
-  }
-
-  bool stopped() const { return stopped_; }
-
- private:
-  void search(const LibraryTask& task) {
+  void first(const LibraryTask& task) {
     if (!task.starts.empty()) attempt(warm_search(search_, task.starts));
-    if (!task.starts.empty() && !answer_.feasible) {
+    if (!task.starts.empty() && !attempts_.best()) {
       std::vector<DigParameters> shallower(2, task.starts.back());
       shallower[0].penetration_length *= 0.85;
       shallower[1].penetration_length *= 0.7;
       attempt(warm_search(search_, shallower));
     }
-    if (!answer_.feasible || answer_.efficiency() < task.expected) attempt(cold_search(search_, 1));
-    if (!answer_.feasible) attempt(cold_search(search_, 8));
+    if (!attempts_.best() || attempts_.efficiency() < task.expected) {
+      attempt(cold_search(search_, 1));
+    }
+    if (!attempts_.best()) attempt(cold_search(search_, 8));
   }
 
-  /// Half the effort, and the other half where it pays.
-  void improve(const LibraryTask& task) {
-    const double least = (1.0 + clearly_more) * task.known;
+  /// Half the effort, and the other half where it pays. @return whether it did
+  bool improve(const LibraryTask& task) {
     DigSearchOptions half = warm_search(search_, task.starts);
     half.stop.evaluations /= 2;
     attempt(half);
-    answer_.feasible = answer_.efficiency() > least;
-    if (!answer_.feasible) return;
-    half.start = {answer_.dig.parameters};
+    if (attempts_.efficiency() <= (1.0 + clearly_more) * task.known) return false;
+    half.start = {attempts_.best()->parameters};
     attempt(half);
+    return true;
   }
 
-  /// Does nothing once stopped.
+ private:
   void attempt(DigSearchOptions options) {
-    if (stopped_) return;
-    int evaluations = 0;
     options.seed = seed_;
-    options.threads = 1;
-    options.progress = [&](const SearchProgress& now) {
-      tell(now.evaluations - evaluations, now.best);
-      evaluations = now.evaluations;
-      return !stopped_;
-    };
-    const auto found = search_dig(machine_, *simulator_, ground_, options);
-    if (!found || found->dig.efficiency() <= answer_.efficiency()) return;
-    answer_.feasible = true;
-    answer_.dig = found->dig;
-  }
-
-  void measure(const PlannedDig& dig) {
-    auto outcome = evaluate_dig(machine_, *simulator_, ground_, dig.parameters, dig.start_x);
-    if (const auto* failure = std::get_if<DigFailure>(&outcome);
-        failure != nullptr && std::holds_alternative<Infeasible>(*failure)) {
-      outcome = evaluate_dig(machine_, *simulator_, ground_, dig.parameters,
-                             DigSearchOptions{}.start_rule);
-    }
-    const auto* dug = std::get_if<PlannedDig>(&outcome);
-    answer_.measured.push_back(dug ? dug->efficiency() : 0.0);
-    tell(1, answer_.measured.back());
-  }
-
-  void tell(int digs, double best) {
-    answer_.evaluations += digs;
-    if (progress_ && !progress_(digs, best)) stopped_ = true;
+    attempts_.search(std::move(options));
   }
 
   const LibrarySearch& search_;
   const std::uint64_t seed_;
-  const Machine& machine_;
-  const std::unique_ptr<const SoilSimulator> simulator_;
-  const Terrain ground_;
-  const std::function<bool(int, double)>& progress_;
-  LibraryAnswer answer_;
-  bool stopped_ = false;
+  DigAttempts& attempts_;
 };
+
+LibraryAnswer answer(const LibraryJob& job, const LibraryTask& task, DigAttempts& attempts) {
+  LibraryAnswer answer;
+  EntrySearch search(job.search, checksum(identity(job, task.place)), attempts);
+  for (const PlannedDig& dig : task.digs) answer.measured.push_back(attempts.measure(dig));
+  if (task.digs.empty()) {
+    if (task.known > 0.0) {
+      answer.feasible = search.improve(task);
+    } else {
+      search.first(task);
+      answer.feasible = attempts.best().has_value();
+    }
+    if (answer.feasible) answer.dig = *attempts.best();
+  }
+  answer.evaluations = attempts.evaluations();
+  return answer;
+}
 
 }  // namespace
 
@@ -253,13 +209,18 @@ std::string to_text(const LibraryTask& task) { return nlohmann::json(task).dump(
 std::string do_task(const LibraryJob& job, const std::string& text,
                     const std::function<bool(int digs, double best)>& progress) {
   const auto task = nlohmann::json::parse(text).get<LibraryTask>();
-  Site site(job, task.place, progress);
-  const LibraryAnswer answer = site.answer(task);
-  if (site.stopped()) return {};
+  const LibraryPlace& place = task.place;
+  const Machine& machine = job.grid.machines[place.machine];
+  DigAttempts attempts(
+      machine,
+      job.search.simulator.make(machine, job.grid.soils[place.soil], place.density_percent),
+      sloped_planning_ground(machine, place.slope, job.search.cell_size), progress);
+  const LibraryAnswer found = answer(job, task, attempts);
+  if (attempts.stopped()) return {};
   return sealed_text({{"format", format},
                       {"version", 1},
-                      {"identity", identity(job, task.place)},
-                      {"answer", nlohmann::json(answer)}});
+                      {"identity", identity(job, place)},
+                      {"answer", nlohmann::json(found)}});
 }
 
 LibraryAnswer read_answer(const LibraryJob& job, const LibraryPlace& place, const std::string& name,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "optimisation/search_methods.hpp"
 

@@ -9,7 +9,7 @@
 #include <nlopt.hpp>
 
 #include <excavplan/optimisation/search.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "optimisation/search_methods.hpp"
 #include "optimisation/search_points.hpp"

@@ -28,6 +28,18 @@ PlannedDig read_dig(JsonObject& object) {
   return dig;
 }
 
+void to_json(nlohmann::json& json, const DigParameters& parameters) {
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    json[info.name] = parameters.*info.field;
+  }
+}
+
+void from_json(const nlohmann::json& json, DigParameters& parameters) {
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    json.at(info.name).get_to(parameters.*info.field);
+  }
+}
+
 // Two digs that differ by more than this fraction of a number's range may be of different kinds;
 // ours.
 static constexpr double near = 0.2;

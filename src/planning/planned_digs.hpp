@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 
 #include "base/json.hpp"
 
@@ -14,6 +14,12 @@ namespace excavplan {
 nlohmann::ordered_json dig_json(const PlannedDig& dig);
 /// Of the keys that dig_json() writes. @throws Error (bad_file)
 PlannedDig read_dig(JsonObject& object);
+
+/// Every number as it is, in SI, for texts between processes and files of a run.
+void to_json(nlohmann::json& json, const DigParameters& parameters);
+void from_json(const nlohmann::json& json, DigParameters& parameters);
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PlannedDig, parameters, start_x, payload_mass, payload_volume,
+                                   energy, duration)
 
 /// True if the two digs differ so much that they may be of different kinds, and a mix of them
 /// neither.

@@ -10,7 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "base/angles.hpp"
 #include "base/check.hpp"

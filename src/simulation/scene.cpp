@@ -10,7 +10,7 @@
 
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/machine/trajectory.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "base/angles.hpp"
 #include "base/text.hpp"

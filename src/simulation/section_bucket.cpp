@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/simulation/section_simulator.hpp>
+#include "simulation/section_simulator.hpp"
 
 #include "base/angles.hpp"
 

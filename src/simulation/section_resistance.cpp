@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/simulation/earthmoving.hpp>
+#include "simulation/earthmoving.hpp"
 
 #include "base/angles.hpp"
 

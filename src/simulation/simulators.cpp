@@ -4,7 +4,7 @@
 
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
-#include <excavplan/simulation/section_simulator.hpp>
+#include "simulation/section_simulator.hpp"
 
 namespace excavplan {
 namespace {

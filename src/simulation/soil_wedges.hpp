@@ -5,8 +5,8 @@
 #include <mutex>
 #include <optional>
 
-#include <excavplan/simulation/earthmoving.hpp>
 #include <excavplan/soil/soil.hpp>
+#include "simulation/earthmoving.hpp"
 
 namespace excavplan {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <excavplan/random.hpp>
 #include <excavplan/survey/scan_surface.hpp>
+#include "base/random.hpp"
 
 /// @file Summary of a stream of points that are not stored. Private to the library.
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include <excavplan/survey/paper_method.hpp>
+#include "survey/paper_method.hpp"
 
 #include "survey/scan_reading.hpp"
 

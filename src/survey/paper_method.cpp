@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/survey/paper_method.hpp>
+#include "survey/paper_method.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <Eigen/Dense>
 
 #include <excavplan/error.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "base/text.hpp"
 

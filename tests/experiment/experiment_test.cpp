@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/experiment/experiment.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include <gtest/gtest.h>
 

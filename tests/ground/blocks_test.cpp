@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/block_heap.hpp"
 #include "support/errors.hpp"

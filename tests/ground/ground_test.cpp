@@ -12,7 +12,7 @@
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/ground/volume_change.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 

@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <excavplan/ground/registration.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 #include "support/survey_scenes.hpp"

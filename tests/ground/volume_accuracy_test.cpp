@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/ground/bulking.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/measured_scene.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/library/path_library.hpp>
+#include <excavplan/planning/dig_search.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include <atomic>
 #include <cmath>
@@ -339,7 +341,7 @@ TEST_F(LibraryBuilding, MorePointsThanCanBeCountedAreRefused) {
   LibraryBuildOptions options = quick();
   std::get<AnchoredSearch>(options.search.method).points = 300000000;
   EXPECT_EQ(test::error_of([&] { build_path_libraries(grid({20}), options); }),
-            "library: points must be <= 1000000, got 300000000");
+            "points of a library search is 3e+08, must be at most 1000000");
 }
 
 TEST_F(LibraryBuilding, AnotherSeedGivesAnotherLibrary) {
@@ -428,7 +430,7 @@ TEST_F(LibraryBuilding, DamagedEntriesAreNamedAndComputedAnew) {
   ASSERT_EQ(notes.size(), 2U);
   for (const std::string& note : notes) {
     EXPECT_EQ(note.find(options.folder), 0U) << note;
-    EXPECT_NE(note.find("it is computed anew"), std::string::npos) << note;
+    EXPECT_NE(note.find("it is computed again"), std::string::npos) << note;
   }
 }
 

@@ -16,7 +16,7 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/machine/kinematics.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "base/angles.hpp"
 #include "support/errors.hpp"

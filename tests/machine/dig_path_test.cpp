@@ -10,7 +10,7 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "base/angles.hpp"
 #include "base/files.hpp"

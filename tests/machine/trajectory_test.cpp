@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"

@@ -19,7 +19,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/error.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "base/files.hpp"
 #include "support/errors.hpp"

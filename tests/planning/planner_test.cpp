@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/dig_search.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include <algorithm>
 #include <array>
@@ -21,7 +24,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/calibration.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
-#include <excavplan/simulation/section_simulator.hpp>
+#include "simulation/section_simulator.hpp"
 
 #include "support/errors.hpp"
 

@@ -12,9 +12,10 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
-#include <excavplan/simulation/section_simulator.hpp>
+#include "simulation/section_simulator.hpp"
 
 namespace {
 std::atomic<long> allocations{0};

@@ -10,9 +10,10 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/ground/bulking.hpp>
-#include <excavplan/planning/planner.hpp>
-#include <excavplan/random.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 

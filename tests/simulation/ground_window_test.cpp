@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/error.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 

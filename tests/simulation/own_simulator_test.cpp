@@ -15,7 +15,10 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/dig_search.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 

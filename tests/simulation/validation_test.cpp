@@ -7,10 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/planning/planner.hpp>
-#include <excavplan/random.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
 #include <excavplan/simulation/calibration.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
+#include "base/random.hpp"
 
 /// @file
 /// The built-in simulator against what others published and what must hold for any soil. The

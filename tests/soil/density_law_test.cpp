@@ -13,9 +13,9 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/random.hpp>
 #include <excavplan/simulation/calibration.hpp>
 #include <excavplan/soil/soil.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 

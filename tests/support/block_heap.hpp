@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <excavplan/ground/height_map.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 /// @file
 /// Heaps for tests whose solids are known: blocks dropped one by one, which roll down to where they

@@ -13,7 +13,7 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 /// @file
 /// Functions to try optimisers on, with known maxima. For tests and benchmarks.

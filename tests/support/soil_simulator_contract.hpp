@@ -15,9 +15,10 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
 #include <excavplan/machine/dig_path.hpp>
-#include <excavplan/planning/planner.hpp>
-#include <excavplan/random.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
+#include "base/random.hpp"
 
 /// @file
 /// What every SoilSimulator must satisfy. To check your own, in a test of yours:

@@ -15,7 +15,7 @@
 #include <Eigen/Geometry>
 
 #include <excavplan/ground/height_map.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "base/angles.hpp"
 

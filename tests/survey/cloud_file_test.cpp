@@ -21,8 +21,8 @@
 #include <Eigen/Geometry>
 
 #include <excavplan/error.hpp>
-#include <excavplan/random.hpp>
 #include <excavplan/survey/cloud.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 

@@ -20,7 +20,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include <excavplan/error.hpp>
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"

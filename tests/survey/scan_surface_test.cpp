@@ -18,7 +18,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"

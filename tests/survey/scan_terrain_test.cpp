@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/errors.hpp"
 

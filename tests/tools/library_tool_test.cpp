@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/random.hpp>
+#include "base/random.hpp"
 
 #include "support/run_program.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/library/plan_dig.hpp>
+#include <excavplan/plan/plan_dig.hpp>
 
 /// @file
 /// A plan as JSON and as text lines, and the density it is made for from an estimate's JSON.

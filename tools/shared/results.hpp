@@ -9,7 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/ground/volume_change.hpp>
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
 #include <excavplan/simulation/scene.hpp>
 
 #include "planning/planned_digs.hpp"  // dig_json()

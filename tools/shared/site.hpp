@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <excavplan/error.hpp>
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 namespace excavplan::tools {
 

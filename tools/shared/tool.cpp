@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include <excavplan/data_files.hpp>
-#include <excavplan/library/plan_dig.hpp>
+#include <excavplan/plan/plan_dig.hpp>
 
 #include "base/json.hpp"
 

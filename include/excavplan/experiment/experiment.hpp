@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/library/plan_dig.hpp>
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>

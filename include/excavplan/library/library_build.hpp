@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <excavplan/library/path_library.hpp>
+#include <excavplan/optimisation/search_settings.hpp>
 
 /// @file
 /// Builds path libraries, on one core or many (docs/methods.md#library).
@@ -74,7 +75,7 @@ struct LibraryBuildOptions {
   std::string folder;
   /// After every dig, batch of digs and entry, one call at a time, from any thread; false stops.
   std::function<bool(const LibraryProgress&)> progress;
-  /// For people: a file in the folder that is not what it should be, and is computed anew. Never
+  /// For people: a file in the folder that is not what it should be, and is computed again. Never
   /// called at once with itself or `progress`, from any thread.
   std::function<void(const std::string&)> note;
 };

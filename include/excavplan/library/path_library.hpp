@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/planning/planner.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/simulators.hpp>
 #include <excavplan/soil/soil.hpp>
 

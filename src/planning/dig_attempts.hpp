@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include <excavplan/planning/dig_search.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/simulation/soil_simulator.hpp>
+
+/// @file
+/// Several searches and single digs on the same ground. Private to the project.
+
+namespace excavplan {
+
+/// Keeps the best dig of all searches, and counts all digs.
+class DigAttempts {
+ public:
+  /// Called after every dig and batch of digs with how many were made and the last efficiency told
+  /// of [kg/J]; false stops.
+  using Progress = std::function<bool(int digs, double best)>;
+
+  /// @param machine, progress  must outlive it
+  DigAttempts(const Machine& machine, std::unique_ptr<const SoilSimulator> simulator,
+              Terrain ground, const Progress& progress);
+
+  /// Searches on one thread. Does nothing once stopped.
+  void search(DigSearchOptions options);
+
+  /// Digs once, from the dig's own start or, where that cannot be driven, from that of a search.
+  /// @return efficiency, 0 if it cannot be dug [kg/J]
+  double measure(const PlannedDig& dig);
+
+  const std::optional<PlannedDig>& best() const { return best_; }
+  double efficiency() const { return best_ ? best_->efficiency() : 0.0; }
+  int evaluations() const { return evaluations_; }
+  bool stopped() const { return stopped_; }
+
+ private:
+  void tell(int digs, double best);
+
+  const Machine& machine_;
+  const std::unique_ptr<const SoilSimulator> simulator_;
+  const Terrain ground_;
+  const Progress& progress_;
+  std::optional<PlannedDig> best_;
+  int evaluations_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace excavplan
