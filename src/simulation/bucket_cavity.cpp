@@ -21,18 +21,6 @@ Vector2d turned(const Vector2d& v, double angle) {
           v.x() * std::sin(angle) + v.y() * std::cos(angle)};
 }
 
-Vector2d centroid_of(const std::vector<Vector2d>& polygon) {
-  Vector2d sum = Vector2d::Zero();
-  double area = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector2d& a = polygon[i];
-    const Vector2d& b = polygon[(i + 1) % polygon.size()];
-    area += cross(a, b);
-    sum += cross(a, b) * (a + b);
-  }
-  return sum / (3.0 * area);
-}
-
 }  // namespace
 
 /// Extent of the cavity above one x. Its mouth may be the upper or the lower bound.
@@ -55,7 +43,6 @@ void Cavity::turn_to(double phi3) {
     x_min_ = std::min(x_min_, corners_[i].x());
     x_max_ = std::max(x_max_, corners_[i].x());
   }
-  centroid_ = centroid_of(corners_);
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     const Vector2d& a = corners_[i];
     const Vector2d& b = corners_[(i + 1) % corners_.size()];
@@ -64,45 +51,63 @@ void Cavity::turn_to(double phi3) {
   }
 }
 
-double Cavity::capacity(double support, const HoldingSlopes& slopes) const {
-  const double width = bucket_.width_inside;
-  const double flank = 0.5 * slopes.heap * width;  // height at which the slopes of both sides meet
-  const Vector2d& top = corners_.back();
+/// Sum of an area per width over the slices that are open to soil from above or from the lip, times
+/// the width [m^3].
+template <typename OfSlice>
+double Cavity::over_slices(const OfSlice& of_slice) const {
   constexpr int slices = 64;
-  double area = 0.0;
+  double height = 0.0;
   for (int i = 0; i < slices; ++i) {
     const double x = x_min_ + (i + 0.5) / slices * (x_max_ - x_min_);
     const Slice slice = at(x);
-    if (!(slice.high > slice.low) || slice.open_below) continue;
+    if (slice.high > slice.low && !slice.open_below) height += of_slice(x, slice);
+  }
+  return height * (x_max_ - x_min_) / slices * bucket_.width_inside;
+}
+
+double Cavity::capacity(double support, const HoldingSlopes& slopes) const {
+  // Height at which the slopes of both sides meet.
+  const double flank = 0.5 * slopes.heap * bucket_.width_inside;
+  const Vector2d& top = corners_.back();
+  return over_slices([&](double x, const Slice& slice) {
     double surface = std::max(0.0, support) + slopes.face * std::max(0.0, x);
-    if (!slice.open_above) {
-      area += std::clamp(surface - slice.low, 0.0, slice.high - slice.low);
-      continue;
-    }
+    if (!slice.open_above) return std::clamp(surface - slice.low, 0.0, slice.high - slice.low);
     // The walls of the cut hold the soil beside the plates up to the level of the ground; behind
     // the top edge the cut is open.
     const double side = support > 0.0 ? std::max(slice.high, support) : slice.high;
     surface = std::min(surface, top.y() + slopes.heap * std::max(0.0, top.x() - x));
     const double heap = std::max(0.0, surface - side);
     const double mean_heap = heap < flank ? heap - 0.5 * heap * heap / flank : 0.5 * flank;
-    area += std::max(0.0, std::min(surface, side) - slice.low) + mean_heap;
-  }
-  return area * (x_max_ - x_min_) / slices * width;
+    return std::max(0.0, std::min(surface, side) - slice.low) + mean_heap;
+  });
 }
 
-double Cavity::packed_front(double volume) const {
-  const std::vector<Vector2d>& profile = bucket_.profile;
-  const Vector2d floor = profile[1] - profile[0];
-  double area = volume / bucket_.width_inside;
+double Cavity::pushed_in(double support, double slope) const {
+  return over_slices([&](double x, const Slice& slice) {
+    const double height = support - slope * std::max(0.0, x) - slice.low;
+    return slice.open_above ? std::max(0.0, height)
+                            : std::clamp(height, 0.0, slice.high - slice.low);
+  });
+}
+
+Cavity::Packed Cavity::packed(double volume) const {
+  const Vector2d& floor = corners_[1];
+  double left = volume / bucket_.width_inside;
   Vector2d front = floor;
-  for (std::size_t i = 1; i + 1 < profile.size() && area > 0.0; ++i) {
-    const Vector2d a = profile[i] - profile[0];
-    const Vector2d b = profile[i + 1] - profile[0];
+  Vector2d moment = Vector2d::Zero();
+  double filled = 0.0;
+  for (std::size_t i = 1; i + 1 < corners_.size() && left > 0.0; ++i) {
+    const Vector2d& a = corners_[i];
+    const Vector2d& b = corners_[i + 1];
     const double sector = 0.5 * cross(a, b);
-    front = a + std::min(1.0, area / sector) * (b - a);
-    area -= sector;
+    const double share = std::min(1.0, left / sector);
+    front = a + share * (b - a);
+    moment += share * sector * (a + front) / 3.0;
+    filled += share * sector;
+    left -= sector;
   }
-  return std::atan2(cross(floor, front), floor.dot(front));
+  return {std::atan2(cross(floor, front), floor.dot(front)),
+          filled > 0.0 ? Vector2d(moment / filled) : Vector2d::Zero()};
 }
 
 Cavity::Slice Cavity::at(double x) const {

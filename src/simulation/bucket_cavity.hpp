@@ -21,14 +21,20 @@ class Cavity {
   /// As bucket_capacity(), in the attitude it was turned to [m^3].
   double capacity(double support, const HoldingSlopes& slopes) const;
 
-  /// Angle from the floor to the front of `volume` packed into the corner of floor and back: the
-  /// line through the lip with that much behind it [rad].
-  double packed_front(double volume) const;
+  /// How much soil that is pushed in over the lip lies in the cavity: its surface falls inwards by
+  /// `slope` from `support` above the lip [m^3].
+  double pushed_in(double support, double slope) const;
+
+  /// Soil packed into the corner of floor and back, up to a line through the lip.
+  struct Packed {
+    double front = 0.0;        ///< angle from the floor to that line [rad]
+    Eigen::Vector2d centroid;  ///< in the attitude it was turned to, from the lip [m]
+  };
+  Packed packed(double volume) const;
 
   /// Corner i of the profile, in the attitude it was turned to [m].
   const Eigen::Vector2d& corner(std::size_t i) const { return corners_[i]; }
   std::size_t corners() const { return corners_.size(); }
-  const Eigen::Vector2d& centroid() const { return centroid_; }
 
  private:
   struct Slice;
@@ -40,11 +46,12 @@ class Cavity {
     double slope = 0.0;
   };
   Slice at(double x) const;
+  template <typename OfSlice>
+  double over_slices(const OfSlice& of_slice) const;
 
   const Bucket& bucket_;
   std::vector<Eigen::Vector2d> corners_;
   std::vector<Side> sides_;  ///< from corner to corner; the last is the mouth
-  Eigen::Vector2d centroid_ = Eigen::Vector2d::Zero();
   double x_min_ = 0.0;
   double x_max_ = 0.0;
 };

@@ -60,19 +60,31 @@ HeightMapModel::HeightMapModel(Machine machine_, SoilKind soil_, double density_
       wedges(soil, bank) {
   const double mouth = (machine.bucket.profile.back() - machine.bucket.profile.front()).norm();
   slopes.heap = std::tan(soil.angle_of_repose);
-  slopes.face = std::tan(stable_slope(dug_state(soil), mouth, soil.angle_of_repose));
+  const SoilState dug = dug_state(soil);
+  slopes.face = std::tan(stable_slope(dug, mouth, soil.angle_of_repose));
+  // Soil that stands upright to the height of the mouth is pushed in as a level layer; what its
+  // cohesion does not hold falls at the angle of repose.
+  slopes.pushed = slopes.heap * (1.0 - std::min(1.0, critical_height(dug) / mouth));
 }
 
 // ---- Forces -------------------------------------------------------------------------------------
 
 struct BucketResistance::Attitude {
-  double floor;         ///< angle of the floor [rad]
-  double climb;         ///< angle of the motion above the horizontal [rad]
-  double packed_front;  ///< angle from the floor to the front of the soil in the bucket [rad]
+  double floor;  ///< angle of the floor [rad]
+  double climb;  ///< angle of the motion above the horizontal [rad]
 };
 
-/// The plane on which the wedge ahead slides up: the bucket's floor, or the front of the soil that
-/// is packed on it (secondary separation plate; Blouin, Hemami and Lipsett 2001).
+/// The soil in the bucket.
+struct BucketResistance::Fill {
+  double weight = 0.0;         ///< [N]
+  double wall_friction = 0.0;  ///< of both side plates, if it slides along them [N]
+  double front = 0.0;  ///< angle from the floor to its front, packed into floor and back [rad]
+  double rise = 0.0;   ///< of its centre above the lip [m]
+};
+
+/// The plane on which the wedge ahead slides up: the bucket's floor, on which it pushes what is in
+/// the bucket before it, or the front of that soil, packed and at rest (secondary separation plate;
+/// Blouin, Hemami and Lipsett 2001).
 struct BucketResistance::SlidingFace {
   double angle = 0.0;  ///< in the boom plane [rad]
   double rake = 0.0;   ///< against the motion [rad]
@@ -117,10 +129,20 @@ Resistance BucketResistance::at(const Stretch& s, const Cavity& cavity, double f
     r = drive_in(tip, col, floor, motion);
   } else {
     const double climb = std::atan2(motion.y(), -motion.x());
-    r = push_wedge(tip, col, {floor, climb, cavity.packed_front(fill)}, motion);
+    r = push_wedge(tip, col, {floor, climb}, fill_in(cavity, fill), motion);
   }
   press_heel(s, cavity, r);
   return r;
+}
+
+BucketResistance::Fill BucketResistance::fill_in(const Cavity& cavity, double volume) const {
+  const SoilState& loose = model_.loose;
+  const Cavity::Packed packed = cavity.packed(volume);
+  const double section = volume / model_.machine.bucket.width_inside;
+  const double depth = section / floor_length();
+  return {volume * loose.unit_weight,
+          2.0 * section * at_rest_pressure(loose, depth) * std::tan(loose.tool_friction_angle),
+          packed.front, packed.centroid.y()};
 }
 
 /// Lip and teeth against the cone index, friction on both sides of the floor and of the side
@@ -136,8 +158,8 @@ Resistance BucketResistance::drive_in(const Vector2d& tip, Index col, double flo
   const double buried = std::min(driven, floor_length());
   const double plates =
       2.0 * buried * model_.machine.bucket.width_outside + 4.0 * side_plate_area(depth, floor);
-  const double front = cone_index(model_.soil, soil, depth) * penetrating_area(driven, soil);
-  r.lip_force = -motion * (front + plate_friction(soil, depth) * plates);
+  r.edge = cone_index(model_.soil, soil, depth) * penetrating_area(driven, depth, soil);
+  r.lip_force = -motion * (r.edge + plate_friction(soil, depth) * plates);
   r.face_point = tip;
   return r;
 }
@@ -145,28 +167,29 @@ Resistance BucketResistance::drive_in(const Vector2d& tip, Index col, double flo
 /// Earthmoving equation per strip of the edge: the wedge slides up the floor, or up the soil packed
 /// on it if that is easier.
 Resistance BucketResistance::push_wedge(const Vector2d& tip, Index col, const Attitude& attitude,
-                                        const Vector2d& motion) const {
+                                        const Fill& fill, const Vector2d& motion) const {
   const double edge = model_.machine.bucket.edge_angle;
   const double turn = std::clamp(attitude.climb, 0.0, 0.5 * pi);
   const auto face_at = [&](double angle, bool packed) {
     return SlidingFace{angle, std::max({angle, angle + attitude.climb, edge}), packed};
   };
   SlidingFace face = face_at(attitude.floor, false);
-  FaceForce force = slide(face, tip, col, turn);
-  if (attitude.packed_front > 0.0) {
-    const SlidingFace packed = face_at(attitude.floor + attitude.packed_front, true);
-    if (const FaceForce other = slide(packed, tip, col, turn); other.along < force.along) {
+  FaceForce force = slide(face, tip, col, turn, fill);
+  if (fill.front > 0.0) {
+    const SlidingFace packed = face_at(attitude.floor + fill.front, true);
+    if (const FaceForce other = slide(packed, tip, col, turn, fill); other.along < force.along) {
       face = packed;
       force = other;
     }
   }
   const SoilState soil = mean_soil_at(col);
   const double depth = force.depth;
-  const double along =
-      force.along + edge_force(depth, attitude.climb, soil) +
-      2.0 * side_plate_area(depth, std::max(attitude.floor, edge)) * plate_friction(soil, depth);
   const Vector2d up(-motion.y(), motion.x());  // left of the motion, which is towards -x: down
   Resistance r;
+  r.edge = edge_force(depth, attitude.climb, soil);
+  r.lip_force = -motion * r.edge;
+  const double along = force.along + 2.0 * side_plate_area(depth, std::max(attitude.floor, edge)) *
+                                         plate_friction(soil, depth);
   r.face_force = -motion * along + up * force.across;
   const double lever = std::min(depth / (3.0 * std::sin(face.rake)), floor_length());
   r.face_point = tip + lever * Vector2d(std::cos(face.angle), std::sin(face.angle));
@@ -197,12 +220,14 @@ struct BucketResistance::FaceTerms {
 };
 
 BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Vector2d& tip,
-                                                    Index col, double turn) const {
+                                                    Index col, double turn,
+                                                    const Fill& fill) const {
   const double slope = surface_slope(col);
   // Where the bucket rises it pushes no wedge: the passive force decreases with the cosine of the
   // climb, and the bucket shears off the soil above it instead.
   const double fade = std::cos(turn);
   FaceForce force;
+  double on_face = 0.0;  // weight of the part of the wedge that lies over the face
   const auto push = [&](double passive, double adhesion, const FaceTerms& t) {
     force.along += fade * (passive * t.sin_face + adhesion * t.cot_rake);
     force.across += fade * (passive * t.cos_face - adhesion);
@@ -226,8 +251,11 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
         surcharge * loose * t.n.gamma;
     push(width * passive, width * t.adhesion * strip.bank, t);
     const double shear = t.soil.cohesion + at_rest_pressure(t.soil, strip.bank) * t.tan_friction;
-    force.along += width * (1.0 - fade) * strip.bank * shear;
-    force.borne_weight += width * 0.5 * t.soil.unit_weight * strip.bank * strip.bank * t.cot_rake;
+    // What is not pushed up is sheared off and lifted to where it lies in the bucket.
+    const double lifted = t.soil.unit_weight * strip.bank + model_.loose.unit_weight * strip.loose;
+    const double lift = std::max(0.0, fill.rise - 0.5 * (strip.bank + strip.loose));
+    force.along += width * (1.0 - fade) * (strip.bank * shear + lifted * lift);
+    on_face += width * 0.5 * t.soil.unit_weight * strip.bank * strip.bank * t.cot_rake;
     force.depth += width * strip.bank;
   }
   force.depth /= model_.machine.bucket.width_outside;
@@ -238,6 +266,13 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
     const double sides = side_plane_force(wedge, mean.n, strength, force.depth);
     push(sides * side_plane_share(wedge, mean.n), 0.0, mean);
   }
+  if (face.packed) return force;
+  // The soil in the bucket slides with the wedge: together they are in equilibrium between the face
+  // and the failure plane. What lies over the face is part of it.
+  const double pushed = std::max(0.0, fill.weight - on_face);
+  const double wall = fill.wall_friction * std::sin(mean.n.rake);
+  push(pushed * mean.n.Q + wall * mean.n.ca, wall, mean);
+  force.borne_weight = fade * (on_face + pushed);
   return force;
 }
 
@@ -342,14 +377,16 @@ double BucketResistance::surface_slope(Index col) const {
 /// Area of lip or teeth that meets soil which cannot yield, `driven` along the floor. The lip
 /// between teeth follows in soil that they have broken. The cone index holds the friction on its
 /// cone; teeth are other wedges.
-double BucketResistance::penetrating_area(double driven, const SoilState& soil) const {
+double BucketResistance::penetrating_area(double driven, double depth,
+                                          const SoilState& soil) const {
   const Bucket& bucket = model_.machine.bucket;
-  if (!bucket.teeth) return bucket.edge_thickness * bucket.width_outside;
+  if (!bucket.teeth) return std::min(bucket.edge_thickness, depth) * bucket.width_outside;
   const Teeth& teeth = *bucket.teeth;
   const double friction = std::tan(soil.tool_friction_angle);
   const double wedge =
       (1.0 + friction / std::tan(0.5 * teeth.angle)) / (1.0 + friction / std::tan(cone_half_angle));
-  return std::min(1.0, driven / teeth.length) * wedge * teeth.count * teeth.width * teeth.thickness;
+  return std::min(1.0, driven / teeth.length) * wedge * teeth.count * teeth.width *
+         std::min(teeth.thickness, depth);
 }
 
 /// Blunt lip in soil that yields towards the surface (Balovnev 1983, thin edge); the part of a
@@ -359,14 +396,15 @@ double BucketResistance::edge_force(double depth, double climb, const SoilState&
   const Bucket& bucket = model_.machine.bucket;
   const double phi = soil.friction_angle;
   const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
-  const double pressure = 0.5 * bucket.edge_thickness * soil.unit_weight +
-                          soil.cohesion / std::tan(phi) + depth * soil.unit_weight * active;
+  const double thickness = std::min(bucket.edge_thickness, depth);
+  const double pressure = 0.5 * thickness * soil.unit_weight + soil.cohesion / std::tan(phi) +
+                          depth * soil.unit_weight * active;
   const double yielding = pressure * blunt_edge_ratio(0.5 * pi, phi, soil.tool_friction_angle) *
-                          bucket.edge_thickness * bucket.width_outside;
+                          thickness * bucket.width_outside;
   const double plunge = std::max(0.0, -std::sin(climb));
-  const double driving =
-      plunge > 0.0 ? cone_index(model_.soil, soil, depth) * penetrating_area(floor_length(), soil)
-                   : 0.0;
+  const double driving = plunge > 0.0 ? cone_index(model_.soil, soil, depth) *
+                                            penetrating_area(floor_length(), depth, soil)
+                                      : 0.0;
   return (1.0 - plunge) * yielding + plunge * driving;
 }
 

@@ -50,7 +50,8 @@ struct Resistance {
   Eigen::Vector2d lip_force = Eigen::Vector2d::Zero();
   Eigen::Vector2d heel_force = Eigen::Vector2d::Zero();
   Eigen::Vector2d heel_point = Eigen::Vector2d::Zero();
-  double borne_weight = 0.0;  ///< of the soil on the face, which the payload must not count again
+  double borne_weight = 0.0;  ///< of the soil that the wedge carries; the bucket carries the rest
+  double edge = 0.0;          ///< part of lip_force that is of lip and teeth, against the motion
 
   Eigen::Vector2d total() const { return face_force + lip_force + heel_force; }
 };
@@ -73,17 +74,19 @@ class BucketResistance {
 
  private:
   struct Attitude;
+  struct Fill;
   struct SlidingFace;
   struct FaceForce;
   struct FaceTerms;
   struct Strip;
 
+  Fill fill_in(const Cavity& cavity, double volume) const;
   Resistance drive_in(const Eigen::Vector2d& tip, Eigen::Index col, double floor,
                       const Eigen::Vector2d& motion) const;
   Resistance push_wedge(const Eigen::Vector2d& tip, Eigen::Index col, const Attitude& attitude,
-                        const Eigen::Vector2d& motion) const;
+                        const Fill& fill, const Eigen::Vector2d& motion) const;
   FaceForce slide(const SlidingFace& face, const Eigen::Vector2d& tip, Eigen::Index col,
-                  double turn) const;
+                  double turn, const Fill& fill) const;
   void press_heel(const Stretch& stretch, const Cavity& cavity, Resistance& resistance) const;
   double swept_to(double x, std::size_t& pose) const;
   double uncut_between(double x) const;
@@ -93,7 +96,7 @@ class BucketResistance {
                         const FaceTerms& terms) const;
   SoilState mean_soil_at(Eigen::Index col) const;
   double surface_slope(Eigen::Index col) const;
-  double penetrating_area(double driven, const SoilState& soil) const;
+  double penetrating_area(double driven, double depth, const SoilState& soil) const;
   double edge_force(double depth, double climb, const SoilState& soil) const;
   double side_plate_area(double depth, double floor) const;
 

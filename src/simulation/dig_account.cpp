@@ -85,6 +85,7 @@ void DigAccount::book(const DigStep& step) {
     energy.by_joint[static_cast<std::size_t>(j)] += work;
     energy.by_phase[static_cast<std::size_t>(phase)] += work;
     energy.soil += step.by_soil(j) * step.turn(j);
+    energy.edge += step.by_edge(j) * step.turn(j);
     energy.payload += step.by_payload(j) * step.turn(j);
     energy.links += step.by_links(j) * step.turn(j);
   }

@@ -34,6 +34,7 @@ struct DigStep {
   JointAngles joints = JointAngles::Zero();      ///< half-way [rad]
   JointAngles turn = JointAngles::Zero();        ///< [rad]
   JointAngles by_soil = JointAngles::Zero();     ///< [N m]
+  JointAngles by_edge = JointAngles::Zero();     ///< of by_soil: lip and teeth [N m]
   JointAngles by_payload = JointAngles::Zero();  ///< [N m]
   JointAngles by_links = JointAngles::Zero();    ///< [N m]
 

@@ -97,9 +97,14 @@ class Dig {
     if (account_.result.stall) return;
     account_.travel(s.length);
     if (!digs) return;
+    const double before = fill_;
     cut(s);
     const Index ahead = swath_.column(s.to.x() - ground_.cell_size());
-    overflow(s.to.x(), std::max(0.0, resistance_.surface_at(ahead) - s.to.y()), model_.slopes);
+    const double support = std::max(0.0, resistance_.surface_at(ahead) - s.to.y());
+    // What is pushed in rises at the lip and falls to both sides: no more gets in than lies inwards
+    // of it. What is in stays as long as the bucket can hold it.
+    const double pushed_in = std::max(before, cavity_.pushed_in(support, model_.slopes.pushed));
+    spill(s.to.x(), fill_ - std::min(pushed_in, cavity_.capacity(support, model_.slopes)));
     ground_.set_wall(under_bucket(s.to));
     // While the bucket stands in the cut it holds the walls.
     moving_ = slump(ground_, moving_, {model_.slopes.heap, true}, sweeps_);
@@ -178,9 +183,8 @@ class Dig {
     passed_.include(column);
   }
 
-  /// What the bucket cannot hold falls off the lip.
-  void overflow(double lip_x, double support, const HoldingSlopes& slopes) {
-    const double excess = fill_ - cavity_.capacity(support, slopes);
+  /// What does not get into the bucket, or falls out of it, comes to lie ahead of the lip.
+  void spill(double lip_x, double excess) {
     if (!(excess > 0.0)) return;
     const double area = ground_.cell_size() * ground_.cell_size();
     const Index last = swath_.column(lip_x - 1e-9);
@@ -220,8 +224,11 @@ class Dig {
         torque_against_force(machine, s.at, resistance.face_point, resistance.face_force) +
         torque_against_force(machine, s.at, s.at.tip, resistance.lip_force) +
         torque_against_force(machine, s.at, resistance.heel_point, resistance.heel_force);
-    step.by_payload =
-        torque_against_force(machine, s.at, s.at.tip + cavity_.centroid(), {0.0, -payload_weight});
+    step.by_edge = torque_against_force(
+        machine, s.at, s.at.tip,
+        s.length > 0.0 ? Vector2d(-resistance.edge * s.direction()) : Vector2d::Zero());
+    step.by_payload = torque_against_force(machine, s.at, s.at.tip + cavity_.packed(fill_).centroid,
+                                           {0.0, -payload_weight});
     step.by_links = torque_against_link_weight(machine, s.at);
     if (s.phase != DigPhase::lift) account_.note_force(step, resistance.total(), fill_);
     account_.stalls(step);
@@ -247,7 +254,7 @@ class Dig {
   /// any more.
   void come_clear(const DigPose& last) {
     const HoldingSlopes slopes = turn_clear(last);
-    overflow(last.bucket.x, 0.0, slopes);
+    spill(last.bucket.x, fill_ - cavity_.capacity(0.0, slopes));
     moving_.include(passed_);
     ground_.set_wall({});
     ground_.wake(ground_.widened(moving_, 1));

@@ -56,16 +56,14 @@ double heap_over_mouth(double length, double from, double to, double width, doub
 }  // namespace
 
 void BucketSection::turn_to(double phi3) {
-  const double c = std::cos(phi3);
-  const double s = std::sin(phi3);
+  turn_ = Eigen::Rotation2Dd(phi3);
   corners_.clear();
   for (const Vector2d& corner : bucket_.profile) {
-    const Vector2d p = corner - bucket_.profile.front();
-    corners_.emplace_back(c * p.x() - s * p.y(), s * p.x() + c * p.y());
+    corners_.push_back(turned(corner - bucket_.profile.front()));
   }
 }
 
-AreaCentre BucketSection::held(double support, const HoldingSlopes& slopes) {
+double BucketSection::held(double support, const HoldingSlopes& slopes) {
   const Vector2d top = corners_.back();
   const Below face = {support, slopes.face};
   const Below rear = {top.y() + slopes.heap * top.x(), -slopes.heap};
@@ -73,10 +71,21 @@ AreaCentre BucketSection::held(double support, const HoldingSlopes& slopes) {
   clip(polygon_, face, scratch_);
   // Soil runs over the top edge only where that is lower than the lip by more than the slope.
   if (top.x() > 0.0 && rear.height < 0.0) clip(polygon_, rear, scratch_);
-  AreaCentre result = area_centre(polygon_);
-  result.area *= bucket_.width_inside;
-  if (top.x() > 0.0) result.area += heaped(top, face, rear, slopes.heap);
-  return result;
+  const double inside = area_centre(polygon_).area * bucket_.width_inside;
+  return top.x() > 0.0 ? inside + heaped(top, face, rear, slopes.heap) : inside;
+}
+
+double BucketSection::pushed_in(double support, double slope) {
+  const Vector2d top = corners_.back();
+  polygon_ = corners_;
+  clip(polygon_, {support, -slope}, scratch_);
+  double area = area_centre(polygon_).area;
+  if (top.x() > 0.0) {
+    const double fall = slope + top.y() / top.x();  // of the surface towards the mouth
+    const double end = fall * top.x() > support ? support / fall : top.x();
+    area += end * (support - 0.5 * fall * end);
+  }
+  return area * bucket_.width_inside;
 }
 
 AreaCentre BucketSection::buried(const Below& ground) {
@@ -107,25 +116,29 @@ PackedFront::PackedFront(const Bucket& bucket) {
   mouth_ = std::remainder(direction(bucket.profile.size() - 1) - floor, 2.0 * pi);
   BucketSection section(bucket);
   for (int i = 0; i <= steps; ++i) {
-    section.turn_to(-floor - mouth_ * i / steps);  // the front is level
-    volume_.push_back(section.buried({}).area * bucket.width_inside);
+    const double turn = floor + mouth_ * i / steps;
+    section.turn_to(-turn);  // the front is level
+    const AreaCentre soil = section.buried({});
+    volume_.push_back(soil.area * bucket.width_inside);
+    centre_.emplace_back(Eigen::Rotation2Dd(turn) * soil.centre);
   }
 }
 
-double PackedFront::angle(double volume) const {
+PackedFront::Fill PackedFront::of(double volume) const {
   const auto above = std::upper_bound(volume_.begin(), volume_.end(), volume);
-  if (above == volume_.begin()) return 0.0;
-  if (above == volume_.end()) return mouth_;
-  const double below = *(above - 1);
-  const auto whole = static_cast<double>(above - 1 - volume_.begin());
-  return mouth_ * (whole + (volume - below) / (*above - below)) / steps;
+  if (above == volume_.begin()) return {0.0, centre_.front()};
+  if (above == volume_.end()) return {mouth_, centre_.back()};
+  const auto i = static_cast<std::size_t>(above - 1 - volume_.begin());
+  const double share = (volume - volume_[i]) / (volume_[i + 1] - volume_[i]);
+  return {mouth_ * (static_cast<double>(i) + share) / steps,
+          centre_[i] + share * (centre_[i + 1] - centre_[i])};
 }
 
 double clipped_capacity(const Machine& machine, double phi3, double support,
                         const HoldingSlopes& slopes) {
   BucketSection section(machine.bucket);
   section.turn_to(phi3);
-  return section.held(support, slopes).area;
+  return section.held(support, slopes);
 }
 
 }  // namespace excavplan

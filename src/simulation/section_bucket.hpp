@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -36,10 +36,16 @@ class BucketSection {
 
   void turn_to(double phi3);
 
-  /// Volume held, and the centre of the part between the side plates.
-  AreaCentre held(double support, const HoldingSlopes& slopes);
+  /// Volume of the soil held.
+  double held(double support, const HoldingSlopes& slopes);
+
+  /// Volume of soil that is pushed in over the lip, up to `support` above it and falling inwards
+  /// by `slope`; the walls of the cut hold what stands above the side plates.
+  double pushed_in(double support, double slope);
 
   const Eigen::Vector2d& corner(std::size_t i) const { return corners_[i]; }
+  /// A vector with the line from pin to tip along x, as the bucket is turned.
+  Eigen::Vector2d turned(const Eigen::Vector2d& v) const { return turn_ * v; }
 
   /// The part of the side plates below a line of this height and slope.
   AreaCentre buried(const Below& ground);
@@ -49,23 +55,28 @@ class BucketSection {
                 double slope) const;
 
   const Bucket& bucket_;
+  Eigen::Rotation2Dd turn_{0.0};
   Polygon corners_;
   Polygon polygon_;
   Polygon scratch_;
 };
 
-/// The front of the soil that has packed into the corner of floor and back.
+/// The soil that has packed into the corner of floor and back.
 class PackedFront {
  public:
   explicit PackedFront(const Bucket& bucket);
 
-  /// Angle at the lip from the floor to the front of this volume [rad].
-  double angle(double volume) const;
+  struct Fill {
+    double front = 0.0;      ///< angle at the lip from the floor to the front [rad]
+    Eigen::Vector2d centre;  ///< of its area, from the lip; the line from pin to tip along x
+  };
+  Fill of(double volume) const;
 
  private:
   static constexpr int steps = 64;
   double mouth_ = 0.0;
   std::vector<double> volume_;
+  std::vector<Eigen::Vector2d> centre_;
 };
 
 }  // namespace excavplan

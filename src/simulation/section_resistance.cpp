@@ -77,10 +77,11 @@ class SoilResistance {
     const double driven = depth / std::max(1e-3, sine - ground.slope * cosine);
     const double floor = std::min(floor_length_, driven) * bucket_.width_outside;
     const AreaCentre plate = bucket.buried(ground);
-    const double force = cone_index(model_.kind, soil, depth) * penetrating(soil, driven) +
-                         2.0 * friction(soil, 0.5 * depth) * floor +
+    const double edge = cone_index(model_.kind, soil, depth) * penetrating(soil, driven, depth);
+    const double force = edge + 2.0 * friction(soil, 0.5 * depth) * floor +
                          4.0 * friction(soil, depth - plate.centre.y()) * plate.area;
     result.tip = -force * cut.motion;
+    result.edge = -edge * cut.motion;
   }
 
   /// A wedge of soil slides up ahead of the face that makes it easier.
@@ -95,9 +96,10 @@ class SoilResistance {
     const double climb = std::asin(std::clamp(cut.motion.y(), -1.0, 1.0));
     const double frame = std::max(alpha, climb);
     SlidingFace on = {cut.tip.floor_angle, false};
-    Face face = pushed(ahead, on, frame);
-    const double front = cut.tip.floor_angle + model_.packed.angle(cut.contents);
-    if (const Face other = pushed(ahead, {front, true}, frame);
+    Face face = pushed(ahead, on, frame, cut.contents);
+    const PackedFront::Fill fill = model_.packed.of(cut.contents);
+    const double front = cut.tip.floor_angle + fill.front;
+    if (const Face other = pushed(ahead, {front, true}, frame, cut.contents);
         cut.contents > 0.0 && other.along < face.along) {
       on = {front, true};
       face = other;
@@ -108,8 +110,10 @@ class SoilResistance {
     result.face = fade * (face.along * along - face.down * normal);
     result.face.y() -= (1.0 - fade) * sheared_off(ahead.soil, ahead.depth, face.surcharge);
     result.face -= side_friction(cut, bucket) * cut.motion;
+    result.face -= (1.0 - fade) * lift(ahead, bucket.turned(fill.centre).y()) * cut.motion;
     const double descent = std::max(0.0, -cut.motion.y());
-    result.tip = -lip(ahead.soil, ahead.depth, face.surcharge, descent) * cut.motion;
+    result.edge = -lip(ahead.soil, ahead.depth, face.surcharge, descent) * cut.motion;
+    result.tip = result.edge;
     const double up_face = std::min(ahead.depth / 3.0, floor_length_ * std::sin(face.rake));
     result.face_at +=
         up_face / std::sin(face.rake) * Vector2d(std::cos(on.angle), std::sin(on.angle));
@@ -124,7 +128,9 @@ class SoilResistance {
     return soil;
   }
 
-  Face pushed(const Ahead& ahead, const SlidingFace& on, double frame) const {
+  /// A wedge on the floor pushes the soil in the bucket before it; both are one body between the
+  /// floor and the failure plane.
+  Face pushed(const Ahead& ahead, const SlidingFace& on, double frame, double contents) const {
     const SoilState& soil = ahead.soil;
     const double width = bucket_.width_outside;
     const double delta = on.on_soil ? soil.friction_angle : soil.tool_friction_angle;
@@ -141,15 +147,37 @@ class SoilResistance {
     const double flat = soil.unit_weight * t * t * n.gamma + soil.cohesion * t * n.c +
                         face.surcharge * (t * n.q + pile * n.gamma) + stuck * t * n.ca;
     const SoilStrength strength = {soil.unit_weight, soil.cohesion, soil.adhesion};
-    const double force = flat * width + side_plane_force(wedge, n, strength, t) *
-                                            std::max(0.0, side_plane_share(wedge, n));
-    const double adhesion = stuck * t * width;
+    double force = flat * width + side_plane_force(wedge, n, strength, t) *
+                                      std::max(0.0, side_plane_share(wedge, n));
+    double adhesion = stuck * t * width;
     const double cot_rake = 1.0 / std::tan(rake);
+    if (!on.on_soil) {
+      const double on_face = 0.5 * t * std::min(t * cot_rake, floor_length_) * width *
+                             soil.unit_weight / model_.loose.unit_weight;
+      const double behind = std::max(0.0, contents - std::max(0.0, on_face));
+      const double walls = wall_friction(contents) * std::sin(rake);
+      force += behind * model_.loose.unit_weight * n.Q + walls * n.ca;
+      adhesion += walls;
+      face.on_floor = std::max(0.0, on_face) + behind;
+    }
     face.along = force * std::sin(rake + delta) + adhesion * cot_rake;
     face.down = force * std::cos(rake + delta) - adhesion;
-    const double on_face = 0.5 * t * std::min(t * cot_rake, floor_length_);
-    face.on_floor = std::max(0.0, on_face) * width * soil.unit_weight / model_.loose.unit_weight;
     return face;
+  }
+
+  /// Of the side plates on the soil in the bucket as it slides in, as deep as it would lie on the
+  /// floor alone [N].
+  double wall_friction(double contents) const {
+    const double section = contents / bucket_.width_inside;
+    return 2.0 * section * friction(model_.loose, 0.5 * section / floor_length_);
+  }
+
+  /// Weight of the soil that is sheared off per travel, times its rise into the bucket [N].
+  double lift(const Ahead& ahead, double centre) const {
+    const double weight =
+        ahead.soil.unit_weight * ahead.depth + model_.loose.unit_weight * ahead.loose;
+    return weight * std::max(0.0, centre - 0.5 * (ahead.depth + ahead.loose)) *
+           bucket_.width_outside;
   }
 
   /// Near the rake at which no wedge can slide, a dead wedge forms on the face: clamped as in
@@ -188,14 +216,14 @@ class SoilResistance {
   double lip(const SoilState& soil, double depth, double surcharge, double descent) const {
     const double phi = soil.friction_angle;
     const double active = (1.0 - std::sin(phi)) / (1.0 + std::sin(phi));
-    const double pressure = 0.5 * soil.unit_weight * bucket_.edge_thickness +
-                            soil.cohesion / std::tan(phi) + surcharge +
-                            soil.unit_weight * depth * active;
+    const double thickness = std::min(bucket_.edge_thickness, depth);
+    const double pressure = 0.5 * soil.unit_weight * thickness + soil.cohesion / std::tan(phi) +
+                            surcharge + soil.unit_weight * depth * active;
     const double yielding = blunt_edge_ratio(0.5 * pi, phi, soil.tool_friction_angle) * pressure *
-                            bucket_.edge_thickness * bucket_.width_outside;
+                            thickness * bucket_.width_outside;
     if (!(descent > 0.0)) return yielding;
     const double held = cone_index(model_.kind, soil, depth) *
-                        penetrating(soil, std::numeric_limits<double>::infinity());
+                        penetrating(soil, std::numeric_limits<double>::infinity(), depth);
     return (1.0 - descent) * yielding + descent * held;
   }
 
@@ -203,13 +231,14 @@ class SoilResistance {
   /// at the root as at the point; the lip behind follows in soil that they have broken. The
   /// resistance of a cone is mostly friction on its flanks; it is larger on the flatter flanks of a
   /// tooth.
-  double penetrating(const SoilState& soil, double driven) const {
-    if (!bucket_.teeth) return bucket_.width_outside * bucket_.edge_thickness;
+  double penetrating(const SoilState& soil, double driven, double depth) const {
+    if (!bucket_.teeth) return bucket_.width_outside * std::min(bucket_.edge_thickness, depth);
     const Teeth& teeth = *bucket_.teeth;
     const auto flanks = [&](double half_angle) {
       return 1.0 + std::tan(soil.tool_friction_angle) / std::tan(half_angle);
     };
-    const double wedged = teeth.width * teeth.thickness * std::min(1.0, driven / teeth.length);
+    const double wedged =
+        teeth.width * std::min(teeth.thickness, depth) * std::min(1.0, driven / teeth.length);
     return teeth.count * wedged * flanks(0.5 * teeth.angle) / flanks(cone_half_angle);
   }
 
@@ -316,6 +345,7 @@ SectionModel::SectionModel(Machine machine_, SoilKind kind_, double density_perc
   const double mouth = (machine.bucket.profile.back() - machine.bucket.profile.front()).norm();
   slopes.heap = std::tan(kind.angle_of_repose);
   slopes.face = std::tan(stable_slope(dug, mouth, kind.angle_of_repose));
+  slopes.pushed = std::max(0.0, 1.0 - critical_height(dug) / mouth) * slopes.heap;
 }
 
 SectionResistance section_resistance(const SectionModel& model, const SoilSection& section,

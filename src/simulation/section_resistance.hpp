@@ -35,6 +35,7 @@ struct SectionResistance {
   Eigen::Vector2d face_at = Eigen::Vector2d::Zero();
   Eigen::Vector2d tip = Eigen::Vector2d::Zero();
   Eigen::Vector2d tip_at = Eigen::Vector2d::Zero();
+  Eigen::Vector2d edge = Eigen::Vector2d::Zero();  ///< part of `tip` that is of lip and teeth
   Eigen::Vector2d heel = Eigen::Vector2d::Zero();
   Eigen::Vector2d heel_at = Eigen::Vector2d::Zero();
   double on_floor = 0.0;  ///< volume of payload whose weight is in the force already [m^3]

@@ -105,7 +105,8 @@ class SectionDig {
     step.by_soil = torque_against_force(machine_, at, soil.face_at, soil.face) +
                    torque_against_force(machine_, at, soil.tip_at, soil.tip) +
                    torque_against_force(machine_, at, soil.heel_at, soil.heel);
-    step.by_payload = carry(at, std::max(0.0, contents_ - soil.on_floor));
+    step.by_edge = torque_against_force(machine_, at, soil.tip_at, soil.edge);
+    step.by_payload = carry(at, soil.on_floor);
     step.by_links = torque_against_link_weight(machine_, at);
     account_.note_force(step, soil.total(), contents_);
     if (account_.stalls(step)) return false;
@@ -129,9 +130,11 @@ class SectionDig {
     return section_resistance(model_, section_, cutting, bucket_, phase);
   }
 
-  JointAngles carry(const LinkPositions& at, double volume) {
-    const Vector2d centre = at.tip + bucket_.held(0.0, model_.slopes).centre;
-    return torque_against_force(machine_, at, centre, {0.0, -volume * model_.loose.unit_weight});
+  /// The soil in the bucket but for the volume that the wedge carries.
+  JointAngles carry(const LinkPositions& at, double on_wedge = 0.0) {
+    const double weight = std::max(0.0, contents_ - on_wedge) * model_.loose.unit_weight;
+    const Vector2d centre = at.tip + bucket_.turned(model_.packed.of(contents_).centre);
+    return torque_against_force(machine_, at, centre, {0.0, -weight});
   }
 
   void cut(const Vector2d& p, const Vector2d& q) {
@@ -142,12 +145,14 @@ class SectionDig {
     const double from_pile = pile_.take(p.x() - q.x(), lip, falls);
     account_.result.soil.bank_cut += area.bank * width();
     account_.result.soil.loose_cut += (area.loose + from_pile) * width();
-    contents_ += (area.swollen + from_pile) * width();
     const double support = std::max(0.0, pile_.height(falls) - lip);
-    const double holds = bucket_.held(support, model_.slopes).area;
-    if (contents_ > holds) {
-      pile_.area += (contents_ - holds) / width();
-      contents_ = holds;
+    const double room =
+        std::min(std::max(contents_, bucket_.pushed_in(support, model_.slopes.pushed)),
+                 bucket_.held(support, model_.slopes));
+    contents_ += (area.swollen + from_pile) * width();
+    if (contents_ > room) {
+      pile_.area += (contents_ - room) / width();
+      contents_ = room;
     }
     pile_at_ = q.x();
     const double shed = section_.shed(pile_at_, pile_.height(falls), falls, repose_);
@@ -160,7 +165,7 @@ class SectionDig {
     DigStep step;
     step.phase = DigPhase::lift;
     step.turn = to.joints - from.joints;
-    step.by_payload = carry(at, contents_);
+    step.by_payload = carry(at);
     step.by_links = torque_against_link_weight(machine_, at);
     account_.book(step);
     bucket_.turn_to(link_positions(machine_, to.joints).phi3);
@@ -168,7 +173,7 @@ class SectionDig {
     const double support = ground.surface - to.bucket.z;
     const HoldingSlopes clear = {model_.slopes.heap, model_.slopes.heap};
     const double holds =
-        support > 0.0 ? bucket_.held(support, model_.slopes).area : bucket_.held(0.0, clear).area;
+        support > 0.0 ? bucket_.held(support, model_.slopes) : bucket_.held(0.0, clear);
     if (contents_ <= holds) return;
     const double lost = (contents_ - holds) / width();
     dropped_ += lost;

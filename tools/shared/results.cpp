@@ -17,18 +17,20 @@ namespace {
 
 nlohmann::ordered_json energy_json(const EnergyLedger& energy) {
   const auto kj = [](double joule) { return joule / 1000.0; };
-  return {
-      {"by_phase_kj",
-       {{"penetrate", kj(energy.by_phase[0])},
-        {"drag", kj(energy.by_phase[1])},
-        {"scoop", kj(energy.by_phase[2])}}},
-      {"by_joint_kj",
-       {{"boom", kj(energy.by_joint[0])},
-        {"arm", kj(energy.by_joint[1])},
-        {"bucket", kj(energy.by_joint[2])}}},
-      {"by_cause_kj",
-       {{"soil", kj(energy.soil)}, {"payload", kj(energy.payload)}, {"links", kj(energy.links)}}},
-      {"lift_kj", kj(energy.lift)}};
+  return {{"by_phase_kj",
+           {{"penetrate", kj(energy.by_phase[0])},
+            {"drag", kj(energy.by_phase[1])},
+            {"scoop", kj(energy.by_phase[2])}}},
+          {"by_joint_kj",
+           {{"boom", kj(energy.by_joint[0])},
+            {"arm", kj(energy.by_joint[1])},
+            {"bucket", kj(energy.by_joint[2])}}},
+          {"by_cause_kj",
+           {{"soil", kj(energy.soil)},
+            {"edge", kj(energy.edge)},
+            {"payload", kj(energy.payload)},
+            {"links", kj(energy.links)}}},
+          {"lift_kj", kj(energy.lift)}};
 }
 
 nlohmann::ordered_json soil_json(const SoilLedger& soil) {
@@ -120,8 +122,9 @@ std::vector<std::string> scene_lines(const Machine& machine, const DigScene& sce
   std::vector<std::string> lines =
       dig_lines({scene.path.parameters, scene.path.start_x, dig.payload_mass, dig.payload_volume,
                  dig.energy.total, scene.duration});
-  const std::string shares = "  of which   soil " + kilo(dig.energy.soil) + ", payload " +
-                             kilo(dig.energy.payload) + ", links " + kilo(dig.energy.links) + " kJ";
+  const std::string shares = "  of which   soil " + kilo(dig.energy.soil) + " (lip and teeth " +
+                             kilo(dig.energy.edge) + "), payload " + kilo(dig.energy.payload) +
+                             ", links " + kilo(dig.energy.links) + " kJ";
   lines.insert(lines.begin() + 3, shares);  // below the energy
   lines.push_back("peak force   " + kilo(dig.peak_force) + " kN");
   for (std::string& line : load_lines(machine, joint_loads(machine, dig.history))) {

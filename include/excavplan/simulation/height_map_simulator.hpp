@@ -15,6 +15,8 @@ namespace excavplan {
 struct HoldingSlopes {
   double face = 0.0;  ///< of the face above the lip while the bucket digs
   double heap = 0.0;  ///< of the heap above top edge and side plates
+  /// Of the surface that falls inwards from the lip while soil is pushed in.
+  double pushed = 0.0;
 };
 
 /// Volume of loose soil that the bucket can hold [m^3], with the line from its pin to its tip at
@@ -29,7 +31,7 @@ double stable_slope(const SoilState& soil, double height, double least);
 
 /// Rises with every change of the simulator that affects the result of a dig. What was computed
 /// with another version, such as a path library, is refused.
-inline constexpr int height_map_simulator_version = 1;
+inline constexpr int height_map_simulator_version = 2;
 
 struct HeightMapModel;
 

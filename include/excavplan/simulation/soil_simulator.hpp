@@ -21,6 +21,7 @@ struct EnergyLedger {
   std::array<double, 3> by_phase{};  ///< penetrate, drag, scoop
   std::array<double, 3> by_joint{};  ///< boom, arm, bucket
   double soil = 0.0;                 ///< part of the total against the resistance of the soil
+  double edge = 0.0;                 ///< of `soil`: against lip and teeth
   double payload = 0.0;              ///< part against the weight of the soil carried
   double links = 0.0;  ///< part against the weight of the links: the rest of the total
   double lift = 0.0;   ///< of the lift clear of the ground, not part of the total
