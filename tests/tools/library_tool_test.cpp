@@ -83,8 +83,13 @@ TEST_F(LibraryTool, UsesOnlyEntriesOfTheSameSearch) {
   const std::string cells = folder_.file("cells");
   const Words other = {"--seed", "2", "--cells", cells, "--out", folder_.file("other.json")};
   EXPECT_EQ(build(grid + other).code, 0);
-  EXPECT_EQ(build(grid + Words{"--cells", cells, "--out", out_}).code, 0);
+  const auto others = std::distance(fs::directory_iterator(cells), fs::directory_iterator());
+  const ProgramResult own = build(grid + Words{"--cells", cells, "--out", out_});
+  EXPECT_EQ(own.code, 0);
+  EXPECT_EQ(own.err,
+            cells + ": " + std::to_string(others) + " entries of other options are not used\n");
   EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_EQ(build(grid + other).err, own.err) << "as many are of this search";
   EXPECT_NE(content_of(folder_.file("other.json")), whole_);
 }
 
