@@ -18,8 +18,8 @@ namespace excavplan {
 class TaskQueue {
  public:
   struct Task {
-    std::vector<std::size_t> after;                ///< numbers of the tasks it waits for
-    std::function<std::string()> text;             ///< called when they are done; empty: nothing to do
+    std::vector<std::size_t> after;     ///< numbers of the tasks it waits for
+    std::function<std::string()> text;  ///< called when they are done; empty: nothing to do
     std::function<void(const std::string&)> take;  ///< the result
   };
   /// Returns the result of a task; empty: stop all.
