@@ -95,8 +95,10 @@ std::string read_file(const std::string& path) {
 void make_folder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (fs::is_directory(path, error)) return;
-  throw Error(ErrorKind::bad_file, path + ": is not a folder and cannot be made");
+  std::error_code unknown;
+  if (fs::is_directory(path, unknown)) return;
+  throw Error(ErrorKind::bad_file, path + ": is not a folder and cannot be made" +
+                                       (error ? ": " + error.message() : ""));
 }
 
 std::string file_name_part(const std::string& name) {
