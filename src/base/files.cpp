@@ -97,8 +97,8 @@ void make_folder(const std::string& path) {
   fs::create_directories(path, error);
   std::error_code unknown;
   if (fs::is_directory(path, unknown)) return;
-  throw Error(ErrorKind::bad_file, path + ": is not a folder and cannot be made" +
-                                       (error ? ": " + error.message() : ""));
+  throw Error(ErrorKind::bad_file, path + ": " + (error ? error.message() + "; it " : "") +
+                                       "is not a folder and cannot be made");
 }
 
 std::string file_name_part(const std::string& name) {
