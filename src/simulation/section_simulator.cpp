@@ -88,7 +88,7 @@ class SectionDig {
     return std::max(0.25 * repose_, repose_ - ground.gradient);
   }
 
-  /// False if a joint stalls.
+  /// False if the machine stalls.
   bool dig_step(const DigPose& from, const DigPose& to) {
     const JointAngles joints = 0.5 * (from.joints + to.joints);
     const LinkPositions at = link_positions(machine_, joints);
@@ -105,7 +105,9 @@ class SectionDig {
     step.by_soil = torque_against_force(machine_, at, soil.face_at, soil.face) +
                    torque_against_force(machine_, at, soil.tip_at, soil.tip) +
                    torque_against_force(machine_, at, soil.heel_at, soil.heel);
-    step.by_payload = carry(at, std::max(0.0, contents_ - soil.on_floor));
+    const double carried = std::max(0.0, contents_ - soil.on_floor);
+    step.by_payload = carry(at, carried);
+    step.force = soil.total() - Vector2d(0.0, carried * model_.loose.unit_weight);
     step.by_links = torque_against_link_weight(machine_, at);
     account_.note_force(step, soil.total(), contents_);
     if (account_.stalls(step)) return false;

@@ -8,6 +8,7 @@
 
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/bucket_resistance.hpp"
+#include "support/machine_file.hpp"
 #include "support/soil_simulator_contract.hpp"
 
 namespace excavplan {
@@ -49,7 +50,7 @@ class Simulator : public testing::Test {
         .dig(ground, std::get<DigPath>(path), options);
   }
 
-  const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  const Machine machine_ = test::zx120_held_down();
 };
 
 TEST_F(Simulator, CutsExactlyWhatTheTipSweeps) {
