@@ -241,6 +241,47 @@ void read_cylinders(JsonObject file, Machine& machine) {
   file.done();
 }
 
+Body read_body(JsonObject file, double track_front) {
+  Body body;
+  body.mass = positive(file, "mass_kg", 1e6);
+  const std::vector<double> centre = file.numbers("center_m", 2);
+  body.centre = {centre[0], centre[1]};
+  if (!(centre[1] > 0.0 && centre[1] <= longest)) {
+    file.fail("center_m", "has its z at " + number_text(centre[1]) +
+                              ", must be above 0 and at most " + number_text(longest));
+  }
+  body.rear_edge = file.number("rear_edge_m", -longest, longest);
+  body.front_edge = file.number("front_edge_m", -longest, track_front);
+  if (!(body.rear_edge < centre[0] && centre[0] < body.front_edge)) {
+    file.fail("center_m", "has its x at " + number_text(centre[0]) +
+                              ", must lie between rear_edge_m = " + number_text(body.rear_edge) +
+                              " and front_edge_m = " + number_text(body.front_edge));
+  }
+  body.track_friction = positive(file, "track_friction", 2.0);
+  file.ignore("sources");
+  file.done();
+  return body;
+}
+
+Swing read_swing(JsonObject file) {
+  Swing swing;
+  swing.speed = positive(file, "speed_rad_per_s", 100.0);
+  swing.torque = positive(file, "torque_n_m", 1e9);
+  swing.inertia = positive(file, "inertia_kg_m2", 1e9);
+  file.ignore("sources");
+  file.done();
+  return swing;
+}
+
+Engine read_engine(JsonObject file) {
+  Engine engine;
+  engine.power = positive(file, "power_w", 1e8);
+  engine.idle_power = file.number("idle_power_w", 0.0, 1e8);
+  file.ignore("sources");
+  file.done();
+  return engine;
+}
+
 }  // namespace
 
 const char* name(Joint joint) {
@@ -275,6 +316,9 @@ Machine load_machine(const std::string& path) {
   }
   machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length);
   if (file.has("cylinders")) read_cylinders(file.object("cylinders"), machine);
+  if (file.has("body")) machine.body = read_body(file.object("body"), machine.track_front);
+  if (file.has("swing")) machine.swing = read_swing(file.object("swing"));
+  if (file.has("engine")) machine.engine = read_engine(file.object("engine"));
   for (JsonObject* object : {&joints, &links, &file}) {
     object->ignore("sources");
     object->done();

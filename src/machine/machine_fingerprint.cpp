@@ -49,6 +49,17 @@ void add_hydraulics(const Machine& machine, Numbers& numbers) {
   }
 }
 
+void add_body_and_drive(const Machine& machine, Numbers& numbers) {
+  numbers << (machine.body ? 1.0 : 0.0) << (machine.swing ? 1.0 : 0.0)
+          << (machine.engine ? 1.0 : 0.0);
+  if (const auto& body = machine.body) {
+    numbers << body->mass << body->centre << body->rear_edge << body->front_edge
+            << body->track_friction;
+  }
+  if (const auto& swing = machine.swing) numbers << swing->speed << swing->torque << swing->inertia;
+  if (const auto& engine = machine.engine) numbers << engine->power << engine->idle_power;
+}
+
 }  // namespace
 
 std::string fingerprint(const Machine& machine) {
@@ -61,6 +72,7 @@ std::string fingerprint(const Machine& machine) {
   for (const LinkMass& link : machine.links) numbers << link.mass << link.along << link.across;
   add_bucket(machine.bucket, numbers);
   add_hydraulics(machine, numbers);
+  add_body_and_drive(machine, numbers);
   return numbers.digest();
 }
 

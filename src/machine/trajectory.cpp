@@ -23,8 +23,10 @@ constexpr double longest_reach = 0.02;
 constexpr int steps_a_side = 4;
 constexpr double room_share = 0.4;      // of a phase that the rounding of one corner may take
 constexpr double sharpest_turn = -0.5;  // cosine of the turn beyond which the machine stops
+constexpr double at_rest = 1e-9;  // a joint with a smaller share of the motion moves by rounding
 
-void check(const DigPath& path, const TrajectoryOptions& options) {
+void check(const DigPath& path, const TrajectoryOptions& options,
+           const std::vector<JointAngles>& torques) {
   require(options.speed_fraction > 0.0 && options.speed_fraction <= 1.0,
           "TrajectoryOptions::speed_fraction", options.speed_fraction, "above 0 and at most 1");
   require(options.corner_tolerance >= 0.0 && options.corner_tolerance <= largest_tolerance,
@@ -43,6 +45,15 @@ void check(const DigPath& path, const TrajectoryOptions& options) {
   };
   check_finite(path.approach, "approach");
   check_finite(path.poses, "dig path");
+  if (torques.size() >= path.poses.size()) {
+    throw Error(ErrorKind::bad_input, "there are " + std::to_string(torques.size()) +
+                                          " torques between " + std::to_string(path.poses.size()) +
+                                          " poses, must be fewer");
+  }
+  for (std::size_t i = 0; i < torques.size(); ++i) {
+    if (torques[i].allFinite()) continue;
+    throw Error(ErrorKind::bad_input, "torque " + std::to_string(i) + " is not finite");
+  }
 }
 
 // ---- geometry of the trajectory -----------------------------------------------------------------
@@ -55,21 +66,25 @@ TrajectoryPoint point_at(const DigPose& pose) {
   return point;
 }
 
+/// A pose and the torques of the joints on the way to it [N m].
+struct LoadedPose : DigPose {
+  JointAngles torque = JointAngles::Zero();
+};
+
 /// The poses of approach and dig with motion. A pose between two phases belongs to the earlier one.
-std::vector<DigPose> moving_poses(const DigPath& path) {
-  std::vector<DigPose> poses;
+std::vector<LoadedPose> moving_poses(const DigPath& path, const std::vector<JointAngles>& torques) {
+  std::vector<LoadedPose> poses;
   poses.reserve(path.approach.size() + path.poses.size());
-  const auto add = [&](const DigPose& pose) {
+  const auto add = [&](const DigPose& pose, const JointAngles& torque) {
     if (poses.empty() || (pose.joints - poses.back().joints).norm() > standstill) {
-      poses.push_back(pose);
+      poses.push_back({pose, torque});
     }
   };
-  for (const DigPose& pose : path.approach) add(pose);
-  for (const DigPose& pose : path.poses) {
-    add(pose);
-    if (&pose == &path.poses.front() && !path.approach.empty()) {
-      poses.back().phase = path.approach.back().phase;
-    }
+  for (const DigPose& pose : path.approach) add(pose, JointAngles::Zero());
+  add(path.poses.front(), JointAngles::Zero());
+  if (!path.approach.empty()) poses.back().phase = path.approach.back().phase;
+  for (std::size_t i = 1; i < path.poses.size(); ++i) {
+    add(path.poses[i], i <= torques.size() ? torques[i - 1] : JointAngles::Zero());
   }
   if (poses.size() > 1) poses.front().phase = poses[1].phase;
   return poses;
@@ -100,8 +115,9 @@ struct Corner {
 /// path by at most turn · reach / 4, and whose curvature is turn / (2 reach).
 class Route {
  public:
-  Route(const Machine& machine, const DigPath& path, double tolerance)
-      : machine_(machine), poses_(moving_poses(path)) {
+  Route(const Machine& machine, const DigPath& path, const std::vector<JointAngles>& torques,
+        double tolerance)
+      : machine_(machine), poses_(moving_poses(path, torques)) {
     along_.reserve(poses_.size());
     along_.push_back(0.0);
     for (std::size_t i = 1; i < poses_.size(); ++i) {
@@ -112,6 +128,8 @@ class Route {
   }
 
   std::vector<TrajectoryPoint> take_points() { return std::move(points_); }
+  /// Of the joints on the way to each point [N m].
+  const std::vector<JointAngles>& torques() const { return torques_; }
   /// Points where the machine rests: the first, the last, and those it stops at between.
   const std::vector<std::size_t>& stops() const { return stops_; }
 
@@ -123,14 +141,19 @@ class Route {
   void add_rounding(const Corner& corner);
   void add_faster_point(double slow_begin, DigPhase phase);
   void end_slow_place(double along);
+  std::size_t pose_after(double along) const;
   JointAngles joints_at(double along) const;
-  void add_point(DigPhase phase, const JointAngles& joints);
+  void add_pose(std::size_t pose);
+  void add_point(DigPhase phase, const JointAngles& joints, double along);
+  void add_torque(double along);
 
   const Machine& machine_;
-  std::vector<DigPose> poses_;
+  std::vector<LoadedPose> poses_;
   std::vector<double> along_;  // of each pose [rad]
   std::vector<Corner> corners_;
   std::vector<TrajectoryPoint> points_;
+  std::vector<JointAngles> torques_;
+  double torques_end_ = 0.0;  // along the path [rad]
   std::vector<std::size_t> stops_;
   std::size_t slow_points_ = 0;  // up to the end of the last slow place: a stop or a rounding
   double slow_end_ = 0.0;        // where it ends along the path [rad]
@@ -161,12 +184,14 @@ void Route::find_corners(double tolerance) {
 
 void Route::lay_out() {
   constexpr double spacing = 1.25;  // no pose is kept nearer than this to the corner [reach]
-  points_.reserve(poses_.size() + (2 * steps_a_side + 1) * corners_.size() + 1);
+  const std::size_t most = poses_.size() + (2 * steps_a_side + 1) * corners_.size() + 1;
+  points_.reserve(most);
+  torques_.reserve(most);
   stop_at(0);
   std::size_t i = 1;
   for (const Corner& corner : corners_) {
     while (i < corner.pose && along_[i] < corner.along - spacing * corner.reach) {
-      points_.push_back(point_at(poses_[i++]));
+      add_pose(i++);
     }
     if (corner.reach > 0.0) {
       add_rounding(corner);
@@ -176,14 +201,14 @@ void Route::lay_out() {
     i = corner.pose + 1;
     while (along_[i] < corner.along + spacing * corner.reach) ++i;
   }
-  while (i + 1 < poses_.size()) points_.push_back(point_at(poses_[i++]));
+  while (i + 1 < poses_.size()) add_pose(i++);
   if (i < poses_.size()) stop_at(i);
 }
 
 void Route::stop_at(std::size_t pose) {
   add_faster_point(along_[pose], poses_[pose].phase);
   stops_.push_back(points_.size());
-  points_.push_back(point_at(poses_[pose]));
+  add_pose(pose);
   end_slow_place(along_[pose]);
 }
 
@@ -192,8 +217,9 @@ void Route::add_rounding(const Corner& corner) {
   for (int step = -steps_a_side; step <= steps_a_side; ++step) {
     const double share = static_cast<double>(step) / steps_a_side;
     const double off_path = 0.25 * corner.reach * (1.0 - std::abs(share)) * (1.0 - std::abs(share));
+    const double along = corner.along + share * corner.reach;
     add_point(poses_[share > 0.0 ? corner.pose + 1 : corner.pose].phase,
-              joints_at(corner.along + share * corner.reach) + off_path * corner.turn);
+              joints_at(along) + off_path * corner.turn, along);
   }
   end_slow_place(corner.along + corner.reach);
 }
@@ -202,7 +228,8 @@ void Route::add_rounding(const Corner& corner) {
 /// the other would be driven as slowly as they are.
 void Route::add_faster_point(double slow_begin, DigPhase phase) {
   if (points_.empty() || points_.size() > slow_points_) return;
-  add_point(phase, joints_at(0.5 * (slow_end_ + slow_begin)));
+  const double along = 0.5 * (slow_end_ + slow_begin);
+  add_point(phase, joints_at(along), along);
 }
 
 void Route::end_slow_place(double along) {
@@ -210,20 +237,38 @@ void Route::end_slow_place(double along) {
   slow_end_ = along;
 }
 
-/// Of the path, between its poses.
-JointAngles Route::joints_at(double along) const {
+/// The pose at the end of the stretch that holds this place.
+std::size_t Route::pose_after(double along) const {
   const auto end = std::lower_bound(along_.begin() + 1, along_.end() - 1, along);
-  const double part = (along - end[-1]) / (end[0] - end[-1]);
-  const DigPose* to = poses_.data() + (end - along_.begin());
-  return to[-1].joints + part * (to->joints - to[-1].joints);
+  return static_cast<std::size_t>(end - along_.begin());
 }
 
-void Route::add_point(DigPhase phase, const JointAngles& joints) {
+/// Of the path, between its poses.
+JointAngles Route::joints_at(double along) const {
+  const std::size_t to = pose_after(along);
+  const double part = (along - along_[to - 1]) / (along_[to] - along_[to - 1]);
+  return poses_[to - 1].joints + part * (poses_[to].joints - poses_[to - 1].joints);
+}
+
+void Route::add_pose(std::size_t pose) {
+  points_.push_back(point_at(poses_[pose]));
+  add_torque(along_[pose]);
+}
+
+void Route::add_point(DigPhase phase, const JointAngles& joints, double along) {
   DigPose pose;
   pose.phase = phase;
   pose.joints = joints;
   pose.bucket = forward_kinematics(machine_, joints);
   points_.push_back(point_at(pose));
+  add_torque(along);
+}
+
+/// That of the stretch in which the way from the last point to this one has its middle.
+void Route::add_torque(double along) {
+  const double middle = 0.5 * (torques_end_ + along);
+  torques_.push_back(poses_.size() > 1 ? poses_[pose_after(middle)].torque : JointAngles::Zero());
+  torques_end_ = along;
 }
 
 // ---- how fast -----------------------------------------------------------------------------------
@@ -232,6 +277,7 @@ void Route::add_point(DigPhase phase, const JointAngles& joints) {
 class Limits {
  public:
   Limits(const Machine& machine, double fraction) : states_oil_(machine.hydraulics.has_value()) {
+    if (machine.engine) per_power_ = 1.0 / (fraction * machine.engine->power);
     for (int i = 0; i < 3; ++i) {
       const auto joint = static_cast<std::size_t>(i);
       acceleration_[i] = fraction * machine.limits[joint].acceleration;
@@ -253,9 +299,30 @@ class Limits {
     return rates.cwiseAbs().cwiseProduct(per_rate_).maxCoeff();
   }
 
-  /// The same of cylinder speed and pump flow for cylinders that grow this fast; 0 if neither is
-  /// known.
-  double cylinder_load(const Eigen::Vector3d& growth) const {
+  /// The same of the power for joints that turn this fast under these torques, if the pressures
+  /// are not known.
+  double power_load(const JointAngles& torque, const JointAngles& rates) const {
+    if (states_oil_) return 0.0;
+    return per_power_ * torque.cwiseProduct(rates).cwiseMax(0.0).sum();
+  }
+
+  /// The highest pressure in the cylinders that drive, over the one at which the power is enough
+  /// for the whole flow; 0 if either is not known.
+  double pressure(const JointAngles& torque, const JointAngles& slope,
+                  const Eigen::Vector3d& levers) const {
+    if (!states_oil_) return 0.0;
+    double highest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      if (!(torque[i] * slope[i] > 0.0) || std::abs(slope[i]) < at_rest) continue;
+      const double flow = levers[i] * slope[i] < 0.0 ? per_shrinking_[i] : per_growth_[i];
+      highest = std::max(highest, std::abs(torque[i] / levers[i]) / flow);
+    }
+    return highest * per_power_;
+  }
+
+  /// The same of cylinder speed and pump flow for cylinders that grow this fast at this pressure();
+  /// 0 if neither is known.
+  double cylinder_load(const Eigen::Vector3d& growth, double pressure) const {
     if (!states_oil_) return 0.0;
     double flow = 0.0, fastest = 0.0;
     for (int i = 0; i < 3; ++i) {
@@ -263,11 +330,12 @@ class Limits {
       fastest = std::max(fastest, speed * per_piston_speed_[i]);
       flow += speed * (growth[i] < 0.0 ? per_shrinking_[i] : per_growth_[i]);
     }
-    return std::max(fastest, flow);
+    return std::max(fastest, flow * std::max(1.0, pressure));
   }
 
  private:
   bool states_oil_;
+  double per_power_ = 0.0;
   JointAngles acceleration_;
   JointAngles per_rate_;
   Eigen::Vector3d per_piston_speed_ = Eigen::Vector3d::Zero();
@@ -286,9 +354,13 @@ class Limits {
 /// of the cylinders: each segment is bounded by its levers at both ends and by its mean.
 class Pass {
  public:
-  Pass(std::vector<TrajectoryPoint>& points, const std::optional<Cylinders>& cylinders,
-       const Limits& limits)
-      : points_(points), limits_(limits), segments_(points.size()), nodes_(points.size()) {
+  Pass(std::vector<TrajectoryPoint>& points, const std::vector<JointAngles>& torques,
+       const std::optional<Cylinders>& cylinders, const Limits& limits)
+      : points_(points),
+        torques_(torques),
+        limits_(limits),
+        segments_(points.size()),
+        nodes_(points.size()) {
     if (cylinders) place_cylinders(*cylinders);
   }
 
@@ -370,13 +442,16 @@ class Pass {
   }
 
   double ceiling_of(std::size_t k) const {
-    const Segment& segment = segments_[k];
+    const JointAngles &slope = segments_[k].slope, &torque = torques_[k + 1];
+    const Eigen::Vector3d &levers = nodes_[k].levers, &next = nodes_[k + 1].levers;
     const Eigen::Vector3d mean =
-        (points_[k + 1].cylinders - points_[k].cylinders) * segment.per_length;
-    const double load =
-        std::max({limits_.load(segment.slope), limits_.cylinder_load(mean),
-                  limits_.cylinder_load(nodes_[k].levers.cwiseProduct(segment.slope)),
-                  limits_.cylinder_load(nodes_[k + 1].levers.cwiseProduct(segment.slope))});
+        (points_[k + 1].cylinders - points_[k].cylinders) * segments_[k].per_length;
+    const double pressure =
+        std::max(limits_.pressure(torque, slope, levers), limits_.pressure(torque, slope, next));
+    const double load = std::max({limits_.load(slope), limits_.power_load(torque, slope),
+                                  limits_.cylinder_load(mean, pressure),
+                                  limits_.cylinder_load(levers.cwiseProduct(slope), pressure),
+                                  limits_.cylinder_load(next.cwiseProduct(slope), pressure)});
     return 1.0 / load;
   }
 
@@ -407,6 +482,7 @@ class Pass {
   }
 
   std::vector<TrajectoryPoint>& points_;
+  const std::vector<JointAngles>& torques_;  // on the way to each point
   const Limits& limits_;
   std::vector<Segment> segments_;
   std::vector<Node> nodes_;
@@ -424,14 +500,15 @@ double Trajectory::dig_duration() const {
 }
 
 Trajectory time_dig_path(const Machine& machine, const DigPath& path,
-                         const TrajectoryOptions& options) {
-  check(path, options);
-  Route route(machine, path, options.corner_tolerance);
+                         const TrajectoryOptions& options,
+                         const std::vector<JointAngles>& torques) {
+  check(path, options, torques);
+  Route route(machine, path, torques, options.corner_tolerance);
   Trajectory trajectory;
   trajectory.machine = machine.name;
   trajectory.points = route.take_points();
   const Limits limits(machine, options.speed_fraction);
-  Pass pass(trajectory.points, machine.cylinders, limits);
+  Pass pass(trajectory.points, route.torques(), machine.cylinders, limits);
   const std::vector<std::size_t>& stops = route.stops();
   for (std::size_t i = 1; i < stops.size(); ++i) pass.run(stops[i - 1], stops[i]);
   return trajectory;

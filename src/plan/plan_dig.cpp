@@ -229,7 +229,11 @@ void add_trajectory(const Task& task, DigPlan& plan) {
   } else {
     plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
   }
-  plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory);
+  DigOptions unsettled;  // what slides afterwards loads no joint
+  unsettled.settle = false;
+  const auto simulator = task.options.simulator.make(task.machine, task.soil, task.density.percent);
+  const DigResult dig = simulator->dig(task.ground, plan.path, unsettled);
+  plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, dig.torques);
 }
 
 DigPlan plan_dig(const Task& task) {

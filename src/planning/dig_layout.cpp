@@ -122,9 +122,10 @@ std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
   unsettled.settle = false;
   const DigResult result = simulator.dig(terrain, path, unsettled);
   if (result.stall) return DigFailure(*result.stall);
-  return PlannedDig{path.parameters,     path.start_x,
-                    result.payload_mass, result.payload_volume,
-                    result.energy.total, time_dig_path(machine, path).dig_duration()};
+  return PlannedDig{
+      path.parameters,     path.start_x,
+      result.payload_mass, result.payload_volume,
+      result.energy.total, time_dig_path(machine, path, {}, result.torques).dig_duration()};
 }
 
 }  // namespace excavplan

@@ -57,7 +57,7 @@ class Fingerprint {
     } else if (const auto* stall = std::get_if<Stall>(&std::get<DigFailure>(outcome))) {
       for (const double value :
            {static_cast<double>(stall->phase), static_cast<double>(stall->joint), stall->travelled,
-            stall->torque}) {
+            stall->torque, static_cast<double>(stall->cause), stall->needed}) {
         add(value);
       }
     }
@@ -224,6 +224,7 @@ PlannedDig DigProblem::mean_dig(const DigsInEach& digs) const {
     mean.payload_mass += share * (dig->payload_mass - mean.payload_mass);
     mean.payload_volume += share * (dig->payload_volume - mean.payload_volume);
     mean.energy += share * (dig->energy - mean.energy);
+    mean.duration += share * (dig->duration - mean.duration);
   }
   return mean;
 }

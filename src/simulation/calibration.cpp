@@ -15,8 +15,9 @@
 namespace excavplan {
 namespace {
 
-/// Volumes do not depend on the torques of the machine: no soil is too hard to calibrate for.
-Machine with_unlimited_torque(Machine machine) {
+/// Volumes do not depend on what the machine can hold: no soil is too hard to calibrate for.
+Machine that_never_stalls(Machine machine) {
+  machine.body.reset();
   for (JointLimits& limits : machine.limits) {
     limits.torque = std::numeric_limits<double>::infinity();
   }
@@ -30,7 +31,7 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
   dig.simulator = options.simulator;
   const Terrain ground =
       undisturbed(flat_ground(scene_extent(machine, dig.dump_at), options.cell_size));
-  const DigScene scene = run_scene(with_unlimited_torque(machine), soil, density, ground, dig);
+  const DigScene scene = run_scene(that_never_stalls(machine), soil, density, ground, dig);
 
   DensityCalibration::Sample sample;
   sample.density_percent = density;

@@ -9,9 +9,60 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "machine/plane.hpp"
 #include "simulation/slump.hpp"
 
 namespace excavplan {
+namespace {
+
+/// More than the machine holds: as in Stall.
+struct Excess {
+  Stall::Cause cause;
+  double needed;
+  double held;
+};
+
+/// Equilibrium of the machine on its tracks; derivation: docs/methods.md#machine. Moments are
+/// counter-clockwise, so positive ones lift the front; torques of the boom are those about its pin.
+std::optional<Excess> lifted_or_dragged(const Machine& machine, const DigStep& step) {
+  if (!machine.body) return std::nullopt;
+  const Body& body = *machine.body;
+  double links = 0.0;
+  for (const LinkMass& link : machine.links) links += gravity * link.mass;
+  const double weight = gravity * body.mass;
+  const auto of_bucket = [&](double edge) {
+    const Eigen::Vector2d pin(machine.boom_pin.x() - edge, machine.boom_pin.y());
+    return step.by_soil[0] + step.by_payload[0] + cross(pin, step.force);
+  };
+  const auto of_weight = [&](double edge) {
+    return step.by_links[0] - links * (machine.boom_pin.x() - edge) -
+           weight * (body.centre.x() - edge);
+  };
+  const double on_ground = std::max(0.0, weight + links - step.force.y());
+  for (const Excess& excess :
+       {Excess{Stall::Cause::front_lifts, of_bucket(body.rear_edge), -of_weight(body.rear_edge)},
+        Excess{Stall::Cause::rear_lifts, -of_bucket(body.front_edge), of_weight(body.front_edge)},
+        Excess{Stall::Cause::slides, std::abs(step.force.x()), body.track_friction * on_ground}}) {
+    if (excess.needed > excess.held) return excess;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+const char* name(Stall::Cause cause) {
+  switch (cause) {
+    case Stall::Cause::torque:
+      return "torque";
+    case Stall::Cause::front_lifts:
+      return "front_lifts";
+    case Stall::Cause::rear_lifts:
+      return "rear_lifts";
+    case Stall::Cause::slides:
+      return "slides";
+  }
+  return "unknown cause";
+}
 
 void check_dig(const Terrain& terrain, const DigPath& path) {
   const HeightMap& map = terrain.bank;
@@ -43,6 +94,7 @@ std::string simulator_identity(const std::string& name, const Machine& machine,
 DigAccount::DigAccount(const Machine& machine, const DigPath& path, const DigOptions& options)
     : machine_(machine), path_(path), options_(options) {
   if (options.history) result.history.reserve(path.poses.size());
+  result.torques.reserve(path.poses.size());
 }
 
 void DigAccount::note_force(const DigStep& step, const Eigen::Vector2d& force, double fill) {
@@ -57,15 +109,21 @@ bool DigAccount::stalls(const DigStep& step) {
   for (int j = 0; j < 3; ++j) {
     const double highest = machine_.limits[static_cast<std::size_t>(j)].torque;
     if (!(torque(j) * step.turn(j) > 0.0) || std::abs(torque(j)) <= highest) continue;
-    result.stall = Stall{step.phase, static_cast<Joint>(j), travelled_, torque(j)};
+    result.stall = Stall{step.phase,           static_cast<Joint>(j), travelled_, torque(j),
+                         Stall::Cause::torque, std::abs(torque(j)),   highest};
     return true;
   }
-  return false;
+  if (const auto excess = lifted_or_dragged(machine_, step)) {
+    result.stall = Stall{step.phase,    Joint::boom,    travelled_,  0.0,
+                         excess->cause, excess->needed, excess->held};
+  }
+  return result.stall.has_value();
 }
 
 void DigAccount::book(const DigStep& step) {
   EnergyLedger& energy = result.energy;
   const JointAngles torque = step.torque();
+  if (!result.stall) result.torques.push_back(torque);
   const int end = result.stall ? static_cast<int>(result.stall->joint) : 3;
   for (int j = 0; j < end; ++j) {
     const double work = torque(j) * step.turn(j);

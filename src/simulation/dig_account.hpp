@@ -37,6 +37,8 @@ struct DigStep {
   JointAngles by_edge = JointAngles::Zero();     ///< of by_soil: lip and teeth [N m]
   JointAngles by_payload = JointAngles::Zero();  ///< [N m]
   JointAngles by_links = JointAngles::Zero();    ///< [N m]
+  /// Of soil and payload on the bucket (x, z) [N].
+  Eigen::Vector2d force = Eigen::Vector2d::Zero();
 
   JointAngles torque() const { return by_soil + by_payload + by_links; }
 };
@@ -50,10 +52,12 @@ class DigAccount {
   /// Force of the soil on the bucket and loose volume in it, half-way of a step.
   void note_force(const DigStep& step, const Eigen::Vector2d& force, double fill);
 
-  /// Notes a stall if a joint that drives lacks torque; one that only holds back may take more.
+  /// Notes a stall if a joint that drives lacks torque (one that only holds back may take more), or
+  /// if the step would lift or drag the machine.
   bool stalls(const DigStep& step);
 
   /// Adds the work of a step to the energy; where a joint stalls, that of the joints before it.
+  /// Notes the torques of a step that the machine makes.
   void book(const DigStep& step);
 
   /// The tip has moved on.

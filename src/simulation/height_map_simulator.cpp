@@ -230,6 +230,7 @@ class Dig {
     step.by_payload = torque_against_force(machine, s.at, s.at.tip + cavity_.packed(fill_).centroid,
                                            {0.0, -payload_weight});
     step.by_links = torque_against_link_weight(machine, s.at);
+    step.force = resistance.total() - Vector2d(0.0, payload_weight);
     if (s.phase != DigPhase::lift) account_.note_force(step, resistance.total(), fill_);
     account_.stalls(step);
     account_.book(step);

@@ -88,7 +88,7 @@ DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_
   scene.after = scene.dig.after(ground);
   scene.volumes = height_map_volumes(ground, scene.after, scene.dump_at);
   scene.bulking_factor_true = bulking_of_density(soil, density_percent);
-  scene.duration = time_dig_path(machine, scene.path).dig_duration();
+  scene.duration = time_dig_path(machine, scene.path, {}, scene.dig.torques).dig_duration();
   return scene;
 }
 

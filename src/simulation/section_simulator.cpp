@@ -88,7 +88,7 @@ class SectionDig {
     return std::max(0.25 * repose_, repose_ - ground.gradient);
   }
 
-  /// False if a joint stalls.
+  /// False if the machine stalls.
   bool dig_step(const DigPose& from, const DigPose& to) {
     const JointAngles joints = 0.5 * (from.joints + to.joints);
     const LinkPositions at = link_positions(machine_, joints);
@@ -106,7 +106,9 @@ class SectionDig {
                    torque_against_force(machine_, at, soil.tip_at, soil.tip) +
                    torque_against_force(machine_, at, soil.heel_at, soil.heel);
     step.by_edge = torque_against_force(machine_, at, soil.tip_at, soil.edge);
-    step.by_payload = carry(at, soil.on_floor);
+    const double carried = std::max(0.0, contents_ - soil.on_floor);
+    step.by_payload = carry(at, carried);
+    step.force = soil.total() - Vector2d(0.0, carried * model_.loose.unit_weight);
     step.by_links = torque_against_link_weight(machine_, at);
     account_.note_force(step, soil.total(), contents_);
     if (account_.stalls(step)) return false;
@@ -130,11 +132,10 @@ class SectionDig {
     return section_resistance(model_, section_, cutting, bucket_, phase);
   }
 
-  /// The soil in the bucket but for the volume that the wedge carries.
-  JointAngles carry(const LinkPositions& at, double on_wedge = 0.0) {
-    const double weight = std::max(0.0, contents_ - on_wedge) * model_.loose.unit_weight;
+  /// A part of the soil in the bucket, all of which lies packed into its corner.
+  JointAngles carry(const LinkPositions& at, double volume) {
     const Vector2d centre = at.tip + bucket_.turned(model_.packed.of(contents_).centre);
-    return torque_against_force(machine_, at, centre, {0.0, -weight});
+    return torque_against_force(machine_, at, centre, {0.0, -volume * model_.loose.unit_weight});
   }
 
   void cut(const Vector2d& p, const Vector2d& q) {
@@ -165,7 +166,7 @@ class SectionDig {
     DigStep step;
     step.phase = DigPhase::lift;
     step.turn = to.joints - from.joints;
-    step.by_payload = carry(at);
+    step.by_payload = carry(at, contents_);
     step.by_links = torque_against_link_weight(machine_, at);
     account_.book(step);
     bucket_.turn_to(link_positions(machine_, to.joints).phi3);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <set>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -462,6 +463,73 @@ TEST(MachineFile, NamesKeyValueAndRuleOfTeethItRefuses) {
   EXPECT_EQ(set("color", "grey"), "bucket.teeth.color: is not a key of this file");
   EXPECT_EQ(complaint_about([](json& f) { f["bucket"]["teeth"].erase("length_m"); }),
             "bucket.teeth.length_m: is missing");
+}
+
+TEST(MachineFile, MayLeaveOutBodySwingAndEngine) {
+  json file = shipped_json();
+  for (const char* key : {"body", "swing", "engine"}) file.erase(key);
+  const std::string path = testing::TempDir() + "bare_" + std::to_string(::getpid()) + ".json";
+  std::ofstream(path) << file;
+  const Machine machine = load_machine(path);
+  EXPECT_FALSE(machine.body || machine.swing || machine.engine);
+  EXPECT_NE(fingerprint(machine), fingerprint(zx120()));
+  std::remove(path.c_str());
+}
+
+TEST(MachineFile, NamesKeyValueAndRuleOfABodyItRefuses) {
+  const auto set = [](const char* pointer, const json& value) {
+    return complaint_about([&](json& f) { f["body"][json::json_pointer(pointer)] = value; });
+  };
+  const std::string edges = ", must lie between rear_edge_m = -1.44 and front_edge_m = 1.44";
+  EXPECT_EQ(set("/mass_kg", 0), "body.mass_kg: is 0, must be above 0 and at most 1e+06");
+  EXPECT_EQ(set("/center_m/1", 0),
+            "body.center_m: has its z at 0, must be above 0 and at most 100");
+  EXPECT_EQ(set("/center_m/0", 1.44), "body.center_m: has its x at 1.44" + edges);
+  EXPECT_EQ(set("/center_m/0", -1.5), "body.center_m: has its x at -1.5" + edges);
+  EXPECT_EQ(set("/rear_edge_m", 2),
+            "body.center_m: has its x at -0.58, must lie between rear_edge_m = 2 and "
+            "front_edge_m = 1.44");
+  EXPECT_EQ(set("/front_edge_m", 1.8), "no error");  // as far as the tracks
+  EXPECT_EQ(set("/front_edge_m", 1.81).rfind("body.front_edge_m: is 1.81, must be in -100", 0), 0u);
+  EXPECT_EQ(set("/track_friction", -0.6),
+            "body.track_friction: is -0.6, must be above 0 and at most 2");
+  EXPECT_EQ(set("/width_m", 2.5), "body.width_m: is not a key of this file");
+}
+
+TEST(MachineFile, NamesKeyValueAndRuleOfSwingAndEngineItRefuses) {
+  const auto set = [](const char* pointer, const json& value) {
+    return complaint_about([&](json& f) { f[json::json_pointer(pointer)] = value; });
+  };
+  EXPECT_EQ(set("/swing/speed_rad_per_s", 0),
+            "swing.speed_rad_per_s: is 0, must be above 0 and at most 100");
+  EXPECT_EQ(set("/swing/torque_n_m", -1),
+            "swing.torque_n_m: is -1, must be above 0 and at most 1e+09");
+  EXPECT_EQ(set("/swing/inertia_kg_m2", 0),
+            "swing.inertia_kg_m2: is 0, must be above 0 and at most 1e+09");
+  EXPECT_EQ(set("/engine/power_w", 0), "engine.power_w: is 0, must be above 0 and at most 1e+08");
+  EXPECT_EQ(set("/engine/idle_power_w", 0), "no error");
+  EXPECT_EQ(set("/engine/idle_power_w", -1).rfind("engine.idle_power_w: is -1, must be in 0", 0),
+            0u);
+}
+
+TEST(Machine, FingerprintDependsOnBodySwingAndEngine) {
+  const std::function<void(Machine&)> changes[] = {[](Machine& m) { m.body->mass += 1.0; },
+                                                   [](Machine& m) { m.body->centre.x() += 0.01; },
+                                                   [](Machine& m) { m.body->centre.y() += 0.01; },
+                                                   [](Machine& m) { m.body->rear_edge += 0.01; },
+                                                   [](Machine& m) { m.body->front_edge += 0.01; },
+                                                   [](Machine& m) { m.body->track_friction += 0.01; },
+                                                   [](Machine& m) { m.swing->speed += 0.01; },
+                                                   [](Machine& m) { m.swing->torque += 1.0; },
+                                                   [](Machine& m) { m.swing->inertia += 1.0; },
+                                                   [](Machine& m) { m.engine->power += 1.0; },
+                                                   [](Machine& m) { m.engine->idle_power += 1.0; }};
+  std::set<std::string> seen = {fingerprint(zx120())};
+  for (const auto& change : changes) {
+    Machine machine = zx120();
+    change(machine);
+    EXPECT_TRUE(seen.insert(fingerprint(machine)).second);
+  }
 }
 
 TEST(MachineFile, RefusesProfilesThatAreNoConvexPolygon) {

@@ -50,8 +50,13 @@ DigPath path_through(const std::vector<JointAngles>& joints) {
 
 /// Largest shares of the limits that the points use.
 struct Used {
-  double speed = 0.0, acceleration = 0.0, cylinder_speed = 0.0, flow = 0.0;
+  double speed = 0.0, acceleration = 0.0, cylinder_speed = 0.0, flow = 0.0, power = 0.0;
 };
+
+/// As many as there are stretches of the path.
+std::vector<JointAngles> throughout(const DigPath& path, const JointAngles& torque) {
+  return std::vector<JointAngles>(path.poses.size() - 1, torque);
+}
 
 /// Of joints: as differences of the points and as the stated rates, with standstill before and
 /// after.
@@ -77,21 +82,49 @@ void use_joints(const Machine& machine, const Trajectory& trajectory, Used& used
   }
 }
 
+/// Of the oil in one cylinder that grows this fast, its side that is filled [m^2].
+double area_filled(const Machine& machine, std::size_t joint, double speed) {
+  const Piston& piston = machine.hydraulics->pistons[joint];
+  const double rod = speed < 0.0 ? piston.rod_diameter : 0.0;
+  return 3.141592653589793 / 4.0 * (std::pow(piston.diameter, 2) - rod * rod);
+}
+
+double flow_of(const Machine& machine, const Eigen::Vector3d& speeds) {
+  double flow = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double speed = speeds[static_cast<int>(i)];
+    flow += (*machine.cylinders)[i].count() * area_filled(machine, i, speed) * std::abs(speed);
+  }
+  return flow;
+}
+
+/// Highest pressure of the cylinders that drive the joints by `move` against `torque` [Pa].
+double pressure_of(const Machine& machine, const JointAngles& joints, const JointAngles& move,
+                   const JointAngles& torque) {
+  double highest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(move[i]) < 1e-12 || torque[i] * move[i] <= 0.0) continue;
+    const auto joint = static_cast<std::size_t>(i);
+    const double lever = (*machine.cylinders)[joint].at(joints[i]).lever;
+    highest = std::max(highest, std::abs((*machine.cylinders)[joint].force(joints[i], torque[i])) /
+                                    area_filled(machine, joint, lever * move[i]));
+  }
+  return highest;
+}
+
 /// Of cylinders that grow this fast.
 void use_oil(const Machine& machine, const Eigen::Vector3d& speeds, Used& used) {
-  double flow = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Piston& piston = machine.hydraulics->pistons[i];
     const double speed = speeds[static_cast<int>(i)];
-    const double rod = speed < 0.0 ? piston.rod_diameter : 0.0;
-    const double area = 3.141592653589793 / 4.0 * (std::pow(piston.diameter, 2) - rod * rod);
-    flow += (*machine.cylinders)[i].count() * area * std::abs(speed);
     used.cylinder_speed = std::max(used.cylinder_speed, std::abs(speed) / piston.speed);
   }
-  used.flow = std::max(used.flow, flow / machine.hydraulics->pump_flow);
+  used.flow = std::max(used.flow, flow_of(machine, speeds) / machine.hydraulics->pump_flow);
 }
 
-Used used_of(const Machine& machine, const Trajectory& trajectory) {
+/// @param torque  of the joints all the way but the approach [N m]
+Used used_of(const Machine& machine, const Trajectory& trajectory,
+             const JointAngles& torque = JointAngles::Zero()) {
   Used used;
   use_joints(machine, trajectory, used);
   if (!machine.hydraulics) return used;
@@ -102,8 +135,18 @@ Used used_of(const Machine& machine, const Trajectory& trajectory) {
     const Eigen::Vector3d lengths(states[0].length, states[1].length, states[2].length);
     const Eigen::Vector3d levers(states[0].lever, states[1].lever, states[2].lever);
     use_oil(machine, levers.cwiseProduct(point.rates), used);
-    if (k > 0)
-      use_oil(machine, (lengths - before) / (point.time - trajectory.points[k - 1].time), used);
+    if (k > 0) {
+      const TrajectoryPoint& last = trajectory.points[k - 1];
+      const Eigen::Vector3d speeds = (lengths - before) / (point.time - last.time);
+      use_oil(machine, speeds, used);
+      if (point.phase != DigPhase::approach) {
+        const JointAngles move = point.joints - last.joints;
+        const double pressure = std::max(pressure_of(machine, last.joints, move, torque),
+                                         pressure_of(machine, point.joints, move, torque));
+        used.power =
+            std::max(used.power, pressure * flow_of(machine, speeds) / machine.engine->power);
+      }
+    }
     before = lengths;
   }
   return used;
@@ -115,6 +158,7 @@ void expect_within(const Used& used, double fraction) {
   ASSERT_LE(used.acceleration, most);
   ASSERT_LE(used.cylinder_speed, most);
   ASSERT_LE(used.flow, most);
+  ASSERT_LE(used.power, most);
 }
 
 void expect_well_formed(const Trajectory& trajectory) {
@@ -314,6 +358,131 @@ TEST(Trajectory, AtTheSpeedOfTheCylinderAMoveTakesItsStroke) {
   EXPECT_NEAR(oil_time(Joint::bucket, 2.0, 0.0, slow_bucket), time, 0.003 * time);
 }
 
+/// A machine that is fast but for the power of its pumps.
+Machine strong_but_for_power(double power) {
+  Machine machine = zx120();
+  for (JointLimits& limits : machine.limits) {
+    limits.speed = 50.0;
+    limits.acceleration = 1e4;
+  }
+  machine.hydraulics->pump_flow = 1.0;
+  machine.engine->power = power;
+  return machine;
+}
+
+double loaded_time(const Machine& machine, const JointAngles& from, const JointAngles& to,
+                   const JointAngles& torque, double fraction = 1.0) {
+  std::vector<JointAngles> joints;
+  for (int i = 0; i <= 1000; ++i) joints.push_back(from + (to - from) * i / 1000);
+  const DigPath path = path_through(joints);
+  return time_dig_path(machine, path, {fraction}, throughout(path, torque)).duration();
+}
+
+// Pressure times flow of one cylinder is torque times rate, whichever side of it is filled.
+TEST(Trajectory, AtThePowerOfThePumpsOneCylinderTakesItsWork) {
+  const Machine machine = strong_but_for_power(50e3);
+  const JointAngles at(-0.3, 1.5, 0.5);
+  for (int i = 0; i < 3; ++i) {
+    const JointAngles move = JointAngles::Unit(i);
+    const double time = 1e5 * 1.0 / 50e3;
+    EXPECT_NEAR(loaded_time(machine, at, at + move, 1e5 * move), time, 0.005 * time);
+    EXPECT_NEAR(loaded_time(machine, at + move, at, -1e5 * move), time, 0.005 * time);
+    EXPECT_NEAR(loaded_time(machine, at, at + move, 1e5 * move, 0.5), 2 * time, 0.01 * time);
+    const double unloaded = loaded_time(machine, at, at + move, JointAngles::Zero());
+    EXPECT_LT(unloaded, 0.2 * time);
+    EXPECT_EQ(loaded_time(machine, at, at + move, -1e5 * move), unloaded);  // the load drives
+  }
+}
+
+// A flow of Q_max up to the pressure P / Q_max, then P / p: half the speed at twice that pressure.
+TEST(Trajectory, BelowTheCornerPressureTheLoadCostsNoTime) {
+  Machine machine = strong_but_for_power(50e3);
+  machine.hydraulics->pump_flow = 1e-3;  // corner pressure 50 MPa
+  const JointAngles from(-0.3, 1.0, 0.5), to(-0.3, 2.0, 0.5);
+  const double free = loaded_time(machine, from, to, JointAngles::Zero());
+  double weakest = std::numeric_limits<double>::infinity(), strongest = 0.0;
+  for (int i = 0; i <= 1000; ++i) {
+    const double lever = std::abs((*machine.cylinders)[1].at(1.0 + 0.001 * i).lever);
+    weakest = std::min(weakest, lever);
+    strongest = std::max(strongest, lever);
+  }
+  const double corner_force = 50e6 * area_filled(machine, 1, 1.0);
+  const auto time_at = [&](double torque) {
+    return loaded_time(machine, from, to, JointAngles(0, torque, 0));
+  };
+  EXPECT_EQ(time_at(0.999 * weakest * corner_force), free);
+  const double work = 2.0 * strongest * corner_force;
+  EXPECT_NEAR(time_at(work), work / 50e3, 0.005 * work / 50e3);
+}
+
+// Of several cylinders the one of highest pressure decides: P dt = p_max (dV1 + dV2 + dV3).
+TEST(Trajectory, JointsThatMoveTogetherShareThePowerAtTheHighestPressure) {
+  const Machine machine = strong_but_for_power(50e3);
+  const JointAngles from(-0.2, 1.0, 0.3), to(-0.6, 1.9, -0.2), torque(-8e4, 9e4, -2e4);
+  double time = 0.0;
+  const int steps = 1000;
+  const JointAngles move = (to - from) / steps;
+  for (int k = 0; k < steps; ++k) {
+    const JointAngles a = from + k * move, b = a + move;
+    Eigen::Vector3d grown;
+    for (int i = 0; i < 3; ++i) grown[i] = length_of(Joint(i), b[i]) - length_of(Joint(i), a[i]);
+    time += pressure_of(machine, 0.5 * (a + b), move, torque) * flow_of(machine, grown) / 50e3;
+  }
+  EXPECT_NEAR(loaded_time(machine, from, to, torque), time, 0.005 * time);
+}
+
+TEST(Trajectory, WithoutPressuresTheJointsShareThePowerByTheirWork) {
+  Machine machine = strong_but_for_power(50e3);
+  const JointAngles from(-0.2, 1.0, 0.3), to(-0.6, 1.9, 0.8);
+  const JointAngles torque(-8e4, 9e4, -2e4);  // the bucket is driven by its load
+  const double time = (8e4 * 0.4 + 9e4 * 0.9) / 50e3;
+  machine.hydraulics.reset();
+  EXPECT_NEAR(loaded_time(machine, from, to, torque), time, 0.005 * time);
+  machine.cylinders.reset();
+  EXPECT_NEAR(loaded_time(machine, from, to, torque), time, 0.005 * time);
+  machine.engine.reset();
+  EXPECT_LT(loaded_time(machine, from, to, torque), 0.2 * time);
+}
+
+TEST(Trajectory, TorquesSlowTheStretchesTheyBelongTo) {
+  const Machine machine = strong_but_for_power(50e3);
+  const DigPath path = one_joint_after_the_other(0.5, 100);
+  for (int i = 0; i < 3; ++i) {
+    std::vector<JointAngles> torques = throughout(path, JointAngles::Zero());
+    for (int k = 0; k < 100; ++k) torques[static_cast<std::size_t>(100 * i + k)][i] = 1e5;
+    const Trajectory trajectory = time_dig_path(machine, path, {1.0}, torques);
+    const DigPhase phases[] = {DigPhase::penetrate, DigPhase::drag, DigPhase::scoop};
+    double times[] = {0.0, 0.0, 0.0};
+    for (std::size_t k = 1; k < trajectory.points.size(); ++k) {
+      const auto phase = std::find(phases, phases + 3, trajectory.points[k].phase) - phases;
+      times[phase] += trajectory.points[k].time - trajectory.points[k - 1].time;
+    }
+    for (int phase = 0; phase < 3; ++phase) {
+      if (phase == i) {
+        EXPECT_NEAR(times[phase], 1.0, 0.02);  // 1e5 N m over 0.5 rad at 50 kW
+      } else {
+        EXPECT_LT(times[phase], 0.2);
+      }
+    }
+  }
+}
+
+TEST(Trajectory, RefusesTorquesThatDoNotFitThePath) {
+  const DigPath path = fixed_path();
+  const auto complaint = [&](const std::vector<JointAngles>& torques) {
+    return test::error_of([&] { time_dig_path(zx120(), path, {}, torques); });
+  };
+  std::vector<JointAngles> torques = throughout(path, JointAngles(1e4, 1e4, 1e4));
+  EXPECT_EQ(complaint(torques), "no error");
+  torques.pop_back();  // a dig that ended early
+  EXPECT_EQ(complaint(torques), "no error");
+  torques[3][1] = std::nan("");
+  EXPECT_EQ(complaint(torques), "torque 3 is not finite");
+  const std::string poses = std::to_string(path.poses.size());
+  EXPECT_EQ(complaint(std::vector<JointAngles>(path.poses.size(), JointAngles::Zero())),
+            "there are " + poses + " torques between " + poses + " poses, must be fewer");
+}
+
 /// The arm curls, then the bucket: two straight lines in joint space.
 DigPath two_straight_phases() {
   std::vector<JointAngles> joints;
@@ -448,7 +617,8 @@ RandomDig random_dig(
     limits.speed *= std::exp2(random.uniform(-1, 1));
     limits.acceleration *= std::exp2(random.uniform(-1, 1));
   }
-  dig.machine.hydraulics->pump_flow *= std::exp2(random.uniform(-1, 1));
+  // Pumps of 95 to 380 L/min, so that the flow is often the limit.
+  dig.machine.hydraulics->pump_flow = 0.00317 * std::exp2(random.uniform(-1, 1));
   for (Piston& piston : dig.machine.hydraulics->pistons) piston.speed = random.uniform(0.1, 0.6);
   while (true) {
     DigParameters parameters;
@@ -468,18 +638,21 @@ RandomDig random_dig(
 }
 
 TEST(Trajectory, TenThousandDigsKeepTheirLimitsAndTheirPathAtEveryPoint) {
-  Random random(21);
+  Random random(21), loads(24);
   Used mean;
   double attitude = 0.0;
   for (int n = 0; n < 10000; ++n) {
     const RandomDig dig = random_dig(random);
-    const Trajectory trajectory = time_dig_path(dig.machine, dig.path, dig.options);
+    JointAngles torque;
+    for (double& load : torque) load = loads.uniform(-1.5e5, 1.5e5);
+    const Trajectory trajectory =
+        time_dig_path(dig.machine, dig.path, dig.options, throughout(dig.path, torque));
     expect_well_formed(trajectory);
-    const Used used = used_of(dig.machine, trajectory);
+    const Used used = used_of(dig.machine, trajectory, torque);
     ASSERT_NO_FATAL_FAILURE(expect_within(used, dig.options.speed_fraction)) << n;
     mean.acceleration += used.acceleration / dig.options.speed_fraction / 10000;
-    mean.speed +=
-        std::max({used.speed, used.cylinder_speed, used.flow}) / dig.options.speed_fraction / 10000;
+    mean.speed += std::max({used.speed, used.cylinder_speed, used.flow, used.power}) /
+                  dig.options.speed_fraction / 10000;
     Deviation deviation(dig.machine, dig.path);
     deviation.add(trajectory);
     ASSERT_LE(deviation.tip(), 1e-3) << n;

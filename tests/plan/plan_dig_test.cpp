@@ -310,7 +310,7 @@ TEST_F(PlanDig, AStallThatIsLikelyIsNotTrusted) {
   PlanOptions options = searched(30);
   options.search.bounds.lower = {1.05, 0.5, 0.3};
   const SoilKind clay = load_soil(find_data_file("soils/clay.json"));
-  const DigPlan risky = plan_dig(machine_, clay, GroundDensity(90.0, 10.0), options);
+  const DigPlan risky = plan_dig(machine_, clay, GroundDensity(40.0, 10.0), options);
   EXPECT_GT(risky.spread.stall_probability, 0.05);
   EXPECT_TRUE(warns(risky, "may_stall"));
   EXPECT_FALSE(risky.trustworthy);

@@ -157,10 +157,11 @@ TEST_F(Planner, SlopeOfTheGroundIsTheLineThroughWhatIsKnown) {
 
 TEST_F(Planner, PlannedPathBeatsThePapersFixedPath) {
   for (const double density : {10.0, 40.0, 80.0}) {
-    const auto fixed = evaluate_dig(machine_, simulator(density), level_, paper_fixed_path());
+    const double fixed = efficiency(density, level_, paper_fixed_path(), {});
+    EXPECT_EQ(fixed > 0.0, density < 50.0) << "the machine's front lifts in dense soil";
     const auto found = search_dig(machine_, simulator(density), level_, small_search());
     ASSERT_TRUE(found);
-    EXPECT_GT(found->dig.efficiency(), std::get<PlannedDig>(fixed).efficiency()) << density;
+    EXPECT_GT(found->dig.efficiency(), fixed) << density;
   }
 }
 
@@ -347,14 +348,14 @@ TEST(PossibleDensities, HaveTheMomentsOfTheCutDistribution) {
 }
 
 TEST_F(Planner, OnAverageNoPathBeatsTheOneForTheUncertainSoil) {
-  const HeightMapSimulator soft = simulator(10.0), hard = simulator(80.0);
+  const HeightMapSimulator soft = simulator(10.0), hard = simulator(60.0);
   const std::vector<PossibleSoil> soils = {{&soft, 0.5}, {&hard, 0.5}};
   const auto found = search_dig(machine_, soils, level_, small_search());
   ASSERT_TRUE(found);
   EXPECT_GE(found->evaluations, 2 * found->expected.evaluations);
   const auto average = [&](const PlannedDig& dig) {
     return 0.5 * efficiency(10.0, level_, dig.parameters, dig.start_x) +
-           0.5 * efficiency(80.0, level_, dig.parameters, dig.start_x);
+           0.5 * efficiency(60.0, level_, dig.parameters, dig.start_x);
   };
   EXPECT_NEAR(found->expected.worth, average(found->expected.dig), 1e-15);
   double known = 0.0;

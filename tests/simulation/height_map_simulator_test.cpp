@@ -8,6 +8,7 @@
 
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/bucket_resistance.hpp"
+#include "support/machine_file.hpp"
 #include "support/soil_simulator_contract.hpp"
 
 namespace excavplan {
@@ -49,7 +50,7 @@ class Simulator : public testing::Test {
         .dig(ground, std::get<DigPath>(path), options);
   }
 
-  const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  const Machine machine_ = test::zx120_held_down();
 };
 
 TEST_F(Simulator, CutsExactlyWhatTheTipSweeps) {
@@ -323,13 +324,13 @@ TEST_F(Simulator, PackedSoilTakesTheCornerOfFloorAndBack) {
   const Eigen::Vector2d floor = profile[1] - profile[0];
   const Eigen::Vector2d mouth = profile.back() - profile[0];
   const double opening = std::acos(floor.normalized().dot(mouth.normalized()));
-  EXPECT_EQ(cavity.packed_front(0.0), 0.0);
-  EXPECT_NEAR(cavity.packed_front(struck_capacity(machine_)), opening, 1e-9);
-  EXPECT_NEAR(cavity.packed_front(1.0), opening, 1e-9);  // more than it holds
+  EXPECT_EQ(cavity.packed(0.0).front, 0.0);
+  EXPECT_NEAR(cavity.packed(struck_capacity(machine_)).front, opening, 1e-9);
+  EXPECT_NEAR(cavity.packed(1.0).front, opening, 1e-9);  // more than it holds
   // Triangle of the floor and the next side, 0.66 m wide, full to the corner after it.
   const Eigen::Vector2d next = profile[2] - profile[0];
   const double triangle = 0.5 * std::abs(floor.x() * next.y() - floor.y() * next.x());
-  EXPECT_NEAR(cavity.packed_front(0.66 * triangle),
+  EXPECT_NEAR(cavity.packed(0.66 * triangle).front,
               std::acos(floor.normalized().dot(next.normalized())), 1e-9);
 }
 

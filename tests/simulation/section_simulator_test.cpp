@@ -13,6 +13,7 @@
 
 #include "base/angles.hpp"
 #include "support/errors.hpp"
+#include "support/machine_file.hpp"
 #include "support/soil_simulator_contract.hpp"
 
 namespace excavplan {
@@ -66,7 +67,7 @@ class Section : public testing::Test {
     return ground;
   }
 
-  const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  const Machine machine_ = test::zx120_held_down();
 };
 
 // ---- Oracles ------------------------------------------------------------------------------------

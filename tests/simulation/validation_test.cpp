@@ -13,6 +13,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include "base/random.hpp"
+#include "support/machine_file.hpp"
 
 /// @file
 /// The built-in simulator against what others published and what must hold for any soil. The
@@ -47,7 +48,7 @@ class Validation : public testing::Test {
     return calibrate_density(machine_, loam_, options).samples[0].bulking_factor_measured;
   }
 
-  const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  const Machine machine_ = test::zx120_held_down();
   const SoilKind loam_ = load_soil(find_data_file("soils/loam.json"));
 };
 

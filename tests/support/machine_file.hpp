@@ -25,6 +25,13 @@ inline const Machine& zx120() {
   return machine;
 }
 
+/// The shipped machine, but no force of the soil lifts or drags it.
+inline Machine zx120_held_down() {
+  Machine machine = zx120();
+  machine.body.reset();
+  return machine;
+}
+
 /// What load_machine says about a machine file, without the file's name; "no error" if nothing.
 inline std::string complaint_about_file(const nlohmann::json& file) {
   const std::string path = testing::TempDir() + "machine" + std::to_string(::getpid()) + ".json";

@@ -153,8 +153,22 @@ TEST_F(Tools, JointThatStallsIsSeenAboveItsLimit) {
                                               folder.write("machine.json", machine.dump())});
   ASSERT_TRUE(result.at("stalled").get<bool>());
   EXPECT_EQ(result.at("stall").at("joint"), "arm");
+  EXPECT_EQ(result.at("stall").at("cause"), "torque");
   EXPECT_EQ(number(result, "/joints/arm/limit_kn_m"), 20.0);
   EXPECT_GT(number(result, "/joints/arm/peak_torque_kn_m"), 20.0);
+}
+
+TEST_F(Tools, ADigThatLiftsTheMachineSaysSo) {
+  const json result = answer("simulate-dig", {"--density", "95"});
+  ASSERT_TRUE(result.at("stalled").get<bool>());
+  const json& stall = result.at("stall");
+  EXPECT_EQ(stall.at("cause"), "front_lifts");
+  EXPECT_EQ(stall.at("phase"), "penetrate");
+  EXPECT_GT(number(stall, "/travelled_m"), 0.0);
+  EXPECT_TRUE(stall.at("joint").is_null() && stall.at("torque_nm").is_null());
+  ASSERT_EQ(warning_codes(result), Words{"stalled"});
+  const std::string message = result["warnings"][0]["message"];
+  EXPECT_TRUE(contains(message, "the machine's front lifts in the phase penetrate")) << message;
 }
 
 TEST_F(Tools, DumpPointsOutOfReachAreWarnedOf) {

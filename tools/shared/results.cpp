@@ -42,10 +42,16 @@ nlohmann::ordered_json soil_json(const SoilLedger& soil) {
 }
 
 nlohmann::ordered_json stall_json(const Stall& stall) {
-  return {{"phase", name(stall.phase)},
-          {"joint", name(stall.joint)},
-          {"travelled_m", stall.travelled},
-          {"torque_nm", stall.torque}};
+  nlohmann::ordered_json json = {{"phase", name(stall.phase)},
+                                 {"joint", nullptr},
+                                 {"travelled_m", stall.travelled},
+                                 {"torque_nm", nullptr},
+                                 {"cause", name(stall.cause)}};
+  if (stall.cause == Stall::Cause::torque) {
+    json["joint"] = name(stall.joint);
+    json["torque_nm"] = stall.torque;
+  }
+  return json;
 }
 
 /// Volumes of height maps, which have no error.

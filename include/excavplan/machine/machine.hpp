@@ -74,6 +74,28 @@ struct Bucket {
   std::optional<Teeth> teeth;   ///< nothing: a plain lip
 };
 
+/// What stands on the ground: the machine without boom, arm and bucket.
+struct Body {
+  double mass = 0.0;                                 ///< [kg]
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its mass: x, z [m]
+  double rear_edge = 0.0;       ///< x about which it tips backwards, below its centre's [m]
+  double front_edge = 0.0;      ///< x about which it tips forwards, above its centre's [m]
+  double track_friction = 0.0;  ///< largest force along the ground over weight on it [-]
+};
+
+/// What turns the upper structure.
+struct Swing {
+  double speed = 0.0;    ///< highest rate [rad/s]
+  double torque = 0.0;   ///< [N m]
+  double inertia = 0.0;  ///< of the upper structure without its front, about the axis [kg m^2]
+};
+
+/// What drives the cylinders.
+struct Engine {
+  double power = 0.0;       ///< that the pumps can deliver to the cylinders [W]
+  double idle_power = 0.0;  ///< of the shaft, drawn all the time, working or not [W]
+};
+
 /// A machine read from a file; immutable after that.
 struct Machine {
   std::string name;                                    ///< "zx120"
@@ -87,6 +109,9 @@ struct Machine {
   Bucket bucket;                         ///< with its teeth
   std::optional<Cylinders> cylinders;    ///< nothing if the file does not state them
   std::optional<Hydraulics> hydraulics;  ///< likewise; never without cylinders
+  std::optional<Body> body;              ///< nothing: the machine stands as if bolted down
+  std::optional<Swing> swing;            ///< nothing if the file does not state it
+  std::optional<Engine> engine;          ///< nothing: its power sets no limit
 
   /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }

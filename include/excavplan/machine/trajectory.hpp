@@ -34,8 +34,8 @@ struct Trajectory {
 
 /// Settings of time_dig_path().
 struct TrajectoryOptions {
-  /// Fraction of the limits of joint speed, joint acceleration, cylinder speed and pump flow to
-  /// use, in (0, 1].
+  /// Fraction of the limits of joint speed, joint acceleration, cylinder speed, pump flow and power
+  /// to use, in (0, 1].
   double speed_fraction = 0.8;
   /// Largest distance of the tip from the path where it rounds the corner between two phases [m],
   /// in 0 .. 0.01; the attitude of the bucket deviates by at most as much over the length of the
@@ -43,9 +43,10 @@ struct TrajectoryOptions {
   double corner_tolerance = 0.001;
 };
 
-/// Times a path as fast as joint speeds, joint accelerations, cylinder speeds and the flow of the
-/// pumps allow, by a forward and a backward pass over its poses (`docs/methods.md#trajectory`). The
-/// stated rates keep the limits at every point, and so do differences of the points.
+/// Times a path as fast as joint speeds, joint accelerations, cylinder speeds and the flow and
+/// power of the pumps allow, by a forward and a backward pass over its poses
+/// (`docs/methods.md#trajectory`). The stated rates keep the limits at every point, and so do
+/// differences of the points.
 ///
 /// Between two phases the direction of the joint motion changes. The corner is rounded within the
 /// tolerance; the machine stops only where the direction changes by more than 120 degrees.
@@ -54,9 +55,13 @@ struct TrajectoryOptions {
 /// at a corner are replaced, and a point halfway is added where none is left between two corners or
 /// ends. Coarse poses make a slower trajectory: the squared speed is linear between points.
 ///
-/// @throws Error (bad_input) if an option is out of range or the path has fewer than two poses
+/// @param torques  DigResult::torques: of the joints from each pose of the path to the next [N m].
+///                 Where they end, and on the approach, nothing loads the pumps.
+/// @throws Error (bad_input) if an option is out of range, the path has fewer than two poses, or
+///         there are as many torques as poses, or one that is not finite
 Trajectory time_dig_path(const Machine& machine, const DigPath& path,
-                         const TrajectoryOptions& options = {});
+                         const TrajectoryOptions& options = {},
+                         const std::vector<JointAngles>& torques = {});
 
 /// CSV (`docs/formats.md#trajectory`): time, phase, joints, tip, floor angle, rates, and the
 /// cylinders if the machine states them. Numbers do not depend on the locale.

@@ -39,13 +39,27 @@ struct SoilLedger {
   double solids_after = 0.0;   ///< the same plus what is in the bucket [kg]
 };
 
-/// A joint lacked the torque to continue. A result, not an error.
+/// The machine could not continue. A result, not an error.
 struct Stall {
+  /// What gave way (docs/methods.md#machine).
+  enum class Cause {
+    torque,       ///< of a joint
+    front_lifts,  ///< the machine tips over its rear edge
+    rear_lifts,   ///< the machine tips over its front edge
+    slides        ///< the machine slides on its tracks
+  };
   DigPhase phase = DigPhase::penetrate;  ///< in which the dig ended
-  Joint joint = Joint::boom;             ///< that lacked torque
+  Joint joint = Joint::boom;             ///< that lacked torque; the boom for another cause
   double travelled = 0.0;                ///< tip travel from the start of the dig [m]
-  double torque = 0.0;                   ///< that the joint needed [N m]
+  double torque = 0.0;                   ///< that the joint needed [N m]; 0 for another cause
+  Cause cause = Cause::torque;           ///< what gave way
+  /// Of the joint's torque [N m], of the moment of soil and payload about the edge [N m], or of
+  /// their force along the ground [N]: what the dig takes, and what the machine holds.
+  double needed = 0.0;
+  double held = 0.0;  ///< likewise
 };
+/// "torque", "front_lifts", "rear_lifts" or "slides", as in files.
+const char* name(Stall::Cause cause);
 
 /// Forces in the middle of one step.
 struct ForceSample {
@@ -68,6 +82,9 @@ struct DigResult {
   std::optional<Stall> stall;        ///< nothing: the machine finished the path
   bool given_up = false;             ///< ended early: DigOptions::give_up_below
   std::vector<ForceSample> history;  ///< empty unless requested
+  /// Of the joints [N m], half-way from each pose of the path to the next, as far as the machine
+  /// came. time_dig_path() takes them; a simulator may leave them out.
+  std::vector<JointAngles> torques;
 
   /// The whole terrain afterwards.
   Terrain after(const Terrain& before) const {
