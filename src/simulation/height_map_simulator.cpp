@@ -25,11 +25,11 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
-constexpr double sweeps_per_step = 3.0;  // of slumping while the bucket moves, on 5 cm cells; as
-                                         // many more as a slide takes on smaller ones
-constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
-constexpr double spread_ahead = 0.15;    // overflow lands within this ahead of the lip [m]
-constexpr double room_around = 0.5;      // of the window around the path at first [m]
+constexpr double sweeps_per_metre = 120.0;  // of travel, of slumping on 5 cm cells; as many more
+                                            // as a slide takes on smaller ones
+constexpr int sweeps_at_the_end = 2000;     // until all is at rest; a dig needs some tens
+constexpr double spread_ahead = 0.15;       // overflow lands within this ahead of the lip [m]
+constexpr double room_around = 0.5;         // of the window around the path at first [m]
 
 /// One dig from its first pose to its end.
 class Dig {
@@ -44,8 +44,7 @@ class Dig {
         cavity_(model.machine.bucket),
         resistance_(model, ground_, swath_, path),
         account_(model.machine, path, options) {
-    sweeps_ = static_cast<int>(
-        std::ceil(sweeps_per_step * std::max(1.0, std::pow(0.05 / terrain.bank.cell_size, 2))));
+    sweeps_per_metre_ = sweeps_per_metre * std::max(1.0, std::pow(0.05 / ground_.cell_size(), 2));
   }
 
   DigResult run() {
@@ -99,15 +98,25 @@ class Dig {
     if (!digs) return;
     const double before = fill_;
     cut(s);
-    const Index ahead = swath_.column(s.to.x() - ground_.cell_size());
-    const double support = std::max(0.0, resistance_.surface_at(ahead) - s.to.y());
-    // What is pushed in rises at the lip and falls to both sides: no more gets in than lies inwards
-    // of it. What is in stays as long as the bucket can hold it.
-    const double pushed_in = std::max(before, cavity_.pushed_in(support, model_.slopes.pushed));
-    spill(s.to.x(), fill_ - std::min(pushed_in, cavity_.capacity(support, model_.slopes)));
+    // In two parts, as the soil left ahead lets more in.
+    spill(s.to.x(), 0.5 * (fill_ - room_in_bucket(s.to, before)));
+    spill(s.to.x(), fill_ - room_in_bucket(s.to, before));
     ground_.set_wall(under_bucket(s.to));
     // While the bucket stands in the cut it holds the walls.
-    moving_ = slump(ground_, moving_, {model_.slopes.heap, true}, sweeps_);
+    sweeps_due_ += sweeps_per_metre_ * s.length;
+    const int sweeps = static_cast<int>(sweeps_due_);
+    sweeps_due_ -= sweeps;
+    moving_ = slump(ground_, moving_, {model_.slopes.heap, true}, sweeps);
+  }
+
+  /// How much soil the bucket may hold at the lip. What is pushed in rises there and falls to both
+  /// sides: no more gets in than lies inwards of it. What is in, `held`, stays as long as the
+  /// bucket can hold it.
+  double room_in_bucket(const Vector2d& lip, double held) const {
+    const Index ahead = swath_.column(lip.x() - ground_.cell_size());
+    const double support = std::max(0.0, resistance_.surface_at(ahead) - lip.y());
+    return std::min(std::max(held, cavity_.pushed_in(support, model_.slopes.pushed)),
+                    cavity_.capacity(support, model_.slopes));
   }
 
   /// Cells that the bucket stands on behind its lip, if it is in the ground: no soil gets there.
@@ -287,7 +296,8 @@ class Dig {
   BucketResistance resistance_;
   DigAccount account_;
 
-  int sweeps_ = 0;     ///< of slumping per step
+  double sweeps_per_metre_ = 0.0;  ///< of slumping while the bucket moves
+  double sweeps_due_ = 0.0;
   double fill_ = 0.0;  ///< loose soil in the bucket [m^3]
   CellBlock moving_;   ///< cells that may not be at rest
   CellBlock passed_;   ///< cells the lip has passed, whose walls the bucket holds until it is out
