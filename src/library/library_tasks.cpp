@@ -52,8 +52,8 @@ std::string identity(const LibraryJob& job, const LibraryPlace& place) {
          fingerprint(job.grid.soils[place.soil]) + ", simulator " + search.simulator.name +
          " on cells of " + number_text(search.cell_size) + " m, slope " + number_text(place.slope) +
          " rad, density " + number_text(place.density_percent) + " %, seed " +
-         std::to_string(search.seed) + ", " + describe(search) + ", start " +
-         describe(DigSearchOptions{}.start_rule);
+         std::to_string(search.seed) + ", goal " + describe(search.objective) + ", " +
+         describe(search) + ", start " + describe(DigSearchOptions{}.start_rule);
 }
 
 // In the order of AnchoredSearch. NOLINTNEXTLINE(bugprone-easily-swappable-parameters)
@@ -103,7 +103,7 @@ class EntrySearch {
       shallower[1].penetration_length *= 0.7;
       attempt(warm_search(search_, shallower));
     }
-    if (!attempts_.best() || attempts_.efficiency() < task.expected) {
+    if (!attempts_.best() || attempts_.rank() < task.expected) {
       attempt(cold_search(search_, 1));
     }
     if (!attempts_.best()) attempt(cold_search(search_, 8));
@@ -114,7 +114,7 @@ class EntrySearch {
     DigSearchOptions half = warm_search(search_, task.starts);
     half.stop.evaluations /= 2;
     attempt(half);
-    if (attempts_.efficiency() <= (1.0 + clearly_more) * task.known) return false;
+    if (attempts_.rank() <= (1.0 + clearly_more) * task.known) return false;
     half.start = {attempts_.best()->parameters};
     attempt(half);
     return true;
@@ -165,7 +165,7 @@ std::vector<double> parent_densities(double density_percent, const LibrarySearch
   return {density_percent + towards, density_percent + 2.0 * towards};
 }
 
-LibraryTask first_search(const LibraryPlace& place,
+LibraryTask first_search(const LibraryJob& job, const LibraryPlace& place,
                          const std::vector<std::pair<double, PlannedDig>>& parents) {
   LibraryTask task{place};
   if (parents.empty()) return task;
@@ -183,7 +183,8 @@ LibraryTask first_search(const LibraryPlace& place,
     }
     task.starts.push_back(there);
     task.expected = (1.0 - (share > 0.0 ? slack_between : slack_beyond)) *
-                    std::exp(line(std::log(near.efficiency()), std::log(far.efficiency())));
+                    std::exp(line(std::log(job.search.objective.rank(near)),
+                                  std::log(job.search.objective.rank(far))));
   }
   task.starts.push_back(near.parameters);
   return task;
@@ -212,7 +213,7 @@ std::string do_task(const LibraryJob& job, const std::string& text,
   const LibraryPlace& place = task.place;
   const Machine& machine = job.grid.machines[place.machine];
   DigAttempts attempts(
-      machine,
+      machine, job.search.objective,
       job.search.simulator.make(machine, job.grid.soils[place.soil], place.density_percent),
       sloped_planning_ground(machine, place.slope, job.search.cell_size), progress);
   const LibraryAnswer found = answer(job, task, attempts);
