@@ -3,6 +3,7 @@
 #include <excavplan/library/library_build.hpp>
 
 #include "base/text.hpp"
+#include "shared/entry_folder.hpp"
 #include "shared/library_results.hpp"
 #include "shared/ranks.hpp"
 #include "shared/results.hpp"
@@ -76,6 +77,16 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.require("out");
 }
 
+const OptionNames option_names = {{"library: densities", "--densities"},
+                                  {"library: slopes", "--slopes"},
+                                  {"cell size of a library's ground [m]", "--cell"},
+                                  {"points of a library search", "--points"},
+                                  {"search: first_generation", "--points"},
+                                  {"search: polish_evaluations", "--polish"},
+                                  {"search: stop.evaluations", "--inherited"},
+                                  {"search: population", "--population"},
+                                  {"search: generations", "--generations"}};
+
 LibraryGrid grid_of(const Inputs& inputs) {
   LibraryGrid grid;
   for (const std::string& name : split(inputs.machines, ',')) {
@@ -130,7 +141,7 @@ Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
   const Stopwatch watch;
   const LibraryGrid grid = grid_of(inputs);
   LibraryBuildOptions options = options_of(inputs, console);
-  require_buildable(grid, options.search);
+  naming_options(option_names, [&] { require_buildable(grid, options.search); });
   if (ranks != nullptr) {
     if (options.threads == 0) options.threads = 1;
     ranks->agree(options.threads);
@@ -140,13 +151,15 @@ Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
     }
     options.other_workers = ranks->workers();
   }
-  require_library_place(inputs.out, grid.machines.size() * grid.soils.size() > 1);
-  if (!inputs.cells && !inputs.resume) remove_library_entries(options.folder);
-  const LibraryBuild build = build_path_libraries(grid, options);
+  require_library_place(grid, inputs.out);
+  std::optional<EntryFolder> own;
+  if (!inputs.cells) own.emplace(options.folder, inputs.resume);
+  const LibraryBuild build =
+      naming_options(option_names, [&] { return build_path_libraries(grid, options); });
   Outcome outcome = build.stopped ? stopped_build(build, options.folder,
                                                   inputs.cells ? "the same command" : "--resume")
                                   : written_libraries(build.libraries, inputs.out);
-  if (!inputs.cells && !build.stopped) remove_library_entries(options.folder);
+  if (own) build.stopped ? own->keep() : own->clear();
   outcome.json["wall_time_s"] = watch.seconds();
   outcome.warnings = warnings_of(inputs);
   return outcome;

@@ -44,7 +44,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "relative densities of the simulated digs [%], or a list a,b,c");
   arguments.option("path", inputs.path, "dig path");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
-  arguments.file("out", inputs.out, "law file to write, for estimate-density --law");
+  arguments.output("out", inputs.out, "law file to write, for estimate-density --law");
 }
 
 DensityCalibration from_samples(const std::string& file) {

@@ -58,8 +58,9 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("points", inputs.points,
                  "CSV of 3 or more known points: u_px,v_px (or camera_x_m,camera_y_m,camera_z_m) "
                  "and x_m,y_m,z_m in the site frame");
-  arguments.file("pose-out", inputs.pose_out, "write the pose found, for --pose of the next scan");
-  arguments.file("out", inputs.out, "cloud to write: " + cloud_endings());
+  arguments.output("pose-out", inputs.pose_out,
+                   "write the pose found, for --pose of the next scan");
+  arguments.output("out", inputs.out, "cloud to write: " + cloud_endings());
   arguments.require("out");
 }
 
@@ -69,7 +70,8 @@ std::vector<std::string> frames_of(const Inputs& inputs) {
   std::istringstream words(inputs.average);
   for (std::string word; std::getline(words, word, ',');) {
     std::vector<std::string> files = {word};
-    if (std::filesystem::is_directory(word)) {
+    std::error_code none;
+    if (std::filesystem::is_directory(word, none)) {
       files.clear();
       for (const auto& entry : std::filesystem::directory_iterator(word)) {
         if (entry.path().extension() == ".png") files.push_back(entry.path().string());
@@ -77,7 +79,6 @@ std::vector<std::string> frames_of(const Inputs& inputs) {
       std::sort(files.begin(), files.end());
     }
     for (const std::string& file : files) {
-      std::error_code none;
       if (!std::filesystem::equivalent(file, inputs.image, none)) frames.push_back(file);
     }
   }
@@ -94,10 +95,10 @@ std::optional<FoundPose> find_pose(const Inputs& inputs, const Cloud& cloud,
 
 void check(const Inputs& inputs) {
   if ((inputs.pose ? 1 : 0) + (inputs.level ? 1 : 0) + (inputs.points ? 1 : 0) > 1) {
-    throw Error(ErrorKind::bad_input, "--pose, --level and --points are mutually exclusive");
+    usage_error("--pose, --level and --points are mutually exclusive");
   }
   if (inputs.pose_out && !inputs.level && !inputs.points) {
-    throw Error(ErrorKind::bad_input, "--pose-out needs --level or --points");
+    usage_error("--pose-out needs --level or --points");
   }
 }
 

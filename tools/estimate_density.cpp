@@ -102,23 +102,25 @@ DensityOptions options_of(const Inputs& inputs) {
 
 Outcome work_on_scans(const Inputs& inputs) {
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
-    throw Error(ErrorKind::bad_input, "--dump-before and --dump-after must be given together");
+    usage_error("--dump-before and --dump-after must be given together");
   }
   if (inputs.dug_path.has_value() != inputs.dug_start.has_value()) {
-    throw Error(ErrorKind::bad_input, "--dug-path and --dug-start must be given together");
+    usage_error("--dug-path and --dug-start must be given together");
   }
   const DensityLaw law = law_named(inputs.law);
   const DigScans scans = scans_of(inputs);
   const DensityOptions options = options_of(inputs);
   BothEstimates both;
   DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
-  with_frame_hint(pair_frame_hint, [&] {
+  const auto estimate = [&] {
     if (inputs.compare) {
       both = estimate_by_both(scans, law, options);
     } else {
       counts = estimate_density(scans, law, options);
     }
-  });
+  };
+  naming_options({{"path that was dug", "--dug-path"}, {"inside the area", "inside --area"}},
+                 [&] { with_frame_hint(pair_frame_hint, estimate); });
   Outcome outcome = estimate_outcome(counts);
   if (inputs.plot) write_file(*inputs.plot, height_change_figure(counts.change, outcome.lines));
   if (inputs.compare) add_comparison(both, counts, outcome);
@@ -128,14 +130,13 @@ Outcome work_on_scans(const Inputs& inputs) {
 Outcome work(const Inputs& inputs) {
   if (inputs.plan_survey) {
     if (inputs.before || inputs.after) {
-      throw Error(ErrorKind::bad_input, "--plan-survey takes no scans");
+      usage_error("--plan-survey takes no scans");
     }
     return planned_survey(*inputs.plan_survey, law_named(inputs.law));
   }
   if (!inputs.before || !inputs.after) {
-    throw Error(ErrorKind::bad_input,
-                std::string(inputs.before ? "AFTER" : "BEFORE") +
-                    " is missing: a cloud before the dig and one after it are needed");
+    usage_error(std::string(inputs.before ? "AFTER" : "BEFORE") +
+                " is missing: a cloud before the dig and one after it are needed");
   }
   return work_on_scans(inputs);
 }

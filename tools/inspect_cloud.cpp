@@ -28,7 +28,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("FILE", inputs.file, "scan to summarise");
   arguments.file("frame", inputs.frame,
                  "4 x 4 text matrix that transforms the scan into the site frame; applied first");
-  arguments.file("out", inputs.out, "write the cloud here: " + cloud_endings());
+  arguments.output("out", inputs.out, "write the cloud here: " + cloud_endings());
   arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text, with full precision");
 }
 
@@ -63,7 +63,7 @@ std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& clo
 
 Outcome inspect(const Inputs& inputs) {
   if (inputs.ascii && !inputs.out) {
-    throw Error(ErrorKind::bad_input, "--ascii needs --out");
+    usage_error("--ascii needs --out");
   }
   CloudFormat format;
   if (inputs.out) format = cloud_format_of_name(*inputs.out);

@@ -85,8 +85,7 @@ DigEfficiency measure(const RunInputs& inputs, const Inputs& all, Outcome& outco
 
 Outcome work(const Inputs& inputs) {
   if (inputs.second.any() && !inputs.second.log) {
-    throw Error(ErrorKind::bad_input,
-                "SECOND.csv is missing, but options of a second dig are given");
+    usage_error("SECOND.csv is missing, but options of a second dig are given");
   }
   Outcome outcome;
   const DigEfficiency first = measure(inputs.first, inputs, outcome);

@@ -65,21 +65,16 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.simulator(inputs.simulator);
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   declare_search(arguments, inputs.dig_search);
-  arguments.file("trajectory", inputs.trajectory,
-                 "write the joint trajectory, CSV, or JSON as .json");
+  arguments.output("trajectory", inputs.trajectory,
+                   "write the joint trajectory, CSV, or JSON as .json");
   arguments.plot(inputs.plot, "the section of the dig");
 }
-
-[[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
 
 /// Checks made before anything is read.
 void check(const Inputs& inputs) {
   check(inputs.density);
   if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {
-    refuse("--start search needs --search");
-  }
-  for (const auto& file : {inputs.trajectory, inputs.plot}) {
-    if (file) require_folder_of(*file);  // now, not after the search
+    usage_error("--start search needs --search");
   }
   check(inputs.dig_search);
 }
@@ -112,7 +107,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const DigPlan plan = inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
                                             : plan_dig(machine, soil, density, options);
   if (!plan.dig && !plan.stopped) {
-    refuse(plan.reason + (plan.nearest ? "; the nearest, " + describe(*plan.nearest) : ""));
+    usage_error(plan.reason + (plan.nearest ? "; the nearest, " + describe(*plan.nearest) : ""));
   }
 
   Outcome outcome;
@@ -121,7 +116,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   const SearchUse use = inputs.search          ? SearchUse::all
                         : inputs.terrain.cloud ? SearchUse::start_only
                                                : SearchUse::none;
-  for (const auto& warnings : {site.warnings, warnings_of(inputs.dig_search, use), plan.warnings}) {
+  for (const auto& warnings :
+       {site.warnings, warnings_of(inputs.dig_search, use), plan_warnings(plan, inputs.density)}) {
     outcome.warnings.insert(outcome.warnings.end(), warnings.begin(), warnings.end());
   }
   outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);

@@ -59,14 +59,15 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "4 x 4 matrix that transforms the terrain cloud into the site frame");
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
-  arguments.file("before", inputs.before, "write a depth-camera scan of the ground before the dig");
-  arguments.file("after", inputs.after, "write a depth-camera scan after the dig");
+  arguments.output("before", inputs.before,
+                   "write a depth-camera scan of the ground before the dig");
+  arguments.output("after", inputs.after, "write a depth-camera scan after the dig");
   arguments.option("seed", inputs.seed, "seed of the scans' noise");
   arguments.option("noise", inputs.camera.noise, Quantity::length,
                    "depth noise of the scans at 1 m; grows with range squared");
-  arguments.file("history", inputs.history, "write the loads of each step, CSV");
+  arguments.output("history", inputs.history, "write the loads of each step, CSV");
   arguments.plot(inputs.plot, "the section of the dig");
-  arguments.file("report", inputs.report, "write an HTML report");
+  arguments.output("report", inputs.report, "write an HTML report");
 }
 
 SceneOptions options_of(const Inputs& inputs) {
@@ -81,17 +82,13 @@ SceneOptions options_of(const Inputs& inputs) {
   return options;
 }
 
-/// Reports bad names before anything is written.
+/// Reports bad names before the dig.
 void check_outputs(const Inputs& inputs) {
   for (const auto& file : {inputs.before, inputs.after}) {
     if (file) cloud_format_of_name(*file);
   }
   if (inputs.before && inputs.before == inputs.after) {
     usage_error("--before and --after name the same file, " + *inputs.before);
-  }
-  for (const auto& file :
-       {inputs.before, inputs.after, inputs.history, inputs.plot, inputs.report}) {
-    if (file) require_folder_of(*file);
   }
 }
 
@@ -129,13 +126,16 @@ Outcome work(const Inputs& inputs) {
   const SoilKind soil = soil_named(inputs.soil);
   Site site = make_site(inputs.terrain, scene_extent(machine, options.dump_at), inputs.cell_size);
   const Stopwatch watch;
-  const DigScene scene = run_scene(machine, soil, inputs.density, site.ground, options);
+  const OptionNames names = {{"the dump point", "--dump-at"}};
+  const DigScene scene = naming_options(
+      names, [&] { return run_scene(machine, soil, inputs.density, site.ground, options); });
   Outcome outcome;
   outcome.json = scene_json(machine, scene);
   outcome.json["wall_time_s"] = watch.seconds();
   outcome.lines = scene_lines(machine, scene);
   outcome.warnings = std::move(site.warnings);
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+  for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
   if (scene.dig.stall) outcome.warnings.push_back({"stalled", describe(*scene.dig.stall)});
   write_files(inputs, machine, scene, outcome);
   return outcome;

@@ -72,7 +72,9 @@ bool has_data_folder(const std::string& folder, const std::string& package_folde
 
 std::string shipped_or_file(const std::string& folder, const std::string& name_or_path,
                             const std::string& package_folder) {
-  if (name_or_path.find_first_of("/.") != std::string::npos || fs::exists(name_or_path)) {
+  std::error_code none;
+  if (name_or_path.find_first_of("/.") != std::string::npos ||
+      fs::exists(fs::symlink_status(name_or_path, none))) {
     return name_or_path;
   }
   try {

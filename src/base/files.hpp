@@ -14,8 +14,9 @@ namespace excavplan {
 /// @throws Error (bad_file) if that fails; the old file then remains
 void write_file(const std::string& path, const std::string& content);
 
-/// @throws Error (bad_file) if the folder that is to hold a file does not exist
-void require_folder_of(const std::string& path);
+/// For a check before long work: leaves the file as it is.
+/// @throws Error (bad_file) if write_file() would fail, a full disk apart
+void require_writable(const std::string& path);
 
 /// The whole content of a regular file. @throws Error (bad_file)
 std::string read_file(const std::string& path);

@@ -18,14 +18,14 @@ namespace excavplan {
 class TaskQueue {
  public:
   struct Task {
-    std::vector<std::size_t> after;                ///< numbers of the tasks it waits for
-    std::function<std::string()> text;             ///< asked then; empty: there is nothing to do
+    std::vector<std::size_t> after;     ///< numbers of the tasks it waits for
+    std::function<std::string()> text;  ///< called when they are done; empty: nothing to do
     std::function<void(const std::string&)> take;  ///< the result
   };
-  /// The result of a task; empty: all is to stop.
+  /// Returns the result of a task; empty: stop all.
   using Worker = std::function<std::string(const std::string& task)>;
 
-  /// Of the tasks that are ready the first is done next, or that so many places on.
+  /// @param offset  which of the ready tasks is done next, modulo their number
   explicit TaskQueue(std::size_t offset = 0) : offset_(offset) {}
 
   /// @return the number of the task

@@ -20,7 +20,7 @@ std::string decimals(double value, int digits);
 /// A human-readable number: at least so many significant digits, never an exponent; "unknown" if
 /// NaN.
 std::string readable(double value, int digits = 3);
-/// "0.451 ± 0.012" with as many decimals as the standard deviation deserves.
+/// "0.451 ± 0.012": the standard deviation with two digits, the value with as many decimals.
 std::string readable(double value, double sd);
 
 /// FNV-1a, 64 bit: detects damage, not manipulation. The text has 16 hexadecimal digits.

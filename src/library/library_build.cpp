@@ -56,6 +56,14 @@ void require_unlike(const std::string& what, const std::vector<Named>& all) {
   }
 }
 
+/// Also if a killed run left it half written.
+bool is_entry_file(const std::string& name) {
+  const std::string end = entry_file_end;
+  const std::size_t at = name.find(end);
+  return at != std::string::npos &&
+         (at + end.size() == name.size() || name.compare(at + end.size(), 6, ".part-") == 0);
+}
+
 /// What the user sees of a build, and whether it was stopped.
 class Watch {
  public:
@@ -154,6 +162,7 @@ class Build {
         throw Error(ErrorKind::bad_file, options_.folder + ": is not a folder and cannot be made");
       }
     }
+    if (!options_.folder.empty()) note_unused_entries();
     std::vector<TaskQueue::Worker> workers(
         thread_count(options_.threads), [this](const std::string& task) {
           return do_task(job_, task, [this](int digs, double best) {
@@ -218,6 +227,21 @@ class Build {
       digs.emplace_back(parent->place.density_percent, parent->first.dig);
     }
     return to_text(first_search(job_, entry.place, digs));
+  }
+
+  /// Says how many entries in the folder belong to builds with other options.
+  void note_unused_entries() {
+    std::set<std::string> own;
+    for (const auto& [place, entry] : all_) own.insert(entry_file_name(job_, entry.place));
+    int others = 0;
+    for (const auto& file : fs::directory_iterator(options_.folder)) {
+      const std::string name = file.path().filename();
+      const std::string entry = name.substr(0, name.find(entry_file_end)) + entry_file_end;
+      if (is_entry_file(name) && own.count(entry) == 0) ++others;
+    }
+    if (others == 0) return;
+    watch_.note(options_.folder + ": " + std::to_string(others) +
+                " entries of other options are not used");
   }
 
   /// Takes what the folder has of an entry.
@@ -373,14 +397,6 @@ class Build {
   std::map<std::tuple<std::size_t, std::size_t, double, double>, Entry> all_;
   std::vector<Entry*> entries_;  ///< of the grid: machine, soil, slope, density
 };
-
-/// Also if a killed run left it half written.
-bool is_entry_file(const std::string& name) {
-  const std::string end = entry_file_end;
-  const std::size_t at = name.find(end);
-  return at != std::string::npos &&
-         (at + end.size() == name.size() || name.compare(at + end.size(), 6, ".part-") == 0);
-}
 
 }  // namespace
 

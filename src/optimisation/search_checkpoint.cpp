@@ -106,7 +106,7 @@ SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOpt
     throw Error(ErrorKind::bad_input,
                 "search: a checkpoint needs the fingerprint of the problem, it is empty");
   }
-  require_folder_of(file_);
+  require_writable(file_);
   if (options.resume && std::filesystem::exists(file_)) {
     load(static_cast<std::size_t>(problem.box.lower.size()));
   }

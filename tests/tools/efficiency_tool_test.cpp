@@ -107,7 +107,7 @@ TEST_F(MeasureEfficiency, LitresPerHourAreMillilitresPerSecond) {
                    18.0);
 }
 
-TEST_F(MeasureEfficiency, PowerThatAJointGivesBackDoesNotCount) {
+TEST_F(MeasureEfficiency, NegativeJointPowerCountsAsZero) {
   // The boom runs from +3 to -1 kW in 4 s: its positive part is a triangle of 3 kW and 3 s. The arm
   // takes 2 kW; the bucket only gives back.
   const std::string joints = log("j.csv", "boom_power_w,arm_power_w,bucket_power_w",
@@ -214,7 +214,7 @@ TEST_F(MeasureEfficiency, PeopleGetALineForEachRunAndTheGain) {
   EXPECT_EQ(result.err, "");
 }
 
-TEST_F(MeasureEfficiency, MistrustsFuelThatNoMachineCouldDoWith) {
+TEST_F(MeasureEfficiency, ImplausiblyLowFuelIsNotTrustworthy) {
   // 1000 times too little: litres taken for millilitres.
   const std::string file = log("a.csv", "fuel_flow_ml_per_s", "0,0.002\n10,0.002\n");
   const Words words = {file, "--volume", "0.4", "--strict", "--json"};
@@ -228,7 +228,7 @@ TEST_F(MeasureEfficiency, MistrustsFuelThatNoMachineCouldDoWith) {
   EXPECT_EQ(run({good, "--volume", "0.45", "--strict"}).code, 0);
 }
 
-TEST_F(MeasureEfficiency, TellsOfAPauseInTheLog) {
+TEST_F(MeasureEfficiency, WarnsOfAGapInTheLog) {
   std::string rows;
   for (int i = 0; i < 50; ++i) rows += std::to_string(0.1 * i) + ",2\n";
   const std::string whole = log("a.csv", "fuel_flow_ml_per_s", rows);
@@ -251,7 +251,7 @@ TEST_F(MeasureEfficiency, TimeMustRise) {
   EXPECT_EQ(message("0,1\n"), "a.csv: holds one row, at least 2 are needed");
 }
 
-TEST_F(MeasureEfficiency, ColumnsMustTellFuelOrEnergyOnce) {
+TEST_F(MeasureEfficiency, ColumnsMustGiveEitherFuelOrEnergy) {
   const auto message = [&](const std::string& columns, const std::string& rows) {
     return refusal(3, {log("a.csv", columns, rows), "--mass", "1"});
   };

@@ -38,7 +38,7 @@ void expect_truth_found(const json& estimate, double truth) {
   EXPECT_GE(high, truth);
 }
 
-TEST_F(Tools, QuickstartScansTellTheDensity) {
+TEST_F(Tools, QuickstartScansGiveTheDensity) {
   const json truth = json::parse(content_of(shipped("quickstart/truth.json")));
   const json estimate = answer("estimate-density", quickstart(folder) + Words{"--strict"});
   expect_truth_found(estimate, number(truth, "/density_percent"));
@@ -50,7 +50,7 @@ class ScansOfSeed : public testing::TestWithParam<int> {};
 
 INSTANTIATE_TEST_SUITE_P(Tools, ScansOfSeed, testing::Range(1, 11));
 
-TEST_P(ScansOfSeed, TellTheDensity) {
+TEST_P(ScansOfSeed, GiveTheDensity) {
   const TemporaryFolder folder;
   const int density = 10 * GetParam() - 5;
   const ScanPair scans = scan_pair(folder, density, GetParam());
@@ -75,7 +75,7 @@ std::string part_of(const TemporaryFolder& folder, const std::string& scan, doub
   return folder.write(fs::path(scan).stem().string() + std::to_string(low) + ".xyz", part);
 }
 
-TEST_F(Tools, SeparateScansOfDigAndDumpTellTheSameAsTheWholeScene) {
+TEST_F(Tools, SeparateScansOfDigAndDumpGiveTheSameAsTheWholeScene) {
   const ScanPair scans = scan_pair(folder, 50, 3);
   const json whole = answer("estimate-density", {scans.before, scans.after});
   const json separate =
@@ -109,7 +109,7 @@ TEST_F(Tools, PaperMethodGivesItsVolumesAndNoTrust) {
   answer("estimate-density", words + Words{"--strict"}, 4);
 }
 
-TEST_F(Tools, AKnownPathFreesTheBulkingFactorOfWhatFellBack) {
+TEST_F(Tools, AKnownPathCorrectsTheBulkingFactorForFallback) {
   const ScanPair scans = scan_pair(folder, 90, 2);
   const double start = number(scans.truth, "/path/start_x_m");
   const Words words = {scans.before, scans.after};
@@ -196,14 +196,21 @@ TEST_F(Tools, ALawFittedToSamplesIsUsed) {
   EXPECT_NEAR(number(estimate, "/density_percent"), 27.5, 5.0);
 }
 
-TEST_F(BadInput, HalfATaskIsRefused) {
+TEST_F(BadInput, IncompleteOptionsAreRefused) {
   const std::string tool = "estimate-density";
   refused(2, "AFTER is missing", tool, {scan});
   refused(2, "BEFORE is missing", tool, {});
+  refused(2, "--dug-path: drag, after 2.700 m: ", tool,
+          {scan, later_scan, "--dug-path", "45deg,0.35m,9m", "--dug-start", "6"});
+  refused(3, "holds fewer than 100 finite points inside --area", tool,
+          {scan, later_scan, "--area", "100,100,101,101"});
   refused(2, "--dug-path and --dug-start must be given together", tool,
           {scan, later_scan, "--dug-start", "6"});
   refused(2, "takes no scans", tool, {scan, later_scan, "--plan-survey", "height=2"});
-  refused(2, "'hight' is not a key of --plan-survey: ", tool, {"--plan-survey", "hight=2"});
+  refused(2,
+          "--plan-survey: 'hight' is not one of sensor, height, offset, volume, depth, area, k, "
+          "frames, moved, target\nSee",
+          tool, {"--plan-survey", "hight=2"});
   refused(2, "frames is 1.5, must be a whole number", tool, {"--plan-survey", "frames=1.5"});
   refused(2, "'height' must be KEY=VALUE", tool, {"--plan-survey", "height"});
 }

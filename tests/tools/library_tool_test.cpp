@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <sys/file.h>
+
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -77,12 +79,17 @@ TEST_F(LibraryTool, SeveralRunsShareAFolder) {
   EXPECT_FALSE(fs::is_empty(cells)) << "its files are kept";
 }
 
-TEST_F(LibraryTool, TakesOfAFolderWhatIsOfTheSameSearch) {
+TEST_F(LibraryTool, UsesOnlyEntriesOfTheSameSearch) {
   const std::string cells = folder_.file("cells");
   const Words other = {"--seed", "2", "--cells", cells, "--out", folder_.file("other.json")};
   EXPECT_EQ(build(grid + other).code, 0);
-  EXPECT_EQ(build(grid + Words{"--cells", cells, "--out", out_}).code, 0);
+  const auto others = std::distance(fs::directory_iterator(cells), fs::directory_iterator());
+  const ProgramResult own = build(grid + Words{"--cells", cells, "--out", out_});
+  EXPECT_EQ(own.code, 0);
+  EXPECT_EQ(own.err,
+            cells + ": " + std::to_string(others) + " entries of other options are not used\n");
   EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_EQ(build(grid + other).err, own.err) << "as many are of this search";
   EXPECT_NE(content_of(folder_.file("other.json")), whole_);
 }
 
@@ -114,23 +121,71 @@ TEST_F(LibraryTool, WhereItWritesIsCheckedBeforeTheSearch) {
   EXPECT_EQ(content_of(file), "mine");
 }
 
+TEST_F(LibraryTool, WhatCannotBeWrittenIsFoundBeforeTheSearch) {
+  fs::create_directory(folder_.file("libraries"));
+  const std::string sand = folder_.file("libraries/zx120-sand.json");
+  for (const std::string& link : {out_, sand}) fs::create_symlink("/nowhere/library.json", link);
+  for (const Words& words : {Words{"--out", out_}, Words{"--out", folder_.file("none/l.json")},
+                             Words{"--soil", "loam,sand", "--out", out_},
+                             Words{"--soil", "loam,sand", "--out", folder_.file("libraries")}}) {
+    const ProgramResult result = build(grid + words);
+    EXPECT_EQ(result.code, 3) << result.err;
+    EXPECT_FALSE(fs::exists(words.back() + ".cells")) << "it was searched";
+  }
+}
+
+TEST_F(LibraryTool, ASecondRunWithTheSameOutIsRefusedAndDisturbsNothing) {
+  const std::string cells = out_ + ".cells";
+  fs::create_directory(cells);
+  const std::string entry = folder_.write("library.json.cells/a.entry.json", "of the first run");
+  const int lock = ::open(folder_.write("library.json.cells/in-use", "").c_str(), O_RDWR);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  const ProgramResult second = build(grid + Words{"--out", out_});
+  EXPECT_EQ(second.code, 3);
+  EXPECT_NE(second.err.find(cells + ": another run with the same --out uses it"),
+            std::string::npos);
+  EXPECT_EQ(content_of(entry), "of the first run");
+  ::close(lock);
+  EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);
+  EXPECT_EQ(content_of(out_), whole_);
+  EXPECT_FALSE(fs::exists(cells));
+}
+
+TEST_F(LibraryTool, ErrorsNameTheOption) {
+  const std::vector<std::pair<Words, std::string>> cases = {
+      {{"--slopes", "0,90deg"}, "--slopes [rad] must rise inside -1 .. 1"},
+      {{"--densities", "20,10"}, "--densities [%] must rise inside 0 .. 100"},
+      {{"--cell", "5"}, "--cell is 5, must be in 0.005 .. 1"},
+      {{"--points", "0"}, "--points must be >= 1"},
+      {{"--points", "1000001"}, "--points is 1000001, must be at most"},
+      {{"--polish", "-1"}, "--polish must be >= 0"},
+      {{"--inherited", "-1", "--densities", "40,50"}, "--inherited must be >= 0"},
+      {{"--method", "paper", "--population", "0"}, "--population must be >= 2"},
+      {{"--method", "paper", "--generations", "-1"}, "--generations must be >= 1"}};
+  for (const auto& [words, message] : cases) {
+    const ProgramResult result = build(words + Words{"--threads", "1", "--out", out_});
+    EXPECT_EQ(result.code, 2);
+    EXPECT_EQ(result.err.find("build-path-library: " + message), 0U) << result.err;
+  }
+}
+
 TEST_F(LibraryTool, LeavesFilesOfOthersAlone) {
   const std::string cells = out_ + ".cells";
   fs::create_directory(cells);
-  for (const char* name : {"thesis.txt", "thesis.json"}) {
-    folder_.write(std::string("library.json.cells/") + name, "years of work");
+  for (const char* name : {"notes.txt", "notes.json"}) {
+    folder_.write(std::string("library.json.cells/") + name, "not an entry");
   }
   EXPECT_EQ(build(grid + Words{"--out", out_}).code, 0);
   EXPECT_EQ(content_of(out_), whole_);
   std::size_t files = 0;
   for (const auto& file : fs::directory_iterator(cells)) {
-    EXPECT_EQ(content_of(file.path()), "years of work");
+    EXPECT_EQ(content_of(file.path()), "not an entry");
     ++files;
   }
   EXPECT_EQ(files, 2U);
 }
 
-TEST_F(LibraryTool, SeedsThatAFileCannotKeepAndOptionsWithoutEffectAreTold) {
+TEST_F(LibraryTool, SeedsTooLargeForTheFileAndOptionsWithoutEffectAreReported) {
   const ProgramResult seed = build(grid + Words{"--seed", "18446744073709551615", "--out", out_});
   EXPECT_EQ(seed.code, 2);
   EXPECT_NE(seed.err.find("must be at most 9007199254740992"), std::string::npos) << seed.err;
@@ -140,7 +195,7 @@ TEST_F(LibraryTool, SeedsThatAFileCannotKeepAndOptionsWithoutEffectAreTold) {
   EXPECT_EQ(content_of(out_), whole_);
 }
 
-TEST_F(LibraryTool, KilledAtRandomMomentsItGoesOnToTheSameBytes) {
+TEST_F(LibraryTool, KilledAtRandomMomentsItResumesToTheSameBytes) {
   Random random(5);
   for (int i = 0; i < 8; ++i) {
     const auto after = std::chrono::microseconds(random.index(80000));
@@ -152,7 +207,7 @@ TEST_F(LibraryTool, KilledAtRandomMomentsItGoesOnToTheSameBytes) {
   EXPECT_FALSE(fs::exists(out_ + ".cells"));
 }
 
-TEST_F(LibraryTool, AnInterruptLeavesWhatResumes) {
+TEST_F(LibraryTool, AnInterruptKeepsTheEntriesForResume) {
   const Words large = {"--densities", "0:2:100", "--out", out_};
   EXPECT_EQ(interrupted("build-path-library", large, " densities, ").code, 75);
   EXPECT_TRUE(fs::exists(out_ + ".cells"));
@@ -225,7 +280,7 @@ TEST_F(LibraryTool, SameBytesForOneToFourRanks) {
 #endif
 }
 
-TEST_F(LibraryTool, ARankThatFailsAloneSaysWhyAndOneSpeaksForSeveral) {
+TEST_F(LibraryTool, OneOfTheRanksThatFailPrintsTheReason) {
 #ifndef EXCAVPLAN_MPIRUN
   GTEST_SKIP() << "no mpirun, or built without MPI";
 #else

@@ -27,7 +27,7 @@ TEST(Colours, RedFallsBlueRisesWhiteStays) {
   EXPECT_EQ(diverging_colour(-9.0), diverging_colour(-1.0));
 }
 
-TEST(RoundUp, FindsTheNextHandsomeNumber) {
+TEST(RoundUp, FindsTheNextRoundNumber) {
   EXPECT_DOUBLE_EQ(round_up(0.41), 0.5);
   EXPECT_DOUBLE_EQ(round_up(0.5), 0.5);
   EXPECT_DOUBLE_EQ(round_up(81.0), 100.0);

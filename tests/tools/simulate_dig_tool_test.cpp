@@ -74,7 +74,7 @@ const std::string history_header =
     "phase,travelled_m,boom_rad,arm_rad,bucket_rad,soil_x_n,soil_z_n,boom_torque_n_m,"
     "arm_torque_n_m,bucket_torque_n_m,bucket_fill_m3";
 
-TEST_F(Tools, ForceHistoryTellsThePeaksOfTheResult) {
+TEST_F(Tools, ForceHistoryHasThePeaksOfTheResult) {
   const std::string file = folder.file("history.csv");
   const json result = answer("simulate-dig", {"--density", "70", "--history", file});
   const std::string csv = content_of(file);
@@ -252,8 +252,7 @@ TEST_F(BadInput, DumpPointsOnOrTooNearTheDigAreRefused) {
   const auto dig = [](const std::string& place) {
     return Words{"--density", "40", "--dump-at", place};
   };
-  refused(2,
-          "the dump point 5,0 is 0.00 m from the strip of this dig (x = 3.43 .. 6.05 m, y = -0.350",
+  refused(2, "--dump-at 5,0 is 0.00 m from the strip of this dig (x = 3.43 .. 6.05 m, y = -0.350",
           "simulate-dig", dig("5,0") + Words{"--plot", plot});
   const Machine machine = load_machine(shipped("machines/zx120.json"));
   const SoilKind loam = load_soil(shipped("soils/loam.json"));

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include <excavplan/data_files.hpp>
@@ -127,7 +128,7 @@ TEST(Tool, OptionsMayStandBeforeAndAfterPositionals) {
   }
 }
 
-TEST(Tool, MisspeltOptionIsToldBeforeTheMissingOne) {
+TEST(Tool, MisspeltOptionIsReportedBeforeTheMissingOne) {
   for (const char* misspelt : {"--denisty", "--densty", "-density", "--dens", "--Density"}) {
     const Probe probe = run({"a.pcd", misspelt, "40"});
     EXPECT_EQ(probe.code, 2);
@@ -182,7 +183,7 @@ TEST(Tool, PeopleGetLinesAndQuietNone) {
   EXPECT_EQ(quiet.out + quiet.err, "");
 }
 
-TEST(Tool, OnlyStrictTurnsMistrustIntoACode) {
+TEST(Tool, OnlyStrictExitsWithFour) {
   Outcome outcome;
   outcome.trustworthy = false;
   EXPECT_EQ(run({"a", "--density", "4"}, outcome).code, 0);
@@ -196,7 +197,8 @@ TEST(Tool, HelpAndVersionNeedNothingElse) {
   const Probe help = run({"--help"});
   EXPECT_EQ(help.code, 0);
   for (const char* part : {"Usage: probe BEFORE [OPTIONS]", "--density PERCENT", "[%] (required)",
-                           "edge of a cell [m] (default: 0.05)", "probe a.pcd", "--strict"}) {
+                           "--method surface|paper", "edge of a cell [m] (default: 0.05)",
+                           "probe a.pcd", "--strict"}) {
     EXPECT_NE(help.out.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(run({"--version"}).out.rfind("probe (excavplan) ", 0), 0U);
@@ -218,6 +220,23 @@ TEST(Tool, ErrorsOfTheLibraryHaveTheirCodes) {
   EXPECT_EQ(code_of([] { throw Error(ErrorKind::bad_input, "cell must be > 0"); }), 2);
   EXPECT_EQ(code_of([] { throw Error(ErrorKind::bad_file, "a.pcd: no such file"); }), 3);
   EXPECT_EQ(code_of([] { throw std::logic_error("cannot be"); }), 1);
+  EXPECT_EQ(code_of([] { throw std::filesystem::filesystem_error("", "/no/such", {}); }), 3);
+}
+
+TEST(Tool, PlacesThatCannotBeWrittenAreFoundBeforeTheWork) {
+  const Probe probe = run({"a.pcd", "--density", "4", "--plot", "/nowhere/x.svg"});
+  EXPECT_EQ(probe.code, 3);
+  EXPECT_EQ(probe.err, "probe: /nowhere/x.svg: there is no folder /nowhere\n");
+  EXPECT_FALSE(probe.worked);
+}
+
+TEST(Tool, ErrorsOfTheLibraryNameTheOption) {
+  EXPECT_EQ(error_of([] {
+              naming_options({{"the dump point", "--dump-at"}}, [] {
+                throw Error(ErrorKind::bad_input, "the dump point 5,0 is in the pit");
+              });
+            }),
+            "--dump-at 5,0 is in the pit");
 }
 
 TEST(ShippedFiles, AreFoundByNameAndFilesByPath) {

@@ -123,14 +123,14 @@ TEST_P(EveryTool, HelpNamesEveryOptionAndShowsExamples) {
   EXPECT_TRUE(contains(help.out.substr(examples), "  " + tool + " "));
 }
 
-TEST_P(EveryTool, TellsItsVersion) {
+TEST_P(EveryTool, PrintsItsVersion) {
   const ProgramResult version = run_program(tool, {"--version"});
   EXPECT_EQ(version.code, 0);
   EXPECT_EQ(version.out.rfind(tool + " (excavplan) ", 0), 0U) << version.out;
   EXPECT_EQ(version.err, "");
 }
 
-TEST_P(EveryTool, RefusesAMisspeltOptionAndSaysWhichWasMeant) {
+TEST_P(EveryTool, RefusesAMisspeltOptionAndSuggestsOne) {
   const ProgramResult refusal = run_program(tool, {GetParam().misspelt, "40"});
   EXPECT_EQ(refusal.code, 2);
   EXPECT_EQ(refusal.out, "");
@@ -207,6 +207,18 @@ TEST_F(BadInput, NamesThatAreNotShippedAreRefused) {
   refused(3, "letter.txt: not valid JSON", "estimate-density", {scan, later_scan, "--law", letter});
 }
 
+TEST_F(BadInput, NamesThatAreLoopsOrTooLongAreRefused) {
+  const std::string loop = folder.file("loop");
+  fs::create_symlink("loop", loop);
+  const std::string letters(300, 'a');
+  refused(3, loop + ": no such file, or not readable", "simulate-dig",
+          {"--density", "40", "--soil", loop});
+  refused(2, letters + "' is neither a file nor one of the machines", "plan-path",
+          {"--density", "40", "--machine", letters});
+  refused(3, loop + ": Too many levels of symbolic links", "build-path-library",
+          {"--out", folder.file("library.json"), "--cells", loop});
+}
+
 TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
   const std::string png = folder.file("plot.png");
   refused(2, "must end in .svg", "estimate-density", {scan, later_scan, "--plot", png});
@@ -219,6 +231,8 @@ TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
           {"--density", "40", "--trajectory", folder.file("none/dig.csv")});
   refused(3, "there is no folder", "simulate-dig",
           {"--density", "40", "--history", folder.file("none/dig.csv")});
+  refused(3, "/dev/full: cannot be written: No space left on device", "calibrate-density",
+          {"--densities", "20", "--out", "/dev/full"});
 }
 
 TEST_F(BadInput, SurplusAndRepeatedArgumentsAreRefused) {
@@ -236,7 +250,7 @@ TEST(XmlFault, IsFound) {
   EXPECT_NE(xml_fault("<a>sand & loam, more or less</a>"), "");
 }
 
-TEST_F(Tools, FiguresAreWellFormedAndShowWhatTheySay) {
+TEST_F(Tools, FiguresAreWellFormedAndShowTheirLabels) {
   const std::string file = folder.file("figure.svg");
   answer("estimate-density", quickstart(folder) + Words{"--plot", file});
   expect_figure(file, {"hole", "heap"});

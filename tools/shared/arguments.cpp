@@ -28,15 +28,24 @@ Integer parse_integer(const std::string& what, const std::string& text) {
   return value;
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string joined(const std::vector<std::string>& words, const std::string& separator) {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
   return text;
 }
 
 }  // namespace
 
 void usage_error(const std::string& message) { throw Error(ErrorKind::bad_input, message); }
+
+std::string with_option_names(std::string message, const OptionNames& names) {
+  for (const auto& [words, option] : names) {
+    if (const std::size_t at = message.find(words); at != std::string::npos) {
+      message.replace(at, words.size(), option);
+    }
+  }
+  return message;
+}
 
 void Arguments::add(Entry entry) { entries_.push_back(std::move(entry)); }
 
@@ -119,10 +128,10 @@ void Arguments::option(const std::string& name, Eigen::Vector2d& value, const st
 
 void Arguments::choice(const std::string& name, std::string& value,
                        const std::vector<std::string>& words, const std::string& help) {
-  add({name, "WORD", help + ": " + joined(words), value, false, false,
+  add({name, joined(words, "|"), help, value, false, false,
        [&value, name, words](const std::string& text) {
          if (std::find(words.begin(), words.end(), text) == words.end()) {
-           usage_error("--" + name + ": '" + text + "' is not one of " + joined(words));
+           usage_error("--" + name + ": '" + text + "' is not one of " + joined(words, ", "));
          }
          value = text;
        }});
@@ -137,6 +146,17 @@ void Arguments::file(const std::string& name, std::optional<std::string>& value,
                      const std::string& help) {
   add({name, "FILE", help, value.value_or(""), false, false,
        [&value](const std::string& text) { value = text; }});
+}
+
+void Arguments::output(const std::string& name, std::string& value, const std::string& help) {
+  file(name, value, help);
+  entries_.back().output = true;
+}
+
+void Arguments::output(const std::string& name, std::optional<std::string>& value,
+                       const std::string& help) {
+  file(name, value, help);
+  entries_.back().output = true;
 }
 
 void Arguments::text(const std::string& name, const std::string& placeholder, std::string& value,
@@ -173,6 +193,7 @@ void Arguments::plot(std::optional<std::string>& path, const std::string& shows)
          }
          path = text;
        }});
+  entries_.back().output = true;
 }
 
 void Arguments::require(const std::string& name) {

@@ -6,8 +6,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <excavplan/error.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_parameters.hpp>
 
@@ -17,6 +19,22 @@ namespace excavplan::tools {
 
 /// @throws Error (bad_input)
 [[noreturn]] void usage_error(const std::string& message);
+
+/// What the library calls an input in its messages, and the option that sets it.
+using OptionNames = std::vector<std::pair<std::string, std::string>>;
+
+/// A message of the library with the names of options.
+std::string with_option_names(std::string message, const OptionNames& names);
+
+/// Runs `work`; an error then names the options.
+template <typename Work>
+auto naming_options(const OptionNames& names, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(error.kind(), with_option_names(error.what(), names));
+  }
+}
 
 /// The options of a tool. Each is bound to a variable that holds its default, which the help
 /// shows. Names are without the dashes.
@@ -31,6 +49,7 @@ class Arguments {
     bool positional = false;
     bool required = false;
     Assign assign;
+    bool output = false;  ///< a file to write
   };
 
   void positional(const std::string& name, std::string& value, const std::string& help);
@@ -56,6 +75,9 @@ class Arguments {
               const std::string& help);
   void file(const std::string& name, std::string& value, const std::string& help);
   void file(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  /// A file to write; whether it can be written is checked before the work.
+  void output(const std::string& name, std::string& value, const std::string& help);
+  void output(const std::string& name, std::optional<std::string>& value, const std::string& help);
   /// A text that is not a file: a name, a list of its own syntax.
   void text(const std::string& name, const std::string& placeholder, std::string& value,
             const std::string& help);

@@ -16,7 +16,7 @@ DensityLaw law_named(const std::string& name);
 
 Outcome estimate_outcome(const DensityEstimate& estimate);
 
-/// Adds what the method that does not count makes of the same scans.
+/// Adds the result of the other method for the same scans.
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);
 
 }  // namespace excavplan::tools

@@ -28,12 +28,12 @@ const char* colour(DigPhase phase) {
   return "#000000";
 }
 
-struct ZoneLook {
+struct ZoneStyle {
   const char* name;
   Style outline;
 };
 
-ZoneLook look(ZoneKind kind) {
+ZoneStyle style_of(ZoneKind kind) {
   switch (kind) {
     case ZoneKind::dig:
       return {"hole", {"#000000", 2.0}};
@@ -100,8 +100,8 @@ void draw_zones(Panel& panel, const VolumeChange& change, const AreaChange& area
     const ChangeZone& zone = change.zones[i];
     const int index = static_cast<int>(i);
     if (!(area.zone == index).any()) continue;
-    const ZoneLook looks = look(zone.kind);
-    panel.strokes(outline(area, index), looks.outline, looks.name);
+    const ZoneStyle style = style_of(zone.kind);
+    panel.strokes(outline(area, index), style.outline, style.name);
     const bool largest_of_kind =
         std::none_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& other) {
           return other.kind == zone.kind &&
@@ -112,7 +112,7 @@ void draw_zones(Panel& panel, const VolumeChange& change, const AreaChange& area
     const Eigen::Vector2d middle((zone.extent.x_min + zone.extent.x_max) / 2.0,
                                  (zone.extent.y_min + zone.extent.y_max) / 2.0);
     panel.label(middle,
-                std::string(looks.name) + ' ' + readable(std::abs(zone.volume.value)) + " m³");
+                std::string(style.name) + ' ' + readable(std::abs(zone.volume.value)) + " m³");
   }
 }
 

@@ -36,11 +36,23 @@ void add_lines(const PathLibrary& library, const std::string& file, Outcome& out
 
 }  // namespace
 
-void require_library_place(const std::string& out, bool several) {
-  require_folder_of(out);
-  if (!fs::exists(out) || fs::is_directory(out) == several) return;
-  throw Error(ErrorKind::bad_file, out + (several ? ": is a file, several libraries need a folder"
-                                                  : ": is a folder, the library needs a file"));
+void require_library_place(const LibraryGrid& grid, const std::string& out) {
+  std::error_code none;
+  const bool several = grid.machines.size() * grid.soils.size() > 1;
+  const bool folder = fs::is_directory(out, none);
+  if (folder != several && fs::exists(fs::symlink_status(out, none))) {
+    throw Error(ErrorKind::bad_file, out + (several ? ": is a file, several libraries need a folder"
+                                                    : ": is a folder, the library needs a file"));
+  }
+  if (!folder) return require_writable(out);
+  for (const Machine& machine : grid.machines) {
+    for (const SoilKind& soil : grid.soils) {
+      PathLibrary library;
+      library.machine = machine.name;
+      library.soil = soil.name;
+      require_writable(out + "/" + file_name(library));
+    }
+  }
 }
 
 Outcome written_libraries(const std::vector<PathLibrary>& libraries, const std::string& out) {

@@ -14,9 +14,9 @@
 
 namespace excavplan::tools {
 
-/// Checks of `--out` made before the search.
+/// Checks before the search that the libraries of the grid can be written.
 /// @throws Error (bad_file)
-void require_library_place(const std::string& out, bool several);
+void require_library_place(const LibraryGrid& grid, const std::string& out);
 
 /// Writes a library to the file, several to a folder of that name.
 Outcome written_libraries(const std::vector<PathLibrary>& libraries, const std::string& out);

@@ -47,8 +47,7 @@ LoggedDig RunInputs::dig(const ScanFrames& frames) const {
 void RunInputs::check() const {
   const auto go_together = [&](bool broken, const std::string& name, const std::string& other) {
     if (broken) {
-      throw Error(ErrorKind::bad_input,
-                  option(name) + " needs " + option(other) + ", which is missing");
+      usage_error(option(name) + " needs " + option(other) + ", which is missing");
     }
   };
   go_together(volume_sd && !volume, "volume-sd", "volume");
@@ -57,9 +56,8 @@ void RunInputs::check() const {
   go_together(dump_after && !dump_before, "dump-after", "dump-before");
   const int ways = int{volume.has_value()} + int{mass.has_value()} + int{dump_before.has_value()};
   if (ways != 1) {
-    throw Error(ErrorKind::bad_input, "payload of " + *log + ": give exactly one of " +
-                                          option("volume") + ", " + option("mass") + ", or " +
-                                          option("dump-before") + " with " + option("dump-after"));
+    usage_error("payload of " + *log + ": give exactly one of " + option("volume") + ", " +
+                option("mass") + ", or " + option("dump-before") + " with " + option("dump-after"));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "shared/arguments.hpp"
 #include "shared/results.hpp"
 
 namespace excavplan::tools {
@@ -103,15 +104,14 @@ GroundDensity read_density(const std::string& file) {
 }  // namespace
 
 void check(const DensityInput& input) {
-  const auto refuse = [](const std::string& text) { throw Error(ErrorKind::bad_input, text); };
   if (input.sd && *input.sd < 0.0) {
-    refuse("--density-sd: " + number_text(*input.sd) + " must be at least 0");
+    usage_error("--density-sd: " + number_text(*input.sd) + " must be at least 0");
   }
   if (input.percent.has_value() == input.file.has_value()) {
-    refuse("give either --density or --density-from");
+    usage_error("give either --density or --density-from");
   }
   if (input.percent && !(*input.percent >= 0.0 && *input.percent <= 100.0)) {
-    refuse("--density: " + number_text(*input.percent) + " % is outside 0 .. 100");
+    usage_error("--density: " + number_text(*input.percent) + " % is outside 0 .. 100");
   }
 }
 
@@ -119,6 +119,16 @@ GroundDensity density_of(const DensityInput& input) {
   GroundDensity density = input.percent ? GroundDensity(*input.percent) : read_density(*input.file);
   density.sd_percent = input.sd.value_or(density.sd_percent);
   return density;
+}
+
+std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input) {
+  std::vector<Warning> warnings = plan.warnings;
+  for (Warning& warning : warnings) {
+    const bool of_density =
+        warning.code == "density_not_trustworthy" || warning.code == "law_of_other_soil";
+    if (of_density && input.file) warning.message = *input.file + ": " + warning.message;
+  }
+  return warnings;
 }
 
 nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& density,

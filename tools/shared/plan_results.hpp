@@ -27,6 +27,9 @@ void check(const DensityInput& input);
 /// @throws Error (bad_file) naming file, key, value and rule
 GroundDensity density_of(const DensityInput& input);
 
+/// Those of the plan; where they are about a density from a file they name it.
+std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input);
+
 /// All keys of plan-path but the time it took; "path" is null if there is no dig.
 /// @param objective  that the dig was searched for
 nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& density,

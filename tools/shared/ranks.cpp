@@ -29,10 +29,10 @@ namespace excavplan::tools {
 namespace {
 
 constexpr std::chrono::microseconds between_polls(200);
-// The launcher drops what it has not passed on when it takes the ranks down.
-constexpr std::chrono::milliseconds to_be_heard(300);
+// On an abort the launcher discards output that it has not forwarded.
+constexpr std::chrono::milliseconds before_abort(300);
 
-/// What a stream is given while this lives.
+/// Collects what is written to a stream, for as long as it exists.
 class Captured {
  public:
   explicit Captured(std::ostream& stream) : stream_(stream), before_(stream.rdbuf(text_.rdbuf())) {}
@@ -48,7 +48,7 @@ class Captured {
   std::streambuf* before_;
 };
 
-/// The answer of a worker as text: a sign, and the result or what it threw.
+/// The answer of a worker as text: a character for its kind, then the result or the error.
 std::string answer_of(const LibraryWorker& worker, const std::string& task) {
   try {
     return "+" + worker(task);
@@ -92,19 +92,24 @@ class MpiRanks : public Ranks {
       for (int lane = 0; lane < lanes_; ++lane) {
         all.emplace_back([this, rank, lane](const std::string& task) {
           send(rank, lane, task);
-          return result_in(received(rank, lane), rank);
+          return result_in(received(rank, lane).text, rank);
         });
       }
     }
     return all;
   }
 
+  /// Each thread takes the tasks of any lane, so that fewer threads do them too.
   void serve(const LibraryWorker& worker) override {
     const auto lanes = static_cast<unsigned>(lanes_);
-    parallel_for(lanes, lanes, [&](std::size_t i) {
-      const int lane = static_cast<int>(i);
-      for (std::string task = received(0, lane); !task.empty(); task = received(0, lane)) {
-        send(0, lane, answer_of(worker, task));
+    parallel_for(lanes, lanes, [&](std::size_t) {
+      try {
+        for (Message task = received(0, MPI_ANY_TAG); !task.text.empty();
+             task = received(0, MPI_ANY_TAG)) {
+          send(0, task.lane, answer_of(worker, task.text));
+        }
+      } catch (const std::exception& e) {
+        fail(1, std::string("build-path-library: ") + e.what());  // rank 0 waits for the answer
       }
     });
   }
@@ -147,22 +152,23 @@ class MpiRanks : public Ranks {
     wait_for_the_end();
   }
 
-  /// Says why, as rank 0 has done itself, and takes down all ranks.
+  /// Prints the reason, which rank 0 has printed already, and aborts all ranks.
   [[noreturn]] void fail(int code, const std::string& complaint) {
     std::istringstream lines(rank_ == 0 ? "" : complaint);
     for (std::string line; std::getline(lines, line);) {
       std::fprintf(stderr, "rank %d: %s\n", rank_, line.c_str());
     }
-    std::this_thread::sleep_for(to_be_heard);
+    std::this_thread::sleep_for(before_abort);
+    const std::lock_guard<std::mutex> lock(mutex_);
     MPI_Abort(MPI_COMM_WORLD, code);
     std::abort();
   }
 
   [[noreturn]] static void wait_for_the_end() {
-    for (;;) std::this_thread::sleep_for(to_be_heard);
+    for (;;) std::this_thread::sleep_for(before_abort);
   }
 
-  // Every thread of this process comes here: one at a time, and not for long.
+  // Called by several threads; the mutex is held for single MPI calls only.
 
   void send(int rank, int lane, const std::string& text) {
     MPI_Request request = MPI_REQUEST_NULL;
@@ -178,7 +184,13 @@ class MpiRanks : public Ranks {
     }
   }
 
-  std::string received(int rank, int lane) {
+  struct Message {
+    int lane = 0;
+    std::string text;
+  };
+
+  /// @param lane  or MPI_ANY_TAG
+  Message received(int rank, int lane) {
     for (;; std::this_thread::sleep_for(between_polls)) {
       const std::lock_guard<std::mutex> lock(mutex_);
       int there = 0;
@@ -187,9 +199,10 @@ class MpiRanks : public Ranks {
       if (there == 0) continue;
       int length = 0;
       MPI_Get_count(&status, MPI_CHAR, &length);
-      std::string text(static_cast<std::size_t>(length), ' ');
-      MPI_Recv(text.data(), length, MPI_CHAR, rank, lane, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-      return text;
+      Message message{status.MPI_TAG, std::string(static_cast<std::size_t>(length), ' ')};
+      MPI_Recv(message.text.data(), length, MPI_CHAR, rank, message.lane, MPI_COMM_WORLD,
+               MPI_STATUS_IGNORE);
+      return message;
     }
   }
 
@@ -201,8 +214,8 @@ class MpiRanks : public Ranks {
   std::mutex mutex_;
 };
 
-/// Set by the launchers of Open MPI and MPICH, and by Slurm's srun. Starting MPI without one of
-/// them takes a good part of a second.
+/// Set by the launchers of Open MPI and MPICH, and by Slurm's srun. Without one of them MPI is not
+/// started: that takes longer than a small build.
 bool launched() {
   const char* const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK"};
   return std::any_of(std::begin(names), std::end(names),

@@ -9,15 +9,15 @@
 
 namespace excavplan::tools {
 
-/// The processes that mpirun started, this one among them: rank 0 does what a single process would
-/// do, and the others work for it. All MPI of excavplan is behind it.
+/// The processes that mpirun started: rank 0 does what a single process does, the others work for
+/// it. Nothing else in excavplan uses MPI.
 class Ranks {
  public:
   virtual ~Ranks() = default;
   virtual int rank() const = 0;
 
-  /// Waits for all ranks. Where one has failed or was started with other options, that one says so,
-  /// "rank 3: " before each line, and no rank returns from here.
+  /// Waits for all ranks. If one has failed or was started with other options, it prints the
+  /// reason, with "rank 3: " before each line, and all ranks end.
   /// @param threads  that each of the other ranks works with
   virtual void agree(unsigned threads) = 0;
 
@@ -31,8 +31,8 @@ class Ranks {
 /// @param ranks  none if no MPI launcher started it, or it was built without MPI
 using RankedProgram = std::function<int(int argc, const char* const* argv, Ranks* ranks)>;
 
-/// Runs the program in every rank. Rank 0 speaks: what the others print is dropped, unless they
-/// alone fail. Of several ranks that fail one says why.
+/// Runs the program in every rank. Only rank 0 prints; output of the others is discarded, unless
+/// they fail and rank 0 does not. Of several ranks that fail one prints the reason.
 int run_ranked(int argc, const char* const* argv, const RankedProgram& program);
 
 }  // namespace excavplan::tools

@@ -11,8 +11,6 @@
 namespace excavplan::tools {
 namespace {
 
-[[noreturn]] void refuse(const std::string& text) { throw Error(ErrorKind::bad_input, text); }
-
 /// "energy", "priced:WATT"
 std::string usage(const DigGoalInfo& goal) {
   return goal.word + (goal.parameter ? ":" + goal.parameter_name : "");
@@ -40,7 +38,7 @@ DigObjective objective_of(const SearchInputs& inputs) {
     }
     return objective;
   }
-  refuse("--goal: '" + inputs.goal + "' is none of " + goals_text(", ", usage));
+  usage_error("--goal: '" + inputs.goal + "' is none of " + goals_text(", ", usage));
 }
 
 std::string range_option(const DigParameterInfo& info) {
@@ -54,7 +52,7 @@ DigBounds bounds_of(const SearchInputs& inputs) {
     const DigParameterInfo& info = dig_parameter_table()[i];
     const std::string option = "--" + range_option(info);
     const std::vector<std::string> ends = split(*inputs.ranges[i], ',');
-    if (ends.size() != 2) refuse(option + ": '" + *inputs.ranges[i] + "' is not FROM,TO");
+    if (ends.size() != 2) usage_error(option + ": '" + *inputs.ranges[i] + "' is not FROM,TO");
     bounds.lower.*info.field = parse_quantity(option, ends[0], quantity_of(info));
     bounds.upper.*info.field = parse_quantity(option, ends[1], quantity_of(info));
   }
@@ -146,9 +144,9 @@ DigSearchOptions search_options(const SearchInputs& inputs, Console& console) {
 }
 
 void check(const SearchInputs& inputs) {
-  if (inputs.resume && !inputs.checkpoint) refuse("--resume needs --checkpoint");
+  if (inputs.resume && !inputs.checkpoint) usage_error("--resume needs --checkpoint");
   if (inputs.evaluations < 0) {
-    refuse("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
+    usage_error("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
   }
   objective_of(inputs);
   bounds_of(inputs);

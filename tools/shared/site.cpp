@@ -6,19 +6,18 @@
 
 #include <excavplan/survey/scan_terrain.hpp>
 
-#include "shared/quantity.hpp"
+#include "shared/arguments.hpp"
 #include "shared/scans.hpp"
 
 namespace excavplan::tools {
 
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
   if (terrain.frame && !terrain.cloud) {
-    throw Error(ErrorKind::bad_input, "--terrain-frame needs --terrain");
+    usage_error("--terrain-frame needs --terrain");
   }
   if (!(cell_size >= finest_cell && cell_size <= coarsest_cell)) {
-    throw Error(ErrorKind::bad_input, "--cell: the cell size is " + number_text(cell_size) +
-                                          " m, must be in " + number_text(finest_cell) + " .. " +
-                                          number_text(coarsest_cell) + " m");
+    usage_error("--cell: the cell size is " + number_text(cell_size) + " m, must be in " +
+                number_text(finest_cell) + " .. " + number_text(coarsest_cell) + " m");
   }
   if (!terrain.cloud) return {undisturbed(flat_ground(extent, cell_size)), {}};
   Scan scan;

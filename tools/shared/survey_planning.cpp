@@ -36,8 +36,12 @@ constexpr std::array<Key, 6> keys = {{
     {"k", Quantity::ratio, &SurveyPlan::bulking_factor, "bulking factor expected"},
 }};
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw Error(ErrorKind::bad_input, "--plan-survey: " + what);
+[[noreturn]] void plan_error(const std::string& what) { usage_error("--plan-survey: " + what); }
+
+std::string key_names() {
+  std::string text = "sensor";
+  for (const Key& key : keys) text += std::string(", ") + key.name;
+  return text + ", frames, moved, target";
 }
 
 void set(Request& request, const std::string& name, const std::string& value) {
@@ -51,21 +55,21 @@ void set(Request& request, const std::string& name, const std::string& value) {
     try {
       request.plan.sensor = sensor_of_word(value);
     } catch (const Error& error) {
-      refuse(error.what());
+      plan_error(error.what());
     }
   } else if (name == "frames") {
     const double frames = parse_quantity(what, value, Quantity::ratio);
     if (frames != std::floor(frames) || !(frames >= 1.0 && frames <= 1e6)) {
-      refuse("frames is " + value + ", must be a whole number of at least 1");
+      plan_error("frames is " + value + ", must be a whole number of at least 1");
     }
     request.plan.frames = static_cast<int>(frames);
   } else if (name == "moved") {
-    if (value != "yes" && value != "no") refuse("moved is '" + value + "', must be yes or no");
+    if (value != "yes" && value != "no") plan_error("moved is '" + value + "', must be yes or no");
     request.plan.registered = value == "yes";
   } else if (name == "target") {
     request.target = parse_quantity(what, value, Quantity::percent);
   } else {
-    refuse("'" + name + "' is not a key of --plan-survey: " + survey_keys());
+    plan_error("'" + name + "' is not one of " + key_names());
   }
 }
 
@@ -74,7 +78,7 @@ Request parse(const std::string& text) {
   std::istringstream stream(text);
   for (std::string pair; std::getline(stream, pair, ',');) {
     const std::size_t equals = pair.find('=');
-    if (equals == std::string::npos) refuse("'" + pair + "' must be KEY=VALUE");
+    if (equals == std::string::npos) plan_error("'" + pair + "' must be KEY=VALUE");
     set(request, pair.substr(0, equals), pair.substr(equals + 1));
   }
   return request;

@@ -8,12 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/plan/plan_dig.hpp>
 
+#include "base/files.hpp"
 #include "base/json.hpp"
 
 namespace excavplan::tools {
@@ -226,6 +228,9 @@ void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& wor
       usage_error(shown_name(entries[i]) + " is missing: " + entries[i].help);
     }
   }
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].output && words.of_entry[i].times > 0) require_writable(words.of_entry[i].text);
+  }
 }
 
 // ---- Running ----------------------------------------------------------------------------------
@@ -337,6 +342,9 @@ int run_tool(int argc, const char* const* argv, const About& about,
     if (error.kind() == ErrorKind::bad_file) return 3;
     std::cerr << "See " << about.name << " --help\n";
     return 2;
+  } catch (const std::filesystem::filesystem_error& error) {
+    report(error.path1().string() + ": " + error.code().message());
+    return 3;
   } catch (const std::bad_alloc&) {
     report("out of memory");
   } catch (const std::exception& error) {

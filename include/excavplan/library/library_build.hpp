@@ -76,8 +76,8 @@ struct LibraryBuildOptions {
   std::string folder;
   /// After every dig, batch of digs and entry, one call at a time, from any thread; false stops.
   std::function<bool(const LibraryProgress&)> progress;
-  /// For people: a file in the folder that is not what it should be, and is computed again. Never
-  /// called at once with itself or `progress`, from any thread.
+  /// For people: files in the folder that are not used, because they are of other options, or
+  /// damaged and computed again. Never called at once with itself or `progress`, from any thread.
   std::function<void(const std::string&)> note;
 };
 
