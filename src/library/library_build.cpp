@@ -92,21 +92,6 @@ class Watch {
   std::atomic<bool> stopped_{false};
 };
 
-/// The value midway between the middle two of some places, by the polynomial of the logarithm
-/// through all of them.
-/// @param known  up to four places and their values > 0
-double expected_midway(const std::vector<std::pair<double, double>>& known, double place) {
-  double sum = 0.0;
-  for (const auto& [own, value] : known) {
-    double weight = std::log(value);
-    for (const auto& [other, unused] : known) {
-      if (other != own) weight *= (place - other) / (own - other);
-    }
-    sum += weight;
-  }
-  return std::exp(sum);
-}
-
 /// Of what is looked up midway between two digs.
 /// @param best  worth of the best dig there
 /// @param measured  worths there of their mix and, if they are far apart, of both
@@ -337,7 +322,7 @@ class Build {
                   }
                   below.*line.to_next =
                       interpolation(objective, below.found.dig, above.found.dig,
-                                    expected_midway(known, middle.*line.along), answer.measured);
+                                    log_polynomial(known, middle.*line.along), answer.measured);
                   below.found.evaluations += answer.evaluations;
                 }});
   }

@@ -56,23 +56,11 @@ std::string identity(const LibraryJob& job, const LibraryPlace& place) {
          describe(search) + ", start " + describe(DigSearchOptions{}.start_rule);
 }
 
-// In the order of AnchoredSearch. NOLINTNEXTLINE(bugprone-easily-swappable-parameters)
-DigSearchOptions memetic(int points, int basins, int polish_evaluations) {
-  MemeticSearch method;
-  method.first_generation = points;
-  method.generations = 0;
-  method.basins = basins;
-  method.polish_evaluations = polish_evaluations;
-  DigSearchOptions options;
-  options.method = method;
-  return options;
-}
-
 /// From nothing.
 /// @param effort  number of times as many points as usual
 DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
   if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
-    return memetic(effort * anchored->points, anchored->basins, anchored->polish_evaluations);
+    return polish_search(effort * anchored->points, anchored->basins, anchored->polish_evaluations);
   }
   DigSearchOptions options;
   options.method = std::get<GeneticAlgorithm>(search.method);
@@ -83,7 +71,7 @@ DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
 DigSearchOptions warm_search(const LibrarySearch& search,
                              const std::vector<DigParameters>& starts) {
   const int evaluations = std::get<AnchoredSearch>(search.method).inherited_evaluations;
-  DigSearchOptions options = memetic(0, 1, evaluations / 2);
+  DigSearchOptions options = polish_search(0, 1, evaluations / 2);
   options.start = starts;
   options.stop.evaluations = evaluations;
   return options;
@@ -182,9 +170,11 @@ LibraryTask first_search(const LibraryJob& job, const LibraryPlace& place,
                                      info.lower, info.upper);
     }
     task.starts.push_back(there);
-    task.expected = (1.0 - (share > 0.0 ? slack_between : slack_beyond)) *
-                    std::exp(line(std::log(job.search.objective.rank(near)),
-                                  std::log(job.search.objective.rank(far))));
+    const DigObjective& objective = job.search.objective;
+    task.expected =
+        (1.0 - (share > 0.0 ? slack_between : slack_beyond)) *
+        log_polynomial({{near_density, objective.rank(near)}, {far_density, objective.rank(far)}},
+                       place.density_percent);
   }
   task.starts.push_back(near.parameters);
   return task;

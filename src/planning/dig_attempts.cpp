@@ -9,6 +9,18 @@
 
 namespace excavplan {
 
+// NOLINTNEXTLINE(bugprone-easily-swappable-parameters)
+DigSearchOptions polish_search(int points, int basins, int polish_evaluations) {
+  MemeticSearch method;
+  method.first_generation = points;
+  method.generations = 0;
+  method.basins = basins;
+  method.polish_evaluations = polish_evaluations;
+  DigSearchOptions options;
+  options.method = method;
+  return options;
+}
+
 DigAttempts::DigAttempts(const Machine& machine, const DigObjective& objective,
                          std::unique_ptr<const SoilSimulator> simulator, Terrain ground,
                          const Progress& progress)

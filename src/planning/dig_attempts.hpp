@@ -14,6 +14,11 @@
 
 namespace excavplan {
 
+/// A first generation and the polish of its best basins, or without points of the digs given; in
+/// the order of AnchoredSearch.
+// NOLINTNEXTLINE(bugprone-easily-swappable-parameters)
+DigSearchOptions polish_search(int points, int basins, int polish_evaluations);
+
 /// Keeps the best dig of all searches, and counts all digs.
 class DigAttempts {
  public:

@@ -100,6 +100,18 @@ bool far_apart(const PlannedDig& a, const PlannedDig& b) {
   });
 }
 
+double log_polynomial(const std::vector<std::pair<double, double>>& known, double place) {
+  double sum = 0.0;
+  for (const auto& [own, value] : known) {
+    double weight = std::log(value);
+    for (const auto& [other, unused] : known) {
+      if (other != own) weight *= (place - other) / (own - other);
+    }
+    sum += weight;
+  }
+  return std::exp(sum);
+}
+
 PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool nearest) {
   if (share == 0.0) return a;
   if (nearest) return share < 0.5 ? a : b;

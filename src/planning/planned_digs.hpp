@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include <excavplan/planning/dig_goal.hpp>
 
 #include "base/json.hpp"
@@ -36,6 +39,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PlannedDig, parameters, start_x, payload_mass
 /// True if the two digs differ so much that they may be of different kinds, and a mix of them
 /// neither.
 bool far_apart(const PlannedDig& a, const PlannedDig& b);
+
+/// The value at a place by the polynomial of the logarithm through known places and their values,
+/// which are > 0: worths of best digs vary so, almost linearly, over density and slope.
+double log_polynomial(const std::vector<std::pair<double, double>>& known, double place);
 
 /// Linear between two digs, or the nearer one.
 PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool nearest);
