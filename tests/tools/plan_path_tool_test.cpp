@@ -301,7 +301,7 @@ TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {
 }
 
 TEST_F(Tools, PlanForAnUncertainDensityGivesTheValueOfKnowingIt) {
-  const Words few = {"--search", "--evaluations", "30"};
+  const Words few = {"--search", "--evaluations", "30", "--goal", "energy"};
   const json plan = answer("plan-path", few + Words{"--density", "40", "--density-sd", "8"});
   EXPECT_EQ(plan.at("expected_efficiency_kg_per_kj"), plan.at("worth"));
   EXPECT_GE(number(plan, "/value_of_knowing_percent"), 0.0);
