@@ -146,8 +146,8 @@ class Build {
       if (!fs::is_directory(options_.folder)) {
         throw Error(ErrorKind::bad_file, options_.folder + ": is not a folder and cannot be made");
       }
+      note_unused_entries();
     }
-    if (!options_.folder.empty()) note_unused_entries();
     std::vector<TaskQueue::Worker> workers(
         thread_count(options_.threads), [this](const std::string& task) {
           return do_task(job_, task, [this](int digs, double best) {
@@ -242,10 +242,6 @@ class Build {
     return true;
   }
 
-  double rank(const LibraryAnswer& answer) const {
-    return answer.feasible ? job_.search.objective.rank(answer.dig) : 0.0;
-  }
-
   void improve_rows() {
     const std::size_t row = job_.grid.densities_percent.size();
     for (std::size_t i = 0; i < entries_.size(); ++i) {
@@ -264,7 +260,7 @@ class Build {
     const Entry& far = *entries_[other];
     const auto task = [&entry, &near, &far, this] {
       LibraryTask improve{entry.place};
-      improve.known = rank(entry.found);
+      improve.known = entry.found.rank;
       if (!entry.found.feasible || !near.found.feasible) return std::string();
       if (far_apart(entry.found.dig, near.found.dig)) {
         improve.starts = {near.found.dig.parameters};
@@ -281,7 +277,7 @@ class Build {
         {{entry.settled, near.settled, far.settled}, task, [&entry, this](const std::string& text) {
            LibraryAnswer answer = read_answer(job_, entry.place, "task", text);
            answer.evaluations += entry.found.evaluations;
-           if (rank(answer) > rank(entry.found)) {
+           if (answer.rank > entry.found.rank) {
              entry.found = answer;
            } else {
              entry.found.evaluations = answer.evaluations;
@@ -313,15 +309,15 @@ class Build {
     middle.*line.along = 0.5 * (below.place.*line.along + above.place.*line.along);
     queue_.add({after, [=, &below, &above] { return midway_task(middle, below, above); },
                 [=, &below, &above](const std::string& text) {
-                  const DigObjective& objective = job_.search.objective;
+                  const DigObjective& goal = job_.search.objective;
                   const LibraryAnswer answer = read_answer(job_, middle, "task", text);
                   std::vector<std::pair<double, double>> known;
                   for (const Entry* entry : around) {
                     if (!entry->found.feasible) continue;
-                    known.emplace_back(entry->place.*line.along, objective.worth(entry->found.dig));
+                    known.emplace_back(entry->place.*line.along, goal.worth(entry->found.dig));
                   }
                   below.*line.to_next =
-                      interpolation(objective, below.found.dig, above.found.dig,
+                      interpolation(goal, below.found.dig, above.found.dig,
                                     log_polynomial(known, middle.*line.along), answer.measured);
                   below.found.evaluations += answer.evaluations;
                 }});

@@ -21,7 +21,7 @@ namespace excavplan {
 // As text between processes and in files: every number as it is.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryPlace, machine, soil, slope, density_percent)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryTask, place, digs, starts, expected, known)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryAnswer, feasible, dig, evaluations, measured)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryAnswer, feasible, dig, rank, evaluations, measured)
 
 namespace {
 
@@ -131,6 +131,7 @@ LibraryAnswer answer(const LibraryJob& job, const LibraryTask& task, DigAttempts
       answer.feasible = attempts.best().has_value();
     }
     if (answer.feasible) answer.dig = *attempts.best();
+    if (answer.feasible) answer.rank = attempts.rank();
   }
   answer.evaluations = attempts.evaluations();
   return answer;
@@ -163,11 +164,9 @@ LibraryTask first_search(const LibraryJob& job, const LibraryPlace& place,
     task.starts.push_back(far.parameters);
   } else if (parents.size() == 2) {
     const double share = (place.density_percent - near_density) / (far_density - near_density);
-    const auto line = [share](double a, double b) { return a + share * (b - a); };
-    DigParameters there;
+    DigParameters there = dig_between(near, far, share, false).parameters;
     for (const DigParameterInfo& info : dig_parameter_table()) {
-      there.*info.field = std::clamp(line(near.parameters.*info.field, far.parameters.*info.field),
-                                     info.lower, info.upper);
+      there.*info.field = std::clamp(there.*info.field, info.lower, info.upper);
     }
     task.starts.push_back(there);
     const DigObjective& objective = job.search.objective;

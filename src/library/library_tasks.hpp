@@ -43,6 +43,7 @@ struct LibraryTask {
 struct LibraryAnswer {
   bool feasible = false;
   PlannedDig dig = {};  ///< if feasible
+  double rank = 0.0;    ///< of the dig; 0 if not feasible
   int evaluations = 0;
   std::vector<double> measured = {};  ///< worths of LibraryTask::digs, 0: cannot be dug
 };

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -249,13 +250,22 @@ TEST_F(LibraryBuilding, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST_F(LibraryBuilding, AnEntryDoesNotDependOnTheOthers) {
-  const auto entries = build_path_libraries(grid({10, 20, 35, 40}), quick()).libraries[0].entries;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const double density = entries[i].density_percent;
-    const auto alone = build_path_libraries(grid({density}), quick()).libraries[0].entries[0];
-    EXPECT_EQ(alone.dig.energy, entries[i].dig.energy) << density;
-    EXPECT_EQ(alone.dig.payload_mass, entries[i].dig.payload_mass) << density;
+TEST_F(LibraryBuilding, TheSearchOfAnEntryDoesNotDependOnTheOthers) {
+  const TemporaryFolder folder;
+  LibraryBuildOptions options = quick();
+  const auto entries_of = [&](const std::string& name, const std::vector<double>& densities) {
+    options.folder = folder.file(name);
+    build(grid(densities), options);
+    std::map<std::string, std::string> files;
+    for (const auto& file : fs::directory_iterator(options.folder)) {
+      files[file.path().filename()] = content_of(file.path());
+    }
+    return files;
+  };
+  const auto all = entries_of("all", {10, 20, 35, 40});
+  for (const double density : {10.0, 20.0, 35.0, 40.0}) {
+    const auto alone = entries_of(number_text(density), {density});
+    for (const auto& [name, text] : alone) EXPECT_EQ(all.at(name), text) << name;
   }
 }
 
@@ -492,12 +502,10 @@ TEST_F(LibraryBuilding, TakesTheNeighboursKindOfDigWhereItIsBetter) {
 TEST_F(LibraryBuilding, LooksUpTheNearerDigWhereAMixIsWorseThanBoth) {
   int nearest = 0;
   int mixes = 0;
-  for (const auto& [name, lower] : {std::pair("loam", 20.0), {"clay", 70.0}}) {
-    LibraryGrid cells = grid({lower, lower + 5.0});
+  for (const char* name : {"gravel", "clay", "loam"}) {
+    LibraryGrid cells = grid({0, 10, 20, 30, 40, 50, 60, 70, 80});
     cells.soils = {load_soil(find_data_file(std::string("soils/") + name + ".json"))};
-    LibraryBuildOptions options;
-    options.search.objective = DigObjective::Goal::energy;
-    const PathLibrary library = build_path_libraries(cells, options).libraries[0];
+    const PathLibrary library = build_path_libraries(cells, quick()).libraries[0];
     for (std::size_t i = 0; i + 1 < library.entries.size(); ++i) {
       const PathLibraryEntry& entry = library.entries[i];
       const PlannedDig& below = entry.dig;
@@ -517,8 +525,8 @@ TEST_F(LibraryBuilding, LooksUpTheNearerDigWhereAMixIsWorseThanBoth) {
       ++(entry.to_next_density.nearest ? nearest : mixes);
     }
   }
-  EXPECT_EQ(nearest, 1);
-  EXPECT_EQ(mixes, 1);
+  EXPECT_GT(nearest, 0);
+  EXPECT_GT(mixes, 0);
 }
 
 TEST_F(LibraryBuilding, MeasuresWhatIsLostMidwayBetweenSlopes) {

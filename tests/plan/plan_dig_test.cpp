@@ -308,8 +308,7 @@ TEST_F(PlanDig, LooksUpInTheLibraryOfItsGoal) {
 
 TEST_F(PlanDig, SaysWhereTheBucketCannotBeFilledAsAsked) {
   PlanOptions options = searched(30);
-  options.search.bounds.upper.drag_length = 0.6;
-  options.search.bounds.upper.penetration_length = 0.2;
+  options.search.bounds.upper = {0.5, 0.3, 0.6};  // too flat for the scoop to fill it
   const DigPlan found = plan(40.0, options);
   EXPECT_LT(found.dig->fill, 0.8);
   EXPECT_TRUE(warns(found, "min_fill_relaxed"));
@@ -319,9 +318,8 @@ TEST_F(PlanDig, SaysWhereTheBucketCannotBeFilledAsAsked) {
 
 TEST_F(PlanDig, ADigThatLiftsNextToNothingIsNotWorthMaking) {
   PlanOptions options = searched(10);
-  options.search.bounds.upper.drag_length = options.search.bounds.lower.drag_length;
-  options.search.bounds.lower.penetration_length = 0.01;
-  options.search.bounds.upper.penetration_length = 0.02;
+  options.search.bounds.lower = {0.2, 0.01, 0.3};
+  options.search.bounds.upper = {0.4, 0.02, 0.3};
   const DigPlan none = plan(40.0, options);
   EXPECT_FALSE(none.dig || none.stopped);
   EXPECT_EQ(none.reason.rfind("no dig is worth making: the best found", 0), 0U) << none.reason;

@@ -414,10 +414,11 @@ TEST_F(Tools, SearchWithoutADigNamesTheNearestAndItsLimit) {
 }
 
 TEST_F(Tools, ADigThatLiftsNextToNothingIsNotWorthMaking) {
-  const json none = answer("plan-path",
-                           {"--density", "40", "--search", "--evaluations", "10", "--drag-range",
-                            "0.3,0.3", "--penetration-range", "0.01,0.02", "--strict"},
-                           4);
+  const json none =
+      answer("plan-path",
+             {"--density", "40", "--search", "--evaluations", "10", "--drag-range", "0.3,0.3",
+              "--penetration-range", "0.01,0.02", "--angle-range", "0.2,0.4", "--strict"},
+             4);
   EXPECT_EQ(none.at("path"), nullptr);
   EXPECT_TRUE(contains(none.at("reason"), "no dig is worth making")) << none;
   EXPECT_EQ(none.at("goal"), "cycle");

@@ -180,7 +180,7 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
 std::vector<std::string> plan_lines(const DigPlan& plan, const GroundDensity& density,
                                     const std::string& soil, const DigObjective& objective) {
   if (!plan.dig) {
-    return {plan.stopped ? "stopped before any dig was found" : "no dig: " + reason_of(plan)};
+    return {plan.stopped ? "stopped before any dig was found" : "path         none"};
   }
   std::vector<std::string> lines = {
       "density      " + readable(density.percent, density.sd_percent) + " % in " + soil,
