@@ -232,9 +232,9 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
     text += "; the numbers of soil " + soil.name + " have changed since it was computed";
   }
   if (!text.empty()) {
-    throw Error(ErrorKind::bad_input, (library.file.empty() ? "the library" : library.file) +
-                                          ": does not fit" + text +
-                                          "; build-path-library makes one that does");
+    throw Error(ErrorKind::bad_input,
+                (library.file.empty() ? "the library" : library.file) + ": does not fit" + text +
+                    "; build-path-library makes one that does, a search needs none");
   }
 }
 

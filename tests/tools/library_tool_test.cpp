@@ -225,13 +225,13 @@ TEST_F(LibraryTool, SeveralSoilsMakeAFolderOfLibraries) {
   ASSERT_EQ(result.code, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   ASSERT_EQ(json.at("libraries").size(), 2U);
-  EXPECT_EQ(json["libraries"][1].at("file"), libraries + "/zx120-sand.json");
+  EXPECT_EQ(json["libraries"][1].at("file"), libraries + "/zx120-sand-cycle.json");
   const ProgramResult plan = run_program(
       "plan-path",
-      {"--density", "20", "--soil", "sand", "--library", libraries + "/zx120-sand.json"});
+      {"--density", "20", "--soil", "sand", "--library", libraries + "/zx120-sand-cycle.json"});
   EXPECT_EQ(plan.code, 0) << plan.err;
-  const ProgramResult wrong =
-      run_program("plan-path", {"--density", "20", "--library", libraries + "/zx120-sand.json"});
+  const ProgramResult wrong = run_program(
+      "plan-path", {"--density", "20", "--library", libraries + "/zx120-sand-cycle.json"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_NE(wrong.err.find("its soil is sand, not loam"), std::string::npos) << wrong.err;
 }

@@ -97,7 +97,8 @@ TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
 TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
   const std::string library = folder.file("library.json");
   answer("build-path-library",
-         Words{"--densities", "40", "--slopes=-0.1,0,0.1", "--out", library} + small_library);
+         Words{"--densities", "40", "--slopes=-0.1,0,0.1", "--goal", "energy", "--out", library} +
+             small_library);
   const auto plan = [&](double rise) {
     std::string points;
     for (double x = 1.0; x < 11.0; x += 0.04) {
@@ -106,8 +107,8 @@ TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
                   std::to_string(rise * (x - 2.0)) + "\n";
       }
     }
-    return answer("plan-path", {"--density", "40", "--library", library, "--terrain",
-                                folder.write("ground.xyz", points)});
+    return answer("plan-path", {"--density", "40", "--goal", "energy", "--library", library,
+                                "--terrain", folder.write("ground.xyz", points)});
   };
   const json gentle = plan(0.05);
   EXPECT_NEAR(gentle.at("look_up_slope_rad"), std::atan(0.05), 1e-4);
@@ -116,18 +117,19 @@ TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
   const json steep = plan(0.5);
   EXPECT_NEAR(steep.at("look_up_slope_rad"), 0.1, 1e-12) << "as far as the library goes";
   EXPECT_TRUE(warns(steep, "slope_outside_library"));
-  const json level = answer("plan-path", {"--density", "40", "--library", library});
+  const json level =
+      answer("plan-path", {"--density", "40", "--goal", "energy", "--library", library});
   EXPECT_EQ(level.at("look_up_slope_rad"), 0.0);
   EXPECT_EQ(level.at("look_up_loss"), 0.0);
 }
 
 TEST_F(Tools, ALookUpSaysWhereTheGroundIsNotThatOfTheLibrary) {
   const std::string terrain = shipped("quickstart/after.pcd");
-  const json pit = answer("plan-path", {"--density", "40", "--terrain", terrain});
+  const Words in_pit = {"--density", "40", "--goal", "energy", "--terrain", terrain};
+  const json pit = answer("plan-path", in_pit);
   EXPECT_TRUE(warns(pit, "ground_unlike_library"));
   EXPECT_EQ(pit.at("look_up_loss"), nullptr);
-  EXPECT_EQ(run_program("plan-path", {"--density", "40", "--terrain", terrain, "--strict"}).code,
-            4);
+  EXPECT_EQ(run_program("plan-path", in_pit + Words{"--strict"}).code, 4);
   const json even = answer(
       "plan-path", {"--density", "40", "--terrain", shipped("quickstart/before.pcd"), "--strict"});
   EXPECT_FALSE(warns(even, "ground_unlike_library"));
