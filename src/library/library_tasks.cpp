@@ -94,7 +94,7 @@ class EntrySearch {
     if (!attempts_.best() || attempts_.rank() < task.expected) {
       attempt(cold_search(search_, 1));
     }
-    if (!attempts_.best()) attempt(cold_search(search_, 8));
+    if (!attempts_.fills_enough()) attempt(cold_search(search_, 8));
   }
 
   /// Half the effort, and the other half where it pays. @return whether it did

@@ -40,6 +40,7 @@ class DigAttempts {
 
   const std::optional<PlannedDig>& best() const { return best_; }
   double rank() const { return best_ ? objective_.rank(*best_) : 0.0; }
+  bool fills_enough() const { return best_ && best_->fill >= objective_.min_fill; }
   int evaluations() const { return evaluations_; }
   bool stopped() const { return stopped_; }
 
