@@ -14,6 +14,16 @@
 
 namespace excavplan {
 
+/// @throws Error (bad_input) with this text
+[[noreturn]] inline void refuse(const std::string& text) {
+  throw Error(ErrorKind::bad_input, text);
+}
+
+/// @throws Error (bad_input) with this text unless it holds
+inline void require(bool holds, const std::string& text) {
+  if (!holds) refuse(text);
+}
+
 /// @throws Error (bad_input) "WHAT is VALUE, must be RULE" unless it holds
 inline void require(bool holds, std::string_view what, double value, std::string_view rule) {
   if (holds) return;

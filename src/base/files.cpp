@@ -92,6 +92,15 @@ std::string read_file(const std::string& path) {
   return content.str();
 }
 
+void make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  std::error_code unknown;
+  if (fs::is_directory(path, unknown)) return;
+  throw Error(ErrorKind::bad_file, path + ": " + (error ? error.message() + "; it " : "") +
+                                       "is not a folder and cannot be made");
+}
+
 std::string file_name_part(const std::string& name) {
   std::string text;
   for (const char c : name) {

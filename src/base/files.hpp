@@ -21,6 +21,9 @@ void require_writable(const std::string& path);
 /// The whole content of a regular file. @throws Error (bad_file)
 std::string read_file(const std::string& path);
 
+/// Makes a folder and those above it. @throws Error (bad_file) unless it is there then
+void make_folder(const std::string& path);
+
 /// A name that is valid on every file system.
 std::string file_name_part(const std::string& name);
 

@@ -13,8 +13,6 @@
 #include <set>
 #include <utility>
 
-#include <excavplan/error.hpp>
-
 #include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/parallel.hpp"
@@ -30,38 +28,33 @@ namespace fs = std::filesystem;
 
 constexpr int most_points = 1000000;  // of a first generation; ours
 
-void require(bool holds, const std::string& text) {
-  if (!holds) throw Error(ErrorKind::bad_input, "library: " + text);
-}
-
 void require_rising(const std::string& what, const std::vector<double>& values, double lowest,
                     double highest) {
-  require(!values.empty(), "no " + what + " is asked for");
+  require(!values.empty(), "library: no " + what + " is asked for");
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool rising = i == 0 || values[i] > values[i - 1];
     require(values[i] >= lowest && values[i] <= highest && rising,
-            what + " must rise inside " + number_text(lowest) + " .. " + number_text(highest) +
-                ", got " + number_text(values[i]) + " at place " + std::to_string(i + 1));
+            "library: " + what + " must rise inside " + number_text(lowest) + " .. " +
+                number_text(highest) + ", got " + number_text(values[i]) + " at place " +
+                std::to_string(i + 1));
   }
 }
 
 /// Libraries are told apart by the names of their machine and soil.
 template <typename Named>
 void require_unlike(const std::string& what, const std::vector<Named>& all) {
-  require(!all.empty(), "no " + what + " is asked for");
+  require(!all.empty(), "library: no " + what + " is asked for");
   std::set<std::string> names;
   for (const Named& one : all) {
     require(names.insert(file_name_part(one.name)).second,
-            "two of the " + what + "s are named '" + one.name + "', or alike");
+            "library: two of the " + what + "s are named '" + one.name + "', or alike");
   }
 }
 
 /// Also if a killed run left it half written.
 bool is_entry_file(const std::string& name) {
-  const std::string end = entry_file_end;
-  const std::size_t at = name.find(end);
-  return at != std::string::npos &&
-         (at + end.size() == name.size() || name.compare(at + end.size(), 6, ".part-") == 0);
+  const std::string rest = name.substr(std::min(name.size(), name.find(entry_file_end)));
+  return rest == entry_file_end || rest.rfind(entry_file_end + std::string(".part-"), 0) == 0;
 }
 
 /// What the user sees of a build, and whether it was stopped.
@@ -141,11 +134,7 @@ class Build {
 
   LibraryBuild run() {
     if (!options_.folder.empty()) {
-      std::error_code error;
-      fs::create_directories(options_.folder, error);
-      if (!fs::is_directory(options_.folder)) {
-        throw Error(ErrorKind::bad_file, options_.folder + ": is not a folder and cannot be made");
-      }
+      make_folder(options_.folder);
       note_unused_entries();
     }
     std::vector<TaskQueue::Worker> workers(
@@ -348,7 +337,7 @@ class Build {
         all.back().gaps.push_back({density, entry.place.slope});
       }
       require(i % size + 1 < size || !all.back().entries.empty(),
-              "no dig is feasible for " + all.back().machine + " in " + all.back().soil +
+              "library: no dig is feasible for " + all.back().machine + " in " + all.back().soil +
                   " at any density");
     }
     return all;

@@ -7,8 +7,7 @@
 #include <string>
 #include <utility>
 
-#include <excavplan/error.hpp>
-
+#include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
@@ -68,14 +67,10 @@ PathLibraryEntry read_entry(JsonObject& object) {
 
 using Entries = std::vector<PathLibraryEntry>;
 
-[[noreturn]] void refuse(const std::string& text) {
-  throw Error(ErrorKind::bad_input, "library: " + text);
-}
-
 void require_inside(const std::string& what, double value, double lower, double upper) {
   if (value >= lower && value <= upper) return;
-  refuse(what + " " + number_text(value) + " is outside its range " + number_text(lower) + " .. " +
-         number_text(upper));
+  refuse("library: " + what + " " + number_text(value) + " is outside its range " +
+         number_text(lower) + " .. " + number_text(upper));
 }
 
 /// The entries around a density on one slope, and how far it is from the first to the second.
@@ -103,7 +98,7 @@ Densities densities_around(const PathLibrary& library, double slope, double dens
   const double to = above->density_percent;
   for (const PathLibraryGap& gap : library.gaps) {
     if (gap.slope != slope || gap.density_percent < from || gap.density_percent > to) continue;
-    refuse("no dig is feasible at a density of " + number_text(gap.density_percent) +
+    refuse("library: no dig is feasible at a density of " + number_text(gap.density_percent) +
            " % on a slope of " + number_text(slope) + " rad");
   }
   return {below, above, (density - from) / (to - from)};
@@ -118,7 +113,7 @@ struct Around {
 
 Around around(const PathLibrary& library, double density, double slope) {
   const Entries& entries = library.entries;
-  if (entries.empty()) refuse("it holds no entry");
+  if (entries.empty()) refuse("library: it holds no entry");
   require_inside("slope [rad]", slope, entries.front().slope, entries.back().slope);
   const auto above = std::find_if(entries.begin(), entries.end(),
                                   [&](const PathLibraryEntry& e) { return e.slope >= slope; });
@@ -126,7 +121,8 @@ Around around(const PathLibrary& library, double density, double slope) {
   const double from = to == slope ? to : std::prev(above)->slope;
   for (const PathLibraryGap& gap : library.gaps) {
     if (gap.slope <= from || gap.slope >= to) continue;
-    refuse("no dig is feasible at any density on a slope of " + number_text(gap.slope) + " rad");
+    refuse("library: no dig is feasible at any density on a slope of " + number_text(gap.slope) +
+           " rad");
   }
   return {densities_around(library, from, density), densities_around(library, to, density),
           from == to ? 0.0 : (slope - from) / (to - from)};
@@ -232,9 +228,8 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
     text += "; the numbers of soil " + soil.name + " have changed since it was computed";
   }
   if (!text.empty()) {
-    throw Error(ErrorKind::bad_input,
-                (library.file.empty() ? "the library" : library.file) + ": does not fit" + text +
-                    "; build-path-library makes one that does, a search needs none");
+    refuse((library.file.empty() ? "the library" : library.file) + ": does not fit" + text +
+           "; build-path-library makes one that does, a search needs none");
   }
 }
 

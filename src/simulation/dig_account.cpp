@@ -12,31 +12,25 @@
 #include "simulation/slump.hpp"
 
 namespace excavplan {
-namespace {
-
-[[noreturn]] void refuse(const std::string& message) {
-  throw Error(ErrorKind::bad_input, "dig: " + message);
-}
-
-}  // namespace
 
 void check_dig(const Terrain& terrain, const DigPath& path) {
   const HeightMap& map = terrain.bank;
-  if (map.z.size() == 0) refuse("the map is empty");
+  if (map.z.size() == 0) refuse("dig: the map is empty");
   require(map.cell_size > 0.0, "dig: cell size", map.cell_size, "above 0 m");
   const auto same_size = [&](const Eigen::ArrayXXd& layer) {
     return layer.rows() == map.z.rows() && layer.cols() == map.z.cols();
   };
-  if (!same_size(terrain.loose)) refuse("the loose layer must be as large as the map");
+  if (!same_size(terrain.loose)) refuse("dig: the loose layer must be as large as the map");
   for (const Eigen::ArrayXXd* layer : {&terrain.bank_void_ratio, &terrain.loose_void_ratio}) {
-    if (layer->size() > 0 && !same_size(*layer)) refuse("void ratios must be as large as the map");
+    if (layer->size() > 0 && !same_size(*layer))
+      refuse("dig: void ratios must be as large as the map");
   }
   if (path.poses.size() < 2) {
-    refuse("a path has at least 2 poses, this one has " + std::to_string(path.poses.size()));
+    refuse("dig: a path has at least 2 poses, this one has " + std::to_string(path.poses.size()));
   }
   for (const DigPose& pose : path.poses) {
     if (std::isfinite(pose.bucket.x) && std::isfinite(pose.bucket.z)) continue;
-    refuse("every pose of the path must be finite");
+    refuse("dig: every pose of the path must be finite");
   }
 }
 

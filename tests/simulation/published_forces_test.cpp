@@ -8,9 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/simulation/earthmoving.hpp>
-
 #include "base/table.hpp"
+#include "simulation/earthmoving.hpp"
 
 namespace excavplan {
 namespace {
