@@ -79,7 +79,7 @@ void lay_out_dig_anywhere(benchmark::State& state) {
 BENCHMARK(lay_out_dig_anywhere)->Unit(benchmark::kMicrosecond);
 
 void look_up_in_the_library(benchmark::State& state) {
-  const PathLibrary library = load_path_library(find_data_file("libraries/zx120-loam.json"));
+  const PathLibrary library = load_path_library(find_data_file("libraries/zx120-loam-energy.json"));
   for (auto _ : state) benchmark::DoNotOptimize(look_up(library, 42.0));
 }
 BENCHMARK(look_up_in_the_library);

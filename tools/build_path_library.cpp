@@ -4,6 +4,7 @@
 
 #include "base/text.hpp"
 #include "shared/entry_folder.hpp"
+#include "shared/goal_inputs.hpp"
 #include "shared/library_results.hpp"
 #include "shared/ranks.hpp"
 #include "shared/results.hpp"
@@ -14,8 +15,8 @@ namespace {
 
 const About about = {
     "build-path-library",
-    "searches in the simulator for the dig of highest efficiency at each density of a soil, and "
-    "writes the digs to a path library for plan-path. Several machines, soils and slopes give one "
+    "searches in the simulator for the best dig for a goal at each density of a soil, and writes "
+    "the digs to a path library for plan-path. Several machines, soils and slopes give one "
     "library per machine and soil. Runs in parallel in threads and under mpirun, with the same "
     "result.",
     {{"build-path-library --out loam.json", "the default: 0, 5 .. 100 % in loam with the ZX120"},
@@ -33,6 +34,7 @@ struct Inputs {
   std::string soils = "loam";
   std::string machines = "zx120";
   std::string simulator = default_simulator().word;
+  GoalInputs goal;
   std::string method = "memetic";
   AnchoredSearch anchored;
   GeneticAlgorithm genetic;
@@ -52,6 +54,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
   arguments.text("machine", "NAME,..", inputs.machines, "zx120 or machine files");
   arguments.simulator(inputs.simulator);
+  declare_goal(arguments, inputs.goal);
   arguments.choice("method", inputs.method, {"memetic", "paper"},
                    "memetic: three densities without a warm start, the others from neighbours; "
                    "paper: a genetic algorithm for each");
@@ -73,7 +76,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.flag("resume", inputs.resume, "reuse results of an interrupted run with this --out");
   arguments.file("out", inputs.out,
                  "library to write; with several machines or soils a folder for "
-                 "MACHINE-SOIL.json of each");
+                 "MACHINE-SOIL-GOAL.json of each");
   arguments.require("out");
 }
 
@@ -117,13 +120,15 @@ std::vector<Warning> warnings_of(const Inputs& inputs) {
 LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   LibraryBuildOptions options;
   options.search = inputs.search;
+  options.search.objective = objective_of(inputs.goal);
   options.search.simulator = simulator_of_word(inputs.simulator);
   options.search.method = inputs.anchored;
   if (inputs.method == "paper") options.search.method = inputs.genetic;
   options.threads = static_cast<unsigned>(inputs.threads);
   options.folder = inputs.cells.value_or(inputs.out + ".cells");
   options.note = [&console](const std::string& line) { console.note(line); };
-  options.progress = [&console, watch = Stopwatch()](const LibraryProgress& now) {
+  options.progress = [&console, watch = Stopwatch(),
+                      objective = options.search.objective](const LibraryProgress& now) {
     const auto done = static_cast<double>(now.entries_done);
     const auto all = static_cast<double>(now.entries);
     const double seconds = watch.seconds() * (all - done) / done;
@@ -131,7 +136,7 @@ LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
     console.progress(done / all, std::to_string(now.entries_done) + " of " +
                                      std::to_string(now.entries) + " densities, " +
                                      std::to_string(now.evaluations) + " digs, now " +
-                                     readable(1000.0 * now.best) + " kg/kJ" + left);
+                                     worth_text(objective, now.best) + left);
     return !console.stop_requested();
   };
   return options;
@@ -151,7 +156,7 @@ Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
     }
     options.other_workers = ranks->workers();
   }
-  require_library_place(grid, inputs.out);
+  require_library_place(grid, options.search.objective, inputs.out);
   std::optional<EntryFolder> own;
   if (!inputs.cells) own.emplace(options.folder, inputs.resume);
   const LibraryBuild build =

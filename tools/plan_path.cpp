@@ -18,12 +18,14 @@ namespace {
 
 const About about = {
     "plan-path",
-    "plans the dig with the highest mass of soil per energy at a given relative density, by "
-    "look-up in a path library or by a search in the simulator.",
+    "plans the dig with the highest mass of soil per energy of the whole cycle, or for another "
+    "goal, at a given relative density, by look-up in a path library or by a search in the "
+    "simulator.",
     {{"plan-path --density 40", "look up the path in the shipped library"},
      {"plan-path --density-from result.json --trajectory dig.csv",
       "use a result of estimate-density --json, write the joint trajectory"},
      {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
+     {"plan-path --density 40 --goal energy", "most mass per energy of the dig, as in the paper"},
      {"plan-path --density 40 --density-sd 8 --search",
       "the path of highest expected efficiency, and the value of knowing the density"}},
     true,
@@ -54,7 +56,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
       "density-from", inputs.density.file,
       "take the density and its uncertainty from this result of estimate-density --json");
   arguments.file("library", inputs.library,
-                 "path library (default: the shipped one of the machine and the soil)");
+                 "path library (default: the shipped one of machine, soil and goal)");
   arguments.flag("search", inputs.search, "search for the path instead of looking it up");
   arguments.file("terrain", inputs.terrain.cloud,
                  "cloud of the ground in the site frame (default: level)");
@@ -106,13 +108,9 @@ Outcome work(const Inputs& inputs, Console& console) {
   const PlanOptions options = options_of(inputs, console);
   const DigPlan plan = inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
                                             : plan_dig(machine, soil, density, options);
-  if (!plan.dig && !plan.stopped) {
-    usage_error(plan.reason + (plan.nearest ? "; the nearest, " + describe(*plan.nearest) : ""));
-  }
-
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
-  outcome.trustworthy = plan.trustworthy;
+  outcome.trustworthy = plan.trustworthy && plan.reason.empty();
   const SearchUse use = inputs.search          ? SearchUse::all
                         : inputs.terrain.cloud ? SearchUse::start_only
                                                : SearchUse::none;

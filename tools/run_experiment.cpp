@@ -5,6 +5,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/experiment/experiment.hpp>
 
+#include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
 #include "shared/tool.hpp"
 
@@ -27,6 +28,7 @@ struct Inputs {
   std::string machine = "zx120";
   std::string simulator = default_simulator().word;
   std::optional<std::string> library;
+  GoalInputs goal{info_of(DigObjective::Goal::energy).word};
   std::string law = "default";
   bool search = false;
   double cell_size = 0.05;
@@ -38,11 +40,12 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities [%], or a list a,b,c; \"paper\": soft 10, medium 40, hard 80");
   arguments.file("library", inputs.library,
-                 "path library (default: the shipped one of the machine and the soil)");
+                 "path library (default: the shipped one of machine, soil and goal)");
   arguments.text(
       "law", "NAME|FILE", inputs.law,
       "density law: default (the shipped one of the machine and the soil), paper, or a law file");
   arguments.flag("search", inputs.search, "search for each path instead of looking it up");
+  declare_goal(arguments, inputs.goal);
   arguments.option("path", inputs.path, "fixed path");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
@@ -89,9 +92,9 @@ std::string line_of(const Condition& condition, const ExperimentResult& result) 
   return condition.name + ": density " + readable(condition.density) + " %, k " +
          readable(result.volumes.bulking_factor, 4) + ", estimated " +
          readable(result.estimate.percent) + " %; fixed " +
-         readable(1000.0 * result.fixed.efficiency()) + " kg/kJ, planned " +
-         readable(1000.0 * result.planned.efficiency()) + " kg/kJ (" + path_text(result.planned) +
-         "), gain " + readable(result.gain_percent()) + " % (path " +
+         worth_text(result.objective, result.objective.worth(result.fixed)) + ", planned " +
+         worth_text(result.objective, result.objective.worth(result.planned)) + " (" +
+         path_text(result.planned) + "), gain " + readable(result.gain_percent()) + " % (path " +
          readable(result.path_gain_percent()) + " %, start " +
          readable(result.start_gain_percent()) + " %)";
 }
@@ -101,9 +104,11 @@ ExperimentOptions options_of(const Inputs& inputs, const Machine& machine, const
   options.fixed_path = inputs.path;
   PlanOptions& plan = options.plan;
   plan.method = inputs.search ? PlanMethod::search : PlanMethod::library;
+  plan.search.objective = objective_of(inputs.goal);
   if (inputs.library || !inputs.search) {
-    plan.library = std::make_shared<PathLibrary>(inputs.library ? load_path_library(*inputs.library)
-                                                                : shipped_library(machine, soil));
+    plan.library = std::make_shared<PathLibrary>(
+        inputs.library ? load_path_library(*inputs.library)
+                       : shipped_library(machine, soil, plan.search.objective));
   }
   plan.search.seed = inputs.seed;
   plan.search.threads = static_cast<unsigned>(inputs.threads);
@@ -130,6 +135,7 @@ Outcome work(const Inputs& inputs, Console& console) {
     outcome.lines.push_back(line_of(conditions[i], result));
   }
   outcome.json["law"] = law.name;
+  outcome.json.update(goal_json(options.plan.search.objective));
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
   return outcome;

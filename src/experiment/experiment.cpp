@@ -12,12 +12,13 @@
 #include <excavplan/simulation/scene.hpp>
 
 #include "base/text.hpp"
+#include "planning/dig_layout.hpp"
 
 namespace excavplan {
 namespace {
 
-double gain(const PlannedDig& of, const PlannedDig& over) {
-  return 100.0 * (of.efficiency() / over.efficiency() - 1.0);
+double gain(const DigObjective& objective, const PlannedDig& of, const PlannedDig& over) {
+  return 100.0 * (objective.worth(of) / objective.worth(over) - 1.0);
 }
 
 /// The digs of one experiment, in soil of one density.
@@ -32,8 +33,16 @@ class Experiment {
         ground_(level_planning_ground(machine, options.plan.cell_size)),
         simulator_(options.plan.simulator.make(machine, soil, density_percent)) {}
 
+  std::variant<PlannedDig, DigFailure> attempt(const DigParameters& parameters,
+                                               const StartRule& start) const {
+    const auto path = DigLayout(machine_, ground_).path(parameters, start);
+    if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
+    return dig_along(machine_, *simulator_, ground_, std::get<DigPath>(path),
+                     options_.plan.search.objective);
+  }
+
   PlannedDig dig(const DigParameters& parameters, const StartRule& start) const {
-    const auto outcome = evaluate_dig(machine_, *simulator_, ground_, parameters, start);
+    const auto outcome = attempt(parameters, start);
     if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
       throw Error(ErrorKind::bad_input, describe(*failure));
     }
@@ -60,8 +69,7 @@ class Experiment {
 
   /// From its own start; by the default rule if the true soil forbids that one.
   PlannedDig dig_as_planned(const PlannedDig& plan) const {
-    const StartRule own(plan.start_x);
-    const auto outcome = evaluate_dig(machine_, *simulator_, ground_, plan.parameters, own);
+    const auto outcome = attempt(plan.parameters, plan.start_x);
     if (const auto* dug = std::get_if<PlannedDig>(&outcome)) return *dug;
     return dig(plan.parameters, {});
   }
@@ -87,15 +95,16 @@ class Experiment {
 
 }  // namespace
 
-double ExperimentResult::gain_percent() const { return gain(planned, fixed); }
-double ExperimentResult::path_gain_percent() const { return gain(planned, fixed_moved); }
-double ExperimentResult::start_gain_percent() const { return gain(fixed_moved, fixed); }
+double ExperimentResult::gain_percent() const { return gain(objective, planned, fixed); }
+double ExperimentResult::path_gain_percent() const { return gain(objective, planned, fixed_moved); }
+double ExperimentResult::start_gain_percent() const { return gain(objective, fixed_moved, fixed); }
 
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options) {
   const Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
   result.density_percent = density_percent;
+  result.objective = options.plan.search.objective;
   result.fixed = experiment.dig(options.fixed_path, {});
   result.volumes = experiment.volumes(result.fixed);
   result.estimate = relative_density(law, {result.volumes.bulking_factor, 0.0});

@@ -85,35 +85,21 @@ class Watch {
   std::atomic<bool> stopped_{false};
 };
 
-/// The value midway between the middle two of some places, by the polynomial of the logarithm
-/// through all of them.
-/// @param known  up to four places and their values > 0
-double expected_midway(const std::vector<std::pair<double, double>>& known, double place) {
-  double sum = 0.0;
-  for (const auto& [own, value] : known) {
-    double weight = std::log(value);
-    for (const auto& [other, unused] : known) {
-      if (other != own) weight *= (place - other) / (own - other);
-    }
-    sum += weight;
-  }
-  return std::exp(sum);
-}
-
 /// Of what is looked up midway between two digs.
-/// @param best  efficiency of the best dig there
-/// @param measured  efficiencies there of their mix and, if they are far apart, of both
-Interpolation interpolation(const PlannedDig& below, const PlannedDig& above, double best,
+/// @param best  worth of the best dig there
+/// @param measured  worths there of their mix and, if they are far apart, of both
+Interpolation interpolation(const DigObjective& objective, const PlannedDig& below,
+                            const PlannedDig& above, double best,
                             const std::vector<double>& measured) {
   PlannedDig taken = dig_between(below, above, 0.5, false);
-  double efficiency = measured[0];
+  double worth = measured[0];
   const bool nearest = measured.size() == 3 && measured[0] < std::min(measured[1], measured[2]);
   if (nearest) {
     taken = measured[2] < measured[1] ? above : below;
-    efficiency = std::min(measured[1], measured[2]);
+    worth = std::min(measured[1], measured[2]);
   }
-  return {{std::clamp(1.0 - efficiency / best, 0.0, 1.0),
-           efficiency > 0.0 ? taken.efficiency() / efficiency - 1.0 : 0.0},
+  return {{std::clamp(1.0 - worth / best, 0.0, 1.0),
+           worth > 0.0 ? objective.worth(taken) / worth - 1.0 : 0.0},
           nearest};
 }
 
@@ -208,13 +194,13 @@ class Build {
     return entry;
   }
 
-  static std::string first_task(const Entry& entry, const std::vector<const Entry*>& parents) {
+  std::string first_task(const Entry& entry, const std::vector<const Entry*>& parents) const {
     std::vector<std::pair<double, PlannedDig>> digs;
     for (const Entry* parent : parents) {
       if (!parent->first.feasible) continue;
       digs.emplace_back(parent->place.density_percent, parent->first.dig);
     }
-    return to_text(first_search(entry.place, digs));
+    return to_text(first_search(job_, entry.place, digs));
   }
 
   /// Says how many entries in the folder belong to builds with other options.
@@ -261,18 +247,18 @@ class Build {
     Entry& entry = *entries_[own];
     const Entry& near = *entries_[next];
     const Entry& far = *entries_[other];
-    const auto task = [&entry, &near, &far] {
+    const auto task = [&entry, &near, &far, this] {
       LibraryTask improve{entry.place};
-      improve.known = entry.found.efficiency();
+      improve.known = entry.found.rank;
       if (!entry.found.feasible || !near.found.feasible) return std::string();
       if (far_apart(entry.found.dig, near.found.dig)) {
         improve.starts = {near.found.dig.parameters};
         return to_text(improve);
       }
       if (&near == &far || !far.found.feasible) return std::string();
-      const LibraryTask line =
-          first_search(entry.place, {{near.place.density_percent, near.found.dig},
-                                     {far.place.density_percent, far.found.dig}});
+      const LibraryTask line = first_search(job_, entry.place,
+                                            {{near.place.density_percent, near.found.dig},
+                                             {far.place.density_percent, far.found.dig}});
       improve.starts = line.starts;
       return improve.known < line.expected ? to_text(improve) : std::string();
     };
@@ -280,7 +266,7 @@ class Build {
         {{entry.settled, near.settled, far.settled}, task, [&entry, this](const std::string& text) {
            LibraryAnswer answer = read_answer(job_, entry.place, "task", text);
            answer.evaluations += entry.found.evaluations;
-           if (answer.efficiency() > entry.found.efficiency()) {
+           if (answer.rank > entry.found.rank) {
              entry.found = answer;
            } else {
              entry.found.evaluations = answer.evaluations;
@@ -312,15 +298,16 @@ class Build {
     middle.*line.along = 0.5 * (below.place.*line.along + above.place.*line.along);
     queue_.add({after, [=, &below, &above] { return midway_task(middle, below, above); },
                 [=, &below, &above](const std::string& text) {
+                  const DigObjective& goal = job_.search.objective;
                   const LibraryAnswer answer = read_answer(job_, middle, "task", text);
                   std::vector<std::pair<double, double>> known;
                   for (const Entry* entry : around) {
                     if (!entry->found.feasible) continue;
-                    known.emplace_back(entry->place.*line.along, entry->found.efficiency());
+                    known.emplace_back(entry->place.*line.along, goal.worth(entry->found.dig));
                   }
                   below.*line.to_next =
-                      interpolation(below.found.dig, above.found.dig,
-                                    expected_midway(known, middle.*line.along), answer.measured);
+                      interpolation(goal, below.found.dig, above.found.dig,
+                                    log_polynomial(known, middle.*line.along), answer.measured);
                   below.found.evaluations += answer.evaluations;
                 }});
   }
@@ -367,6 +354,7 @@ class Build {
             search.simulator.name,
             search.cell_size,
             search.seed,
+            search.objective,
             describe(search),
             {},
             {}};
@@ -387,6 +375,7 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
   require_unlike("soil", grid.soils);
   require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
   require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
+  for (const Machine& machine : grid.machines) check(search.objective, machine);
   require(search.seed <= most_exact, "seed of a library", static_cast<double>(search.seed),
           "at most " + std::to_string(most_exact) + ", which its file keeps");
   if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {

@@ -21,7 +21,7 @@ namespace excavplan {
 // As text between processes and in files: every number as it is.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryPlace, machine, soil, slope, density_percent)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryTask, place, digs, starts, expected, known)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryAnswer, feasible, dig, evaluations, measured)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryAnswer, feasible, dig, rank, evaluations, measured)
 
 namespace {
 
@@ -52,27 +52,15 @@ std::string identity(const LibraryJob& job, const LibraryPlace& place) {
          fingerprint(job.grid.soils[place.soil]) + ", simulator " + search.simulator.name +
          " on cells of " + number_text(search.cell_size) + " m, slope " + number_text(place.slope) +
          " rad, density " + number_text(place.density_percent) + " %, seed " +
-         std::to_string(search.seed) + ", " + describe(search) + ", start " +
-         describe(DigSearchOptions{}.start_rule);
-}
-
-// In the order of AnchoredSearch. NOLINTNEXTLINE(bugprone-easily-swappable-parameters)
-DigSearchOptions memetic(int points, int basins, int polish_evaluations) {
-  MemeticSearch method;
-  method.first_generation = points;
-  method.generations = 0;
-  method.basins = basins;
-  method.polish_evaluations = polish_evaluations;
-  DigSearchOptions options;
-  options.method = method;
-  return options;
+         std::to_string(search.seed) + ", goal " + describe(search.objective) + ", " +
+         describe(search) + ", start " + describe(DigSearchOptions{}.start_rule);
 }
 
 /// From nothing.
 /// @param effort  number of times as many points as usual
 DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
   if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
-    return memetic(effort * anchored->points, anchored->basins, anchored->polish_evaluations);
+    return polish_search(effort * anchored->points, anchored->basins, anchored->polish_evaluations);
   }
   DigSearchOptions options;
   options.method = std::get<GeneticAlgorithm>(search.method);
@@ -83,7 +71,7 @@ DigSearchOptions cold_search(const LibrarySearch& search, int effort) {
 DigSearchOptions warm_search(const LibrarySearch& search,
                              const std::vector<DigParameters>& starts) {
   const int evaluations = std::get<AnchoredSearch>(search.method).inherited_evaluations;
-  DigSearchOptions options = memetic(0, 1, evaluations / 2);
+  DigSearchOptions options = polish_search(0, 1, evaluations / 2);
   options.start = starts;
   options.stop.evaluations = evaluations;
   return options;
@@ -103,10 +91,10 @@ class EntrySearch {
       shallower[1].penetration_length *= 0.7;
       attempt(warm_search(search_, shallower));
     }
-    if (!attempts_.best() || attempts_.efficiency() < task.expected) {
+    if (!attempts_.best() || attempts_.rank() < task.expected) {
       attempt(cold_search(search_, 1));
     }
-    if (!attempts_.best()) attempt(cold_search(search_, 8));
+    if (!attempts_.fills_enough()) attempt(cold_search(search_, 8));
   }
 
   /// Half the effort, and the other half where it pays. @return whether it did
@@ -114,7 +102,7 @@ class EntrySearch {
     DigSearchOptions half = warm_search(search_, task.starts);
     half.stop.evaluations /= 2;
     attempt(half);
-    if (attempts_.efficiency() <= (1.0 + clearly_more) * task.known) return false;
+    if (attempts_.rank() <= (1.0 + clearly_more) * task.known) return false;
     half.start = {attempts_.best()->parameters};
     attempt(half);
     return true;
@@ -143,6 +131,7 @@ LibraryAnswer answer(const LibraryJob& job, const LibraryTask& task, DigAttempts
       answer.feasible = attempts.best().has_value();
     }
     if (answer.feasible) answer.dig = *attempts.best();
+    if (answer.feasible) answer.rank = attempts.rank();
   }
   answer.evaluations = attempts.evaluations();
   return answer;
@@ -165,7 +154,7 @@ std::vector<double> parent_densities(double density_percent, const LibrarySearch
   return {density_percent + towards, density_percent + 2.0 * towards};
 }
 
-LibraryTask first_search(const LibraryPlace& place,
+LibraryTask first_search(const LibraryJob& job, const LibraryPlace& place,
                          const std::vector<std::pair<double, PlannedDig>>& parents) {
   LibraryTask task{place};
   if (parents.empty()) return task;
@@ -175,15 +164,16 @@ LibraryTask first_search(const LibraryPlace& place,
     task.starts.push_back(far.parameters);
   } else if (parents.size() == 2) {
     const double share = (place.density_percent - near_density) / (far_density - near_density);
-    const auto line = [share](double a, double b) { return a + share * (b - a); };
-    DigParameters there;
+    DigParameters there = dig_between(near, far, share, false).parameters;
     for (const DigParameterInfo& info : dig_parameter_table()) {
-      there.*info.field = std::clamp(line(near.parameters.*info.field, far.parameters.*info.field),
-                                     info.lower, info.upper);
+      there.*info.field = std::clamp(there.*info.field, info.lower, info.upper);
     }
     task.starts.push_back(there);
-    task.expected = (1.0 - (share > 0.0 ? slack_between : slack_beyond)) *
-                    std::exp(line(std::log(near.efficiency()), std::log(far.efficiency())));
+    const DigObjective& objective = job.search.objective;
+    task.expected =
+        (1.0 - (share > 0.0 ? slack_between : slack_beyond)) *
+        log_polynomial({{near_density, objective.rank(near)}, {far_density, objective.rank(far)}},
+                       place.density_percent);
   }
   task.starts.push_back(near.parameters);
   return task;
@@ -212,7 +202,7 @@ std::string do_task(const LibraryJob& job, const std::string& text,
   const LibraryPlace& place = task.place;
   const Machine& machine = job.grid.machines[place.machine];
   DigAttempts attempts(
-      machine,
+      machine, job.search.objective,
       job.search.simulator.make(machine, job.grid.soils[place.soil], place.density_percent),
       sloped_planning_ground(machine, place.slope, job.search.cell_size), progress);
   const LibraryAnswer found = answer(job, task, attempts);

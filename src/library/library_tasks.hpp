@@ -34,8 +34,8 @@ struct LibraryTask {
   /// any are given nothing is searched.
   std::vector<PlannedDig> digs = {};
   std::vector<DigParameters> starts = {};  ///< to be polished; none: searched from nothing
-  double expected = 0.0;  ///< what finds less is followed by a search from nothing [kg/J]
-  /// Efficiency of the dig there is [kg/J]; 0: none. Else the start is polished if it comes near
+  double expected = 0.0;  ///< what ranks lower is followed by a search from nothing
+  /// Rank of the dig there is; 0: none. Else the start is polished if it comes near
   /// that, and nothing else is tried.
   double known = 0.0;
 };
@@ -43,11 +43,9 @@ struct LibraryTask {
 struct LibraryAnswer {
   bool feasible = false;
   PlannedDig dig = {};  ///< if feasible
+  double rank = 0.0;    ///< of the dig; 0 if not feasible
   int evaluations = 0;
-  std::vector<double> measured =
-      {};  ///< efficiencies of LibraryTask::digs, 0: cannot be dug [kg/J]
-
-  double efficiency() const { return feasible ? dig.efficiency() : 0.0; }
+  std::vector<double> measured = {};  ///< worths of LibraryTask::digs, 0: cannot be dug
 };
 
 std::string to_text(const LibraryTask& task);
@@ -68,7 +66,7 @@ std::vector<double> parent_densities(double density_percent, const LibrarySearch
 
 /// The search for a place.
 /// @param parents  by density, in the order of parent_densities(); those without a dig left out
-LibraryTask first_search(const LibraryPlace& place,
+LibraryTask first_search(const LibraryJob& job, const LibraryPlace& place,
                          const std::vector<std::pair<double, PlannedDig>>& parents);
 
 /// How the digs are searched, for people.

@@ -17,7 +17,7 @@ namespace excavplan {
 namespace {
 
 constexpr const char* format = "excavplan-path-library";
-constexpr int version = 5;
+constexpr int version = 6;
 
 constexpr double most_evaluations = 1e9;
 
@@ -171,6 +171,7 @@ PathLibrary load_path_library(const std::string& path) {
   library.simulator = file.text("simulator");
   library.cell_size = file.number("cell_m", 0.0, 1.0);
   library.seed = static_cast<std::uint64_t>(file.number("seed", 0.0, most_exact));
+  library.objective = read_goal(file);
   library.search = file.text("search");
   for (JsonObject& object : file.objects("entries")) library.entries.push_back(read_entry(object));
   require_order(file, "entries", library.entries);
@@ -188,7 +189,8 @@ PathLibrary load_path_library(const std::string& path) {
 }
 
 std::string file_name(const PathLibrary& library) {
-  return file_name_part(library.machine) + "-" + file_name_part(library.soil) + ".json";
+  return file_name_part(library.machine) + "-" + file_name_part(library.soil) + "-" +
+         info_of(library.objective.goal).word + ".json";
 }
 
 std::string to_json(const PathLibrary& library) {
@@ -200,11 +202,12 @@ std::string to_json(const PathLibrary& library) {
                                  {"soil_fingerprint", library.soil_fingerprint},
                                  {"simulator", library.simulator},
                                  {"cell_m", library.cell_size},
-                                 {"seed", library.seed},
-                                 {"search", library.search},
-                                 {"evaluations", library.evaluations()},
-                                 {"entries", nlohmann::ordered_json::array()},
-                                 {"gaps", nlohmann::ordered_json::array()}};
+                                 {"seed", library.seed}};
+  file.update(goal_json(library.objective));
+  file.update({{"search", library.search},
+               {"evaluations", library.evaluations()},
+               {"entries", nlohmann::ordered_json::array()},
+               {"gaps", nlohmann::ordered_json::array()}});
   for (const PathLibraryEntry& entry : library.entries) file["entries"] += entry_json(entry);
   for (const PathLibraryGap& gap : library.gaps) {
     file["gaps"] += {{"density_percent", gap.density_percent}, {"slope_rad", gap.slope}};
@@ -213,9 +216,10 @@ std::string to_json(const PathLibrary& library) {
 }
 
 void require_fit(const PathLibrary& library, const Machine& machine, const SoilKind& soil,
-                 const std::string& name, const std::string& simulator) {
+                 const DigObjective& objective, const std::string& simulator) {
   std::string text = difference("its machine", library.machine, machine.name) +
                      difference("its soil", library.soil, soil.name) +
+                     difference("its goal", describe(library.objective), describe(objective)) +
                      difference("its simulator", library.simulator, simulator);
   if (library.machine == machine.name && library.machine_fingerprint != fingerprint(machine)) {
     text += "; the numbers of machine " + machine.name + " have changed since it was computed";
@@ -224,7 +228,8 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
     text += "; the numbers of soil " + soil.name + " have changed since it was computed";
   }
   if (!text.empty()) {
-    refuse(name + ": does not fit" + text + "; build-path-library makes one that does");
+    refuse((library.file.empty() ? "the library" : library.file) + ": does not fit" + text +
+           "; build-path-library makes one that does, a search needs none");
   }
 }
 

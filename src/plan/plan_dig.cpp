@@ -11,6 +11,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/text.hpp"
+#include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
 
 namespace excavplan {
@@ -20,6 +21,7 @@ constexpr double much_steeper =
     0.04;  // than the library's slopes [rad]; ours, docs/formats.md#warning-codes
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
 constexpr double likely_stall = 0.05;  // probability; ours
+constexpr double worth_making = 0.1;   // fill of the bucket; ours
 
 struct Task {
   const Machine& machine;
@@ -30,6 +32,7 @@ struct Task {
   const PlanOptions& options;
 
   bool uncertain() const { return density.sd_percent > 0.0; }
+  const DigObjective& objective() const { return options.search.objective; }
 };
 
 void warn(DigPlan& plan, const char* code, const std::string& message) {
@@ -58,11 +61,10 @@ std::shared_ptr<const PathLibrary> library_of(const Task& task) {
   const PlanOptions& options = task.options;
   if (!options.library) {
     return std::make_shared<PathLibrary>(
-        shipped_library(task.machine, task.soil, options.data_folder));
+        shipped_library(task.machine, task.soil, task.objective(), options.data_folder));
   }
   const std::string& own = options.simulator.name;
-  const std::string& file = options.library->file;
-  require_fit(*options.library, task.machine, task.soil, file.empty() ? "the library" : file,
+  require_fit(*options.library, task.machine, task.soil, task.objective(),
               options.library->simulator == own ? own : default_simulator().name);
   return options.library;
 }
@@ -103,15 +105,16 @@ std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrar
   if (task.level && library.simulator == kind.name) {
     PlannedDig dig = known;
     dig.start_x = plan.path.start_x;
+    add_cycle(dig, task.machine, plan.path, task.objective());
     return dig;
   }
   plan.evaluations = 1;
   const auto simulator = kind.make(task.machine, task.soil, task.density.percent);
-  return dig_along(task.machine, *simulator, task.ground, plan.path);
+  return dig_along(task.machine, *simulator, task.ground, plan.path, task.objective());
 }
 
 /// Warns where the ground is unlike that of the library. @return whether it is alike
-bool suits_ground(const Slope& slope, const PlannedDig& expected, DigPlan& plan) {
+bool suits_ground(const Task& task, const Slope& slope, const PlannedDig& expected, DigPlan& plan) {
   const std::string remedy = "; use a search for this ground";
   if (std::abs(slope.ground - slope.covered) > much_steeper) {
     distrust(plan, "slope_outside_library",
@@ -119,11 +122,14 @@ bool suits_ground(const Slope& slope, const PlannedDig& expected, DigPlan& plan)
                  readable(slope.covered, 2) + " rad" + remedy);
     return false;
   }
-  if (plan.dig->efficiency() < (1.0 - far_below) * expected.efficiency()) {
+  const DigGoalInfo& goal = info_of(task.objective().goal);
+  const double here = task.objective().worth(*plan.dig);
+  const double there = task.objective().worth(expected);
+  if (here < (1.0 - far_below) * there) {
     distrust(plan, "ground_unlike_library",
-             "the path from the library reaches " + readable(1000.0 * plan.dig->efficiency()) +
-                 " kg/kJ on this ground, but " + readable(1000.0 * expected.efficiency()) +
-                 " kg/kJ on the even ground of the library" + remedy);
+             "the path from the library reaches " + readable(goal.per_si * here) + " " + goal.unit +
+                 " on this ground, but " + readable(goal.per_si * there) + " " + goal.unit +
+                 " on the even ground of the library" + remedy);
     return false;
   }
   return true;
@@ -148,7 +154,7 @@ void look_up_plan(const Task& task, DigPlan& plan) {
   }
   plan.dig = std::get<PlannedDig>(outcome);
   plan.look_up = PlanLookUp{slope.covered, std::nullopt};
-  if (task.level || suits_ground(slope, expected, plan)) {
+  if (task.level || suits_ground(task, slope, expected, plan)) {
     plan.look_up->error = look_up_error(*library, task.density.percent, slope.covered);
   }
 }
@@ -172,10 +178,7 @@ std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
 
 DigSearchOptions search_options(const Task& task, DigPlan& plan) {
   DigSearchOptions options = task.options.search;
-  // The library's digs are those of most mass per energy: another goal's search would stay there.
-  if (options.start.empty() && options.objective.goal == DigObjective::Goal::mass_per_energy) {
-    options.start = known_start(task, plan);
-  }
+  if (options.start.empty()) options.start = known_start(task, plan);
   if (options.stop.evaluations == 0 && std::holds_alternative<MemeticSearch>(options.method)) {
     options.stop.evaluations = evaluation_budget(task.uncertain(), !options.start.empty());
   }
@@ -236,8 +239,29 @@ void add_trajectory(const Task& task, DigPlan& plan) {
   plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, dig.torques);
 }
 
+/// Takes back a dig that lifts next to nothing.
+bool is_worth_making(DigPlan& plan) {
+  if (!plan.dig || plan.dig->fill >= worth_making) return plan.dig.has_value();
+  plan.reason = "no dig is worth making: the best found, " +
+                path_text(plan.dig->parameters, plan.dig->start_x) + ", fills " +
+                readable(100.0 * plan.dig->fill, 2) + " % of the bucket";
+  plan.dig.reset();
+  plan.path = {};
+  return false;
+}
+
+void judge_fill(const Task& task, DigPlan& plan) {
+  const double asked = task.objective().min_fill;
+  if (plan.dig->fill >= asked) return;
+  warn(plan, "min_fill_relaxed",
+       "no dig was found that fills " + readable(100.0 * asked) +
+           " % of the heaped capacity of the bucket; the most that can be reached is about " +
+           readable(100.0 * plan.dig->fill) + " %");
+}
+
 DigPlan plan_dig(const Task& task) {
   require_density(task.density);
+  check(task.objective(), task.machine);
   DigPlan plan;
   plan.method = task.options.method;
   judge_density(task, plan);
@@ -247,7 +271,9 @@ DigPlan plan_dig(const Task& task) {
   }
   if (plan.method == PlanMethod::library) look_up_plan(task, plan);
   if (plan.method == PlanMethod::search) search_plan(task, ground->soils(), plan);
-  if (!plan.dig) return plan;
+  if (!is_worth_making(plan)) return plan;
+  judge_fill(task, plan);
+  plan.cycle = cycle_of(task.machine, plan.path, *plan.dig, task.objective());
   if (task.uncertain()) add_spread(task, ground->soils(), plan);
   add_trajectory(task, plan);
   return plan;
@@ -258,18 +284,20 @@ DigPlan plan_dig(const Task& task) {
 const char* name(PlanMethod method) { return method == PlanMethod::library ? "library" : "search"; }
 
 PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
-                            const std::string& data_folder) {
+                            const DigObjective& objective, const std::string& data_folder) {
+  const std::string goal = info_of(objective.goal).word;
   std::string file;
   try {
-    file = find_data_file("libraries/" + machine.name + "-" + soil.name + ".json", data_folder);
+    file = find_data_file("libraries/" + machine.name + "-" + soil.name + "-" + goal + ".json",
+                          data_folder);
   } catch (const Error&) {
     if (!has_data_folder("libraries", data_folder)) throw;
     throw Error(ErrorKind::bad_input,
-                "no library of " + machine.name + " in " + soil.name +
+                "no library of " + machine.name + " in " + soil.name + " for the goal " + goal +
                     " is shipped: use a search, or make one with build-path-library");
   }
   PathLibrary library = load_path_library(file);
-  require_fit(library, machine, soil, file);
+  require_fit(library, machine, soil, objective);
   return library;
 }
 

@@ -5,11 +5,27 @@
 #include <utility>
 #include <variant>
 
+#include "planning/dig_layout.hpp"
+
 namespace excavplan {
 
-DigAttempts::DigAttempts(const Machine& machine, std::unique_ptr<const SoilSimulator> simulator,
-                         Terrain ground, const Progress& progress)
+// NOLINTNEXTLINE(bugprone-easily-swappable-parameters)
+DigSearchOptions polish_search(int points, int basins, int polish_evaluations) {
+  MemeticSearch method;
+  method.first_generation = points;
+  method.generations = 0;
+  method.basins = basins;
+  method.polish_evaluations = polish_evaluations;
+  DigSearchOptions options;
+  options.method = method;
+  return options;
+}
+
+DigAttempts::DigAttempts(const Machine& machine, const DigObjective& objective,
+                         std::unique_ptr<const SoilSimulator> simulator, Terrain ground,
+                         const Progress& progress)
     : machine_(machine),
+      objective_(objective),
       simulator_(std::move(simulator)),
       ground_(std::move(ground)),
       progress_(progress) {}
@@ -18,26 +34,29 @@ void DigAttempts::search(DigSearchOptions options) {
   if (stopped_) return;
   int evaluations = 0;
   options.threads = 1;
+  options.objective = objective_;
   options.progress = [&](const SearchProgress& now) {
     tell(now.evaluations - evaluations, now.best);
     evaluations = now.evaluations;
     return !stopped_;
   };
   const auto found = search_dig(machine_, *simulator_, ground_, options);
-  if (found && found->dig.efficiency() > efficiency()) best_ = found->dig;
+  if (found && objective_.rank(found->dig) > rank()) best_ = found->dig;
 }
 
 double DigAttempts::measure(const PlannedDig& dig) {
-  auto outcome = evaluate_dig(machine_, *simulator_, ground_, dig.parameters, dig.start_x);
-  if (const auto* failure = std::get_if<DigFailure>(&outcome);
-      failure != nullptr && std::holds_alternative<Infeasible>(*failure)) {
-    outcome =
-        evaluate_dig(machine_, *simulator_, ground_, dig.parameters, DigSearchOptions{}.start_rule);
+  const DigLayout layout(machine_, ground_);
+  auto path = layout.path(dig.parameters, dig.start_x);
+  if (std::holds_alternative<Infeasible>(path)) {
+    path = layout.path(dig.parameters, DigSearchOptions{}.start_rule);
   }
-  const auto* dug = std::get_if<PlannedDig>(&outcome);
-  const double efficiency = dug ? dug->efficiency() : 0.0;
-  tell(1, efficiency);
-  return efficiency;
+  double worth = 0.0;
+  if (const auto* drivable = std::get_if<DigPath>(&path)) {
+    const auto outcome = dig_along(machine_, *simulator_, ground_, *drivable, objective_);
+    if (const auto* dug = std::get_if<PlannedDig>(&outcome)) worth = objective_.worth(*dug);
+  }
+  tell(1, worth);
+  return worth;
 }
 
 void DigAttempts::tell(int digs, double best) {

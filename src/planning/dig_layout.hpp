@@ -56,6 +56,10 @@ double violation(const DigFailure& failure, const DigParameters& parameters);
 /// Digs a path that was laid out.
 std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
                                                const SoilSimulator& simulator,
-                                               const Terrain& terrain, const DigPath& path);
+                                               const Terrain& terrain, const DigPath& path,
+                                               const CycleOptions& cycle = {});
+/// Sets the figures of its cycle.
+void add_cycle(PlannedDig& dig, const Machine& machine, const DigPath& path,
+               const CycleOptions& options);
 
 }  // namespace excavplan

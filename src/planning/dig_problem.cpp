@@ -10,6 +10,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "planning/planned_digs.hpp"
 
 namespace excavplan {
 namespace {
@@ -50,10 +51,7 @@ class Fingerprint {
   void add(const std::variant<PlannedDig, DigFailure>& outcome) {
     add(static_cast<double>(outcome.index()));
     if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
-      for (const double value :
-           {dig->payload_mass, dig->payload_volume, dig->energy, dig->duration}) {
-        add(value);
-      }
+      for (double PlannedDig::*figure : dig_figures) add(dig->*figure);
     } else if (const auto* stall = std::get_if<Stall>(&std::get<DigFailure>(outcome))) {
       for (const double value :
            {static_cast<double>(stall->phase), static_cast<double>(stall->joint), stall->travelled,
@@ -96,7 +94,7 @@ void check(const std::vector<PossibleSoil>& soils) {
   require(std::abs(sum - 1.0) < 1e-9, "the probability of all soils", sum, "1");
 }
 
-void check(const DigSearchOptions& options) {
+void check(const DigSearchOptions& options, const Machine& machine) {
   for (const DigParameterInfo& info : dig_parameter_table()) {
     const double lower = options.bounds.lower.*info.field;
     const double upper = options.bounds.upper.*info.field;
@@ -106,18 +104,14 @@ void check(const DigSearchOptions& options) {
     require(upper >= lower && std::isfinite(upper), "the upper end of " + what, upper,
             "finite and not below the lower end");
   }
-  const DigObjective& objective = options.objective;
-  require(objective.time_price >= 0.0 && std::isfinite(objective.time_price), "the price of time",
-          objective.time_price, "at least 0 W and finite");
-  require(objective.rest_of_cycle >= 0.0 && std::isfinite(objective.rest_of_cycle),
-          "the rest of the cycle", objective.rest_of_cycle, "at least 0 s and finite");
+  check(options.objective, machine);
 }
 
 DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
-                       const Terrain& terrain, const DigPath& path) {
+                       const Terrain& terrain, const DigPath& path, const CycleOptions& cycle) {
   DigsInEach digs;
   for (const PossibleSoil& soil : soils) {
-    digs.push_back(dig_along(machine, *soil.simulator, terrain, path));
+    digs.push_back(dig_along(machine, *soil.simulator, terrain, path, cycle));
   }
   return digs;
 }
@@ -125,7 +119,7 @@ DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& 
 DigProblem::DigProblem(const Machine& machine, const std::vector<PossibleSoil>& soils,
                        const Terrain& terrain, const DigSearchOptions& options)
     : soils_(soils), terrain_(terrain), options_(options), layout_(machine, terrain) {
-  check(options);
+  check(options, machine);
 }
 
 SearchResult DigProblem::run() {
@@ -141,9 +135,9 @@ DigProblem::Best DigProblem::best_of(const SearchResult& found) const {
   Best best;
   DigSearchResult& result = best.result;
   result.path = path_of(found.best);
-  best.digs = dig_in_each(layout_.machine(), soils_, terrain_, result.path);
+  best.digs = dig_in_each(layout_.machine(), soils_, terrain_, result.path, options_.objective);
   result.dig = mean_dig(best.digs);
-  result.worth = found.outcome.fitness;
+  result.worth = mean_worth(best.digs);
   result.evaluations = found.evaluations;
   result.refused = found.repair;
   result.infeasible = found.infeasible;
@@ -195,20 +189,26 @@ std::variant<VectorXd, Evaluation> DigProblem::lay_out(const VectorXd& point) {
 
 Evaluation DigProblem::simulate(const VectorXd& point) const {
   const DigPath path = path_of(point);
-  const DigsInEach digs = dig_in_each(layout_.machine(), soils_, terrain_, path);
-  double worth = 0.0;
+  const DigsInEach digs =
+      dig_in_each(layout_.machine(), soils_, terrain_, path, options_.objective);
   const DigFailure* failure = nullptr;
-  bool any = false;
-  for (std::size_t i = 0; i < digs.size(); ++i) {
-    if (const auto* dig = std::get_if<PlannedDig>(&digs[i])) {
-      worth += soils_[i].probability * options_.objective.worth(*dig);
-      any = true;
-    } else if (!failure) {
-      failure = &std::get<DigFailure>(digs[i]);
+  for (const auto& dig : digs) {
+    if (std::holds_alternative<PlannedDig>(dig)) {
+      return options_.objective.rank(mean_worth(digs), mean_dig(digs).fill);
     }
+    if (!failure) failure = &std::get<DigFailure>(dig);
   }
-  if (any) return worth;
   return Evaluation::infeasible(violation(*failure, path.parameters), describe(*failure));
+}
+
+/// A stall is worth nothing.
+double DigProblem::mean_worth(const DigsInEach& digs) const {
+  double worth = 0.0;
+  for (std::size_t i = 0; i < digs.size(); ++i) {
+    const auto* dig = std::get_if<PlannedDig>(&digs[i]);
+    if (dig) worth += soils_[i].probability * options_.objective.worth(*dig);
+  }
+  return worth;
 }
 
 /// Means over the soils in which the machine does not stall; there must be one.
@@ -221,10 +221,9 @@ PlannedDig DigProblem::mean_dig(const DigsInEach& digs) const {
     if (probability == 0.0) mean = *dig;
     probability += soils_[i].probability;
     const double share = soils_[i].probability / probability;
-    mean.payload_mass += share * (dig->payload_mass - mean.payload_mass);
-    mean.payload_volume += share * (dig->payload_volume - mean.payload_volume);
-    mean.energy += share * (dig->energy - mean.energy);
-    mean.duration += share * (dig->duration - mean.duration);
+    for (double PlannedDig::*figure : dig_figures) {
+      mean.*figure += share * (dig->*figure - mean.*figure);
+    }
   }
   return mean;
 }
@@ -249,15 +248,13 @@ DigPath DigProblem::path_of(const VectorXd& point) const {
 std::string DigProblem::fingerprint() const {
   Fingerprint ground;
   ground.add(terrain_);
-  Fingerprint worth;
-  worth.add(static_cast<double>(options_.objective.goal));
-  worth.add(options_.objective.time_price);
-  worth.add(options_.objective.rest_of_cycle);
-  worth.add(static_cast<double>(options_.start_rule.kind));
-  worth.add(options_.start_rule.x);
+  Fingerprint start;
+  start.add(static_cast<double>(options_.start_rule.kind));
+  start.add(options_.start_rule.x);
   const Machine& machine = layout_.machine();
   std::string text = "dig on " + machine.name + " " + excavplan::fingerprint(machine) +
-                     ", ground " + ground.text() + ", worth " + worth.text();
+                     ", ground " + ground.text() + ", goal " + describe(options_.objective) +
+                     ", start " + start.text();
   for (const PossibleSoil& soil : soils_) {
     text += ", with probability " + number_text(soil.probability) + " in " +
             identity_of(*soil.simulator, machine);

@@ -19,18 +19,18 @@ namespace excavplan {
 /// @throws Error (bad_input) unless every soil has a simulator and the probabilities are positive
 ///         and add up to 1
 void check(const std::vector<PossibleSoil>& soils);
-/// @throws Error (bad_input) if a range or the objective breaks its rule
-void check(const DigSearchOptions& options);
+/// @throws Error (bad_input) if a range breaks its rule, or as check(objective, machine)
+void check(const DigSearchOptions& options, const Machine& machine);
 
 /// A dig along one path in each of the soils.
 using DigsInEach = std::vector<std::variant<PlannedDig, DigFailure>>;
 DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
-                       const Terrain& terrain, const DigPath& path);
+                       const Terrain& terrain, const DigPath& path, const CycleOptions& cycle = {});
 
 /// The search for a dig as a search of a box. Keeps references to all that it is given.
 class DigProblem {
  public:
-  /// @throws Error (bad_input) as check(options)
+  /// @throws Error (bad_input) as check(options, machine)
   DigProblem(const Machine& machine, const std::vector<PossibleSoil>& soils, const Terrain& terrain,
              const DigSearchOptions& options);
 
@@ -51,6 +51,7 @@ class DigProblem {
   Eigen::VectorXd point_of(const DigParameters& dig) const;
   std::variant<Eigen::VectorXd, Evaluation> lay_out(const Eigen::VectorXd& point);
   Evaluation simulate(const Eigen::VectorXd& point) const;
+  double mean_worth(const DigsInEach& digs) const;
   PlannedDig mean_dig(const DigsInEach& digs) const;
   std::optional<double> start_of(const Eigen::VectorXd& point) const;
   DigPath path_of(const Eigen::VectorXd& point) const;

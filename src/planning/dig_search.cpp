@@ -20,6 +20,7 @@ std::string describe(const NearestDig& nearest) {
 
 DigSearchOptions budget_search() {
   DigSearchOptions options;
+  options.objective = dig_goals().front().goal;
   std::get<MemeticSearch>(options.method).generations = 20;  // the budget ends it long before
   return options;
 }

@@ -11,10 +11,22 @@
 namespace excavplan {
 
 nlohmann::ordered_json dig_json(const PlannedDig& dig) {
-  return {
-      {"path", path_json(dig.parameters, dig.start_x)},    {"payload_mass_kg", dig.payload_mass},
-      {"payload_volume_m3", dig.payload_volume},           {"energy_kj", dig.energy / 1000.0},
-      {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()}, {"duration_s", dig.duration}};
+  const auto per_hour = [&](double time) { return 3.6 * dig.payload_mass / time; };
+  nlohmann::ordered_json json = {{"path", path_json(dig.parameters, dig.start_x)},
+                                 {"payload_mass_kg", dig.payload_mass},
+                                 {"payload_volume_m3", dig.payload_volume},
+                                 {"fill_fraction", dig.fill},
+                                 {"energy_kj", dig.energy / 1000.0},
+                                 {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()},
+                                 {"duration_s", dig.duration},
+                                 {"rate_t_per_h", per_hour(dig.duration)}};
+  if (dig.cycle_time > 0.0) {
+    json["cycle"] = {{"energy_kj", dig.cycle_energy / 1000.0},
+                     {"time_s", dig.cycle_time},
+                     {"efficiency_kg_per_kj", 1000.0 * dig.payload_mass / dig.cycle_energy},
+                     {"rate_t_per_h", per_hour(dig.cycle_time)}};
+  }
+  return json;
 }
 
 PlannedDig read_dig(JsonObject& object) {
@@ -22,10 +34,46 @@ PlannedDig read_dig(JsonObject& object) {
   std::tie(dig.parameters, dig.start_x) = read_path(object.object("path"));
   dig.payload_mass = object.number("payload_mass_kg", 0.0);
   dig.payload_volume = object.number("payload_volume_m3", 0.0);
+  dig.fill = object.number("fill_fraction", 0.0);
   dig.energy = 1000.0 * object.number("energy_kj", 0.0);
   dig.duration = object.number("duration_s", 0.0);
+  if (object.has("cycle")) {
+    JsonObject cycle = object.object("cycle");
+    dig.cycle_energy = 1000.0 * cycle.number("energy_kj", 0.0);
+    dig.cycle_time = cycle.number("time_s", 0.0);
+    cycle.ignore("efficiency_kg_per_kj");
+    cycle.ignore("rate_t_per_h");
+    cycle.done();
+  }
   object.ignore("efficiency_kg_per_kj");
+  object.ignore("rate_t_per_h");
   return dig;
+}
+
+nlohmann::ordered_json goal_json(const DigObjective& objective) {
+  const DigGoalInfo& goal = info_of(objective.goal);
+  nlohmann::ordered_json json = {{"goal", goal.word}};
+  for (const DigObjectiveParameter& parameter : objective_parameters()) {
+    if (!parameter.matters_to(goal)) continue;
+    json["goal_parameters"][parameter.name] = objective.*parameter.field;
+  }
+  return json;
+}
+
+DigObjective read_goal(JsonObject& object) {
+  const std::string word = object.text("goal");
+  const auto& goals = dig_goals();
+  const auto goal = std::find_if(goals.begin(), goals.end(),
+                                 [&](const DigGoalInfo& info) { return info.word == word; });
+  if (goal == goals.end()) object.fail("goal", "is '" + word + "', which is no goal");
+  DigObjective objective(goal->goal);
+  JsonObject numbers = object.object("goal_parameters");
+  for (const DigObjectiveParameter& parameter : objective_parameters()) {
+    if (!parameter.matters_to(*goal)) continue;
+    objective.*parameter.field = numbers.number(parameter.name, 0.0, parameter.highest);
+  }
+  numbers.done();
+  return objective;
 }
 
 void to_json(nlohmann::json& json, const DigParameters& parameters) {
@@ -52,6 +100,18 @@ bool far_apart(const PlannedDig& a, const PlannedDig& b) {
   });
 }
 
+double log_polynomial(const std::vector<std::pair<double, double>>& known, double place) {
+  double sum = 0.0;
+  for (const auto& [own, value] : known) {
+    double weight = std::log(value);
+    for (const auto& [other, unused] : known) {
+      if (other != own) weight *= (place - other) / (own - other);
+    }
+    sum += weight;
+  }
+  return std::exp(sum);
+}
+
 PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool nearest) {
   if (share == 0.0) return a;
   if (nearest) return share < 0.5 ? a : b;
@@ -60,9 +120,8 @@ PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, b
   for (const DigParameterInfo& info : dig_parameter_table()) {
     dig.parameters.*info.field = mix(a.parameters.*info.field, b.parameters.*info.field);
   }
-  for (double PlannedDig::*figure :
-       {&PlannedDig::start_x, &PlannedDig::payload_mass, &PlannedDig::payload_volume,
-        &PlannedDig::energy, &PlannedDig::duration}) {
+  dig.start_x = mix(a.start_x, b.start_x);
+  for (double PlannedDig::*figure : dig_figures) {
     dig.*figure = mix(a.*figure, b.*figure);
   }
   return dig;

@@ -123,7 +123,7 @@ Found<UncertainDigSearchResult> search_dig(const Machine& machine,
                                            const Terrain& terrain,
                                            const DigSearchOptions& options) {
   check(soils);
-  check(options);
+  check(options, machine);
   if (!options.checkpoint.empty() && !options.resume) {
     remove_checkpoints(options.checkpoint, soils.size());
   }

@@ -21,7 +21,8 @@ class ExperimentTest : public testing::Test {
   }
   ExperimentOptions looked_up() const {
     ExperimentOptions options;
-    options.plan.library = std::make_shared<PathLibrary>(shipped_library(machine_, soil_));
+    options.plan.library =
+        std::make_shared<PathLibrary>(shipped_library(machine_, soil_, DigObjective::Goal::energy));
     return options;
   }
 

@@ -8,8 +8,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -33,7 +35,7 @@ using test::content_of;
 using test::TemporaryFolder;
 
 PathLibraryEntry entry(double density, const DigParameters& parameters, double mass) {
-  return {density, 0.0, {parameters, 6.0, mass, 0.3, 10e3, 4.0}, 100, {}, {}};
+  return {density, 0.0, {parameters, 6.0, mass, 0.3, 10e3, 4.0, 0.7, 50e3, 14.0}, 100, {}, {}};
 }
 
 PathLibrary small_library() {
@@ -45,6 +47,7 @@ PathLibrary small_library() {
   library.simulator = "height-map 1";
   library.cell_size = 0.05;
   library.seed = 7;
+  library.objective = DigObjective::Goal::cycle;
   library.search = "by hand";
   library.entries = {entry(0.0, {0.8, 0.30, 1.5}, 400.0), entry(50.0, {0.7, 0.40, 1.9}, 500.0),
                      entry(100.0, {1.3, 0.10, 0.3}, 300.0)};
@@ -80,6 +83,7 @@ TEST(PathLibrary, LooksUpEntriesAndBlendsBetweenThem) {
   EXPECT_DOUBLE_EQ(between.parameters.penetration_length, 0.35);
   EXPECT_DOUBLE_EQ(between.parameters.drag_length, 1.7);
   EXPECT_DOUBLE_EQ(between.payload_mass, 450.0);
+  EXPECT_DOUBLE_EQ(between.cycle_energy, 50e3);
 }
 
 TEST(PathLibrary, TakesTheNearerDigWhereAMixIsWorse) {
@@ -161,6 +165,12 @@ TEST(PathLibrary, FileRoundTripGivesTheSameBytes) {
   const TemporaryFolder folder;
   const std::string text = to_json(library);
   EXPECT_EQ(to_json(load_path_library(folder.write("library.json", text))), text);
+  library.objective = DigObjective::Goal::priced;
+  library.objective.time_price = 40.0;
+  library.objective.dump_height = 2.0;
+  const PathLibrary priced = load_path_library(folder.write("priced.json", to_json(library)));
+  EXPECT_EQ(describe(priced.objective), describe(library.objective));
+  EXPECT_EQ(file_name(priced), "zx120-loam-priced.json");
 }
 
 TEST(PathLibrary, BadFilesAreRefusedByName) {
@@ -173,10 +183,16 @@ TEST(PathLibrary, BadFilesAreRefusedByName) {
     return error_in(sealed(text.replace(at, from.size(), to)));
   };
   EXPECT_EQ(error_in(good), "no error");
-  EXPECT_EQ(with("\"version\": 5", "\"version\": 6"),
-            ": version: is 6, this program reads version 5");
-  EXPECT_EQ(with("\"version\": 5", "\"version\": 4"),
-            ": version: is 4, this program reads version 5");
+  EXPECT_EQ(with("\"version\": 6", "\"version\": 7"),
+            ": version: is 7, this program reads version 6");
+  EXPECT_EQ(with("\"version\": 6", "\"version\": 5"),
+            ": version: is 5, this program reads version 6");
+  EXPECT_EQ(with("\"goal\": \"cycle\"", "\"goal\": \"speed\""),
+            ": goal: is 'speed', which is no goal");
+  EXPECT_EQ(with("\"min_fill\": 0.8", "\"min_fill\": 8"),
+            ": goal_parameters.min_fill: is 8, must be in 0 .. 1");
+  EXPECT_EQ(with("\"goal\": \"cycle\"", "\"goal\": \"energy\""),
+            ": goal_parameters.dump_height_m: is not a key of this file");
   EXPECT_EQ(with("excavplan-path-library", "excavplan-soil"),
             ": format: is 'excavplan-soil', expected 'excavplan-path-library'");
   EXPECT_EQ(with("\"penetration_angle_rad\": 0.8", "\"penetration_angle_rad\": 8"),
@@ -204,6 +220,7 @@ class LibraryBuilding : public testing::Test {
  protected:
   static LibraryBuildOptions quick() {
     LibraryBuildOptions options;
+    options.search.objective = DigObjective::Goal::energy;
     options.search.method = AnchoredSearch{6, 1, 8, 8};
     options.search.cell_size = 0.1;
     options.threads = 1;
@@ -233,13 +250,22 @@ TEST_F(LibraryBuilding, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST_F(LibraryBuilding, AnEntryDoesNotDependOnTheOthers) {
-  const auto entries = build_path_libraries(grid({10, 20, 35, 40}), quick()).libraries[0].entries;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const double density = entries[i].density_percent;
-    const auto alone = build_path_libraries(grid({density}), quick()).libraries[0].entries[0];
-    EXPECT_EQ(alone.dig.energy, entries[i].dig.energy) << density;
-    EXPECT_EQ(alone.dig.payload_mass, entries[i].dig.payload_mass) << density;
+TEST_F(LibraryBuilding, TheSearchOfAnEntryDoesNotDependOnTheOthers) {
+  const TemporaryFolder folder;
+  LibraryBuildOptions options = quick();
+  const auto entries_of = [&](const std::string& name, const std::vector<double>& densities) {
+    options.folder = folder.file(name);
+    build(grid(densities), options);
+    std::map<std::string, std::string> files;
+    for (const auto& file : fs::directory_iterator(options.folder)) {
+      files[file.path().filename()] = content_of(file.path());
+    }
+    return files;
+  };
+  const auto all = entries_of("all", {10, 20, 35, 40});
+  for (const double density : {10.0, 20.0, 35.0, 40.0}) {
+    const auto alone = entries_of(number_text(density), {density});
+    for (const auto& [name, text] : alone) EXPECT_EQ(all.at(name), text) << name;
   }
 }
 
@@ -269,6 +295,7 @@ class LibraryTasks : public LibraryBuilding {
   LibraryAnswer answer(const LibraryTask& task) {
     return read_answer(job_, task.place, "task", do_task(job_, to_text(task), count_));
   }
+  static double efficiency(const LibraryAnswer& answer) { return answer.dig.efficiency(); }
   const LibraryJob job_{grid({30}), quick().search};
   const LibraryPlace place_{0, 0, 0.0, 30.0};
   int told_ = 0;
@@ -280,11 +307,11 @@ class LibraryTasks : public LibraryBuilding {
 
 TEST_F(LibraryTasks, WorseThanItsNeighboursLetExpectAnEntryIsSearchedFromNothingToo) {
   PlannedDig near{{0.8, 0.3, 1.5}, 6.0, 100.0, 0.3, 10e3, 4.0};
-  const LibraryTask modest = first_search(place_, {{40.0, near}, {50.0, near}});
+  const LibraryTask modest = first_search(job_, place_, {{40.0, near}, {50.0, near}});
   EXPECT_LE(answer(modest).evaluations, 8);
   near.payload_mass = 4e4;  // far better at 40 and 50 % than any dig can be
   told_ = 0;
-  const LibraryAnswer bold = answer(first_search(place_, {{40.0, near}, {50.0, near}}));
+  const LibraryAnswer bold = answer(first_search(job_, place_, {{40.0, near}, {50.0, near}}));
   EXPECT_GT(bold.evaluations, 8);
   EXPECT_EQ(told_, bold.evaluations);
 }
@@ -293,11 +320,11 @@ TEST_F(LibraryTasks, ADigOfAnotherKindIsTakenOnlyWhereItIsClearlyBetter) {
   const LibraryAnswer own = answer({place_});
   LibraryTask other{place_};
   other.starts = {own.dig.parameters};
-  other.known = 0.9 * own.efficiency();
+  other.known = 0.9 * efficiency(own);
   const LibraryAnswer better = answer(other);
   EXPECT_TRUE(better.feasible);
-  EXPECT_GE(better.efficiency(), own.efficiency());
-  other.known = 1.1 * own.efficiency();
+  EXPECT_GE(efficiency(better), efficiency(own));
+  other.known = 1.1 * efficiency(own);
   const LibraryAnswer worse = answer(other);
   EXPECT_FALSE(worse.feasible);
   EXPECT_LE(worse.evaluations, 4) << "half the effort is enough to know";
@@ -475,10 +502,13 @@ TEST_F(LibraryBuilding, TakesTheNeighboursKindOfDigWhereItIsBetter) {
 TEST_F(LibraryBuilding, LooksUpTheNearerDigWhereAMixIsWorseThanBoth) {
   int nearest = 0;
   int mixes = 0;
-  for (const auto& [name, lower] : {std::pair("loam", 20.0), {"clay", 70.0}}) {
-    LibraryGrid cells = grid({lower, lower + 5.0});
+  LibraryBuildOptions usual;
+  usual.search.objective = DigObjective::Goal::energy;
+  for (const auto& [name, options] :
+       {std::pair("gravel", quick()), {"loam", usual}, {"clay", quick()}, {"loam", quick()}}) {
+    LibraryGrid cells = grid({0, 10, 20, 25, 30, 40, 50, 60, 70, 80});
     cells.soils = {load_soil(find_data_file(std::string("soils/") + name + ".json"))};
-    const PathLibrary library = build_path_libraries(cells).libraries[0];
+    const PathLibrary library = build_path_libraries(cells, options).libraries[0];
     for (std::size_t i = 0; i + 1 < library.entries.size(); ++i) {
       const PathLibraryEntry& entry = library.entries[i];
       const PlannedDig& below = entry.dig;
@@ -498,8 +528,8 @@ TEST_F(LibraryBuilding, LooksUpTheNearerDigWhereAMixIsWorseThanBoth) {
       ++(entry.to_next_density.nearest ? nearest : mixes);
     }
   }
-  EXPECT_EQ(nearest, 1);
-  EXPECT_EQ(mixes, 1);
+  EXPECT_GT(nearest, 0);
+  EXPECT_GT(mixes, 0);
 }
 
 TEST_F(LibraryBuilding, MeasuresWhatIsLostMidwayBetweenSlopes) {
@@ -546,15 +576,17 @@ TEST_F(LibraryBuilding, MachinesAndSoilsMakeALibraryEach) {
 
 TEST_F(LibraryBuilding, ALibraryIsRefusedForWhatItWasNotComputedFor) {
   const PathLibrary library = build_path_libraries(grid({20}), quick()).libraries[0];
-  EXPECT_NO_THROW(require_fit(library, machine_, soil_, "l.json"));
+  const DigObjective energy;
+  EXPECT_NO_THROW(require_fit(library, machine_, soil_, energy));
   const auto refusal = [&](const PathLibrary& other, const Machine& machine, const SoilKind& soil) {
-    return test::error_of([&] { require_fit(other, machine, soil, "l.json"); });
+    return test::error_of([&] { require_fit(other, machine, soil, energy); });
   };
   SoilKind wet = soil_;
   wet.water_content += 0.01;
-  EXPECT_EQ(refusal(library, machine_, wet),
-            "l.json: does not fit; the numbers of soil loam have changed since it was computed; "
-            "build-path-library makes one that does");
+  EXPECT_EQ(
+      refusal(library, machine_, wet),
+      "the library: does not fit; the numbers of soil loam have changed since it was computed; "
+      "build-path-library makes one that does, a search needs none");
   Machine heavy = machine_;
   heavy.links[0].mass += 1.0;
   EXPECT_NE(refusal(library, heavy, soil_).find("the numbers of machine zx120 have changed"),
@@ -565,6 +597,45 @@ TEST_F(LibraryBuilding, ALibraryIsRefusedForWhatItWasNotComputedFor) {
   PathLibrary old = library;
   old.simulator = "height-map 0";
   EXPECT_NE(refusal(old, machine_, soil_).find("its simulator is height-map 0, not height-map "),
+            std::string::npos);
+}
+
+TEST_F(LibraryBuilding, ALibraryIsRefusedForAnotherGoalAndForAnotherCycle) {
+  LibraryBuildOptions options = quick();
+  options.search.objective = DigObjective::Goal::cycle;
+  PathLibrary library = build_path_libraries(grid({20}), options).libraries[0];
+  library.file = "l.json";
+  const auto refusal = [&](const DigObjective& objective) {
+    return test::error_of([&] { require_fit(library, machine_, soil_, objective); });
+  };
+  EXPECT_EQ(refusal(DigObjective::Goal::cycle), "no error");
+  EXPECT_EQ(
+      refusal(DigObjective::Goal::energy),
+      "l.json: does not fit; its goal is " + describe(options.search.objective) +
+          ", not energy, min_fill 0; build-path-library makes one that does, a search needs none");
+  DigObjective other = DigObjective::Goal::cycle;
+  other.dump_height = 2.5;
+  EXPECT_NE(refusal(other).find("dump_height_m 3"), std::string::npos);
+  other = DigObjective::Goal::cycle;
+  other.min_fill = 0.5;
+  EXPECT_NE(refusal(other).find("not cycle, min_fill 0.5"), std::string::npos);
+}
+
+TEST_F(LibraryBuilding, EntriesAreBestForTheGoal) {
+  LibraryBuildOptions options = quick();
+  const PathLibraryEntry energy = build_path_libraries(grid({0}), options).libraries[0].entries[0];
+  options.search.objective = DigObjective::Goal::cycle;
+  const PathLibraryEntry cycle = build_path_libraries(grid({0}), options).libraries[0].entries[0];
+  EXPECT_GT(cycle.dig.payload_mass / cycle.dig.cycle_energy,
+            energy.dig.payload_mass / energy.dig.cycle_energy);
+  EXPECT_GE(cycle.dig.fill, 0.8);
+}
+
+TEST_F(LibraryBuilding, AMachineWithoutTheDataOfTheCycleIsRefusedForItsGoals) {
+  LibraryGrid cells = grid({20});
+  cells.machines[0].engine.reset();
+  EXPECT_NO_THROW(require_buildable(cells, quick().search));
+  EXPECT_NE(test::error_of([&] { require_buildable(cells, {}); }).find("its file lacks engine"),
             std::string::npos);
 }
 
@@ -586,21 +657,25 @@ TEST_F(LibraryBuilding, AnySimulatorCanBeSearchedWith) {
   const PathLibrary library = build_path_libraries(grid({20}), options).libraries[0];
   EXPECT_EQ(library.simulator, options.search.simulator.name);
   EXPECT_NE(to_json(library), build(grid({20}), quick()));
-  EXPECT_NO_THROW(require_fit(library, machine_, soil_, "l.json", options.search.simulator.name));
+  EXPECT_NO_THROW(require_fit(library, machine_, soil_, {}, options.search.simulator.name));
   EXPECT_NE(test::error_of([&] {
-              require_fit(library, machine_, soil_, "l.json");
+              require_fit(library, machine_, soil_, {});
             }).find("its simulator is " + options.search.simulator.name),
             std::string::npos);
 }
 
-class ShippedLibrary : public testing::TestWithParam<const char*> {
+using SoilAndGoal = std::tuple<const char*, DigObjective::Goal>;
+
+class ShippedLibrary : public testing::TestWithParam<SoilAndGoal> {
  protected:
   HeightMapSimulator simulator(double density) const { return {machine_, soil_, density}; }
 
   const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
-  const SoilKind soil_ = load_soil(find_data_file(std::string("soils/") + GetParam() + ".json"));
-  const PathLibrary library_ =
-      load_path_library(find_data_file(std::string("libraries/zx120-") + GetParam() + ".json"));
+  const std::string name_ = std::get<0>(GetParam());
+  const DigObjective objective_ = std::get<1>(GetParam());
+  const SoilKind soil_ = load_soil(find_data_file("soils/" + name_ + ".json"));
+  const PathLibrary library_ = load_path_library(
+      find_data_file("libraries/zx120-" + name_ + "-" + info_of(objective_.goal).word + ".json"));
   Terrain ground(double slope) const {
     return sloped_planning_ground(machine_, slope, library_.cell_size);
   }
@@ -614,7 +689,7 @@ class ShippedLibrary : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(ShippedLibrary, IsTrue) {
-  EXPECT_NO_THROW(require_fit(library_, machine_, soil_, GetParam()));
+  EXPECT_NO_THROW(require_fit(library_, machine_, soil_, objective_));
   const std::size_t cells = library_.entries.size() + library_.gaps.size();
   EXPECT_EQ(cells, 13U * 21U);
   for (std::size_t i = 0; i < library_.entries.size(); i += 5) {
@@ -624,6 +699,8 @@ TEST_P(ShippedLibrary, IsTrue) {
     const PlannedDig& dig = std::get<PlannedDig>(outcome);
     EXPECT_NEAR(dig.energy, entry.dig.energy, 1e-6 * dig.energy) << entry.density_percent;
     EXPECT_NEAR(dig.payload_mass, entry.dig.payload_mass, 1e-6 * dig.payload_mass);
+    EXPECT_NEAR(dig.cycle_energy, entry.dig.cycle_energy, 1e-6 * dig.cycle_energy);
+    EXPECT_NEAR(dig.fill, entry.dig.fill, 1e-6);
   }
 }
 
@@ -633,15 +710,15 @@ TEST_P(ShippedLibrary, LiftsMoreThanTheFixedPathOnLevelGround) {
   int evaluations = 0;
   double last = 1e9;
   for (const PathLibraryEntry& entry : level) {
-    const double efficiency = entry.dig.efficiency();
+    const double rank = objective_.rank(entry.dig);
     const auto fixed =
         evaluate_dig(machine_, simulator(entry.density_percent), ground(0.0), paper_fixed_path());
     if (const auto* possible = std::get_if<PlannedDig>(&fixed)) {
-      EXPECT_GT(efficiency, possible->efficiency());
+      EXPECT_GT(rank, objective_.rank(*possible));
     }
-    EXPECT_LT(efficiency, last);
+    EXPECT_LT(objective_.worth(entry.dig), last);
     EXPECT_LT(entry.to_next_density.midway.loss, 0.03) << entry.density_percent;
-    last = efficiency;
+    last = objective_.worth(entry.dig);
     evaluations += entry.evaluations;
   }
   const int between_slopes = 3;
@@ -671,15 +748,20 @@ TEST_P(ShippedLibrary, HoldsNearlyTheBestDigs) {
   for (const PathLibraryEntry& entry : some) {
     DigSearchOptions options;
     options.seed = 99;
+    options.objective = objective_;
     options.stop.evaluations = 400;
     const auto best =
         search_dig(machine_, simulator(entry.density_percent), ground(entry.slope), options);
     ASSERT_TRUE(best);
-    EXPECT_GE(entry.dig.efficiency(), 0.99 * best->dig.efficiency()) << entry.density_percent;
+    EXPECT_GE(objective_.rank(entry.dig), 0.99 * objective_.rank(best->dig))
+        << entry.density_percent;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Soils, ShippedLibrary, testing::Values("loam", "sand", "clay", "gravel"));
+INSTANTIATE_TEST_SUITE_P(Soils, ShippedLibrary,
+                         testing::Combine(testing::Values("loam", "sand", "clay", "gravel"),
+                                          testing::Values(DigObjective::Goal::cycle,
+                                                          DigObjective::Goal::energy)));
 
 TEST_F(LibraryBuilding, SameBytesWithWorkersElsewhere) {
   const LibraryGrid cells = grid({10, 20, 35, 70});

@@ -25,6 +25,7 @@ class OwnSimulator : public SoilSimulator {
   DigResult dig(const Terrain&, const DigPath& path, const DigOptions&) const override {
     DigResult result;
     result.payload_mass = 100.0;
+    result.payload_volume = 0.4;
     result.energy.total = 1000.0 + 1e4 * std::pow(path.parameters.drag_length - 1.2, 2);
     return result;
   }
@@ -54,6 +55,12 @@ class PlanDig : public testing::Test {
       ground.bank.z.col(col) += rise * (ground.bank.x(col) - machine_.track_front);
     }
     return ground;
+  }
+  /// The same dig at another density.
+  PlannedDig dug(const PlannedDig& dig, double density) const {
+    return std::get<PlannedDig>(
+        evaluate_dig(machine_, *default_simulator().make(machine_, loam_, density),
+                     level_planning_ground(machine_), dig.parameters, dig.start_x));
   }
   static bool warns(const DigPlan& plan, const std::string& code) {
     return std::any_of(plan.warnings.begin(), plan.warnings.end(),
@@ -193,7 +200,7 @@ TEST_F(PlanDig, SearchBeginsWithTheLibrarysDig) {
   const PlannedDig known = look_up(shipped_library(machine_, loam_), 60.0);
   EXPECT_EQ(first.dig->parameters.drag_length, known.parameters.drag_length);
   PlanOptions for_time = searched(1);
-  for_time.search.objective.goal = DigObjective::Goal::mass_per_time;
+  for_time.search.objective = DigObjective::Goal::time;  // no library is shipped
   EXPECT_NE(plan(60.0, for_time).dig->parameters.drag_length, known.parameters.drag_length);
   PlanOptions own = searched(1);
   own.search.start = {paper_fixed_path()};
@@ -256,6 +263,7 @@ TEST_F(PlanDig, WhereNoDigCanBeDoneItSaysWhatCameNearest) {
 
 TEST_F(PlanDig, SearchesInASuppliedSimulator) {
   PlanOptions options = searched(80);
+  options.search.objective = DigObjective::Goal::energy;
   options.simulator = own_simulator();
   const DigPlan found = plan(40.0, options);
   EXPECT_NEAR(found.dig->parameters.drag_length, 1.2, 0.01);
@@ -271,6 +279,53 @@ TEST_F(PlanDig, ADigLookedUpIsDugInAnotherSimulatorThanTheLibrarys) {
   EXPECT_EQ(found.dig->start_x, plan(40.0).dig->start_x);
 }
 
+// ---- The goal ---------------------------------------------------------------------------------
+
+TEST_F(PlanDig, TellsTheCycleByItsParts) {
+  const DigPlan found = plan(40.0);
+  ASSERT_TRUE(found.cycle);
+  EXPECT_EQ(found.cycle->dig.energy, found.dig->energy);
+  EXPECT_EQ(found.cycle->total.energy, found.dig->cycle_energy);
+  EXPECT_EQ(found.cycle->total.time, found.dig->cycle_time);
+  EXPECT_GE(found.dig->fill, 0.8);
+}
+
+TEST_F(PlanDig, LooksUpInTheLibraryOfItsGoal) {
+  PlanOptions energy;
+  energy.search.objective = DigObjective::Goal::energy;
+  const DigPlan found = plan(10.0, energy);
+  EXPECT_EQ(found.dig->energy,
+            look_up(shipped_library(machine_, loam_, DigObjective::Goal::energy), 10.0).energy);
+  EXPECT_GT(found.dig->efficiency(), plan(10.0).dig->efficiency());
+  PlanOptions time;
+  time.search.objective = DigObjective::Goal::time;
+  EXPECT_NE(test::error_of([&] { plan(40.0, time); }).find("for the goal time is shipped"),
+            std::string::npos);
+  energy.library = std::make_shared<PathLibrary>(shipped_library(machine_, loam_));
+  EXPECT_NE(test::error_of([&] { plan(40.0, energy); }).find("its goal is cycle, min_fill"),
+            std::string::npos);
+}
+
+TEST_F(PlanDig, SaysWhereTheBucketCannotBeFilledAsAsked) {
+  PlanOptions options = searched(30);
+  options.search.bounds.upper = {0.5, 0.3, 0.6};  // too flat for the scoop to fill it
+  const DigPlan found = plan(40.0, options);
+  EXPECT_LT(found.dig->fill, 0.8);
+  EXPECT_TRUE(warns(found, "min_fill_relaxed"));
+  options.search.objective.min_fill = 0.0;
+  EXPECT_FALSE(warns(plan(40.0, options), "min_fill_relaxed"));
+}
+
+TEST_F(PlanDig, ADigThatLiftsNextToNothingIsNotWorthMaking) {
+  PlanOptions options = searched(10);
+  options.search.bounds.lower = {0.2, 0.01, 0.3};
+  options.search.bounds.upper = {0.4, 0.02, 0.3};
+  const DigPlan none = plan(40.0, options);
+  EXPECT_FALSE(none.dig || none.stopped);
+  EXPECT_EQ(none.reason.rfind("no dig is worth making: the best found", 0), 0U) << none.reason;
+  EXPECT_TRUE(none.trajectory.points.empty());
+}
+
 // ---- The density ------------------------------------------------------------------------------
 
 TEST_F(PlanDig, FiguresScatterWithTheDensity) {
@@ -279,8 +334,8 @@ TEST_F(PlanDig, FiguresScatterWithTheDensity) {
   EXPECT_EQ(scattered.dig->energy, sure.dig->energy);
   EXPECT_EQ(sure.spread.efficiency, 0.0);
   EXPECT_EQ(scattered.evaluations, 3);
-  const double soft = plan(32.0).dig->efficiency();
-  const double firm = plan(48.0).dig->efficiency();
+  const double soft = dug(*sure.dig, 32.0).efficiency();
+  const double firm = dug(*sure.dig, 48.0).efficiency();
   EXPECT_NEAR(scattered.spread.efficiency, 0.5 * (soft - firm), 0.1 * (soft - firm));
 }
 

@@ -287,25 +287,102 @@ TEST(DigObjective, IsMassPerWhatItIsTold) {
   PlannedDig dig;
   dig.payload_mass = 500.0;
   dig.energy = 20e3;
-  dig.duration = 5.0;
+  dig.cycle_energy = 80e3;
+  dig.cycle_time = 16.0;
   using Goal = DigObjective::Goal;
-  EXPECT_EQ((DigObjective{Goal::mass_per_energy, 0.0, 15.0}.worth(dig)), 500.0 / 20e3);
-  EXPECT_EQ((DigObjective{Goal::mass_per_time, 0.0, 15.0}.worth(dig)), 500.0 / 20.0);
-  EXPECT_EQ((DigObjective{Goal::priced, 1000.0, 15.0}.worth(dig)), 500.0 / 40e3);
+  EXPECT_EQ(DigObjective(Goal::cycle).worth(dig), 500.0 / 80e3);
+  EXPECT_EQ(DigObjective(Goal::energy).worth(dig), 500.0 / 20e3);
+  EXPECT_EQ(DigObjective(Goal::time).worth(dig), 500.0 / 16.0);
+  DigObjective priced = Goal::priced;
+  priced.time_price = 1000.0;
+  EXPECT_EQ(priced.worth(dig), 500.0 / 96e3);
+}
+
+TEST(DigObjective, RanksADigThatFillsEnoughBeforeAnyThatDoesNot) {
+  const DigObjective cycle = DigObjective::Goal::cycle;
+  EXPECT_EQ(cycle.min_fill, 0.8);
+  EXPECT_EQ(cycle.rank(3.0, 0.8), 3.0);
+  EXPECT_LT(cycle.rank(5.0, 0.79), cycle.rank(3.0, 0.8));
+  EXPECT_GT(cycle.rank(3.0, 0.6), cycle.rank(4.0, 0.5)) << "where it cannot, the fuller one";
+  EXPECT_EQ(DigObjective(DigObjective::Goal::energy).rank(3.0, 0.01), 3.0);
+}
+
+TEST(DigObjective, SaysWhatMattersToItsGoal) {
+  EXPECT_EQ(describe(DigObjective()), "energy, min_fill 0");
+  DigObjective cycle = DigObjective::Goal::cycle;
+  cycle.swing = 1.5;
+  EXPECT_EQ(describe(cycle),
+            "cycle, min_fill 0.8, swing_rad 1.5, dump_height_m 3, rest_of_cycle_s 0");
+  DigObjective priced = DigObjective::Goal::priced;
+  priced.time_price = 30.0;
+  EXPECT_EQ(describe(priced).find("priced, time_price_w 30, min_fill 0, swing_rad"), 0U);
 }
 
 TEST_F(Planner, EachGoalIsServedBestByItsOwnDig) {
   DigSearchOptions options = small_search();
-  const auto by_energy = search_dig(machine_, simulator(40.0), level_, options);
-  options.objective = {DigObjective::Goal::mass_per_time, 0.0, 12.0};
-  const auto by_time = search_dig(machine_, simulator(40.0), level_, options);
-  options.objective.goal = DigObjective::Goal::priced;
-  options.objective.time_price = 1e9;  // nothing but time counts
-  const auto priced = search_dig(machine_, simulator(40.0), level_, options);
-  const DigObjective per_time{DigObjective::Goal::mass_per_time, 0.0, 12.0};
-  EXPECT_GT(per_time.worth(by_time->dig), per_time.worth(by_energy->dig));
-  EXPECT_GT(by_energy->dig.efficiency(), by_time->dig.efficiency());
-  EXPECT_NEAR(per_time.worth(priced->dig), per_time.worth(by_time->dig), 0.01 * by_time->worth);
+  using Goal = DigObjective::Goal;
+  const auto best_for = [&](const DigObjective& objective) {
+    options.objective = objective;
+    return search_dig(machine_, simulator(10.0), level_, options)->dig;
+  };
+  DigObjective priced = Goal::priced;
+  priced.time_price = 1e9;  // nothing but time counts
+  const DigObjective time = Goal::time, energy = Goal::energy, cycle = Goal::cycle;
+  const PlannedDig by_time = best_for(time), by_energy = best_for(energy);
+  EXPECT_GT(time.worth(by_time), time.worth(by_energy));
+  EXPECT_GT(energy.worth(by_energy), energy.worth(by_time));
+  EXPECT_GT(cycle.worth(best_for(cycle)), cycle.worth(by_energy));
+  EXPECT_NEAR(time.worth(best_for(priced)), time.worth(by_time), 0.01 * time.worth(by_time));
+}
+
+TEST_F(Planner, WaitingTimeAndDumpHeightMatterToTheGoalsOfTheCycle) {
+  DigObjective objective = DigObjective::Goal::time;
+  const auto fixed =
+      std::get<PlannedDig>(evaluate_dig(machine_, simulator(40.0), level_, paper_fixed_path()));
+  DigSearchOptions options;
+  options.method = MemeticSearch{0, 0, 1, 0.0, 0, 0, 0.2};
+  options.start = {paper_fixed_path()};
+  options.start_rule = fixed.start_x;
+  options.objective = objective;
+  options.objective.rest_of_cycle = 5.0;
+  const auto waited = search_dig(machine_, simulator(40.0), level_, options);
+  EXPECT_NEAR(waited->dig.cycle_time, fixed.cycle_time + 5.0, 1e-9);
+  EXPECT_NEAR(waited->worth, fixed.payload_mass / (fixed.cycle_time + 5.0), 1e-9);
+  options.objective.dump_height = 4.0;
+  EXPECT_GT(search_dig(machine_, simulator(40.0), level_, options)->dig.cycle_energy,
+            waited->dig.cycle_energy + 500.0 * 9.8);
+}
+
+TEST_F(Planner, FillsTheBucketAsFarAsItIsAskedTo) {
+  DigSearchOptions options = small_search();
+  const double free = search_dig(machine_, simulator(0.0), level_, options)->dig.fill;
+  options.objective.min_fill = 0.5 * (1.0 + free);
+  EXPECT_LT(free, options.objective.min_fill);
+  EXPECT_GE(search_dig(machine_, simulator(0.0), level_, options)->dig.fill,
+            options.objective.min_fill);
+}
+
+TEST_F(Planner, WhereTheFillCannotBeReachedTheFullestDigIsFound) {
+  DigSearchOptions options = small_search();
+  options.bounds.upper.penetration_length = 0.15;
+  options.bounds.upper.drag_length = 0.5;
+  const double free = search_dig(machine_, simulator(40.0), level_, options)->dig.fill;
+  options.objective.min_fill = 0.95;
+  const auto relaxed = search_dig(machine_, simulator(40.0), level_, options);
+  EXPECT_LT(relaxed->dig.fill, 0.95);
+  EXPECT_GE(relaxed->dig.fill, free);
+}
+
+TEST_F(Planner, AMachineWithoutTheDataOfTheCycleIsRefusedForItsGoals) {
+  Machine old = machine_;
+  old.swing.reset();
+  DigSearchOptions options = small_search();
+  EXPECT_TRUE(search_dig(old, simulator(40.0), level_, options));
+  options.objective = DigObjective::Goal::cycle;
+  EXPECT_NE(test::error_of([&] {
+              search_dig(old, simulator(40.0), level_, options);
+            }).find("its file lacks swing (speed_rad_per_s, torque_n_m, inertia_kg_m2)"),
+            std::string::npos);
 }
 
 // ---- Soil that is not known --------------------------------------------------------------------

@@ -22,6 +22,19 @@ TEST_F(Tools, BuildPathLibraryGivesTheKeysOfTheContract) {
   }
 }
 
+TEST_F(Tools, ALibraryHoldsItsGoal) {
+  const Words words =
+      Words{"--densities", "20", "--out", folder.file("l.json"), "--swing", "2"} + small_library;
+  const json cycle = answer("build-path-library", words);
+  EXPECT_EQ(cycle.at("goal"), "cycle");
+  EXPECT_EQ(cycle.at("goal_parameters").at("swing_rad"), 2.0);
+  const Words plan = {"--density", "20", "--library", folder.file("l.json")};
+  EXPECT_EQ(answer("plan-path", plan + Words{"--swing", "2"}).at("path"),
+            cycle.at("entries").at(0).at("path"));
+  EXPECT_EQ(run_program("plan-path", plan).code, 2);
+  EXPECT_EQ(run_program("plan-path", plan + Words{"--goal", "energy"}).code, 2);
+}
+
 TEST_F(Tools, LibraryIsTheSameForAnyNumberOfThreads) {
   const std::string file = folder.file("library.json");
   const auto library = [&](const char* threads, const char* seed) {

@@ -105,7 +105,7 @@ TEST_F(LibraryTool, LibrariesThatCannotBeToldApartAreRefused) {
   const std::string libraries = folder_.file("libraries");
   const ProgramResult odd = build(grid + Words{"--soil", "sand," + mine, "--out", libraries});
   EXPECT_EQ(odd.code, 0) << odd.err;
-  EXPECT_TRUE(fs::exists(libraries + "/zx120-loam_of_site_a_b.json"));
+  EXPECT_TRUE(fs::exists(libraries + "/zx120-loam_of_site_a_b-cycle.json"));
 }
 
 TEST_F(LibraryTool, WhereItWritesIsCheckedBeforeTheSearch) {
@@ -123,7 +123,7 @@ TEST_F(LibraryTool, WhereItWritesIsCheckedBeforeTheSearch) {
 
 TEST_F(LibraryTool, WhatCannotBeWrittenIsFoundBeforeTheSearch) {
   fs::create_directory(folder_.file("libraries"));
-  const std::string sand = folder_.file("libraries/zx120-sand.json");
+  const std::string sand = folder_.file("libraries/zx120-sand-cycle.json");
   for (const std::string& link : {out_, sand}) fs::create_symlink("/nowhere/library.json", link);
   for (const Words& words : {Words{"--out", out_}, Words{"--out", folder_.file("none/l.json")},
                              Words{"--soil", "loam,sand", "--out", out_},
@@ -225,13 +225,13 @@ TEST_F(LibraryTool, SeveralSoilsMakeAFolderOfLibraries) {
   ASSERT_EQ(result.code, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   ASSERT_EQ(json.at("libraries").size(), 2U);
-  EXPECT_EQ(json["libraries"][1].at("file"), libraries + "/zx120-sand.json");
+  EXPECT_EQ(json["libraries"][1].at("file"), libraries + "/zx120-sand-cycle.json");
   const ProgramResult plan = run_program(
       "plan-path",
-      {"--density", "20", "--soil", "sand", "--library", libraries + "/zx120-sand.json"});
+      {"--density", "20", "--soil", "sand", "--library", libraries + "/zx120-sand-cycle.json"});
   EXPECT_EQ(plan.code, 0) << plan.err;
-  const ProgramResult wrong =
-      run_program("plan-path", {"--density", "20", "--library", libraries + "/zx120-sand.json"});
+  const ProgramResult wrong = run_program(
+      "plan-path", {"--density", "20", "--library", libraries + "/zx120-sand-cycle.json"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_NE(wrong.err.find("its soil is sand, not loam"), std::string::npos) << wrong.err;
 }

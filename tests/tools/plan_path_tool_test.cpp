@@ -25,7 +25,10 @@ TEST_F(Tools, PlanPathGivesTheKeysOfTheContract) {
   expect_keys(result, "number", path_keys + cost_keys);
   expect_keys(result, "number",
               {"density_percent", "payload_volume_m3", "duration_s", "wall_time_s"});
-  expect_keys(result, "string", {"source"});
+  expect_keys(result, "string", {"source", "goal"});
+  expect_keys(result, "number", {"fill_fraction"});
+  expect_keys(result.at("cycle"), "number",
+              {"energy_kj", "time_s", "efficiency_kg_per_kj", "rate_t_per_h"});
   EXPECT_TRUE(result.at("evaluations").is_number_integer());
 }
 
@@ -94,7 +97,8 @@ TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
 TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
   const std::string library = folder.file("library.json");
   answer("build-path-library",
-         Words{"--densities", "40", "--slopes=-0.1,0,0.1", "--out", library} + small_library);
+         Words{"--densities", "40", "--slopes=-0.1,0,0.1", "--goal", "energy", "--out", library} +
+             small_library);
   const auto plan = [&](double rise) {
     std::string points;
     for (double x = 1.0; x < 11.0; x += 0.04) {
@@ -103,8 +107,8 @@ TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
                   std::to_string(rise * (x - 2.0)) + "\n";
       }
     }
-    return answer("plan-path", {"--density", "40", "--library", library, "--terrain",
-                                folder.write("ground.xyz", points)});
+    return answer("plan-path", {"--density", "40", "--goal", "energy", "--library", library,
+                                "--terrain", folder.write("ground.xyz", points)});
   };
   const json gentle = plan(0.05);
   EXPECT_NEAR(gentle.at("look_up_slope_rad"), std::atan(0.05), 1e-4);
@@ -113,18 +117,19 @@ TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
   const json steep = plan(0.5);
   EXPECT_NEAR(steep.at("look_up_slope_rad"), 0.1, 1e-12) << "as far as the library goes";
   EXPECT_TRUE(warns(steep, "slope_outside_library"));
-  const json level = answer("plan-path", {"--density", "40", "--library", library});
+  const json level =
+      answer("plan-path", {"--density", "40", "--goal", "energy", "--library", library});
   EXPECT_EQ(level.at("look_up_slope_rad"), 0.0);
   EXPECT_EQ(level.at("look_up_loss"), 0.0);
 }
 
 TEST_F(Tools, ALookUpSaysWhereTheGroundIsNotThatOfTheLibrary) {
   const std::string terrain = shipped("quickstart/after.pcd");
-  const json pit = answer("plan-path", {"--density", "40", "--terrain", terrain});
+  const Words in_pit = {"--density", "40", "--goal", "energy", "--terrain", terrain};
+  const json pit = answer("plan-path", in_pit);
   EXPECT_TRUE(warns(pit, "ground_unlike_library"));
   EXPECT_EQ(pit.at("look_up_loss"), nullptr);
-  EXPECT_EQ(run_program("plan-path", {"--density", "40", "--terrain", terrain, "--strict"}).code,
-            4);
+  EXPECT_EQ(run_program("plan-path", in_pit + Words{"--strict"}).code, 4);
   const json even = answer(
       "plan-path", {"--density", "40", "--terrain", shipped("quickstart/before.pcd"), "--strict"});
   EXPECT_FALSE(warns(even, "ground_unlike_library"));
@@ -139,8 +144,9 @@ TEST_F(Tools, SearchIsAtLeastAsGoodAsTheLibrary) {
             << " digs\n";
   EXPECT_EQ(search["source"], "search");
   EXPECT_LE(search["evaluations"].get<int>(), 400);
-  EXPECT_GE(number(search, "/efficiency_kg_per_kj"), number(library, "/efficiency_kg_per_kj"));
-  EXPECT_EQ(number(search, "/worth"), number(search, "/efficiency_kg_per_kj"));
+  EXPECT_GE(number(search, "/cycle/efficiency_kg_per_kj"),
+            number(library, "/cycle/efficiency_kg_per_kj"));
+  EXPECT_NEAR(number(search, "/worth"), number(search, "/cycle/efficiency_kg_per_kj"), 1e-12);
   EXPECT_EQ(search.at("start_rule"), "least work of the links' own weight");
   const json range = search.at("/ranges_98_percent/drag_length_m"_json_pointer);
   EXPECT_LE(range.at(0), search.at("/path/drag_length_m"_json_pointer));
@@ -154,13 +160,14 @@ TEST_F(Tools, SearchTakesGoalRangesStartAndMethod) {
                                       "1m,1.5m", "--start", "6.1"});
   EXPECT_EQ(by_time.at("worth_unit"), "kg/s");
   EXPECT_NEAR(number(by_time, "/worth"),
-              number(by_time, "/payload_mass_kg") / (number(by_time, "/duration_s") + 12.0), 1e-9);
+              number(by_time, "/payload_mass_kg") / number(by_time, "/cycle/time_s"), 1e-9);
+  EXPECT_GT(number(by_time, "/cycle/time_s"), 12.0 + number(by_time, "/duration_s"));
   EXPECT_LE(number(by_time, "/path/drag_length_m"), 1.5);
   EXPECT_EQ(number(by_time, "/path/start_x_m"), 6.1);
   const json priced = answer("plan-path", few + Words{"--goal", "priced:3000"});
   EXPECT_NEAR(number(priced, "/worth"),
               number(priced, "/payload_mass_kg") /
-                  (number(priced, "/energy_kj") + 3.0 * number(priced, "/duration_s")),
+                  (number(priced, "/cycle/energy_kj") + 3.0 * number(priced, "/cycle/time_s")),
               1e-9);
   const json paper = answer("plan-path", {"--density", "40", "--search", "--method", "paper",
                                           "--population", "6", "--generations", "2"});
@@ -183,8 +190,8 @@ TEST_F(Tools, SearchIsTheSameForAnyNumberOfThreads) {
 TEST_F(Tools, SearchWarnsOfADamagedShippedLibraryAndGoesOn) {
   const std::string data = folder.file("data");
   fs::copy(EXCAVPLAN_DATA_SOURCE, data, fs::copy_options::recursive);
-  folder.write("data/libraries/zx120-loam.json", R"({"format": "excavplan-path-library")");
-  fs::remove(data + "/libraries/zx120-sand.json");
+  folder.write("data/libraries/zx120-loam-cycle.json", R"({"format": "excavplan-path-library")");
+  fs::remove(data + "/libraries/zx120-sand-cycle.json");
   ::setenv("EXCAVPLAN_DATA", data.c_str(), 1);
   const Words few = {"--density", "40", "--search", "--evaluations", "10"};
   const json loam = answer("plan-path", few);
@@ -246,16 +253,16 @@ TEST_F(Tools, NoDigGoesWhereTheScanDoesNotSee) {
   const auto cloud = [&](const Rectangle& part) {
     return folder.write("unseen.xyz", ground_without(part));
   };
-  const Words plan = {"--density", "40", "--search", "--terrain"};
+  const Words plan = {"--density", "40", "--search", "--goal", "energy", "--terrain"};
   const json narrow = answer("plan-path", plan + Words{cloud({5.0, -1.0, 5.2, 1.0})});
   EXPECT_FALSE(warns(narrow, "unseen_ground"));
   const json far = answer("plan-path", plan + Words{cloud({6.0, -1.0, 8.0, 1.0})});
   EXPECT_TRUE(warns(far, "unseen_ground"));
   EXPECT_LT(number(far, "/path/start_x_m"), 6.0);
   EXPECT_LT(number(far, "/efficiency_kg_per_kj"), number(narrow, "/efficiency_kg_per_kj"));
-  const ProgramResult all = run_program("plan-path", plan + Words{cloud({2.2, -1.4, 8.8, 1.4})});
-  EXPECT_EQ(all.code, 2);
-  EXPECT_NE(all.err.find("is not known"), std::string::npos) << all.err;
+  const json all = answer("plan-path", plan + Words{cloud({2.2, -1.4, 8.8, 1.4}), "--strict"}, 4);
+  EXPECT_EQ(all.at("path"), nullptr);
+  EXPECT_TRUE(contains(all.at("reason"), "is not known")) << all;
 }
 
 TEST_F(Tools, APlanThatMayStallIsNotTrusted) {
@@ -280,11 +287,10 @@ TEST_F(Tools, APlanThatMayStallIsNotTrusted) {
 
 TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {
   const Words few = {"--density", "40", "--population", "6", "--evaluations", "6"};
-  const json looked_up = answer("plan-path", few + Words{"--goal", "time"});
+  const json looked_up = answer("plan-path", few);
   ASSERT_TRUE(warns(looked_up, "options_ignored"));
   EXPECT_EQ(looked_up["warnings"][0]["message"],
-            "without effect: --population, --goal, --evaluations; nothing is searched without "
-            "--search");
+            "without effect: --population, --evaluations; nothing is searched without --search");
   const json started = answer("plan-path", {"--density", "40", "--start", "5.7"});
   ASSERT_TRUE(warns(started, "options_ignored"));
   const json searched = answer("plan-path", few + Words{"--search"});
@@ -297,7 +303,7 @@ TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {
 }
 
 TEST_F(Tools, PlanForAnUncertainDensityGivesTheValueOfKnowingIt) {
-  const Words few = {"--search", "--evaluations", "30"};
+  const Words few = {"--search", "--evaluations", "30", "--goal", "energy"};
   const json plan = answer("plan-path", few + Words{"--density", "40", "--density-sd", "8"});
   EXPECT_EQ(plan.at("expected_efficiency_kg_per_kj"), plan.at("worth"));
   EXPECT_GE(number(plan, "/value_of_knowing_percent"), 0.0);
@@ -309,16 +315,19 @@ TEST_F(Tools, PlanForAnUncertainDensityGivesTheValueOfKnowingIt) {
 }
 
 TEST_F(Tools, FiguresOfAPlanScatterWithTheDensity) {
-  const json sure = answer("plan-path", {"--density", "40"});
-  const json plan = answer("plan-path", {"--density", "40", "--density-sd", "8"});
+  const auto answered = [](const Words& words) {
+    return answer("plan-path", Words{"--goal", "energy"} + words);
+  };
+  const json sure = answered({"--density", "40"});
+  const json plan = answered({"--density", "40", "--density-sd", "8"});
   EXPECT_EQ(plan.at("path"), sure.at("path"));
   EXPECT_FALSE(sure.contains("efficiency_sd_kg_per_kj"));
   EXPECT_EQ(plan.at("density_sd_percent"), 8.0);
   EXPECT_EQ(plan.at("evaluations"), 3);
   EXPECT_EQ(plan.at("stall_probability"), 0.0);
   // As the best efficiency falls over density, so does that of one path, in first order.
-  const double soft = answer("plan-path", {"--density", "32"}).at("efficiency_kg_per_kj");
-  const double firm = answer("plan-path", {"--density", "48"}).at("efficiency_kg_per_kj");
+  const double soft = answered({"--density", "32"}).at("efficiency_kg_per_kj");
+  const double firm = answered({"--density", "48"}).at("efficiency_kg_per_kj");
   EXPECT_NEAR(plan.at("efficiency_sd_kg_per_kj"), 0.5 * (soft - firm), 0.1 * (soft - firm));
   EXPECT_GT(plan.at("energy_sd_kj"), 0.0);
 }
@@ -374,7 +383,7 @@ TEST_F(BadInput, APlanDoesNotTrustAResultWhoseTrustworthyIsNotABoolean) {
 }
 
 TEST_F(BadInput, ALibraryOfAnotherSoilIsNamedByItsFile) {
-  const std::string file = shipped("libraries/zx120-sand.json");
+  const std::string file = shipped("libraries/zx120-sand-cycle.json");
   refused(2, file + ": does not fit", "plan-path", {"--density", "40", "--library", file});
 }
 
@@ -389,18 +398,66 @@ TEST_F(BadInput, SearchOptionsAreRefusedByName) {
           {"--density", "40", "--start", "search"});
 }
 
-TEST_F(BadInput, SearchWithoutADigNamesTheNearestAndItsLimit) {
+TEST_F(Tools, SearchWithoutADigNamesTheNearestAndItsLimit) {
   const Words steep = {"--search",      "--evaluations", "5",
                        "--angle-range", "1.4,1.4",       "--penetration-range",
                        "0.9,0.9",       "--drag-range",  "3,3"};
   const std::string nearest =
       "no dig inside the search ranges can be done on this ground; the nearest, 80.2 deg, 0.900 m, "
-      "3.00 m from x = 6.54 m: ";
-  refused(2, nearest + "the machine's front lifts in the phase penetrate after 0.4", "plan-path",
-          steep + Words{"--density", "40"});
-  // In the loosest of the possible soils it gets further.
-  refused(2, nearest + "the arm stalls in the phase drag after 0.9", "plan-path",
-          steep + Words{"--density", "40", "--density-sd", "8"});
+      "3.00 m from x = 6.54 m: the arm stalls in the phase drag after 0.9";
+  for (const Words& density :
+       {Words{"--density", "40"}, {"--density", "40", "--density-sd", "8"}}) {
+    const json none = answer("plan-path", steep + density);
+    EXPECT_EQ(none.at("path"), nullptr);
+    EXPECT_TRUE(contains(none.at("reason"), nearest)) << none;
+    EXPECT_TRUE(warns(none, "no_dig"));
+    answer("plan-path", steep + density + Words{"--strict"}, 4);
+  }
+}
+
+TEST_F(Tools, ADigThatLiftsNextToNothingIsNotWorthMaking) {
+  const json none =
+      answer("plan-path",
+             {"--density", "40", "--search", "--evaluations", "10", "--drag-range", "0.3,0.3",
+              "--penetration-range", "0.01,0.02", "--angle-range", "0.2,0.4", "--strict"},
+             4);
+  EXPECT_EQ(none.at("path"), nullptr);
+  EXPECT_TRUE(contains(none.at("reason"), "no dig is worth making")) << none;
+  EXPECT_EQ(none.at("goal"), "cycle");
+}
+
+TEST_F(Tools, PlansForTheCycleAndForThePapersGoal) {
+  const json cycle = answer("plan-path", {"--density", "10"});
+  const json energy = answer("plan-path", {"--density", "10", "--goal", "energy"});
+  EXPECT_GE(number(cycle, "/fill_fraction"), 0.8);
+  EXPECT_GT(number(energy, "/efficiency_kg_per_kj"), number(cycle, "/efficiency_kg_per_kj"));
+  EXPECT_LT(number(energy, "/cycle/efficiency_kg_per_kj"),
+            number(cycle, "/cycle/efficiency_kg_per_kj"));
+  const Words few = {"--density", "40", "--search", "--evaluations", "20"};
+  const json far = answer("plan-path", few + Words{"--swing", "180deg", "--dump-height", "4m"});
+  const json near = answer("plan-path", few + Words{"--swing", "30deg", "--dump-height", "2m"});
+  for (const char* figure : {"/cycle/energy_kj", "/cycle/time_s"}) {
+    EXPECT_GT(number(far, figure), number(near, figure)) << figure;
+  }
+  const ProgramResult text = run_program("plan-path", {"--density", "40"});
+  EXPECT_TRUE(contains(text.out, "of the heaped capacity")) << text.out;
+  EXPECT_TRUE(contains(text.out, "kg/kJ, of the cycle ")) << text.out;
+  EXPECT_TRUE(contains(text.out, "t/h, of the cycle ")) << text.out;
+}
+
+TEST_F(BadInput, OptionsOfTheGoalThatHaveNoEffectOrNoLibraryAreRefused) {
+  const Words plan = {"--density", "40"};
+  for (const char* option : {"--swing", "--dump-height", "--rest-of-cycle"}) {
+    refused(2, std::string(option) + " has no effect on the goal energy", "plan-path",
+            plan + Words{"--search", "--goal", "energy", option, "2"});
+    refused(2, "does not fit; its goal is cycle", "plan-path", plan + Words{option, "2"});
+  }
+  refused(2, "no library of zx120 in loam for the goal time is shipped", "plan-path",
+          plan + Words{"--goal", "time"});
+  refused(2, "the smallest fill of the bucket, as a fraction of its heaped capacity is 2, must be",
+          "plan-path", plan + Words{"--min-fill", "2"});
+  refused(2, "the dump height is 12 m, the bucket pin reaches", "plan-path",
+          plan + Words{"--search", "--dump-height", "12"});
 }
 
 TEST_F(RealScans, OfASiteAreGroundToPlanOn) {
@@ -413,7 +470,8 @@ TEST_F(RealScans, OfASiteAreGroundToPlanOn) {
                                            "--trajectory", csv, "--plot", plot});
   std::cout << "  library " << library.at("efficiency_kg_per_kj") << ", search "
             << search.at("efficiency_kg_per_kj") << " kg/kJ\n";
-  EXPECT_GE(number(search, "/efficiency_kg_per_kj"), number(library, "/efficiency_kg_per_kj"));
+  EXPECT_GE(number(search, "/cycle/efficiency_kg_per_kj"),
+            number(library, "/cycle/efficiency_kg_per_kj"));
   EXPECT_EQ(content_of(csv).rfind("time_s,phase,", 0), 0U);
   expect_figure(plot, {"scoop"});
 }

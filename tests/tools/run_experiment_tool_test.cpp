@@ -25,6 +25,20 @@ TEST_F(Tools, RunExperimentGivesTheKeysOfTheContract) {
   }
 }
 
+TEST_F(Tools, ExperimentPlansForThePapersGoalUnlessToldOtherwise) {
+  const Words soft = {"--densities", "10"};
+  const json energy = answer("run-experiment", soft);
+  EXPECT_EQ(energy.at("goal"), "energy");
+  const json cycle = answer("run-experiment", soft + Words{"--goal", "cycle"});
+  EXPECT_EQ(cycle.at("goal"), "cycle");
+  EXPECT_GT(number(cycle, "/conditions/0/planned/fill_fraction"), 0.79);
+  EXPECT_NEAR(number(cycle, "/conditions/0/gain_percent"),
+              100.0 * (number(cycle, "/conditions/0/planned/cycle/efficiency_kg_per_kj") /
+                           number(cycle, "/conditions/0/fixed/cycle/efficiency_kg_per_kj") -
+                       1.0),
+              1e-9);
+}
+
 TEST_F(Tools, ExperimentSplitsItsGainIntoPathAndStart) {
   const json result = answer("run-experiment", {"--search", "--densities", "10"});
   const json condition = result.at("conditions").at(0);

@@ -8,6 +8,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
 
 namespace excavplan::tools {
@@ -30,13 +31,14 @@ void add_lines(const PathLibrary& library, const std::string& file, Outcome& out
     outcome.lines.push_back(readable(entry.density_percent) + " %" +
                             (sloped ? " on " + readable(entry.slope) + " rad" : "") + ": " +
                             path_text(entry.dig) + ", " +
-                            readable(1000.0 * entry.dig.efficiency()) + " kg/kJ");
+                            worth_text(library.objective, library.objective.worth(entry.dig)));
   }
 }
 
 }  // namespace
 
-void require_library_place(const LibraryGrid& grid, const std::string& out) {
+void require_library_place(const LibraryGrid& grid, const DigObjective& objective,
+                           const std::string& out) {
   std::error_code none;
   const bool several = grid.machines.size() * grid.soils.size() > 1;
   const bool folder = fs::is_directory(out, none);
@@ -50,6 +52,7 @@ void require_library_place(const LibraryGrid& grid, const std::string& out) {
       PathLibrary library;
       library.machine = machine.name;
       library.soil = soil.name;
+      library.objective = objective;
       require_writable(out + "/" + file_name(library));
     }
   }

@@ -16,7 +16,8 @@ namespace excavplan::tools {
 
 /// Checks before the search that the libraries of the grid can be written.
 /// @throws Error (bad_file)
-void require_library_place(const LibraryGrid& grid, const std::string& out);
+void require_library_place(const LibraryGrid& grid, const DigObjective& objective,
+                           const std::string& out);
 
 /// Writes a library to the file, several to a folder of that name.
 Outcome written_libraries(const std::vector<PathLibrary>& libraries, const std::string& out);

@@ -7,6 +7,7 @@
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "shared/arguments.hpp"
+#include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
 
 namespace excavplan::tools {
@@ -35,8 +36,24 @@ nlohmann::ordered_json search_json(const PlanSearch& search, const DigGoalInfo& 
 
 nlohmann::ordered_json expectation_json(const PlanSearch& search, const DigGoalInfo& goal) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  if (goal.unit == "kg/kJ") json["expected_efficiency_kg_per_kj"] = goal.per_si * search.worth;
+  if (goal.goal == DigObjective::Goal::energy) json["expected_efficiency_kg_per_kj"] = goal.per_si * search.worth;
   if (search.value_of_knowing) json["value_of_knowing_percent"] = 100.0 * *search.value_of_knowing;
+  return json;
+}
+
+/// Energy and time of each part.
+nlohmann::ordered_json parts_json(const DigCycle& cycle) {
+  nlohmann::ordered_json json;
+  const auto add = [&](const char* part, const CycleShare& share) {
+    json[part] = {{"energy_kj", share.energy / 1000.0}, {"time_s", share.time}};
+  };
+  add("dig", cycle.dig);
+  add("lift", cycle.lift);
+  add("swing", cycle.swing);
+  add("dump", cycle.dump);
+  add("back", cycle.back);
+  add("lower", cycle.lower);
+  add("rest", cycle.rest);
   return json;
 }
 
@@ -59,8 +76,9 @@ nlohmann::ordered_json spread_json(const DigSpread& spread, double density_sd) {
           {"stall_probability", spread.stall_probability}};
 }
 
-std::string expected_line(const PlanSearch& search, const DigGoalInfo& goal, double density_sd) {
-  std::string line = "expected     " + readable(goal.per_si * search.worth) + " " + goal.unit +
+std::string expected_line(const PlanSearch& search, const DigObjective& objective,
+                          double density_sd) {
+  std::string line = "expected     " + worth_text(objective, search.worth) +
                      " at a standard deviation of " + readable(density_sd) + " points of density";
   if (!search.value_of_knowing) return line;
   return line + "; value of knowing the density: " + readable(100.0 * *search.value_of_knowing, 2) +
@@ -74,7 +92,11 @@ std::string look_up_line(const PlanLookUp& look_up) {
   if (look_up.slope != 0.0) line += "on a slope of " + readable(look_up.slope, 2) + " rad";
   if (look_up.error->loss == 0.0) return line;
   return line + (look_up.slope != 0.0 ? ", " : "") + "between entries, up to " +
-         readable(100.0 * look_up.error->loss, 2) + " % below the best efficiency";
+         readable(100.0 * look_up.error->loss, 2) + " % below the best";
+}
+
+std::string reason_of(const DigPlan& plan) {
+  return plan.reason + (plan.nearest ? "; the nearest, " + describe(*plan.nearest) : "");
 }
 
 std::string source_line(const DigPlan& plan) {
@@ -123,6 +145,7 @@ GroundDensity density_of(const DensityInput& input) {
 
 std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input) {
   std::vector<Warning> warnings = plan.warnings;
+  if (!plan.reason.empty()) warnings.push_back({"no_dig", reason_of(plan)});
   for (Warning& warning : warnings) {
     const bool of_density =
         warning.code == "density_not_trustworthy" || warning.code == "law_of_other_soil";
@@ -134,11 +157,14 @@ std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& inpu
 nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& density,
                                  const DigObjective& objective) {
   nlohmann::ordered_json json = {{"density_percent", density.percent}};
+  json.update(goal_json(objective));
   if (!plan.dig) {
     json.update({{"source", name(plan.method)}, {"path", nullptr}});
+    if (!plan.reason.empty()) json["reason"] = reason_of(plan);
     return json;
   }
   json.update(dig_json(*plan.dig));
+  if (plan.cycle) json["cycle"]["by_part"] = parts_json(*plan.cycle);
   json["source"] = name(plan.method);
   json["start_rule"] = plan.start_rule;
   json["evaluations"] = plan.evaluations;
@@ -153,17 +179,16 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
 
 std::vector<std::string> plan_lines(const DigPlan& plan, const GroundDensity& density,
                                     const std::string& soil, const DigObjective& objective) {
-  if (!plan.dig) return {"stopped before any dig was found"};
-  const DigGoalInfo& goal = info_of(objective.goal);
-  std::vector<std::string> lines = {
-      "density      " + readable(density.percent, density.sd_percent) + " % in " + soil};
-  for (const std::string& line : dig_lines(*plan.dig, plan.spread)) lines.push_back(line);
-  if (plan.search && objective.goal != DigObjective::Goal::mass_per_energy) {
-    lines.push_back("worth        " + readable(goal.per_si * plan.search->worth) + " " + goal.unit +
-                    ", " + goal.description);
+  if (!plan.dig) {
+    return {plan.stopped ? "stopped before any dig was found" : "path         none"};
   }
+  std::vector<std::string> lines = {
+      "density      " + readable(density.percent, density.sd_percent) + " % in " + soil,
+      "goal         " + info_of(objective.goal).description + ", " +
+          worth_text(objective, plan.search ? plan.search->worth : objective.worth(*plan.dig))};
+  for (const std::string& line : dig_lines(*plan.dig, plan.spread)) lines.push_back(line);
   if (plan.search && density.sd_percent > 0.0) {
-    lines.push_back(expected_line(*plan.search, goal, density.sd_percent));
+    lines.push_back(expected_line(*plan.search, objective, density.sd_percent));
   }
   if (plan.look_up && !look_up_line(*plan.look_up).empty()) {
     lines.push_back(look_up_line(*plan.look_up));

@@ -105,16 +105,16 @@ double parse_quantity(const std::string& what, const std::string& text, Quantity
   return value * known->factor;
 }
 
-Quantity quantity_of(const DigParameterInfo& info) {
+Quantity quantity_of(const std::string& unit) {
   return std::find_if(quantities.begin(), quantities.end(),
-                      [&](const QuantityInfo& row) { return info.unit == std::string(row.unit); })
+                      [&](const QuantityInfo& row) { return unit == row.unit; })
       ->quantity;
 }
 
 DigPathForm dig_path_form() {
   DigPathForm form;
   for (const DigParameterInfo& row : dig_parameter_table()) {
-    append(form.placeholder, ",", placeholder(quantity_of(row)));
+    append(form.placeholder, ",", placeholder(quantity_of(row.unit)));
     append(form.units, ",", row.unit);
     append(form.names, ", ", row.text);
   }
@@ -124,7 +124,7 @@ DigPathForm dig_path_form() {
 std::string dig_path_argument(const DigParameters& parameters) {
   std::string text;
   for (const DigParameterInfo& row : dig_parameter_table()) {
-    const bool angle = quantity_of(row) == Quantity::angle;
+    const bool angle = quantity_of(row.unit) == Quantity::angle;
     const double value = parameters.*row.field * (angle ? 180.0 / pi : 1.0);
     append(text, ",", number_text(std::round(1e9 * value) / 1e9) + (angle ? "deg" : row.unit));
   }
@@ -139,7 +139,7 @@ DigParameters parse_dig_path(const std::string& what, const std::string& text) {
                                   dig_path_argument(paper_fixed_path()));
   DigParameters parameters;
   for (std::size_t i = 0; i < table.size(); ++i) {
-    parameters.*table[i].field = parse_quantity(what, parts[i], quantity_of(table[i]));
+    parameters.*table[i].field = parse_quantity(what, parts[i], quantity_of(table[i].unit));
   }
   return parameters;
 }

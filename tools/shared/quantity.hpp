@@ -32,8 +32,8 @@ std::vector<std::string> split(const std::string& text, char separator);
 std::vector<double> parse_series(const std::string& what, const std::string& text,
                                  Quantity quantity);
 
-/// What a parameter of a dig measures.
-Quantity quantity_of(const DigParameterInfo& info);
+/// What a number in this SI unit measures.
+Quantity quantity_of(const std::string& unit);
 
 /// A dig path on the command line, from dig_parameter_table().
 struct DigPathForm {

@@ -8,6 +8,7 @@
 
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"
+#include "planning/dig_layout.hpp"
 #include "shared/joint_loads.hpp"
 #include "shared/plot.hpp"
 #include "shared/quantity.hpp"
@@ -65,6 +66,15 @@ nlohmann::ordered_json exact_volumes_json(const HeightMapVolumes& volumes) {
   return volumes_json(exact);
 }
 
+PlannedDig dig_of(const Machine& machine, const DigScene& scene) {
+  const DigResult& result = scene.dig;
+  PlannedDig dig{scene.path.parameters, scene.path.start_x,  result.payload_mass,
+                 result.payload_volume, result.energy.total, scene.duration};
+  dig.fill = dig.payload_volume / heaped_capacity(machine);
+  if (!result.stall) add_cycle(dig, machine, scene.path, {});
+  return dig;
+}
+
 }  // namespace
 
 nlohmann::ordered_json volumes_json(const VolumeChange& change) {
@@ -86,48 +96,50 @@ std::string path_text(const PlannedDig& dig) {
 }
 
 std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& spread) {
-  return {
-      "path         " + path_text(dig),
-      "payload      " + readable(dig.payload_mass, spread.payload_mass) + " kg, " +
-          readable(dig.payload_volume) + " m3 loose",
-      "energy       " + readable(dig.energy / 1000.0, spread.energy / 1000.0) + " kJ",
-      "efficiency   " + readable(1000.0 * dig.efficiency(), 1000.0 * spread.efficiency) + " kg/kJ",
-      "duration     " + readable(dig.duration) + " s"};
+  const double mass = dig.payload_mass;
+  const auto of_cycle = [&](double value, const std::string& unit) {
+    return " " + unit +
+           (dig.cycle_time > 0.0 ? ", of the cycle " + readable(value) + " " + unit : "");
+  };
+  return {"path         " + path_text(dig),
+          "payload      " + readable(mass, spread.payload_mass) + " kg, " +
+              readable(dig.payload_volume) + " m3 loose, " + readable(100.0 * dig.fill) +
+              " % of the heaped capacity",
+          "energy       " + readable(dig.energy / 1000.0, spread.energy / 1000.0) +
+              of_cycle(dig.cycle_energy / 1000.0, "kJ"),
+          "efficiency   " + readable(1000.0 * dig.efficiency(), 1000.0 * spread.efficiency) +
+              of_cycle(1000.0 * mass / dig.cycle_energy, "kg/kJ"),
+          "duration     " + readable(dig.duration) + of_cycle(dig.cycle_time, "s"),
+          "rate         " + readable(3.6 * mass / dig.duration) +
+              of_cycle(3.6 * mass / dig.cycle_time, "t/h")};
 }
 
 nlohmann::ordered_json scene_json(const Machine& machine, const DigScene& scene) {
   const DigResult& dig = scene.dig;
-  return {{"density_percent", scene.density_percent},
-          {"soil", scene.soil},
-          {"path", path_json(scene.path.parameters, scene.path.start_x)},
-          {"payload_mass_kg", dig.payload_mass},
-          {"payload_volume_m3", dig.payload_volume},
-          {"energy_kj", dig.energy.total / 1000.0},
-          {"efficiency_kg_per_kj", 1000.0 * dig.efficiency()},
-          {"duration_s", scene.duration},
-          {"peak_force_kn", dig.peak_force / 1000.0},
-          {"stalled", dig.stall.has_value()},
-          {"stall", dig.stall ? stall_json(*dig.stall) : nlohmann::ordered_json()},
-          {"volume", exact_volumes_json(scene.volumes)},
-          {"bulking_factor", scene.volumes.bulking_factor},
-          {"bulking_factor_true", scene.bulking_factor_true},
-          {"fallback_fraction", dig.soil.fallback_fraction},
-          {"solids_before_kg", dig.soil.solids_before},
-          {"solids_after_kg", dig.soil.solids_after},
-          {"final_angle_of_repose_rad", heap_slope(scene.before, scene.after, scene.dump_at)},
-          {"energy", energy_json(dig.energy)},
-          {"joints", to_json(machine, joint_loads(machine, dig.history))},
-          {"soil_ledger", soil_json(dig.soil)},
-          {"dump_at_m", {scene.dump_at.x(), scene.dump_at.y()}}};
+  nlohmann::ordered_json json = {{"density_percent", scene.density_percent}, {"soil", scene.soil}};
+  json.update(dig_json(dig_of(machine, scene)));
+  json.update({{"peak_force_kn", dig.peak_force / 1000.0},
+               {"stalled", dig.stall.has_value()},
+               {"stall", dig.stall ? stall_json(*dig.stall) : nlohmann::ordered_json()},
+               {"volume", exact_volumes_json(scene.volumes)},
+               {"bulking_factor", scene.volumes.bulking_factor},
+               {"bulking_factor_true", scene.bulking_factor_true},
+               {"fallback_fraction", dig.soil.fallback_fraction},
+               {"solids_before_kg", dig.soil.solids_before},
+               {"solids_after_kg", dig.soil.solids_after},
+               {"final_angle_of_repose_rad", heap_slope(scene.before, scene.after, scene.dump_at)},
+               {"energy", energy_json(dig.energy)},
+               {"joints", to_json(machine, joint_loads(machine, dig.history))},
+               {"soil_ledger", soil_json(dig.soil)},
+               {"dump_at_m", {scene.dump_at.x(), scene.dump_at.y()}}});
+  return json;
 }
 
 std::vector<std::string> scene_lines(const Machine& machine, const DigScene& scene) {
   const DigResult& dig = scene.dig;
   const HeightMapVolumes& volumes = scene.volumes;
   const auto kilo = [](double value) { return readable(value / 1000.0); };
-  std::vector<std::string> lines =
-      dig_lines({scene.path.parameters, scene.path.start_x, dig.payload_mass, dig.payload_volume,
-                 dig.energy.total, scene.duration});
+  std::vector<std::string> lines = dig_lines(dig_of(machine, scene));
   const std::string shares = "  of which   soil " + kilo(dig.energy.soil) + " (lip and teeth " +
                              kilo(dig.energy.edge) + "), payload " + kilo(dig.energy.payload) +
                              ", links " + kilo(dig.energy.links) + " kJ";

@@ -11,36 +11,6 @@
 namespace excavplan::tools {
 namespace {
 
-/// "energy", "priced:WATT"
-std::string usage(const DigGoalInfo& goal) {
-  return goal.word + (goal.parameter ? ":" + goal.parameter_name : "");
-}
-
-/// All goals, each as `text` puts it.
-template <typename Text>
-std::string goals_text(const std::string& separator, const Text& text) {
-  std::string all;
-  for (const DigGoalInfo& goal : dig_goals()) all += (all.empty() ? "" : separator) + text(goal);
-  return all;
-}
-
-DigObjective objective_of(const SearchInputs& inputs) {
-  DigObjective objective;
-  objective.rest_of_cycle = inputs.rest_of_cycle;
-  const std::size_t colon = inputs.goal.find(':');
-  const std::string word = inputs.goal.substr(0, colon);
-  for (const DigGoalInfo& goal : dig_goals()) {
-    if (goal.word != word || (goal.parameter == nullptr) != (colon == std::string::npos)) continue;
-    objective.goal = goal.goal;
-    if (goal.parameter) {
-      objective.*goal.parameter =
-          parse_quantity("--goal " + word, inputs.goal.substr(colon + 1), Quantity::ratio);
-    }
-    return objective;
-  }
-  usage_error("--goal: '" + inputs.goal + "' is none of " + goals_text(", ", usage));
-}
-
 std::string range_option(const DigParameterInfo& info) {
   return std::string(info.option) + "-range";
 }
@@ -53,8 +23,8 @@ DigBounds bounds_of(const SearchInputs& inputs) {
     const std::string option = "--" + range_option(info);
     const std::vector<std::string> ends = split(*inputs.ranges[i], ',');
     if (ends.size() != 2) usage_error(option + ": '" + *inputs.ranges[i] + "' is not FROM,TO");
-    bounds.lower.*info.field = parse_quantity(option, ends[0], quantity_of(info));
-    bounds.upper.*info.field = parse_quantity(option, ends[1], quantity_of(info));
+    bounds.lower.*info.field = parse_quantity(option, ends[0], quantity_of(info.unit));
+    bounds.upper.*info.field = parse_quantity(option, ends[1], quantity_of(info.unit));
   }
   return bounds;
 }
@@ -72,23 +42,19 @@ std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inpu
 }
 
 /// Shows a search on the console. @return whether it may continue
-bool report(Console& console, const SearchProgress& p, const DigGoalInfo& goal) {
+bool report(Console& console, const SearchProgress& p, const DigObjective& objective) {
   console.progress(static_cast<double>(p.evaluations) / p.planned,
                    "generation " + std::to_string(p.generation) + ": best " +
-                       readable(goal.per_si * p.best) + ", mean " + readable(goal.per_si * p.mean) +
-                       " " + goal.unit + ", " + std::to_string(p.evaluations) + " digs, " +
-                       readable(p.seconds_left) + " s left");
+                       worth_text(objective, p.best) + ", mean " + worth_text(objective, p.mean) +
+                       ", " + std::to_string(p.evaluations) + " digs, " + readable(p.seconds_left) +
+                       " s left");
   return !console.stop_requested();
 }
 
 }  // namespace
 
 void declare_search(Arguments& arguments, SearchInputs& inputs) {
-  arguments.text("goal", "GOAL", inputs.goal, goals_text("; ", [](const DigGoalInfo& goal) {
-                   return usage(goal) + ": " + goal.description;
-                 }));
-  arguments.option("rest-of-cycle", inputs.rest_of_cycle, Quantity::time,
-                   "time of swing, dump and return, added to that of the dig");
+  declare_goal(arguments, inputs.goal);
   arguments.text(
       "start", "RULE|LENGTH", inputs.start,
       "start point of the dig: work (least work of the links), margin (largest margin to "
@@ -131,14 +97,13 @@ DigSearchOptions search_options(const SearchInputs& inputs, Console& console) {
   options.stop.evaluations = inputs.evaluations;
   options.seed = inputs.seed;
   options.threads = static_cast<unsigned>(inputs.threads);
-  options.objective = objective_of(inputs);
+  options.objective = objective_of(inputs.goal);
   options.bounds = bounds_of(inputs);
   options.start_rule = start_rule_of(inputs);
   options.checkpoint = inputs.checkpoint.value_or("");
   options.resume = inputs.resume;
-  const DigGoalInfo& goal = info_of(options.objective.goal);
-  options.progress = [&console, &goal](const SearchProgress& progress) {
-    return report(console, progress, goal);
+  options.progress = [&console, objective = options.objective](const SearchProgress& progress) {
+    return report(console, progress, objective);
   };
   return options;
 }
@@ -148,7 +113,7 @@ void check(const SearchInputs& inputs) {
   if (inputs.evaluations < 0) {
     usage_error("--evaluations: " + std::to_string(inputs.evaluations) + " must be at least 0");
   }
-  objective_of(inputs);
+  objective_of(inputs.goal);
   bounds_of(inputs);
 }
 
@@ -159,8 +124,6 @@ std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use) {
   ignored.add(inputs.population && !(searches && inputs.method == "paper"), "--population");
   ignored.add(inputs.start != usual.start && use == SearchUse::none, "--start");
   if (!searches) {
-    ignored.add(inputs.goal != usual.goal, "--goal");
-    ignored.add(inputs.rest_of_cycle != usual.rest_of_cycle, "--rest-of-cycle");
     for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
       ignored.add(inputs.ranges[i].has_value(), "--" + range_option(dig_parameter_table()[i]));
     }

@@ -9,14 +9,14 @@
 
 #include <excavplan/planning/dig_search.hpp>
 
+#include "shared/goal_inputs.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
 
 /// Settings of a search for a dig, from the command line.
 struct SearchInputs {
-  std::string goal = dig_goals().front().word;
-  double rest_of_cycle = 0.0;
+  GoalInputs goal;
   std::string start = start_rules().front().word;
   /// FROM,TO of each number of dig_parameter_table().
   std::vector<std::optional<std::string>> ranges =

@@ -14,10 +14,11 @@
 
 namespace excavplan {
 
-/// What is dug and planned with.
+/// What is dug and planned with; by default for most mass per energy, as in the paper.
 struct ExperimentOptions {
   DigParameters fixed_path = paper_fixed_path();  ///< of every first dig
   PlanOptions plan = {};  ///< of the second dig; `simulator` and `cell_size` hold for both
+  ExperimentOptions() { plan.search.objective = DigObjective::Goal::energy; }
 };
 
 /// One soil, dug along both paths.
@@ -29,9 +30,10 @@ struct ExperimentResult {
   PlannedDig planned;            ///< for the estimate, dug in the true soil
   StartRule start_rule;          ///< that puts the start of the planned dig nearest to where it is
   PlannedDig fixed_moved;        ///< the fixed path, its start by that rule
+  DigObjective objective;        ///< that the dig was planned for
 
-  /// Of the planned over the fixed dig in efficiency [%]. Its parts, of the path and of the start:
-  /// (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
+  /// Of the planned over the fixed dig in worth, by default the efficiency [%]. Its parts, of the
+  /// path and of the start: (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
   double gain_percent() const;
   /// Of the planned path over the fixed one, both begun by start_rule [%].
   double path_gain_percent() const;

@@ -44,9 +44,10 @@ struct AnchoredSearch {
 struct LibrarySearch {
   /// With a genetic algorithm, as in the paper, every density is searched from nothing.
   std::variant<AnchoredSearch, GeneticAlgorithm> method = AnchoredSearch{};
-  double cell_size = 0.05;                        ///< of the simulated ground [m]
-  std::uint64_t seed = 1;                         ///< of every search
-  SimulatorKind simulator = default_simulator();  ///< that digs
+  DigObjective objective = dig_goals().front().goal;  ///< what digs are best for
+  double cell_size = 0.05;                            ///< of the simulated ground [m]
+  std::uint64_t seed = 1;                             ///< of every search
+  SimulatorKind simulator = default_simulator();      ///< that digs
 };
 
 /// How far a build is.
@@ -54,7 +55,7 @@ struct LibraryProgress {
   std::size_t entries_done = 0;  ///< with their files
   std::size_t entries = 0;       ///< of the whole build
   int evaluations = 0;           ///< by the threads of this process
-  double best = 0.0;             ///< last efficiency told of a search [kg/J]; NaN: none yet
+  double best = 0.0;             ///< last worth told of a search; NaN: none yet
 };
 
 /// Does a task of a build: what it is asked and what it answers are texts, which may travel.
@@ -89,7 +90,8 @@ struct LibraryBuild {
 };
 
 /// What build_path_libraries() checks first: for callers that prepare its folder.
-/// @throws Error (bad_input) if the grid or an option is out of range
+/// @throws Error (bad_input) if the grid or an option is out of range, or a machine does not state
+///         what the goal needs
 void require_buildable(const LibraryGrid& grid, const LibrarySearch& search);
 
 /// Searches the best dig of every entry.

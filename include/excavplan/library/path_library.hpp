@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/planning/dig_goal.hpp>
 #include <excavplan/simulation/simulators.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -19,10 +19,10 @@ namespace excavplan {
 
 /// How far a path looked up between two entries is off, found by digging it midway.
 struct MidwayError {
-  /// Fraction of the best efficiency there that is lost [0, 1]; 1 if it cannot be dug. The best is
+  /// Fraction of the best worth there that is lost [0, 1]; 1 if it cannot be dug. The best is
   /// estimated from the entries around.
   double loss = 0.0;
-  /// The efficiency that look_up() expects, against the one simulated: their ratio less 1.
+  /// The worth that look_up() expects, against the one simulated: their ratio less 1.
   double expectation = 0.0;
 };
 
@@ -59,7 +59,8 @@ struct PathLibrary {
   std::string simulator;                  ///< name and version
   double cell_size = 0.0;                 ///< of the ground it was computed on [m]
   std::uint64_t seed = 0;                 ///< of the searches
-  std::string search;                     ///< how the digs were searched, for people
+  DigObjective objective = {};            ///< that the digs are best for
+  std::string search;                     ///< how they were searched, for people
   std::vector<PathLibraryEntry> entries;  ///< slope rising, then density; at least one
   std::vector<PathLibraryGap> gaps;       ///< in the same order
   std::string file = {};                  ///< that it was read from; empty: none
@@ -71,18 +72,18 @@ struct PathLibrary {
 /// @throws Error (bad_file) naming file, key, value and rule
 PathLibrary load_path_library(const std::string& path);
 
-/// MACHINE-SOIL.json, the names as every file system takes them.
+/// MACHINE-SOIL-GOAL.json, the names as every file system takes them.
 std::string file_name(const PathLibrary& library);
 
 /// The text of a library file; the same library gives the same bytes.
 std::string to_json(const PathLibrary& library);
 
-/// Refuses a library that was computed for another machine, soil or simulator.
-/// @param name       of the library, for the message
+/// Refuses a library that was computed for another machine, soil, objective or simulator.
 /// @param simulator  SimulatorKind::name
-/// @throws Error (bad_input) naming all that differs
+/// @throws Error (bad_input) naming the file and all that differs
 void require_fit(const PathLibrary& library, const Machine& machine, const SoilKind& soil,
-                 const std::string& name, const std::string& simulator = default_simulator().name);
+                 const DigObjective& objective,
+                 const std::string& simulator = default_simulator().name);
 
 /// The dig for a density and a slope: parameters and expectations linear between the entries
 /// around, or those of the nearer one (Interpolation::nearest).

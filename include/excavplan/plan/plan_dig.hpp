@@ -11,6 +11,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/library/path_library.hpp>
 #include <excavplan/machine/trajectory.hpp>
+#include <excavplan/planning/dig_cycle.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
 #include <excavplan/simulation/simulators.hpp>
 #include <excavplan/soil/density_law.hpp>
@@ -28,21 +29,23 @@ enum class PlanMethod {
 /// "library" or "search".
 const char* name(PlanMethod method);
 
-/// The library that excavplan ships for a machine in a soil; `data_folder` as in find_data_file().
+/// The library that excavplan ships for a machine in a soil and a goal; `data_folder` as in
+/// find_data_file().
 /// @throws Error (bad_input) if none is shipped or it does not fit, (bad_file) if it cannot be read
 PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
+                            const DigObjective& objective = dig_goals().front().goal,
                             const std::string& data_folder = data_folder_of_package);
 
 /// How plan_dig() plans.
 struct PlanOptions {
   PlanMethod method = PlanMethod::library;  ///< where the dig comes from
-  /// Null: shipped_library() of `data_folder`, read again by every call.
+  /// Null: shipped_library() of the objective of `search`, read again by every call.
   std::shared_ptr<const PathLibrary> library = nullptr;
   std::string data_folder = data_folder_of_package;  ///< as find_data_file() takes it
   /// `progress` reports and cancels, the seed fixes the result for any number of `threads`, and
-  /// `start_rule` also places a dig looked up for given ground. Without `start` a search for most
-  /// mass per energy begins with the library's dig. Where `stop.evaluations` is 0 the default
-  /// method makes evaluation_budget() digs.
+  /// `start_rule` also places a dig looked up for given ground. A dig is looked up, and a search
+  /// without `start` begins, in the library of `objective`. Where `stop.evaluations` is 0 the
+  /// default method makes evaluation_budget() digs.
   DigSearchOptions search = budget_search();
   SimulatorKind simulator = default_simulator();  ///< digs what is searched or not on level ground
   TrajectoryOptions trajectory = {};              ///< how fast the machine moves
@@ -74,8 +77,10 @@ struct DigPlan {
   /// else those of the dig in `simulator`, their means if searched for an uncertain density.
   /// Nothing if no dig can be done, or if the search was cancelled before it found one.
   std::optional<PlannedDig> dig;
-  DigSpread spread;       ///< from the density's standard deviation; zero if that is 0
-  DigPath path;           ///< of the dig, with its approach
+  DigSpread spread;  ///< from the density's standard deviation; zero if that is 0
+  DigPath path;      ///< of the dig, with its approach
+  std::optional<DigCycle>
+      cycle;              ///< of the dig; nothing if the machine does not state what it needs
   Trajectory trajectory;  ///< of that path
   PlanMethod method = PlanMethod::library;  ///< where the dig comes from
   std::string start_rule;                   ///< rule of the start, human-readable
@@ -86,11 +91,14 @@ struct DigPlan {
   bool stopped = false;     ///< the search was cancelled; the dig is the best until then
   bool trustworthy = true;  ///< false after a warning marked * below
   /// density_not_trustworthy *, law_of_other_soil, library_unreadable (the search began with
-  /// nothing), slope_outside_library *, ground_unlike_library *, may_stall *, approach_blocked (the
+  /// nothing), min_fill_relaxed (no dig was found that fills the bucket as asked),
+  /// slope_outside_library *, ground_unlike_library *, may_stall *, approach_blocked (the
   /// trajectory begins on the ground).
   std::vector<Warning> warnings;
 
-  std::string reason;                 ///< why there is no dig; empty if there is one or it stopped
+  /// Why there is no dig: none can be done, or none is worth making, with a payload of at least a
+  /// tenth of the heaped capacity (ours). Empty if there is one or the search stopped.
+  std::string reason;
   std::optional<NearestDig> nearest;  ///< if a search found no dig: what came nearest to one
 };
 

@@ -23,15 +23,16 @@ struct DigBounds {
   DigBounds();
 };
 
-/// An evaluation is a dig, its fitness the dig's worth.
+/// An evaluation is a dig, its fitness the rank of the dig's worth.
 struct DigSearchOptions : SearchSettings {
   std::vector<DigParameters> start = {};               ///< known good digs to begin with
-  DigObjective objective = {};                         ///< what is maximised
+  DigObjective objective = {};                         ///< by default most mass per energy
   DigBounds bounds = {};                               ///< of the numbers of the path
   StartRule start_rule = StartRule::Kind::least_work;  ///< where digs begin
 };
 
-/// Settings for as many generations as a budget of evaluations allows.
+/// Settings of plan_dig(): most mass per energy of the cycle, and as many generations as a budget
+/// of evaluations allows.
 DigSearchOptions budget_search();
 
 /// Digs of one search that reach 99 % of the optimum from any seed (docs/methods.md#planning): 400;
@@ -76,7 +77,8 @@ struct Found : std::optional<Result> {
 /// simulation: what cannot be driven costs no evaluation. Its violation, how much of the path is
 /// left where it fails, leads the search back to digs that can be driven.
 ///
-/// @throws Error (bad_input) if an option is out of range
+/// @throws Error (bad_input) if an option is out of range, or the machine does not state what the
+///         goal needs
 /// @throws Error (bad_file) if a checkpoint is of another search, truncated or altered; another
 ///         simulator is known by its identity()
 Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,

@@ -12,6 +12,15 @@
 
 namespace excavplan {
 
+/// What follows a dig before the next one begins.
+struct CycleOptions {
+  double swing = 1.5707963267948966;  ///< from dig to dump, 90 deg as in production tables [rad]
+  /// Of the bucket pin when it dumps, above the ground under the machine, or that at which the
+  /// bucket is clear of the ground if that is more: over a truck's side of 2.3-2.6 m; ours [m].
+  double dump_height = 3.0;
+  double rest_of_cycle = 0.0;  ///< waiting time [s]
+};
+
 /// A dig with its expected payload and cost.
 struct PlannedDig {
   DigParameters parameters;     ///< of its path
@@ -20,6 +29,9 @@ struct PlannedDig {
   double payload_volume = 0.0;  ///< loose [m^3]
   double energy = 0.0;          ///< [J]
   double duration = 0.0;        ///< of penetrate, drag and scoop [s]
+  double fill = 0.0;            ///< payload volume over heaped_capacity()
+  double cycle_energy = 0.0;    ///< of the whole cycle (cycle_of()); 0: not known [J]
+  double cycle_time = 0.0;      ///< likewise [s]
 
   double efficiency() const { return energy > 0.0 ? payload_mass / energy : 0.0; }  ///< [kg/J]
 };
@@ -28,7 +40,7 @@ struct PlannedDig {
 using DigFailure = std::variant<Infeasible, Stall>;
 std::string describe(const DigFailure& failure);
 
-/// Lays out a dig, simulates it, times it.
+/// Lays out a dig, simulates it, times it and its cycle with the usual CycleOptions.
 ///
 /// Ground of unknown height under the bucket makes the path infeasible (unknown_ground).
 ///

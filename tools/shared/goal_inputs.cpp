@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/goal_inputs.hpp"
+
+#include "shared/quantity.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+/// "energy", "priced:WATT"
+std::string usage(const DigGoalInfo& goal) {
+  return goal.word + (goal.parameter ? ":" + goal.parameter_name : "");
+}
+
+/// All goals, each as `text` puts it.
+template <typename Text>
+std::string goals_text(const std::string& separator, const Text& text) {
+  std::string all;
+  for (const DigGoalInfo& goal : dig_goals()) all += (all.empty() ? "" : separator) + text(goal);
+  return all;
+}
+
+std::string usual_text(const DigObjectiveParameter& parameter) {
+  if (parameter.field != &DigObjective::min_fill) {
+    return number_text(DigObjective().*parameter.field);
+  }
+  return goals_text(", ", [](const DigGoalInfo& goal) {
+    return number_text(goal.min_fill) + " for " + goal.word;
+  });
+}
+
+DigObjective goal_of(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string word = text.substr(0, colon);
+  for (const DigGoalInfo& goal : dig_goals()) {
+    if (goal.word != word || (goal.parameter == nullptr) != (colon == std::string::npos)) continue;
+    DigObjective objective(goal.goal);
+    if (goal.parameter) {
+      objective.*goal.parameter =
+          parse_quantity("--goal " + word, text.substr(colon + 1), Quantity::ratio);
+    }
+    return objective;
+  }
+  usage_error("--goal: '" + text + "' is none of " + goals_text(", ", usage));
+}
+
+}  // namespace
+
+void declare_goal(Arguments& arguments, GoalInputs& inputs) {
+  arguments.text("goal", "GOAL", inputs.goal, goals_text("; ", [](const DigGoalInfo& goal) {
+                   return usage(goal) + ": " + goal.description;
+                 }));
+  const auto& parameters = objective_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const DigObjectiveParameter& parameter = parameters[i];
+    if (*parameter.option == '\0') continue;
+    arguments.option(parameter.option, inputs.numbers[i], quantity_of(parameter.unit),
+                     std::string(parameter.text) + " (default: " + usual_text(parameter) + ")");
+  }
+}
+
+DigObjective objective_of(const GoalInputs& inputs) {
+  DigObjective objective = goal_of(inputs.goal);
+  const DigGoalInfo& goal = info_of(objective.goal);
+  const auto& parameters = objective_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (!inputs.numbers[i]) continue;
+    if (!parameters[i].matters_to(goal)) {
+      usage_error(std::string("--") + parameters[i].option + " has no effect on the goal " +
+                  goal.word);
+    }
+    objective.*parameters[i].field = *inputs.numbers[i];
+  }
+  return objective;
+}
+
+std::string worth_text(const DigObjective& objective, double worth) {
+  const DigGoalInfo& goal = info_of(objective.goal);
+  return readable(goal.per_si * worth) + " " + goal.unit;
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/planning/dig_goal.hpp>
+
+#include "shared/arguments.hpp"
+
+namespace excavplan::tools {
+
+/// The goal of digs and its numbers, from the command line.
+struct GoalInputs {
+  std::string goal = dig_goals().front().word;
+  /// One for each row of objective_parameters().
+  std::vector<std::optional<double>> numbers =
+      std::vector<std::optional<double>>(objective_parameters().size());
+};
+
+void declare_goal(Arguments& arguments, GoalInputs& inputs);
+
+/// @throws Error (bad_input) naming the option, also if it does not matter to the goal
+DigObjective objective_of(const GoalInputs& inputs);
+
+/// The worth of a dig in the unit of its goal: "25.1 kg/kJ".
+std::string worth_text(const DigObjective& objective, double worth);
+
+}  // namespace excavplan::tools
