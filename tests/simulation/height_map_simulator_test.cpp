@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/simulation/height_map_simulator.hpp>
 
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "base/random.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/bucket_resistance.hpp"
 #include "support/machine_file.hpp"
@@ -19,6 +23,9 @@ constexpr double degree = 3.14159265358979323846 / 180.0;
 SoilKind soil_kind(const std::string& name) {
   return load_soil(find_data_file("soils/" + name + ".json"));
 }
+
+/// The paper's path in the field (section 4.1), which fills the bucket.
+DigParameters field_path() { return {1.023, 0.496, 2.487}; }
 
 INSTANTIATE_TEST_SUITE_P(
     BuiltIn, SoilSimulatorContract,
@@ -117,13 +124,79 @@ TEST_F(Simulator, ToolEnergyPerBankVolumeIsInThePublishedRanges) {
 // Moist loam fills excavator buckets to 100-110 % of the heaped rating, accepted 90-115 %
 // (Caterpillar Performance Handbook, fill factors).
 TEST_F(Simulator, AFullBucketHoldsNearItsHeapedRating) {
-  DigParameters deep = paper_fixed_path();
-  deep.drag_length = 2.0;
-  for (const double density : {10.0, 40.0, 60.0}) {
-    const double fill = dig(density, deep).payload_volume / heaped_capacity(machine_);
+  for (const double density : {10.0, 40.0}) {
+    const double fill = dig(density, field_path()).payload_volume / heaped_capacity(machine_);
     EXPECT_GT(fill, 0.9);
     EXPECT_LT(fill, 1.15);
   }
+}
+
+/// Force against the drag, mean over its first and its last fifth [N].
+std::pair<double, double> drag_force(const DigResult& result) {
+  std::vector<double> forces;
+  for (const ForceSample& sample : result.history) {
+    if (sample.phase == DigPhase::drag) forces.push_back(sample.soil.x());
+  }
+  const std::size_t fifth = forces.size() / 5;
+  const auto mean = [&](std::size_t from) {
+    const auto begin = forces.begin() + static_cast<std::ptrdiff_t>(from);
+    return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(fifth), 0.0) /
+           static_cast<double>(fifth);
+  };
+  return {mean(0), mean(forces.size() - fifth)};
+}
+
+// Discrete elements and filling tests show it (docs/judge.md; Coetzee and Els 2009).
+TEST_F(Simulator, TheForceRisesWhileTheBucketFills) {
+  DigOptions options;
+  options.history = true;
+  const DigParameters shallow = {45.0 * degree, 0.25, 1.5};
+  for (const char* soil : {"loam", "sand", "clay", "gravel"}) {
+    for (const double density : {10.0, 40.0, 80.0}) {
+      const DigResult result =
+          dig_on(level_planning_ground(machine_), density, shallow, soil, options);
+      ASSERT_FALSE(result.stall);
+      const auto [first, last] = drag_force(result);
+      EXPECT_GT(last, first) << soil << ' ' << density;
+    }
+  }
+}
+
+// payload g dz <= E + what the links release, dz from the level of the ground to the payload's end.
+TEST_F(Simulator, NoDigLiftsMoreThanItsEnergyAllows) {
+  const Terrain ground = level_planning_ground(machine_);
+  const GroundProfile level = boom_plane_profile(ground.surface());
+  Random random(7);
+  int dug = 0;
+  for (int i = 0; i < 400; ++i) {
+    const DigParameters parameters = {random.uniform(0.2, 1.4), random.uniform(0.1, 0.9),
+                                      random.uniform(0.3, 3.0)};
+    const auto path = make_dig_path_anywhere(machine_, parameters, level);
+    if (!std::holds_alternative<DigPath>(path)) continue;
+    const std::vector<DigPose>& poses = std::get<DigPath>(path).poses;
+    const char* soil =
+        std::array{"loam", "sand", "clay", "gravel"}[static_cast<std::size_t>(i % 4)];
+    const HeightMapSimulator simulator(machine_, soil_kind(soil), random.uniform(0.0, 100.0));
+    const DigResult result = simulator.dig(ground, std::get<DigPath>(path));
+    if (result.stall) continue;
+    double released = 0.0;
+    DigPose last = poses.front();
+    for (const DigPose& pose : poses) {
+      if (pose.phase == DigPhase::lift) break;
+      const JointAngles middle = 0.5 * (last.joints + pose.joints);
+      released -= torque_against_link_weight(machine_, link_positions(machine_, middle))
+                      .dot(pose.joints - last.joints);
+      last = pose;
+    }
+    Cavity cavity(machine_.bucket);
+    cavity.turn_to(link_positions(machine_, last.joints).phi3);
+    const double rise = last.bucket.z + cavity.packed(result.payload_volume).centroid.y();
+    EXPECT_LE(result.payload_mass * gravity * rise, result.energy.total + std::max(0.0, released))
+        << soil << ' ' << parameters.penetration_angle << ' ' << parameters.penetration_length
+        << ' ' << parameters.drag_length;
+    ++dug;
+  }
+  EXPECT_GT(dug, 100);
 }
 
 TEST_F(Simulator, CapacityOfALevelBucketIsTheIsoRating) {
@@ -216,12 +289,12 @@ TEST_F(Simulator, AWeakMachineStallsAndSaysWhere) {
 
 TEST_F(Simulator, EndsAHopelessDigOnceAFullBucketCouldNotPayForIt) {
   const Terrain ground = level_planning_ground(machine_);
-  const DigResult whole = dig(40.0, overfilling_path());
-  ASSERT_GT(whole.soil.spilled, 0.01);  // so its payload is the most there can be
+  const DigResult whole = dig(40.0, field_path());
+  ASSERT_GT(whole.payload_volume, 0.9 * heaped_capacity(machine_));  // the most there can be
   DigOptions options;
   for (const double share : {1.01, 2.0, 4.0}) {
     options.give_up_below = share * whole.efficiency();
-    const DigResult ended = dig_on(ground, 40.0, overfilling_path(), "loam", options);
+    const DigResult ended = dig_on(ground, 40.0, field_path(), "loam", options);
     EXPECT_TRUE(ended.given_up);
     EXPECT_GT(ended.energy.total, whole.energy.total / share);
     EXPECT_LT(ended.energy.total, (1.0 / share + 0.03) * whole.energy.total);  // a step later

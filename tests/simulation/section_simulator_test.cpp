@@ -221,12 +221,13 @@ TEST_F(Section, TeethPenetrateAsTheirConeIndexSays) {
   const double tan_delta = std::tan(state.tool_friction_angle);
   const double flanks = (1.0 + tan_delta / std::tan(0.5 * teeth.angle)) /
                         (1.0 + tan_delta / std::tan(15.0 * pi / 180.0));
-  const double lip = machine_.bucket.edge_thickness * machine_.bucket.width_outside;
   for (std::size_t i = 0; with.history[i].phase == DigPhase::penetrate; ++i) {
     const double z = 0.5 * (path.poses[i].bucket.z + path.poses[i + 1].bucket.z);
     const double driven = -z / std::sin(path.parameters.penetration_angle);
-    const double area =
-        teeth.count * teeth.width * teeth.thickness * flanks * std::min(1.0, driven / teeth.length);
+    // No higher than the tip is deep.
+    const double lip = std::min(-z, machine_.bucket.edge_thickness) * machine_.bucket.width_outside;
+    const double area = teeth.count * teeth.width * std::min(-z, teeth.thickness) * flanks *
+                        std::min(1.0, driven / teeth.length);
     const double expected = cone_index(soil, state, -z) * (area - lip);
     const Eigen::Vector2d more = with.history[i].soil - without.history[i].soil;
     const double sign = more.x() > 0.0 ? 1.0 : -1.0;
