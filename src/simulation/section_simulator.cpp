@@ -146,14 +146,16 @@ class SectionDig {
     const double from_pile = pile_.take(p.x() - q.x(), lip, falls);
     account_.result.soil.bank_cut += area.bank * width();
     account_.result.soil.loose_cut += (area.loose + from_pile) * width();
-    const double support = std::max(0.0, pile_.height(falls) - lip);
-    const double room =
-        std::min(std::max(contents_, bucket_.pushed_in(support, model_.slopes.pushed)),
-                 bucket_.held(support, model_.slopes));
+    const double before = contents_;
     contents_ += (area.swollen + from_pile) * width();
-    if (contents_ > room) {
-      pile_.area += (contents_ - room) / width();
-      contents_ = room;
+    for (const double share : {0.5, 1.0}) {  // what stays ahead lets more in
+      const double support = std::max(0.0, pile_.height(falls) - lip);
+      const double pushed_in = bucket_.pushed_in(support, model_.slopes.pushed);
+      const double room =
+          std::min(std::max(before, pushed_in), bucket_.held(support, model_.slopes));
+      const double ahead = share * std::max(0.0, contents_ - room);
+      pile_.area += ahead / width();
+      contents_ -= ahead;
     }
     pile_at_ = q.x();
     const double shed = section_.shed(pile_at_, pile_.height(falls), falls, repose_);
