@@ -92,7 +92,9 @@ def judged(found):
     at = {name: i for i, name in enumerate(found["columns"])}
     keys = ("phase", "travelled_m", "x_n", "tool_work_j", "machine_work_j")
     rows = [[row[at[key]] for key in keys] for row in found["forces"]]
-    last = [kg for phase, _, kg in found["cavity"] if phase == "drag"][-1]
+    angle, penetration, drag = found["path"]
+    end = found["start_x_m"] - penetration * math.cos(angle) - drag
+    _, last = min((abs(x - end), kg) for _, x, kg in found["cavity"])
     return rows, figures(rows, found["payload_kg"], last)
 
 
