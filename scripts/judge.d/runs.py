@@ -197,7 +197,7 @@ def dig(run, folder):
     machine = scene.Machine()
     # The path does not depend on the soil, as long as no joint stalls.
     soil = json.loads((ROOT / "data/soils/sand.json").read_text())
-    _, rows = scene.simulate(run.path, run.start, machine, soil, 0)
+    _, rows, _ = scene.simulate(run.path, run.start, machine, soil, 0)
     block = deck.EVERY * deck.STEP * run.radius
     motion = scene.motion(machine, rows, block, run.speed)
     first = motion[0][1].one
@@ -278,16 +278,11 @@ def cavity(machine, motion, folder, step_time):
 
 def spoil(run, after, lowest, half):
     """Soil above the level of the ground that is not in the bucket [kg]."""
-    angle, penetration, drag = run.path
-    end = run.start - penetration * math.cos(angle) - drag
-    kinds = {"beside": 0.0, "ahead": 0.0, "behind": 0.0, "in_the_cut": 0.0}
+    left = dict.fromkeys(scene.REGIONS, 0.0)
     for g in after:
         if 0 < g[3] <= lowest - g[4]:
-            beside, ahead, behind = g[2] > half, g[1] < end, g[1] > run.start
-            kind = ("ahead" if ahead else "behind" if behind else "beside" if beside
-                    else "in_the_cut")
-            kinds[kind] += 2 * mass(g[4])
-    return {kind: round(value, 1) for kind, value in kinds.items()}
+            left[scene.region(run.path, run.start, half, g[1], g[2])] += 2 * mass(g[4])
+    return {name: round(value, 1) for name, value in left.items()}
 
 
 def height_change(before, after, box):

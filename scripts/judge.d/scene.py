@@ -152,21 +152,36 @@ def in_cavity(point, profile):
 
 
 def simulate(path, start, machine, soil, density):
-    """Result and force history of simulate-dig; soil: a soil file's content."""
+    """Result and force history of simulate-dig, and points of the ground it leaves; soil: a soil
+    file's content."""
     with tempfile.TemporaryDirectory() as folder:
-        history, machine_file, soil_file = (
-            Path(folder) / name for name in ("history.csv", "machine.json", "soil.json"))
+        history, after, machine_file, soil_file = (
+            Path(folder) / name
+            for name in ("history.csv", "after.xyz", "machine.json", "soil.json"))
         machine_file.write_text(json.dumps(machine.data))
         soil_file.write_text(json.dumps(soil))
         words = [program("simulate-dig"), "--density", str(density), "--start", str(start)]
         words += ["--path", ",".join(f"{value:.6f}" for value in path), "--json", "--quiet"]
         words += ["--machine", str(machine_file), "--soil", str(soil_file)]
-        done = subprocess.run(words + ["--history", str(history)], capture_output=True, text=True)
+        words += ["--history", str(history), "--after", str(after), "--noise", "0"]
+        done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"judge: {' '.join(words)}: {done.stderr}")
         rows = list(csv.DictReader(io.StringIO(history.read_text())))
+        points = [tuple(map(float, line.split())) for line in after.read_text().splitlines()[1:]]
     rows = [{k: v if k == "phase" else float(v) for k, v in row.items()} for row in rows]
-    return json.loads(done.stdout), rows
+    return json.loads(done.stdout), rows, points
+
+
+def region(path, start, half_width, x, y):
+    """Where a point of the ground is from the cut."""
+    angle, penetration, drag = path
+    if x < start - penetration * math.cos(angle) - drag:
+        return "ahead"
+    return "behind" if x > start else "beside" if abs(y) > half_width else "in_the_cut"
+
+
+REGIONS = ("ahead", "beside", "behind", "in_the_cut")
 
 
 def bounds(rows):

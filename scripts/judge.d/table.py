@@ -101,7 +101,7 @@ def judged(found):
 def ours(run, found, critical):
     """The same dig in excavplan: rows, figures, and the mass in the bucket along the dig."""
     machine, soil = scene.Machine(), soil_of(run, found, critical)
-    result, history = scene.simulate(run.path, run.start, machine, soil, 100)
+    result, history, points = scene.simulate(run.path, run.start, machine, soil, 100)
     loose = deck.DENSITY / (1 + soil["void_ratio_loose"])
     rows, fill = [], []
     for row, (one, two) in zip(history, scene.bounds(history)):
@@ -112,7 +112,22 @@ def ours(run, found, critical):
                      sum(max(0, work) for work in joints)])
         fill.append((row["phase"], row["travelled_m"], row["bucket_fill_m3"] * loose))
     last = [kg for phase, _, kg in fill if phase == "drag"][-1]
-    return rows, figures(rows, result["payload_mass_kg"], last), fill
+    left = left_by_us(run, machine, points, loose)
+    return rows, figures(rows, result["payload_mass_kg"], last), fill, left
+
+
+def left_by_us(run, machine, points, density, cell=0.05):
+    """Soil above the level of the ground, as the judge counts it [kg]; the dump is further away."""
+    cells = {}
+    for x, y, z in points:
+        if abs(y) < 1.6:
+            cells.setdefault((math.floor(x / cell), math.floor(y / cell)), []).append(z)
+    left = dict.fromkeys(scene.REGIONS, 0.0)
+    for (i, j), heights in cells.items():
+        x, y = (i + 0.5) * cell, (j + 0.5) * cell
+        name = scene.region(run.path, run.start, machine.half_width, x, y)
+        left[name] += max(0, statistics.fmean(heights)) * cell**2 * density
+    return left
 
 
 class Dig:
@@ -121,8 +136,9 @@ class Dig:
     def __init__(self, name):
         self.name, self.run, self.found = name, runs.RUNS[name], runs.result(name)
         self.rows, self.judge = judged(self.found)
-        self.our_rows, self.ours, self.our_fill = ours(self.run, self.found, False)
-        self.critical_rows, self.critical, _ = ours(self.run, self.found, True)
+        self.left = self.found["above_ground_kg"]
+        self.our_rows, self.ours, self.our_fill, self.our_left = ours(self.run, self.found, False)
+        self.critical_rows, self.critical, _, _ = ours(self.run, self.found, True)
 
 
 def digs():
@@ -175,12 +191,11 @@ def write_csv(done):
     settings = ("run", "angle_deg", "penetration_m", "drag_m", "start_x_m", "radius_mm",
                 "grain_friction", "cohesion_j_per_m3", "packing", "grains",
                 "bulk_density_kg_per_m3")
-    left = ("beside", "ahead", "behind", "in_the_cut")
     with open(CSV, "w", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
         kinds = ("judge", "ours", "ours_critical")
         out.writerow([*settings, *(f"{kind}_{name}" for kind in kinds for name in FIGURES),
-                      *(f"judge_left_{name}_kg" for name in left)])
+                      *(f"{kind}_left_{name}_kg" for kind in kinds[:2] for name in scene.REGIONS)])
         for dig in done.values():
             run, found = dig.run, dig.found
             row = [dig.name, round(math.degrees(run.path[0]), 2), *run.path[1:], run.start,
@@ -188,7 +203,8 @@ def write_csv(done):
                    found["grains"], found["bulk_density_kg_per_m3"]]
             for values in (dig.judge, dig.ours, dig.critical):
                 row += [f"{values[name]:.5g}" for name in FIGURES]
-            out.writerow(row + [found["above_ground_kg"][name] for name in left])
+            left = [values[name] for values in (dig.left, dig.our_left) for name in scene.REGIONS]
+            out.writerow(row + [f"{value:.1f}" for value in left])
 
 
 def cell(name, value):
@@ -212,7 +228,7 @@ def lines_of(first, values):
 
 def tables(done):
     return {"soils": soils_table(), "sizes": sizes_table(done), "soils-dug": others_table(done),
-            "ten": ten_table(done)}
+            "left": left_table(done), "ten": ten_table(done)}
 
 
 def soils_table():
@@ -289,6 +305,16 @@ def others_table(done):
             if name in ("smooth", "sticky"):
                 lines.append(lines_of(f"excavplan, {text}, peak friction", dig.ours))
                 lines.append(lines_of(f"excavplan, {text}, critical friction", dig.critical))
+    return "\n".join(lines)
+
+
+def left_table(done):
+    lines = ["| dig | side | ahead | beside | behind | in the cut |", "|" + "---|" * 6]
+    for name in ("fixed-a", "long", "smooth", "sticky"):
+        if name in done:
+            for side, left in (("judge", done[name].left), ("excavplan", done[name].our_left)):
+                words = [name, side] + [f"{left[region]:.0f}" for region in scene.REGIONS]
+                lines.append("| " + " | ".join(words) + " |")
     return "\n".join(lines)
 
 
