@@ -228,7 +228,7 @@ def lines_of(first, values):
 
 def tables(done):
     return {"soils": soils_table(), "sizes": sizes_table(done), "soils-dug": others_table(done),
-            "left": left_table(done), "ten": ten_table(done)}
+            "plates": plates_table(done), "left": left_table(done), "ten": ten_table(done)}
 
 
 def soils_table():
@@ -256,9 +256,15 @@ def scatter(group):
     return mean, {name: statistics.stdev(v) for name, v in values.items()}
 
 
+def named(done, start):
+    """Digs by name, coarse grains first."""
+    found = [(name, dig) for name, dig in done.items() if name.startswith(start)]
+    return dict(sorted(found, key=lambda pair: -pair[1].run.radius))
+
+
 def sizes_table(done):
     lines = heading("45°, 0.35 m, 1.5 m", FIGURES)
-    fixed = {name: dig for name, dig in done.items() if name.startswith("fixed-")}
+    fixed = named(done, "fixed-")
     for dig in fixed.values():
         run = dig.run
         lines.append(lines_of(f"judge, {run.radius * 1000:.0f} mm, packing {run.seed}", dig.judge))
@@ -272,7 +278,7 @@ def sizes_table(done):
     first = fixed["fixed-a"]
     lines.append(lines_of("excavplan, peak friction", first.ours))
     lines.append(lines_of("excavplan, critical friction", first.critical))
-    longs = {name: dig for name, dig in done.items() if name.startswith("long")}
+    longs = named(done, "long")
     if longs:
         lines += ["", *heading(path_text(longs["long"].run), FIGURES)]
         lines += [lines_of(f"judge, {dig.run.radius * 1000:.0f} mm", dig.judge)
@@ -305,6 +311,24 @@ def others_table(done):
             if name in ("smooth", "sticky"):
                 lines.append(lines_of(f"excavplan, {text}, peak friction", dig.ours))
                 lines.append(lines_of(f"excavplan, {text}, critical friction", dig.critical))
+    return "\n".join(lines)
+
+
+def plates_table(done):
+    """Force on each plate along the drag, means over the first and the last fifth."""
+    lines = ["| dig | floor | back | sides |", "|" + "---|" * 4]
+    for name in ("fixed-a", "fixed-b", "fixed-c", "fixed-25", "fixed-20", "long", "smooth", "sticky"):
+        if name not in done:
+            continue
+        found = done[name].found
+        drag = [row for row in found["forces"] if row[0] == "drag"]
+        part, words = len(drag) // 5, [name]
+        for plate in ("floor", "back", "side"):
+            column = found["columns"].index(plate + "_x_n")
+            ends = [statistics.fmean(row[column] for row in rows) / 1e3
+                    for rows in (drag[:part], drag[-part:])]
+            words.append(f"{ends[0]:.2f} … {ends[1]:.2f}")
+        lines.append("| " + " | ".join(words) + " |")
     return "\n".join(lines)
 
 
@@ -349,7 +373,12 @@ def ten_table(done):
 
 # ---- Picture ----------------------------------------------------------------------------------
 
-GREY, BLUE, RED = "#8a8f98", "#1f5fa8", "#c0392b"
+LIGHT, GREY, BLUE, RED = "#c9ced6", "#8a8f98", "#1f5fa8", "#c0392b"
+
+
+def colour_of(dig):
+    size = round(dig.run.radius * 1000)
+    return LIGHT if size > 30 else GREY if size == 30 else BLUE
 
 
 def smooth(rows, width=5):
@@ -396,12 +425,15 @@ class Panel:
         self.text((x, y), (6, -5), label, "start")
 
 
+def reference(group):
+    return next(dig for dig in group if dig.run.radius == runs.Run.radius)
+
+
 def forces(panel, group):
     for dig in group:
         drag = [row for row in dig.rows if row[0] == "drag"]
-        colour = GREY if dig.run.radius > 0.025 else BLUE
-        panel.line([(s - drag[0][1], f / 1e3) for s, f in smooth(drag)], colour)
-    first = group[0]
+        panel.line([(s - drag[0][1], f / 1e3) for s, f in smooth(drag)], colour_of(dig))
+    first = reference(group)
     for rows, dash in ((first.our_rows, ""), (first.critical_rows, "6 4")):
         drag = [row for row in rows if row[0] == "drag"]
         panel.line([(row[1] - drag[0][1], row[2] / 1e3) for row in drag], RED, dash, 2.4)
@@ -412,8 +444,8 @@ def fill(panel, group):
         length = dig.run.path[2]
         begin = dig.run.start - dig.run.path[1] * math.cos(dig.run.path[0])
         panel.line([(begin - x, kg) for phase, x, kg in dig.found["cavity"] if phase == "drag"
-                    and begin - x <= length], GREY if dig.run.radius > 0.025 else BLUE)
-    drag = [row for row in group[0].our_fill if row[0] == "drag"]
+                    and begin - x <= length], colour_of(dig))
+    drag = [row for row in reference(group).our_fill if row[0] == "drag"]
     panel.line([(s - drag[0][1], kg) for _, s, kg in drag], RED, "", 2.4)
 
 
@@ -422,8 +454,7 @@ def top(value, step):
 
 
 def picture(done):
-    fixed = [dig for name, dig in done.items() if name.startswith("fixed-")]
-    longs = [dig for name, dig in done.items() if name.startswith("long")]
+    fixed, longs = (list(named(done, start).values()) for start in ("fixed-", "long"))
     ten = [dig for name, dig in done.items() if name.startswith("ten-")]
     panels = [Panel((60, 70), "Fixed path: drag force", ("drag [m]", "kN"), ((0, 1.5), (0, 10))),
               Panel((460, 70), "Fixed path: soil in the bucket", ("drag [m]", "kg"),
@@ -442,13 +473,13 @@ def picture(done):
                              (0, top(max(p[1] for p in pairs), 50)))))
         for dig, pair in zip(ten, pairs):
             panels[-1].dot(pair, RED, dig.name[-2:].lstrip("0"))
-    key = [(GREY, "", "judge, 30 mm"), (BLUE, "", "judge, 25 mm and less"),
+    key = [(LIGHT, "", "judge, 35, 40 mm"), (GREY, "", "30 mm"), (BLUE, "", "20, 25 mm"),
            (RED, "", "excavplan, peak friction"), (RED, "6 4", "critical friction")]
     parts = [part for panel in panels for part in panel.parts]
     for i, (colour, dash, words) in enumerate(key):
-        parts.append(f'<line x1="{60 + 190 * i}" x2="{84 + 190 * i}" y1="24" y2="24" '
+        parts.append(f'<line x1="{60 + 155 * i}" x2="{84 + 155 * i}" y1="24" y2="24" '
                      f'stroke="{colour}" stroke-width="2.4" stroke-dasharray="{dash}"/>'
-                     f'<text x="{90 + 190 * i}" y="28">{words}</text>')
+                     f'<text x="{90 + 155 * i}" y="28">{words}</text>')
     return ('<svg xmlns="http://www.w3.org/2000/svg" width="820" height="660" '
             'font-family="sans-serif" font-size="12"><rect width="820" height="660" fill="white"/>'
             + "\n".join(parts) + "</svg>\n")
