@@ -87,7 +87,7 @@ def show():
             what = f"{math.degrees(run.path[0]):.0f} deg {run.path[1]:g} m {run.path[2]:g} m"
         cohesion = f", {run.cohesion / 1000:g} kJ/m3" if run.cohesion else ""
         done = result(name)
-        state = f"done, {done['grains']} grains, {done['wall_time_s']} s" if done else "-"
+        state = f"done, {done['grains']} grains" if done else "-"
         print(f"{name:14} {what:22} {run.radius * 1000:g} mm, friction {run.friction:g}{cohesion}, "
               f"packing {run.seed}: {state}")
 
@@ -108,24 +108,22 @@ def compute(name):
     folder.mkdir(parents=True)
     began = time.monotonic()
     found = {"dig": dig, "press": press, "drain": drain}[run.kind](run, folder)
-    found = {"format": "excavplan-judge", "run": name, **described(run), **found,
-             "wall_time_s": round(time.monotonic() - began)}
+    found = {"format": "excavplan-judge", "run": name, **described(run), **found}
     RESULTS.mkdir(exist_ok=True)
     part = RESULTS / f"{name}.json.part0"
     part.write_text(text_of(found))
     part.rename(RESULTS / f"{name}.json")
     shutil.rmtree(folder)
-    print(f"{name}: {found['wall_time_s']} s", flush=True)
+    print(f"{name}: {round(time.monotonic() - began)} s", flush=True)
 
 
 def described(run):
     about = {"kind": run.kind}
     if run.kind == "dig":
         about.update(path=[round(v, 6) for v in run.path], start_x_m=run.start,
-                     speed_m_per_s=run.speed)
+                     speed_m_per_s=run.speed, margins_m=run.margins)
     return {**about, "radius_m": run.radius, "friction": run.friction,
-            "cohesion_j_per_m3": run.cohesion, "margins_m": run.margins, "packing": run.seed,
-            "packed": run.packed}
+            "cohesion_j_per_m3": run.cohesion, "packing": run.seed, "packed": run.packed}
 
 
 def text_of(found):
