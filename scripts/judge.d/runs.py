@@ -57,7 +57,7 @@ RUNS["long"] = Run(**LONG)
 RUNS.update({f"ten-{i:02d}": Run(**dig) for i, dig in enumerate(TEN, 1)})
 RUNS["smooth"] = Run(friction=0.3)
 RUNS.update({f"fixed-{size}": Run(radius=size / 1000) for size in (40, 35, 25, 20)})
-RUNS.update({f"long-{size}": Run(radius=size / 1000, **LONG) for size in (40, 25)})
+RUNS.update({f"long-{size}": Run(radius=size / 1000, **LONG) for size in (25, 20)})
 RUNS["sticky"] = Run(cohesion=STICKY)
 for mark, grains in (("", {}), ("-smooth", dict(friction=0.3)), ("-sticky", dict(cohesion=STICKY))):
     RUNS["press" + mark] = Run(kind="press", **grains)
