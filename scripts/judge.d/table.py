@@ -477,10 +477,10 @@ def picture(done):
     key = [(LIGHT, "", "judge, 35, 40 mm"), (GREY, "", "30 mm"), (BLUE, "", "20, 25 mm"),
            (RED, "", "excavplan, peak friction"), (RED, "6 4", "critical friction")]
     parts = [part for panel in panels for part in panel.parts]
-    for i, (colour, dash, words) in enumerate(key):
-        parts.append(f'<line x1="{60 + 155 * i}" x2="{84 + 155 * i}" y1="24" y2="24" '
-                     f'stroke="{colour}" stroke-width="2.4" stroke-dasharray="{dash}"/>'
-                     f'<text x="{90 + 155 * i}" y="28">{words}</text>')
+    for left, (colour, dash, words) in zip((60, 210, 300, 400, 600), key):
+        parts.append(f'<line x1="{left}" x2="{left + 24}" y1="24" y2="24" stroke="{colour}" '
+                     f'stroke-width="2.4" stroke-dasharray="{dash}"/>'
+                     f'<text x="{left + 30}" y="28">{words}</text>')
     return ('<svg xmlns="http://www.w3.org/2000/svg" width="820" height="660" '
             'font-family="sans-serif" font-size="12"><rect width="820" height="660" fill="white"/>'
             + "\n".join(parts) + "</svg>\n")
