@@ -341,6 +341,7 @@ Gradient gradient_of(const HeightMap& map) {
 }
 
 ZoneErrors ErrorField::predict() const {
+  if (zones == 0) return {};
   const Gradient gradient = gradient_of(before);
   const Blocks blocks(*this, gradient);
   const Eigen::MatrixXd root = square_root(alignment.left);
