@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/library/library_build.hpp>
-#include <excavplan/simulation/dig_ground.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -12,6 +11,8 @@
 #include <random>
 #include <set>
 #include <utility>
+
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/files.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iterator>
 
-#include <excavplan/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/files.hpp"

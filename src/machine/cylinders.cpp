@@ -7,9 +7,8 @@
 #include <string>
 #include <tuple>
 
-#include <excavplan/error.hpp>
-
 #include "base/angles.hpp"
+#include "base/check.hpp"
 #include "base/text.hpp"
 #include "machine/plane.hpp"
 
@@ -48,8 +47,6 @@ Vector2d apex(const Vector2d& from, const Vector2d& to, double to_from, double t
   const double across = side * std::sqrt((to_from - along) * (to_from + along));
   return from + (along * base + across * quarter_turn(base)) / length;
 }
-
-[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::bad_input, message); }
 
 }  // namespace
 
