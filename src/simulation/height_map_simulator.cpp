@@ -25,8 +25,7 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
-constexpr double sweeps_per_step = 3.0;  // of slumping while the bucket moves, on 5 cm cells; as
-                                         // many more as a slide takes on smaller ones
+constexpr int sweeps_per_step = 1;       // of slumping while the bucket moves
 constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
 constexpr double spread_ahead = 0.15;    // overflow lands within this ahead of the lip [m]
 constexpr double room_around = 0.5;      // of the window around the path at first [m]
@@ -43,10 +42,7 @@ class Dig {
         ground_(terrain, {model.soil, model.bank, model.loose}, cells_around(terrain, path)),
         cavity_(model.machine.bucket),
         resistance_(model, ground_, swath_, path),
-        account_(model.machine, path, options) {
-    sweeps_ = static_cast<int>(
-        std::ceil(sweeps_per_step * std::max(1.0, std::pow(0.05 / terrain.bank.cell_size, 2))));
-  }
+        account_(model.machine, path, options) {}
 
   DigResult run() {
     const std::vector<DigPose>& poses = path_.poses;
@@ -102,7 +98,7 @@ class Dig {
     overflow(s.to.x(), std::max(0.0, resistance_.surface_at(ahead) - s.to.y()), model_.slopes);
     ground_.set_wall(under_bucket(s.to));
     // While the bucket stands in the cut it holds the walls.
-    moving_ = slump(ground_, moving_, {model_.slopes.heap, true}, sweeps_);
+    moving_ = slump(ground_, moving_, {model_.slopes.heap, true}, sweeps_per_step);
   }
 
   /// Cells that the bucket stands on behind its lip, if it is in the ground: no soil gets there.
@@ -279,7 +275,6 @@ class Dig {
   BucketResistance resistance_;
   DigAccount account_;
 
-  int sweeps_ = 0;     ///< of slumping per step
   double fill_ = 0.0;  ///< loose soil in the bucket [m^3]
   CellBlock moving_;   ///< cells that may not be at rest
   CellBlock passed_;   ///< cells the lip has passed, whose walls the bucket holds until it is out
