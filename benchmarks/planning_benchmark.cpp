@@ -4,6 +4,7 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/library/path_library.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include "simulation/section_simulator.hpp"
 
