@@ -4,6 +4,7 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/library/path_library.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include "simulation/section_simulator.hpp"
 
@@ -62,13 +63,20 @@ void dig_in_threads(benchmark::State& state) {
 }
 BENCHMARK(dig_in_threads)->Threads(1)->Threads(2)->UseRealTime()->Unit(benchmark::kMicrosecond);
 
-/// Cuts twice what the bucket holds.
+/// Cuts twice what the bucket holds; the argument is the cell in tenths of a millimetre.
 template <typename Simulator>
 void dig_overfull(benchmark::State& state) {
-  dig_repeatedly<Simulator>(state, level_planning_ground(zx120()), {0.7853981633974483, 0.6, 2.5});
+  const double cell = 1e-4 * static_cast<double>(state.range(0));
+  dig_repeatedly<Simulator>(state, level_planning_ground(zx120(), cell),
+                            {0.7853981633974483, 0.6, 2.5});
 }
-BENCHMARK(dig_overfull<HeightMapSimulator>)->Unit(benchmark::kMicrosecond);
-BENCHMARK(dig_overfull<SectionSimulator>)->Unit(benchmark::kMicrosecond);
+BENCHMARK(dig_overfull<HeightMapSimulator>)
+    ->Arg(1000)
+    ->Arg(500)
+    ->Arg(250)
+    ->Arg(125)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(dig_overfull<SectionSimulator>)->Arg(500)->Unit(benchmark::kMicrosecond);
 
 void lay_out_dig_anywhere(benchmark::State& state) {
   for (auto _ : state) {

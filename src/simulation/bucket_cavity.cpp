@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/angles.hpp"
 #include "machine/plane.hpp"
@@ -23,31 +22,47 @@ Vector2d turned(const Vector2d& v, double angle) {
 
 }  // namespace
 
-/// Extent of the cavity above one x. Its mouth may be the upper or the lower bound.
-struct Cavity::Slice {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  bool open_below = false;
-  bool open_above = false;
-};
-
 Cavity::Cavity(const Bucket& bucket)
-    : bucket_(bucket), corners_(bucket.profile.size()), sides_(bucket.profile.size()) {
+    : bucket_(bucket), corners_(bucket.profile.size()) {
   turn_to(0.0);
 }
 
 void Cavity::turn_to(double phi3) {
-  x_min_ = x_max_ = 0.0;
+  if (phi3 == phi3_) return;
+  phi3_ = phi3;
+  double x_min = 0.0;
+  double x_max = 0.0;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     corners_[i] = turned(bucket_.profile[i] - bucket_.profile.front(), phi3);
-    x_min_ = std::min(x_min_, corners_[i].x());
-    x_max_ = std::max(x_max_, corners_[i].x());
+    x_min = std::min(x_min, corners_[i].x());
+    x_max = std::max(x_max, corners_[i].x());
+  }
+  slice_width_ = (x_max - x_min) / static_cast<double>(slices_.size());
+  for (std::size_t i = 0; i < slices_.size(); ++i) {
+    slices_[i] = Slice{};
+    slices_[i].x = x_min + (static_cast<double>(i) + 0.5) * slice_width_;
   }
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const Vector2d& a = corners_[i];
-    const Vector2d& b = corners_[(i + 1) % corners_.size()];
-    const double slope = (b.y() - a.y()) / (b.x() - a.x());  // unused where upright
-    sides_[i] = {std::min(a.x(), b.x()), std::max(a.x(), b.x()), a.y() - slope * a.x(), slope};
+    cross_slices(corners_[i], corners_[(i + 1) % corners_.size()], i + 1 == corners_.size());
+  }
+}
+
+/// Bounds the slices that a side of the profile crosses.
+void Cavity::cross_slices(const Vector2d& a, const Vector2d& b, bool mouth) {
+  const double slope = (b.y() - a.y()) / (b.x() - a.x());  // unused where upright
+  const double low = std::min(a.x(), b.x());
+  const double high = std::max(a.x(), b.x());
+  for (Slice& slice : slices_) {
+    if (!(low <= slice.x && slice.x < high)) continue;
+    const double z = a.y() + slope * (slice.x - a.x());
+    if (z < slice.low) {
+      slice.low = z;
+      slice.open_below = mouth;
+    }
+    if (z > slice.high) {
+      slice.high = z;
+      slice.open_above = mouth;
+    }
   }
 }
 
@@ -55,27 +70,24 @@ void Cavity::turn_to(double phi3) {
 /// the width [m^3].
 template <typename OfSlice>
 double Cavity::over_slices(const OfSlice& of_slice) const {
-  constexpr int slices = 64;
   double height = 0.0;
-  for (int i = 0; i < slices; ++i) {
-    const double x = x_min_ + (i + 0.5) / slices * (x_max_ - x_min_);
-    const Slice slice = at(x);
-    if (slice.high > slice.low && !slice.open_below) height += of_slice(x, slice);
+  for (const Slice& slice : slices_) {
+    if (slice.high > slice.low && !slice.open_below) height += of_slice(slice);
   }
-  return height * (x_max_ - x_min_) / slices * bucket_.width_inside;
+  return height * slice_width_ * bucket_.width_inside;
 }
 
 double Cavity::capacity(double support, const HoldingSlopes& slopes) const {
   // Height at which the slopes of both sides meet.
   const double flank = 0.5 * slopes.heap * bucket_.width_inside;
   const Vector2d& top = corners_.back();
-  return over_slices([&](double x, const Slice& slice) {
-    double surface = std::max(0.0, support) + slopes.face * std::max(0.0, x);
+  return over_slices([&](const Slice& slice) {
+    double surface = std::max(0.0, support) + slopes.face * std::max(0.0, slice.x);
     if (!slice.open_above) return std::clamp(surface - slice.low, 0.0, slice.high - slice.low);
     // The walls of the cut hold the soil beside the plates up to the level of the ground; behind
     // the top edge the cut is open.
     const double side = support > 0.0 ? std::max(slice.high, support) : slice.high;
-    surface = std::min(surface, top.y() + slopes.heap * std::max(0.0, top.x() - x));
+    surface = std::min(surface, top.y() + slopes.heap * std::max(0.0, top.x() - slice.x));
     const double heap = std::max(0.0, surface - side);
     const double mean_heap = heap < flank ? heap - 0.5 * heap * heap / flank : 0.5 * flank;
     return std::max(0.0, std::min(surface, side) - slice.low) + mean_heap;
@@ -83,8 +95,8 @@ double Cavity::capacity(double support, const HoldingSlopes& slopes) const {
 }
 
 double Cavity::pushed_in(double support, double slope) const {
-  return over_slices([&](double x, const Slice& slice) {
-    const double height = support - slope * std::max(0.0, x) - slice.low;
+  return over_slices([&](const Slice& slice) {
+    const double height = support - slope * std::max(0.0, slice.x) - slice.low;
     return slice.open_above ? std::max(0.0, height)
                             : std::clamp(height, 0.0, slice.high - slice.low);
   });
@@ -108,24 +120,6 @@ Cavity::Packed Cavity::packed(double volume) const {
   }
   return {std::atan2(cross(floor, front), floor.dot(front)),
           filled > 0.0 ? Vector2d(moment / filled) : Vector2d::Zero()};
-}
-
-Cavity::Slice Cavity::at(double x) const {
-  Slice slice;
-  for (const Side& side : sides_) {
-    if (!(side.x_low <= x && x < side.x_high)) continue;
-    const bool mouth = &side == &sides_.back();
-    const double z = side.offset + side.slope * x;
-    if (z < slice.low) {
-      slice.low = z;
-      slice.open_below = mouth;
-    }
-    if (z > slice.high) {
-      slice.high = z;
-      slice.open_above = mouth;
-    }
-  }
-  return slice;
 }
 
 double bucket_capacity(const Machine& machine, double phi3, double support,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -37,23 +39,23 @@ class Cavity {
   std::size_t corners() const { return corners_.size(); }
 
  private:
-  struct Slice;
-  /// A side of the profile as a line over x, from `x_low` to before `x_high`.
-  struct Side {
-    double x_low = 0.0;
-    double x_high = 0.0;
-    double offset = 0.0;
-    double slope = 0.0;
+  /// Extent of the cavity above one x. Its mouth may be the upper or the lower bound.
+  struct Slice {
+    double x = 0.0;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -std::numeric_limits<double>::infinity();
+    bool open_below = false;
+    bool open_above = false;
   };
-  Slice at(double x) const;
+  void cross_slices(const Eigen::Vector2d& a, const Eigen::Vector2d& b, bool mouth);
   template <typename OfSlice>
   double over_slices(const OfSlice& of_slice) const;
 
   const Bucket& bucket_;
+  double phi3_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<Eigen::Vector2d> corners_;
-  std::vector<Side> sides_;  ///< from corner to corner; the last is the mouth
-  double x_min_ = 0.0;
-  double x_max_ = 0.0;
+  std::array<Slice, 64> slices_;
+  double slice_width_ = 0.0;
 };
 
 }  // namespace excavplan

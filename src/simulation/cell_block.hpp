@@ -36,6 +36,15 @@ struct CellBlock {
   bool empty() const { return row_begin >= row_end || col_begin >= col_end; }
   Eigen::Index rows() const { return row_end - row_begin; }
   Eigen::Index cols() const { return col_end - col_begin; }
+  /// This block and `margin` cells around it.
+  CellBlock around(Eigen::Index margin) const {
+    return {row_begin - margin, row_end + margin, col_begin - margin, col_end + margin};
+  }
+  /// The cells of both blocks.
+  CellBlock common(const CellBlock& other) const {
+    return {std::max(row_begin, other.row_begin), std::min(row_end, other.row_end),
+            std::max(col_begin, other.col_begin), std::min(col_end, other.col_end)};
+  }
   /// This block and `margin` cells around it, as far as a map of this size has them.
   CellBlock widened(Eigen::Index margin, Eigen::Index map_rows, Eigen::Index map_cols) const;
 };

@@ -48,6 +48,7 @@ void GroundWindow::cover(const CellBlock& cells) {
   loose_.assign(size, 0.0);
   height_.assign(size, walled_height);
   awake_.assign(size, 1);
+  slides_.assign(size, 0);
   walled_.assign(size, 0);
   void_ratio_.assign(has_void_ratio ? size : 0, soil_.loose.void_ratio);
   for (Index col = wanted.col_begin; col < wanted.col_end; ++col) {
@@ -57,7 +58,10 @@ void GroundWindow::cover(const CellBlock& cells) {
       bank_[i] = held ? old.bank(row, col) : whole_.bank.z(row, col);
       loose_[i] = held ? old.loose(row, col) : whole_.loose(row, col);
       height_[i] = bank_[i] + loose_[i];
-      if (held) awake_[i] = old.awake(old.at(row, col)) ? 1 : 0;
+      if (held) {
+        awake_[i] = old.awake_[old.at(row, col)];
+        slides_[i] = old.slides_[old.at(row, col)];
+      }
       if (has_void_ratio) {
         void_ratio_[i] =
             held ? old.void_ratio_[old.at(row, col)] : whole_.loose_void_ratio(row, col);
@@ -92,6 +96,19 @@ void GroundWindow::check(const CellBlock& cells) const {
     within(whole_.loose_void_ratio, kind.void_ratio_min, kind.void_ratio_loose,
            "the void ratio of the loose layer");
   }
+}
+
+double GroundWindow::bank_void_ratio(Index row, Index col) const {
+  return bank_is_even() ? soil_.bank.void_ratio : whole_.bank_void_ratio(row, col);
+}
+
+double GroundWindow::swollen_bank(Index row, Index col, double thickness) const {
+  return thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + bank_void_ratio(row, col));
+}
+
+void GroundWindow::lower_bank(std::size_t cell, double thickness) {
+  bank_[cell] -= thickness;
+  changed(cell);
 }
 
 SoilState GroundWindow::bank_state(Index row, Index col) const {

@@ -12,6 +12,7 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "simulation/cell_block.hpp"
+#include "simulation/coarse_ground.hpp"
 
 namespace excavplan {
 
@@ -61,28 +62,20 @@ class GroundWindow {
   double height(Eigen::Index row, Eigen::Index col) const { return height_[at(row, col)]; }
 
   /// Of the bank [-].
-  double bank_void_ratio(Eigen::Index row, Eigen::Index col) const {
-    return whole_.bank_void_ratio.size() == 0 ? soil_.bank.void_ratio
-                                              : whole_.bank_void_ratio(row, col);
-  }
+  double bank_void_ratio(Eigen::Index row, Eigen::Index col) const;
   bool bank_is_even() const { return whole_.bank_void_ratio.size() == 0; }
   /// State of a cell's bank.
   SoilState bank_state(Eigen::Index row, Eigen::Index col) const;
 
   /// Loose thickness of a thickness of the bank, or of the loose layer, once it has moved [m].
-  double swollen_bank(Eigen::Index row, Eigen::Index col, double thickness) const {
-    return thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + bank_void_ratio(row, col));
-  }
+  double swollen_bank(Eigen::Index row, Eigen::Index col, double thickness) const;
   double swollen_loose(std::size_t cell, double thickness) const {
     return void_ratio_.empty()
                ? thickness
                : thickness * (1.0 + soil_.loose.void_ratio) / (1.0 + void_ratio_[cell]);
   }
 
-  void lower_bank(std::size_t cell, double thickness) {
-    bank_[cell] -= thickness;
-    changed(cell);
-  }
+  void lower_bank(std::size_t cell, double thickness);
   /// Never below 0.
   void lower_loose(std::size_t cell, double thickness) {
     loose_[cell] = loose_[cell] > thickness ? loose_[cell] - thickness : 0.0;
@@ -92,7 +85,8 @@ class GroundWindow {
   void raise_loose(std::size_t cell, double thickness) {
     if (!void_ratio_.empty()) mix(cell, thickness);
     loose_[cell] += thickness;
-    changed(cell);
+    if (walled_[cell] == 0) height_[cell] = bank_[cell] + loose_[cell];
+    awake_[cell] = 1;
   }
   void raise_loose(Eigen::Index row, Eigen::Index col, double thickness) {
     raise_loose(at(row, col), thickness);
@@ -101,11 +95,16 @@ class GroundWindow {
   /// Cells that no soil enters or leaves, until the next call.
   void set_wall(const CellBlock& wall);
 
-  /// Whether a cell or one of its four neighbours has changed since let_sleep(): a cell that is
-  /// asleep is at rest.
+  /// Whether a cell has changed, or one of its four neighbours has become lower, since let_sleep():
+  /// a cell that is asleep is at rest.
   bool awake(std::size_t cell) const { return awake_[cell] != 0; }
   void let_sleep(std::size_t cell) { awake_[cell] = 0; }
   void wake(const CellBlock& block);
+
+  /// Whether soil slid off a cell when it was last looked at: what slides onto it will slide on.
+  bool slides(std::size_t cell) const { return slides_[cell] != 0; }
+  void let_slide(std::size_t cell, bool slides) { slides_[cell] = slides ? 1 : 0; }
+  SlumpState& slumping() { return slumping_; }
 
   /// Dry mass of the known cells above a level, now and before [kg].
   double solids(double above) const;
@@ -143,7 +142,9 @@ class GroundWindow {
   std::vector<double> height_;
   std::vector<double> void_ratio_;  ///< of the loose layer; empty if that of dug soil
   std::vector<std::uint16_t> awake_;
+  std::vector<std::uint16_t> slides_;
   std::vector<std::uint16_t> walled_;
+  SlumpState slumping_;
 };
 
 }  // namespace excavplan

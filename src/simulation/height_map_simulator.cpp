@@ -25,8 +25,7 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
-constexpr double sweeps_per_metre = 120.0;  // of travel, of slumping on 5 cm cells; as many more
-                                            // as a slide takes on smaller ones
+constexpr double sweeps_per_metre = 30.0;   // of travel, of slumping whose largest cells have 10 cm
 constexpr int sweeps_at_the_end = 2000;     // until all is at rest; a dig needs some tens
 constexpr double spread_ahead = 0.15;       // overflow lands within this ahead of the lip [m]
 constexpr double room_around = 0.5;         // of the window around the path at first [m]
@@ -43,9 +42,9 @@ class Dig {
         ground_(terrain, {model.soil, model.bank, model.loose}, cells_around(terrain, path)),
         cavity_(model.machine.bucket),
         resistance_(model, ground_, swath_, path),
-        account_(model.machine, path, options) {
-    sweeps_per_metre_ = sweeps_per_metre * std::max(1.0, std::pow(0.05 / ground_.cell_size(), 2));
-  }
+        account_(model.machine, path, options),
+        sweeps_per_metre_(sweeps_per_metre *
+                          std::pow(0.1 / largest_slumping_cell(ground_.cell_size()), 2)) {}
 
   DigResult run() {
     const std::vector<DigPose>& poses = path_.poses;

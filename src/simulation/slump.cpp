@@ -3,8 +3,11 @@
 #include "simulation/slump.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <type_traits>
 
 #include <excavplan/error.hpp>
 
@@ -25,23 +28,25 @@ struct Place {
 
 /// How far the lower neighbour of a cell along one axis lies below, 0 if none does.
 struct Fall {
-  bool onwards = false;  ///< to the next row or column, else to the previous one
+  std::size_t to = 0;  ///< the lower neighbour
   double height = 0.0;
 };
 
 /// Soil slides along the gradient of the surface, taken on each axis to the lower of the two
 /// neighbours (upwind, Rouy and Tourin 1992), so that heaps are as steep in every direction, not
 /// only along the grid.
-class Slump {
+template <typename Ground>
+class Slide {
  public:
-  Slump(GroundWindow& ground, const SlopeLimits& limits)
-      : ground_(ground),
-        limits_(limits),
-        bank_{std::tan(ground.soil().bank.friction_angle), critical_height(ground.soil().bank)} {}
+  Slide(Ground& ground, const SlopeLimits& limits) : ground_(ground), limits_(limits) {
+    if constexpr (has_bank) bank_ = limits_of(ground.soil().bank);
+  }
 
   /// One pass over the cells of the block that are awake; returns the cells that moved.
   CellBlock sweep(const CellBlock& block, int order) {
-    moved_ = {};
+    constexpr Index far = std::numeric_limits<Index>::max() / 2;
+    moved_ = {far, -far, far, -far};
+    slid_ = 0;
     const Index first = (order & 2) != 0 ? block.row_end - 1 : block.row_begin;
     const Index along = (order & 2) != 0 ? -1 : 1;
     for (Index i = 0; i < block.cols(); ++i) {
@@ -53,10 +58,15 @@ class Slump {
         at.cell += static_cast<std::size_t>(along);
       }
     }
-    return moved_;
+    return moved_.empty() ? CellBlock{} : moved_.around(1);
   }
 
+  /// Cells from which soil slid in the last pass.
+  int slid() const { return slid_; }
+
  private:
+  static constexpr bool has_bank = std::is_same_v<Ground, GroundWindow>;
+
   struct BankLimits {
     double slope = 0.0;            ///< tangent of the friction angle
     double critical_height = 0.0;  ///< of a vertical wall [m]
@@ -65,8 +75,11 @@ class Slump {
   void relax(const Place& at) {
     ground_.let_sleep(at.cell);
     if (std::isnan(ground_.height(at.cell))) return;
+    ground_.let_slide(at.cell, false);
     if (ground_.loose(at.cell) > 0.0) slide_loose(at);
-    if (!limits_.bank_stands) fail_bank(at);
+    if constexpr (has_bank) {
+      if (!limits_.bank_stands) fail_bank(at);
+    }
   }
 
   /// From height `top` in a cell to the lower neighbour on an axis, `step` away. On a flank, where
@@ -75,34 +88,43 @@ class Slump {
   /// never much less than on that side, or steps could remain.
   Fall fall(double top, std::size_t cell, std::size_t step) const {
     constexpr double least = 0.85;  // of the fall on the lower side; ours
-    const double before = drop(top, cell - step);
-    const double after = drop(top, cell + step);
+    const double before = drop(top, cell, cell - step);
+    const double after = drop(top, cell, cell + step);
     const bool onwards = !(before >= after);
-    const double lower = onwards ? after : before;
-    const double other = onwards ? before : after;
-    if (!(lower > 0.0)) return {};
-    const double height = other < 0.0 ? std::max(0.5 * (lower - other), least * lower) : lower;
-    return {onwards, std::min(height, lower)};
+    const double lower = std::max(std::max(before, after), 0.0);
+    const double other = std::min(before, after);
+    const double mean = std::min(std::max(0.5 * (lower - other), least * lower), lower);
+    return {onwards ? cell + step : cell - step, other < 0.0 ? mean : lower};
   }
 
-  /// From height `top` down to a cell; 0 to cells that are unknown, walled or off the map.
-  double drop(double top, std::size_t cell) const {
-    const double drop = top - ground_.height(cell);
-    return std::isnan(drop) ? 0.0 : drop;
+  /// From height `top` of a cell down to one beside it; 0 to cells that are unknown, walled or off
+  /// the map, and over the edge of a wall on larger cells, which do not see how far it is.
+  double drop(double top, std::size_t cell, std::size_t beside) const {
+    if constexpr (!has_bank) {
+      if (ground_.wall_between(cell, beside)) return 0.0;
+    }
+    const double drop = top - ground_.height(beside);
+    return drop == drop ? drop : 0.0;
   }
 
   /// How much has to leave a cell so that it falls no steeper than `slope`, if the share of each
   /// axis arrives swollen by `swell` below; 0 if it does not.
   double excess(const Fall& x, const Fall& y, double slope, double swell) const {
     const double stable = slope * ground_.cell_size();
+    const double too_steep = (1.0 + limits_.slack) * stable;
     const double squared = x.height * x.height + y.height * y.height;
-    if (!(squared > (stable + limits_.at_rest) * (stable + limits_.at_rest))) return 0.0;
+    if (!(squared > too_steep * too_steep)) return 0.0;
     const double steepness = std::sqrt(squared);
-    const double too_steep = steepness - stable;
     const double sum = x.height + y.height;
-    const double closing =
-        x.height * (1.0 + swell * x.height / sum) + y.height * (1.0 + swell * y.height / sum);
-    return too_steep * steepness / closing;
+    const double raised = stays(x.to) * x.height * x.height + stays(y.to) * y.height * y.height;
+    const double leaves = steepness - (1.0 - limits_.slack) * stable;
+    return leaves * steepness * sum / (sum * sum + swell * raised);
+  }
+
+  /// Share of what arrives on a cell that raises it, if the rest slides on from there.
+  double stays(std::size_t cell) const {
+    constexpr double share = 0.35;  // ours: none would carry soil past where it rests
+    return ground_.slides(cell) ? share : 1.0;
   }
 
   void slide_loose(const Place& at) {
@@ -110,9 +132,10 @@ class Slump {
     const Fall x = fall(top, at.cell, ground_.column_step());
     const Fall y = fall(top, at.cell, 1);
     const double swell = ground_.swollen_loose(at.cell, 1.0);
-    const double leaving =
-        std::min(ground_.loose(at.cell), excess(x, y, limits_.loose_slope, swell));
-    if (!(leaving > 0.0)) return;
+    const double needed = excess(x, y, limits_.loose_slope, swell);
+    if (!(needed > 0.0)) return;
+    ground_.let_slide(at.cell, true);
+    const double leaving = std::min(ground_.loose(at.cell), needed);
     ground_.lower_loose(at.cell, leaving);
     arrive(leaving * swell, at, x, y);
   }
@@ -133,41 +156,86 @@ class Slump {
 
   /// Distributes the soil that has left a cell over both axes.
   void arrive(double thickness, const Place& from, const Fall& x, const Fall& y) {
-    const double sum = x.height + y.height;
-    CellBlock touched = {from.row, from.row + 1, from.col, from.col + 1};
-    if (x.height != 0.0) {
-      const std::size_t step = ground_.column_step();
-      ground_.raise_loose(x.onwards ? from.cell + step : from.cell - step,
-                          thickness * x.height / sum);
-      (x.onwards ? touched.col_end : touched.col_begin) += x.onwards ? 1 : -1;
-    }
-    if (y.height != 0.0) {
-      ground_.raise_loose(y.onwards ? from.cell + 1 : from.cell - 1, thickness * y.height / sum);
-      (y.onwards ? touched.row_end : touched.row_begin) += y.onwards ? 1 : -1;
-    }
-    moved_.include(touched);
+    ++slid_;
+    const double along_x = thickness * x.height / (x.height + y.height);
+    if (x.height != 0.0) ground_.raise_loose(x.to, along_x);
+    if (y.height != 0.0) ground_.raise_loose(y.to, thickness - along_x);
+    moved_.row_begin = std::min(moved_.row_begin, from.row);
+    moved_.row_end = std::max(moved_.row_end, from.row + 1);
+    moved_.col_begin = std::min(moved_.col_begin, from.col);
+    moved_.col_end = std::max(moved_.col_end, from.col + 1);
   }
 
   BankLimits bank_limits(const Place& at) const {
     if (ground_.bank_is_even()) return bank_;
-    const SoilState state = ground_.bank_state(at.row, at.col);
-    return {std::tan(state.friction_angle), critical_height(state)};
+    return limits_of(ground_.bank_state(at.row, at.col));
+  }
+  static BankLimits limits_of(const SoilState& bank) {
+    return {std::tan(bank.friction_angle), critical_height(bank)};
   }
 
-  GroundWindow& ground_;
+  Ground& ground_;
   SlopeLimits limits_;
   BankLimits bank_;
   CellBlock moved_;
+  int slid_ = 0;
 };
+
+/// Bit 0: columns backwards, bit 1: rows backwards. The next pass and the one on larger cells run
+/// against the rows of this one, so that no side is favoured.
+constexpr std::array<int, 4> orders = {0, 2, 3, 1};
+
+constexpr double large_cell = 0.08;    // cells as large as these have no larger ones [m]; ours
+constexpr int large_slide = 32;        // cells that slid, from which larger ones pay; ours
+constexpr double steepest_bank = 2.0;  // over the repose: steeper is a wall on larger cells; ours
+
+/// How often the largest cells are swept in one pass.
+constexpr int large_sweeps = 1;
+
+bool is_large(double cell) { return !(cell < large_cell); }
+
+/// Cells around a block that soil from it can reach in one pass on cells of this size and larger.
+int reach(double cell) { return is_large(cell) ? large_sweeps + 1 : 2 * reach(2.0 * cell) + 2; }
+
+/// One pass over the block on cells of twice the size, after one on yet larger ones; returns the
+/// cells that changed.
+template <typename Ground>
+CellBlock slide_on_larger_cells(Ground& ground, CoarseGround& coarse, const CellBlock& block,
+                                const SlopeLimits& limits, int order) {
+  if (is_large(ground.cell_size())) return {};
+  const CellBlock whole = CoarseGround::whole(ground.cells());
+  const CellBlock half = CoarseGround::half(block);
+  const CellBlock seen = half.around(reach(2.0 * ground.cell_size())).common(whole);
+  const bool largest = is_large(2.0 * ground.cell_size());
+  const CellBlock swept = half.around(largest ? large_sweeps : 1).common(whole);
+  if (swept.empty()) return {};
+  coarse.look_at(ground, seen, steepest_bank * limits.loose_slope * ground.cell_size());
+  slide_on_larger_cells(coarse, coarse.coarser(), swept, limits, order ^ 2);
+  Slide<CoarseGround> slide(coarse, limits);
+  for (int i = 0; i < (largest ? large_sweeps : 1); ++i) slide.sweep(swept, orders[(order + i) % 4]);
+  return coarse.give_back(ground, seen);
+}
 
 }  // namespace
 
+double largest_slumping_cell(double cell) {
+  return is_large(cell) ? cell : largest_slumping_cell(2.0 * cell);
+}
+
 CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits, int sweeps) {
-  Slump slide(ground, limits);
+  Slide<GroundWindow> slide(ground, limits);
+  SlumpState& state = ground.slumping();
   for (int i = 0; i < sweeps && !block.empty(); ++i) {
-    block = ground.widened(block, 1);
-    ground.cover(ground.widened(block, 1));
-    block = slide.sweep(block, i % 4);
+    ground.cover(ground.widened(block, reach(ground.cell_size()) + 2));
+    const int order = orders[static_cast<std::size_t>(state.passes++ % 4)];
+    if (state.slid >= large_slide) {
+      block.include(slide_on_larger_cells(ground, state.coarser, block, limits, order ^ 2));
+    }
+    block = slide.sweep(ground.widened(block, 1), order);
+    for (int j = 1; j < large_sweeps && is_large(ground.cell_size()); ++j) {
+      block = slide.sweep(ground.widened(block, 1), orders[(order + j) % 4]);
+    }
+    state.slid = slide.slid();
   }
   return block;
 }

@@ -12,16 +12,21 @@ namespace excavplan {
 struct SlopeLimits {
   double loose_slope = 0.0;  ///< tangent of the angle of repose
   bool bank_stands = false;  ///< walls of undisturbed soil are held, however high
-  /// Slopes whose fall over a cell is too high by less than this are at rest [m]; ours: well under
-  /// any scan's resolution.
-  double at_rest = 1e-4;
+  /// Slopes steeper by less than this share are at rest; what is steeper slides until it is less
+  /// steep by this share [-]; ours: half a degree.
+  double slack = 0.02;
 };
 
 /// Lets soil slide where it stands too steep, inside `block` and one cell around it, which grows as
 /// soil leaves it. Undisturbed soil breaks off walls above its critical height down to its friction
-/// angle. At most `sweeps` passes; returns the block that may still move, empty once all is at
-/// rest. Solids are conserved to rounding; unknown and walled cells are walls.
+/// angle. At most `sweeps` passes, each after one on cells of twice the size where these are small
+/// and soil slides: the same soil gets as far on small cells as on large ones. Returns the block
+/// that may still move, empty once all is at rest. Solids are conserved to rounding; unknown and
+/// walled cells are walls.
 CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits, int sweeps);
+
+/// The largest cells on which a pass on cells of this size moves soil [m].
+double largest_slumping_cell(double cell);
 
 /// Heaps `volume` of loose soil on the terrain as a cone of the given slope with its axis at (x,
 /// y).
