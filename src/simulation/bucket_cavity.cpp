@@ -94,11 +94,10 @@ double Cavity::capacity(double support, const HoldingSlopes& slopes) const {
   });
 }
 
-double Cavity::pushed_in(double support, double slope) const {
+double Cavity::pushed_in(double level) const {
   return over_slices([&](const Slice& slice) {
-    const double height = support - slope * std::max(0.0, slice.x) - slice.low;
-    return slice.open_above ? std::max(0.0, height)
-                            : std::clamp(height, 0.0, slice.high - slice.low);
+    const double height = std::max(0.0, level - slice.low);
+    return slice.open_above ? height : std::min(height, slice.high - slice.low);
   });
 }
 

@@ -23,9 +23,9 @@ class Cavity {
   /// As bucket_capacity(), in the attitude it was turned to [m^3].
   double capacity(double support, const HoldingSlopes& slopes) const;
 
-  /// How much soil that is pushed in over the lip lies in the cavity: its surface falls inwards by
-  /// `slope` from `support` above the lip [m^3].
-  double pushed_in(double support, double slope) const;
+  /// How much soil that is pushed in over the lip lies in the cavity, up to `level` above the lip;
+  /// the walls of the cut hold what stands above the side plates [m^3].
+  double pushed_in(double level) const;
 
   /// Soil packed into the corner of floor and back, up to a line through the lip.
   struct Packed {

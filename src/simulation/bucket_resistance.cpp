@@ -62,9 +62,6 @@ HeightMapModel::HeightMapModel(Machine machine_, SoilKind soil_, double density_
   slopes.heap = std::tan(soil.angle_of_repose);
   const SoilState dug = dug_state(soil);
   slopes.face = std::tan(stable_slope(dug, mouth, soil.angle_of_repose));
-  // Soil that stands upright to the height of the mouth is pushed in as a level layer; what its
-  // cohesion does not hold falls at the angle of repose.
-  slopes.pushed = slopes.heap * (1.0 - std::min(1.0, critical_height(dug) / mouth));
 }
 
 // ---- Forces -------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/bucket_resistance.hpp"
 #include "simulation/dig_account.hpp"
+#include "simulation/pile_ahead.hpp"
 #include "simulation/slump.hpp"
 
 namespace excavplan {
@@ -25,10 +26,9 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
-constexpr double sweeps_per_metre = 30.0;   // of travel, of slumping whose largest cells have 10 cm
-constexpr int sweeps_at_the_end = 2000;     // until all is at rest; a dig needs some tens
-constexpr double spread_ahead = 0.15;       // overflow lands within this ahead of the lip [m]
-constexpr double room_around = 0.5;         // of the window around the path at first [m]
+constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
+constexpr double room_around = 0.5;      // of the window around the path at first [m]
+constexpr double spill_error = 1e-5;     // of the soil that finds room in and ahead of the bucket [m^3]
 
 /// One dig from its first pose to its end.
 class Dig {
@@ -42,9 +42,8 @@ class Dig {
         ground_(terrain, {model.soil, model.bank, model.loose}, cells_around(terrain, path)),
         cavity_(model.machine.bucket),
         resistance_(model, ground_, swath_, path),
-        account_(model.machine, path, options),
-        sweeps_per_metre_(sweeps_per_metre *
-                          std::pow(0.1 / largest_slumping_cell(ground_.cell_size()), 2)) {}
+        pile_(ground_, swath_, model.machine.bucket.width_outside, model.slopes.heap),
+        account_(model.machine, path, options) {}
 
   DigResult run() {
     const std::vector<DigPose>& poses = path_.poses;
@@ -97,35 +96,23 @@ class Dig {
     if (!digs) return;
     const double before = fill_;
     cut(s);
-    // In two parts, as the soil left ahead lets more in.
-    spill(s.to.x(), 0.5 * (fill_ - room_in_bucket(s.to, before)));
-    spill(s.to.x(), fill_ - room_in_bucket(s.to, before));
-    ground_.set_wall(under_bucket(s.to));
-    // While the bucket stands in the cut it holds the walls.
-    sweeps_due_ += sweeps_per_metre_ * s.length;
-    const int sweeps = static_cast<int>(sweeps_due_);
-    sweeps_due_ -= sweeps;
-    moving_ = slump(ground_, moving_, {model_.slopes.heap, true}, sweeps);
+    spill(s.to.x(), [&, z = s.to.y(), now = level_ahead(s.to.x())](double crest) {
+      return room_in_bucket(std::max(now, crest) - z, before);
+    });
   }
 
-  /// How much soil the bucket may hold at the lip. What is pushed in rises there and falls to both
-  /// sides: no more gets in than lies inwards of it. What is in, `held`, stays as long as the
-  /// bucket can hold it.
-  double room_in_bucket(const Vector2d& lip, double held) const {
-    const Index ahead = swath_.column(lip.x() - ground_.cell_size());
-    const double support = std::max(0.0, resistance_.surface_at(ahead) - lip.y());
-    return std::min(std::max(held, cavity_.pushed_in(support, model_.slopes.pushed)),
-                    cavity_.capacity(support, model_.slopes));
+  /// Level of the surface just ahead of the lip.
+  double level_ahead(double lip_x) const {
+    return resistance_.surface_at(swath_.column(lip_x - ground_.cell_size()));
   }
 
-  /// Cells that the bucket stands on behind its lip, if it is in the ground: no soil gets there.
-  CellBlock under_bucket(const Vector2d& tip) const {
-    const Index lip = swath_.column(tip.x());
-    if (!(resistance_.surface_at(lip) > tip.y())) return {};
-    const auto length =
-        static_cast<Index>(std::ceil(resistance_.floor_length() / ground_.cell_size()));
-    return {swath_.first_row(), swath_.end_row(), lip + 1,
-            std::min(lip + 1 + length, ground_.before().loose.cols())};
+  /// How much soil the bucket may hold while it is pushed in, with the soil ahead `support` above
+  /// the lip. It gets in up to that level; what is in, `held`, stays as long as the bucket can hold
+  /// it.
+  double room_in_bucket(double support, double held) const {
+    const double above = std::max(0.0, support);
+    const double room = std::max(held, cavity_.pushed_in(above));
+    return std::min(room, cavity_.capacity(above, model_.slopes));
   }
 
   // ---- soil ------------------------------------------------------------------------------------
@@ -191,30 +178,31 @@ class Dig {
     passed_.include(column);
   }
 
-  /// What does not get into the bucket, or falls out of it, comes to lie ahead of the lip.
-  void spill(double lip_x, double excess) {
-    if (!(excess > 0.0)) return;
-    const double area = ground_.cell_size() * ground_.cell_size();
-    const Index last = swath_.column(lip_x - 1e-9);
-    const Index first = swath_.column(lip_x - spread_ahead);
-    double share = 0.0;
-    for (Index col = first; col <= last; ++col) share += ahead_of(lip_x, col);
-    const double thickness = excess / (area * share * swath_.cover_sum());
-    for (Index col = first; col <= last; ++col) {
-      for (Index i = 0; i < swath_.rows(); ++i) {
-        ground_.raise_loose(swath_.first_row() + i, col,
-                            thickness * ahead_of(lip_x, col) * swath_.cover(i));
-      }
+  /// What has no room in the bucket comes to lie ahead of the lip: the soil there rises to the
+  /// level at which the rest has room, `room(level)`.
+  template <typename Room>
+  void spill(double lip_x, const Room& room) {
+    double level = level_ahead(lip_x);
+    if (!(fill_ > room(level) + spill_error)) return;
+    pile_.move_to(lip_x);
+    double low = -std::numeric_limits<double>::infinity();
+    double high = -low;
+    level = std::max(level, crest_);
+    for (int i = 0; i < 60; ++i) {  // Newton's method within the bounds found
+      const PileAhead::Size pile = pile_.size(level);
+      const double holds = room(level);
+      const double left = fill_ - holds - pile.volume;
+      if (std::abs(left) < spill_error) break;
+      (left > 0.0 ? low : high) = level;
+      constexpr double step = 1e-3;
+      const double gain = pile.area + (room(level + step) - holds) / step;
+      double next = gain > 0.0 ? level + left / gain : high;
+      if (!(next > low && next < high)) next = std::isinf(high) ? low + 0.1 : 0.5 * (low + high);
+      level = next;
     }
-    moving_.include({swath_.first_row(), swath_.end_row(), first, last + 1});
-    fill_ -= excess;
-  }
-
-  /// Share of a column that lies ahead of the lip.
-  double ahead_of(double lip_x, Index col) const {
-    const HeightMap& map = ground_.before().bank;
-    const double left = map.origin.x() + map.cell_size * static_cast<double>(col);
-    return std::clamp((lip_x - left) / map.cell_size, 0.0, 1.0);
+    crest_ = level;
+    fill_ -= pile_.size(level).volume;
+    moving_.include(pile_.lay(level));
   }
 
   // ---- energy ----------------------------------------------------------------------------------
@@ -263,9 +251,8 @@ class Dig {
   /// any more.
   void come_clear(const DigPose& last) {
     const HoldingSlopes slopes = turn_clear(last);
-    spill(last.bucket.x, fill_ - cavity_.capacity(0.0, slopes));
+    spill(last.bucket.x, [&](double) { return cavity_.capacity(0.0, slopes); });
     moving_.include(passed_);
-    ground_.set_wall({});
     ground_.wake(ground_.widened(moving_, 1));
   }
 
@@ -293,10 +280,10 @@ class Dig {
   GroundWindow ground_;
   Cavity cavity_;
   BucketResistance resistance_;
+  PileAhead pile_;
   DigAccount account_;
 
-  double sweeps_per_metre_ = 0.0;  ///< of slumping while the bucket moves
-  double sweeps_due_ = 0.0;
+  double crest_ = -std::numeric_limits<double>::infinity();  ///< of the pile ahead, lately [m]
   double fill_ = 0.0;  ///< loose soil in the bucket [m^3]
   CellBlock moving_;   ///< cells that may not be at rest
   CellBlock passed_;   ///< cells the lip has passed, whose walls the bucket holds until it is out

@@ -75,15 +75,15 @@ double BucketSection::held(double support, const HoldingSlopes& slopes) {
   return top.x() > 0.0 ? inside + heaped(top, face, rear, slopes.heap) : inside;
 }
 
-double BucketSection::pushed_in(double support, double slope) {
+double BucketSection::pushed_in(double level) {
   const Vector2d top = corners_.back();
   polygon_ = corners_;
-  clip(polygon_, {support, -slope}, scratch_);
+  clip(polygon_, {level, 0.0}, scratch_);
   double area = area_centre(polygon_).area;
   if (top.x() > 0.0) {
-    const double fall = slope + top.y() / top.x();  // of the surface towards the mouth
-    const double end = fall * top.x() > support ? support / fall : top.x();
-    area += end * (support - 0.5 * fall * end);
+    const double fall = top.y() / top.x();  // of the level towards the mouth
+    const double end = fall * top.x() > level ? level / fall : top.x();
+    area += end * (level - 0.5 * fall * end);
   }
   return area * bucket_.width_inside;
 }

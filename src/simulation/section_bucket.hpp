@@ -39,9 +39,9 @@ class BucketSection {
   /// Volume of the soil held.
   double held(double support, const HoldingSlopes& slopes);
 
-  /// Volume of soil that is pushed in over the lip, up to `support` above it and falling inwards
-  /// by `slope`; the walls of the cut hold what stands above the side plates.
-  double pushed_in(double support, double slope);
+  /// Volume of soil that is pushed in over the lip, up to `level` above it; the walls of the cut
+  /// hold what stands above the side plates.
+  double pushed_in(double level);
 
   const Eigen::Vector2d& corner(std::size_t i) const { return corners_[i]; }
   /// A vector with the line from pin to tip along x, as the bucket is turned.

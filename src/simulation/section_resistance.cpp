@@ -345,7 +345,6 @@ SectionModel::SectionModel(Machine machine_, SoilKind kind_, double density_perc
   const double mouth = (machine.bucket.profile.back() - machine.bucket.profile.front()).norm();
   slopes.heap = std::tan(kind.angle_of_repose);
   slopes.face = std::tan(stable_slope(dug, mouth, kind.angle_of_repose));
-  slopes.pushed = std::max(0.0, 1.0 - critical_height(dug) / mouth) * slopes.heap;
 }
 
 SectionResistance section_resistance(const SectionModel& model, const SoilSection& section,

@@ -148,18 +148,29 @@ class SectionDig {
     account_.result.soil.loose_cut += (area.loose + from_pile) * width();
     const double before = contents_;
     contents_ += (area.swollen + from_pile) * width();
-    for (const double share : {0.5, 1.0}) {  // what stays ahead lets more in
-      const double support = std::max(0.0, pile_.height(falls) - lip);
-      const double pushed_in = bucket_.pushed_in(support, model_.slopes.pushed);
-      const double room =
-          std::min(std::max(before, pushed_in), bucket_.held(support, model_.slopes));
-      const double ahead = share * std::max(0.0, contents_ - room);
-      pile_.area += ahead / width();
-      contents_ -= ahead;
-    }
+    spill(lip, falls, before);
     pile_at_ = q.x();
     const double shed = section_.shed(pile_at_, pile_.height(falls), falls, repose_);
     pile_.area = std::max(0.0, pile_.area - shed);
+  }
+
+  /// Leaves as much soil ahead as lets the rest find room in the bucket.
+  void spill(double lip, double falls, double before) {
+    const auto left_over = [&](double spilled) {
+      const double height = Pile{pile_.area + spilled / width()}.height(falls);
+      const double support = std::max(0.0, height - lip);
+      const double room = std::max(before, bucket_.pushed_in(support));
+      return contents_ - spilled - std::min(room, bucket_.held(support, model_.slopes));
+    };
+    if (!(left_over(0.0) > 0.0)) return;
+    double low = 0.0;
+    double high = contents_;
+    for (int i = 0; i < 20; ++i) {
+      const double middle = 0.5 * (low + high);
+      (left_over(middle) > 0.0 ? low : high) = middle;
+    }
+    pile_.area += high / width();
+    contents_ -= high;
   }
 
   void lift_step(const DigPose& from, const DigPose& to) {

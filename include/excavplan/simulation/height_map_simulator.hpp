@@ -15,8 +15,6 @@ namespace excavplan {
 struct HoldingSlopes {
   double face = 0.0;  ///< of the face above the lip while the bucket digs
   double heap = 0.0;  ///< of the heap above top edge and side plates
-  /// Of the surface that falls inwards from the lip while soil is pushed in.
-  double pushed = 0.0;
 };
 
 /// Volume of loose soil that the bucket can hold [m^3], with the line from its pin to its tip at
