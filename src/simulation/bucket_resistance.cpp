@@ -93,7 +93,8 @@ struct BucketResistance::FaceForce {
   double along = 0.0;   ///< against the motion
   double across = 0.0;  ///< away from the surface
   double borne_weight = 0.0;
-  double depth = 0.0;  ///< mean over the width [m]
+  double depth = 0.0;   ///< mean over the width [m]
+  double length = 0.0;  ///< of the wedge's top ahead of the lip [m]
 };
 
 /// Soil above the tip in one row: depth of the uncut bank, thickness of the loose soil on it.
@@ -191,6 +192,7 @@ Resistance BucketResistance::push_wedge(const Vector2d& tip, Index col, const At
   const double lever = std::min(depth / (3.0 * std::sin(face.rake)), floor_length());
   r.face_point = tip + lever * Vector2d(std::cos(face.angle), std::sin(face.angle));
   r.borne_weight = force.borne_weight;
+  r.wedge_length = force.length;
   return r;
 }
 
@@ -256,6 +258,7 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
     force.depth += width * strip.bank;
   }
   force.depth /= model_.machine.bucket.width_outside;
+  force.length = fade * force.depth * mean.cot_failure;
   if (force.depth > 0.0) {
     const SoilState& soil = mean.soil;
     const CuttingWedge wedge{mean.n.rake, soil.friction_angle, mean.friction(face.packed), 0.0};

@@ -51,6 +51,7 @@ struct Resistance {
   Eigen::Vector2d heel_force = Eigen::Vector2d::Zero();
   Eigen::Vector2d heel_point = Eigen::Vector2d::Zero();
   double borne_weight = 0.0;  ///< of the soil that the wedge carries; the bucket carries the rest
+  double wedge_length = 0.0;  ///< of the top of the wedge that is pushed, ahead of the lip [m]
   double edge = 0.0;          ///< part of lip_force that is of lip and teeth, against the motion
 
   Eigen::Vector2d total() const { return face_force + lip_force + heel_force; }

@@ -96,8 +96,10 @@ class Dig {
     if (!digs) return;
     const double before = fill_;
     cut(s);
-    spill(s.to.x(), [&, z = s.to.y(), now = level_ahead(s.to.x())](double crest) {
-      return room_in_bucket(std::max(now, crest) - z, before);
+    pile_.move_to(s.to.x(), resistance.wedge_length);
+    const double ahead = level_ahead(s.to.x());
+    spill(ahead, [&](double level) {
+      return room_in_bucket(std::max(ahead, level) - s.to.y(), before);
     });
   }
 
@@ -178,16 +180,14 @@ class Dig {
     passed_.include(column);
   }
 
-  /// What has no room in the bucket comes to lie ahead of the lip: the soil there rises to the
-  /// level at which the rest has room, `room(level)`.
+  /// What has no room in the bucket comes to lie in the pile ahead. That rises from `level`, or is
+  /// already higher, to the level at which the rest has room, `room(level)`.
   template <typename Room>
-  void spill(double lip_x, const Room& room) {
-    double level = level_ahead(lip_x);
+  void spill(double level, const Room& room) {
     if (!(fill_ > room(level) + spill_error)) return;
-    pile_.move_to(lip_x);
     double low = -std::numeric_limits<double>::infinity();
     double high = -low;
-    level = std::max(level, crest_);
+    level = std::max(level, top_of_pile_);
     for (int i = 0; i < 60; ++i) {  // Newton's method within the bounds found
       const PileAhead::Size pile = pile_.size(level);
       const double holds = room(level);
@@ -200,7 +200,7 @@ class Dig {
       if (!(next > low && next < high)) next = std::isinf(high) ? low + 0.1 : 0.5 * (low + high);
       level = next;
     }
-    crest_ = level;
+    top_of_pile_ = level;
     fill_ -= pile_.size(level).volume;
     moving_.include(pile_.lay(level));
   }
@@ -251,7 +251,8 @@ class Dig {
   /// any more.
   void come_clear(const DigPose& last) {
     const HoldingSlopes slopes = turn_clear(last);
-    spill(last.bucket.x, [&](double) { return cavity_.capacity(0.0, slopes); });
+    pile_.move_to(last.bucket.x, 0.0);
+    spill(level_ahead(last.bucket.x), [&](double) { return cavity_.capacity(0.0, slopes); });
     moving_.include(passed_);
     ground_.wake(ground_.widened(moving_, 1));
   }
@@ -283,7 +284,7 @@ class Dig {
   PileAhead pile_;
   DigAccount account_;
 
-  double crest_ = -std::numeric_limits<double>::infinity();  ///< of the pile ahead, lately [m]
+  double top_of_pile_ = -std::numeric_limits<double>::infinity();  ///< lately [m]
   double fill_ = 0.0;  ///< loose soil in the bucket [m^3]
   CellBlock moving_;   ///< cells that may not be at rest
   CellBlock passed_;   ///< cells the lip has passed, whose walls the bucket holds until it is out

@@ -9,37 +9,37 @@
 
 namespace excavplan {
 
-/// The pile of loose soil that the bucket pushes before it: its surface falls from a level crest
-/// along the lip, ahead and around both ends, by `slope` down to the ground. It is laid down at
-/// rest, as soil on its way there would take many passes of slumping.
+/// The pile of loose soil that the bucket pushes before it: level over the wedge that the bucket
+/// pushes up, from there it falls by `slope` to the ground ahead and on both sides. It is laid down
+/// at rest, as soil on its way there would take many passes of slumping.
 class PileAhead {
  public:
   /// Keeps references.
   PileAhead(GroundWindow& ground, const Swath& swath, double bucket_width, double slope)
       : ground_(ground), swath_(swath), half_width_(0.5 * bucket_width), slope_(slope) {}
 
-  /// The bucket has come to `lip_x`, its lip lies there or has left soil there.
-  void move_to(double lip_x);
+  /// The lip has come to `lip_x` and pushes a wedge whose top is so long [m].
+  void move_to(double lip_x, double level_length);
 
-  /// Soil between the ground and a pile with its crest at this level [m^3], and by how much that
-  /// grows per metre of crest [m^2].
+  /// Soil between the ground and a pile with its top at this level [m^3], and by how much that
+  /// grows per metre [m^2].
   struct Size {
     double volume = 0.0;
     double area = 0.0;
   };
-  Size size(double crest);
+  Size size(double top);
 
   /// Raises the ground to such a pile; returns the cells of it.
-  CellBlock lay(double crest);
+  CellBlock lay(double top);
 
  private:
   /// A cell that the pile may cover.
   struct Place {
     std::size_t cell = 0;
-    double base = 0.0;   ///< level of the crest from which on the pile covers it [m]
+    double base = 0.0;   ///< level of the pile's top from which on it is covered [m]
     double share = 0.0;  ///< of it that lies ahead of the lip
   };
-  void look(double crest);
+  void look(double top);
   void look_at_column(Eigen::Index col, double reach);
 
   GroundWindow& ground_;
@@ -47,8 +47,9 @@ class PileAhead {
   double half_width_;
   double slope_;
   double lip_x_ = 0.0;
-  double seen_to_ = 0.0;  ///< crest for which all places are known
-  double foot_ = 0.0;     ///< of that pile, from the lip [m]
+  double level_length_ = 0.0;
+  double seen_to_ = 0.0;  ///< top for which all places are known
+  double foot_ = 0.0;     ///< of that pile, from its level top [m]
   CellBlock seen_;
   std::vector<Place> places_;
 };
