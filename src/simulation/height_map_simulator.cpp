@@ -28,7 +28,7 @@ using Eigen::Vector2d;
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
 constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
 constexpr double room_around = 0.5;      // of the window around the path at first [m]
-constexpr double spill_error = 1e-5;     // of the soil that finds room in and ahead of the bucket [m^3]
+constexpr double spill_error = 1e-10;    // of the soil that has no room in the bucket [m^3]
 
 /// One dig from its first pose to its end.
 class Dig {
@@ -189,6 +189,7 @@ class Dig {
     double high = -low;
     level = std::max(level, top_of_pile_);
     for (int i = 0; i < 60; ++i) {  // Newton's method within the bounds found
+      if (pile_.look(level)) low = -std::numeric_limits<double>::infinity();
       const PileAhead::Size pile = pile_.size(level);
       const double holds = room(level);
       const double left = fill_ - holds - pile.volume;
@@ -201,7 +202,7 @@ class Dig {
       level = next;
     }
     top_of_pile_ = level;
-    fill_ -= pile_.size(level).volume;
+    fill_ = std::max(0.0, fill_ - pile_.size(level).volume);
     moving_.include(pile_.lay(level));
   }
 

@@ -24,7 +24,8 @@ void PileAhead::move_to(double lip_x, double level_length) {
 }
 
 /// Finds all places of a pile with this top: farther and farther out, until none is at the rim.
-void PileAhead::look(double top) {
+bool PileAhead::look(double top) {
+  if (top <= seen_to_) return false;
   seen_to_ = top + spare_top;
   const double rim = 1.5 * ground_.cell_size();
   const Index lip = swath_.column(lip_x_);
@@ -36,7 +37,7 @@ void PileAhead::look(double top) {
     seen_ = ground_.widened(strip, static_cast<Index>(std::ceil(cells)));
     ground_.cover(seen_);
     for (Index col = seen_.col_begin; col < seen_.col_end; ++col) look_at_column(col, reach);
-    if (foot_ + rim < reach || reach > farthest) return;
+    if (foot_ + rim < reach || reach > farthest) return true;
   }
 }
 
@@ -67,8 +68,7 @@ void PileAhead::look_at_column(Index col, double reach) {
   }
 }
 
-PileAhead::Size PileAhead::size(double top) {
-  if (top > seen_to_) look(top);
+PileAhead::Size PileAhead::size(double top) const {
   const double cell_area = ground_.cell_size() * ground_.cell_size();
   Size size;
   for (const Place& place : places_) {

@@ -21,13 +21,17 @@ class PileAhead {
   /// The lip has come to `lip_x` and pushes a wedge whose top is so long [m].
   void move_to(double lip_x, double level_length);
 
+  /// Makes sure that the ground is known to which a pile with its top at this level reaches; true
+  /// if that is more than before.
+  bool look(double top);
+
   /// Soil between the ground and a pile with its top at this level [m^3], and by how much that
   /// grows per metre [m^2].
   struct Size {
     double volume = 0.0;
     double area = 0.0;
   };
-  Size size(double top);
+  Size size(double top) const;
 
   /// Raises the ground to such a pile; returns the cells of it.
   CellBlock lay(double top);
@@ -39,7 +43,6 @@ class PileAhead {
     double base = 0.0;   ///< level of the pile's top from which on it is covered [m]
     double share = 0.0;  ///< of it that lies ahead of the lip
   };
-  void look(double top);
   void look_at_column(Eigen::Index col, double reach);
 
   GroundWindow& ground_;

@@ -55,6 +55,7 @@ class SoilResistance {
     double down = 0.0;   ///< into the ground [N]
     double rake = 0.0;
     double surcharge = 0.0;  ///< [Pa]
+    double length = 0.0;     ///< of the wedge's top ahead of the lip [m]
     double on_floor = 0.0;   ///< [m^3]
   };
 
@@ -118,6 +119,7 @@ class SoilResistance {
     result.face_at +=
         up_face / std::sin(face.rake) * Vector2d(std::cos(on.angle), std::sin(on.angle));
     result.on_floor = fade * face.on_floor;
+    result.wedge_length = fade * face.length;
   }
 
   /// Loose soil that is compacted against the face: it has the friction of the bank.
@@ -142,7 +144,9 @@ class SoilResistance {
     Face face;
     face.rake = rake;
     const double t = ahead.depth;
-    const double pile = mean_over(ahead.loose, t, wedge, n);
+    face.length = t / std::tan(n.failure);
+    // Level over the ground ahead of the lip; what lies over the face is in the bucket.
+    const double pile = ahead.loose * face.length / (face.length + t / std::tan(rake));
     face.surcharge = model_.loose.unit_weight * pile;
     const double flat = soil.unit_weight * t * t * n.gamma + soil.cohesion * t * n.c +
                         face.surcharge * (t * n.q + pile * n.gamma) + stuck * t * n.ca;
@@ -185,14 +189,6 @@ class SoilResistance {
   static double held_rake(double rake, double frictions) {
     return std::clamp(rake, 10.0 * degree,
                       std::min(120.0 * degree, pi - frictions - 20.0 * degree));
-  }
-
-  /// Mean height of a pile over the top of the wedge.
-  double mean_over(double height, double depth, const CuttingWedge& wedge,
-                   const EarthmovingFactors& n) const {
-    const double top = depth * (1.0 / std::tan(wedge.rake) + 1.0 / std::tan(n.failure));
-    const double base = height / model_.slopes.heap;
-    return base < top ? 0.5 * height * base / top : height * (1.0 - 0.5 * top / base);
   }
 
   /// Shear on a vertical plane ahead of the lip [N].

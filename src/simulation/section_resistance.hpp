@@ -38,6 +38,7 @@ struct SectionResistance {
   Eigen::Vector2d edge = Eigen::Vector2d::Zero();  ///< part of `tip` that is of lip and teeth
   Eigen::Vector2d heel = Eigen::Vector2d::Zero();
   Eigen::Vector2d heel_at = Eigen::Vector2d::Zero();
+  double wedge_length = 0.0;  ///< of the top of the wedge that is pushed, ahead of the lip [m]
   double on_floor = 0.0;  ///< volume of payload whose weight is in the force already [m^3]
 
   Eigen::Vector2d total() const { return face + tip + heel; }
@@ -49,7 +50,7 @@ struct Cutting {
   Eigen::Vector2d motion = Eigen::Vector2d::Zero();  ///< unit vector
   GroundAhead ground;
   SoilState bank;
-  double pile = 0.0;      ///< height of the pile at the lip [m]
+  double pile = 0.0;      ///< height of its level top [m]
   double contents = 0.0;  ///< of the bucket, loose [m^3]
 };
 

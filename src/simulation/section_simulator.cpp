@@ -21,21 +21,24 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-/// Soil that leans against the lip as a wedge at the angle of repose.
+/// Soil ahead of the lip: level over a wedge of length `level`, from there it falls at `fall` per
+/// metre towards the ground ahead.
 struct Pile {
   double area = 0.0;
+  double level = 0.0;
 
-  /// At the lip, where its surface falls by `fall` per metre towards the ground ahead.
-  double height(double fall) const { return std::sqrt(2.0 * area * fall); }
+  double height(double fall) const {
+    return fall * (std::sqrt(level * level + 2.0 * area / fall) - level);
+  }
 
   /// Takes the part of the pile over the next `advance` of ground that is higher than `lip` above
   /// it.
   double take(double advance, double lip, double fall) {
-    const double high = height(fall);
-    const double from = std::max(0.0, lip);
-    if (high <= from || advance <= 0.0) return 0.0;
-    const double length = std::min(advance, (high - from) / fall);
-    const double taken = std::min(area, length * (high - from - 0.5 * fall * length));
+    const double high = height(fall) - std::max(0.0, lip);
+    if (high <= 0.0 || advance <= 0.0) return 0.0;
+    const double flat = std::min(advance, level);
+    const double sloping = std::min(advance - flat, high / fall);
+    const double taken = std::min(area, flat * high + sloping * (high - 0.5 * fall * sloping));
     area -= taken;
     return taken;
   }
@@ -114,7 +117,7 @@ class SectionDig {
     if (account_.stalls(step)) return false;
     account_.book(step);
     account_.travel(step.length);
-    cut(p, q);
+    cut(p, q, soil.wedge_length);
     return true;
   }
 
@@ -138,7 +141,7 @@ class SectionDig {
     return torque_against_force(machine_, at, centre, {0.0, -volume * model_.loose.unit_weight});
   }
 
-  void cut(const Vector2d& p, const Vector2d& q) {
+  void cut(const Vector2d& p, const Vector2d& q, double wedge_length) {
     const CutArea area = section_.cut(p, q);
     const GroundAhead ground = section_.ahead(q.x());
     const double falls = fall(ground);
@@ -148,16 +151,17 @@ class SectionDig {
     account_.result.soil.loose_cut += (area.loose + from_pile) * width();
     const double before = contents_;
     contents_ += (area.swollen + from_pile) * width();
+    pile_.level = wedge_length;
     spill(lip, falls, before);
     pile_at_ = q.x();
-    const double shed = section_.shed(pile_at_, pile_.height(falls), falls, repose_);
+    const double shed = section_.shed(pile_at_, {pile_.level, pile_.height(falls), falls}, repose_);
     pile_.area = std::max(0.0, pile_.area - shed);
   }
 
   /// Leaves as much soil ahead as lets the rest find room in the bucket.
   void spill(double lip, double falls, double before) {
     const auto left_over = [&](double spilled) {
-      const double height = Pile{pile_.area + spilled / width()}.height(falls);
+      const double height = Pile{pile_.area + spilled / width(), pile_.level}.height(falls);
       const double support = std::max(0.0, height - lip);
       const double room = std::max(before, bucket_.pushed_in(support));
       return contents_ - spilled - std::min(room, bucket_.held(support, model_.slopes));
@@ -165,7 +169,7 @@ class SectionDig {
     if (!(left_over(0.0) > 0.0)) return;
     double low = 0.0;
     double high = contents_;
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 50; ++i) {
       const double middle = 0.5 * (low + high);
       (left_over(middle) > 0.0 ? low : high) = middle;
     }
@@ -199,6 +203,7 @@ class SectionDig {
   void settle() {
     using Side = SoilSection::Side;
     if (pile_.area > 0.0) {
+      pile_.level = 0.0;
       const double falls = fall(section_.ahead(pile_at_));
       const double stays = pile_.area * repose_ / (repose_ + falls);
       const double crest = pile_at_ - pile_.height(falls) / (repose_ + falls);

@@ -436,9 +436,9 @@ GroundAhead SoilSection::ahead(double x) const {
 
 // ---- What comes to rest -------------------------------------------------------------------------
 
-double SoilSection::shed(double x, double high, double fall, double slope) {
+double SoilSection::shed(double x, const PileProfile& pile, double slope) {
   double shed = 0.0;
-  const double end = high / fall;
+  const double end = pile.level + pile.high / pile.fall;
   double u = 0.0;
   while (u < end) {
     const double foot = x - u - 1e-12;
@@ -446,7 +446,7 @@ double SoilSection::shed(double x, double high, double fall, double slope) {
     const Index col = column_at(foot);
     const double length = std::min(x - u - left(col), end - u);
     if (!(length > 1e-12)) break;
-    const double thickness = high - fall * (u + 0.5 * length);
+    const double thickness = pile.high - pile.fall * std::max(0.0, u + 0.5 * length - pile.level);
     double& windrow = at(col).windrow;
     const double target = area_beside(thickness * width_ + windrow, width_, slope);
     const double leaving = std::max(0.0, target - windrow) * length;

@@ -101,9 +101,14 @@ class SoilSection {
   /// beyond its start the ground.
   const std::vector<Eigen::Vector2d>& left_behind() const { return left_behind_; }
 
-  /// Sheds the sides of a pile that are too steep into windrows. The pile leans against x, where
-  /// its height is `high`, and falls by `fall` per metre. Returns the area that the pile loses.
-  double shed(double x, double high, double fall, double slope);
+  struct PileProfile {
+    double level = 0.0;  ///< length of its level top [m]
+    double high = 0.0;   ///< height there [m]
+    double fall = 0.0;   ///< of its surface from there on, per metre
+  };
+  /// Sheds the sides of a pile that are too steep into windrows. The pile leans against x. Returns
+  /// the area that it loses.
+  double shed(double x, const PileProfile& pile, double slope);
 
   enum class Side { ahead, behind, both };
   struct Heap {
