@@ -44,12 +44,11 @@ void GroundWindow::cover(const CellBlock& cells) {
   stride_ = wanted.rows() + 2;
   const auto size = static_cast<std::size_t>(stride_ * (wanted.cols() + 2));
   const bool has_void_ratio = whole_.loose_void_ratio.size() > 0;
-  bank_.assign(size, walled_height);
+  bank_.assign(size, unknown_height);
   loose_.assign(size, 0.0);
-  height_.assign(size, walled_height);
+  height_.assign(size, unknown_height);
   awake_.assign(size, 1);
   slides_.assign(size, 0);
-  walled_.assign(size, 0);
   void_ratio_.assign(has_void_ratio ? size : 0, soil_.loose.void_ratio);
   for (Index col = wanted.col_begin; col < wanted.col_end; ++col) {
     for (Index row = wanted.row_begin; row < wanted.row_end; ++row) {
@@ -68,7 +67,6 @@ void GroundWindow::cover(const CellBlock& cells) {
       }
     }
   }
-  build_wall(wall_, 1);
 }
 
 void GroundWindow::check(const CellBlock& cells) const {
@@ -127,25 +125,6 @@ void GroundWindow::mix(std::size_t cell, double thickness) {
 void GroundWindow::wake(const CellBlock& block) {
   for (Index col = block.col_begin; col < block.col_end; ++col) {
     for (Index row = block.row_begin; row < block.row_end; ++row) awake_[at(row, col)] = 1;
-  }
-}
-
-void GroundWindow::set_wall(const CellBlock& wall) {
-  cover(wall);
-  const CellBlock old = wall_;
-  wall_ = wall;
-  build_wall(old, 0);
-  build_wall(wall, 1);
-}
-
-void GroundWindow::build_wall(const CellBlock& block, std::uint16_t built) {
-  for (Index col = block.col_begin; col < block.col_end; ++col) {
-    for (Index row = block.row_begin; row < block.row_end; ++row) {
-      const std::size_t i = at(row, col);
-      if (walled_[i] == built || wall_.contains(row, col) != (built != 0)) continue;
-      walled_[i] = built;
-      changed(i);
-    }
   }
 }
 

@@ -57,7 +57,7 @@ class GroundWindow {
   double bank(Eigen::Index row, Eigen::Index col) const { return bank_[at(row, col)]; }
   double loose(std::size_t cell) const { return loose_[cell]; }
   double loose(Eigen::Index row, Eigen::Index col) const { return loose_[at(row, col)]; }
-  /// Of the surface; NaN where no soil enters or leaves: unknown, walled, off the map.
+  /// Of the surface; NaN where no soil enters or leaves: unknown or off the map.
   double height(std::size_t cell) const { return height_[cell]; }
   double height(Eigen::Index row, Eigen::Index col) const { return height_[at(row, col)]; }
 
@@ -85,15 +85,12 @@ class GroundWindow {
   void raise_loose(std::size_t cell, double thickness) {
     if (!void_ratio_.empty()) mix(cell, thickness);
     loose_[cell] += thickness;
-    if (walled_[cell] == 0) height_[cell] = bank_[cell] + loose_[cell];
+    height_[cell] = bank_[cell] + loose_[cell];
     awake_[cell] = 1;
   }
   void raise_loose(Eigen::Index row, Eigen::Index col, double thickness) {
     raise_loose(at(row, col), thickness);
   }
-
-  /// Cells that no soil enters or leaves, until the next call.
-  void set_wall(const CellBlock& wall);
 
   /// Whether a cell has changed, or one of its four neighbours has become lower, since let_sleep():
   /// a cell that is asleep is at rest.
@@ -116,24 +113,22 @@ class GroundWindow {
 
  private:
   void changed(std::size_t i) {
-    height_[i] = walled_[i] != 0 ? walled_height : bank_[i] + loose_[i];
+    height_[i] = bank_[i] + loose_[i];
     const auto column = static_cast<std::size_t>(stride_);
     awake_[i] = awake_[i - 1] = awake_[i + 1] = 1;
     awake_[i - column] = awake_[i + column] = 1;
   }
-  void build_wall(const CellBlock& block, std::uint16_t built);
   void mix(std::size_t cell, double thickness);
   void check(const CellBlock& cells) const;
   double bank_density(Eigen::Index row, Eigen::Index col) const;
   template <typename Cell>
   double mass(Cell&& cell_mass) const;
 
-  static constexpr double walled_height = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double unknown_height = std::numeric_limits<double>::quiet_NaN();
 
   const Terrain& whole_;
   GroundSoil soil_;
   CellBlock cells_;
-  CellBlock wall_;
   Eigen::Index stride_ = 0;
   // The layers have a frame of one cell of unknown ground around them. Flags are not bytes, which
   // may alias all members: the compiler would read these again after each write.
@@ -143,7 +138,6 @@ class GroundWindow {
   std::vector<double> void_ratio_;  ///< of the loose layer; empty if that of dug soil
   std::vector<std::uint16_t> awake_;
   std::vector<std::uint16_t> slides_;
-  std::vector<std::uint16_t> walled_;
   SlumpState slumping_;
 };
 

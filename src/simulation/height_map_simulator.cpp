@@ -28,7 +28,7 @@ using Eigen::Vector2d;
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
 constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
 constexpr double room_around = 0.5;      // of the window around the path at first [m]
-constexpr double spill_error = 1e-10;    // of the soil that has no room in the bucket [m^3]
+constexpr double spill_error = 1e-8;     // of the soil that has no room in the bucket [m^3]
 
 /// One dig from its first pose to its end.
 class Dig {
@@ -188,18 +188,21 @@ class Dig {
     double low = -std::numeric_limits<double>::infinity();
     double high = -low;
     level = std::max(level, top_of_pile_);
-    for (int i = 0; i < 60; ++i) {  // Newton's method within the bounds found
+    double last_level = level;
+    double last_left = 0.0;
+    for (int i = 0; i < 60; ++i) {  // secants within the bounds found
       if (pile_.look(level)) low = -std::numeric_limits<double>::infinity();
       const PileAhead::Size pile = pile_.size(level);
-      const double holds = room(level);
-      const double left = fill_ - holds - pile.volume;
+      const double left = fill_ - room(level) - pile.volume;
       if (std::abs(left) < spill_error) break;
       (left > 0.0 ? low : high) = level;
-      constexpr double step = 1e-3;
-      const double gain = pile.area + (room(level + step) - holds) / step;
-      double next = gain > 0.0 ? level + left / gain : high;
-      if (!(next > low && next < high)) next = std::isinf(high) ? low + 0.1 : 0.5 * (low + high);
-      level = next;
+      if (i > 0) gain_ = (last_left - left) / (level - last_level);
+      if (!(gain_ > 0.0)) gain_ = pile.area;
+      last_level = level;
+      last_left = left;
+      level += left / gain_;
+      if (gain_ > 0.0 && level > low && level < high) continue;
+      level = std::isinf(high) ? low + 0.1 : std::isinf(low) ? high - 0.1 : 0.5 * (low + high);
     }
     top_of_pile_ = level;
     fill_ = std::max(0.0, fill_ - pile_.size(level).volume);
@@ -286,6 +289,7 @@ class Dig {
   DigAccount account_;
 
   double top_of_pile_ = -std::numeric_limits<double>::infinity();  ///< lately [m]
+  double gain_ = 0.0;  ///< of soil in and ahead of the bucket per rise of that, lately [m^2]
   double fill_ = 0.0;  ///< loose soil in the bucket [m^3]
   CellBlock moving_;   ///< cells that may not be at rest
   CellBlock passed_;   ///< cells the lip has passed, whose walls the bucket holds until it is out

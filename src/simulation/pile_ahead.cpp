@@ -27,14 +27,16 @@ void PileAhead::move_to(double lip_x, double level_length) {
 bool PileAhead::look(double top) {
   if (top <= seen_to_) return false;
   seen_to_ = top + spare_top;
-  const double rim = 1.5 * ground_.cell_size();
+  const double cell = ground_.cell_size();
+  const double rim = 1.5 * cell;
   const Index lip = swath_.column(lip_x_);
-  const CellBlock strip = {swath_.first_row(), swath_.end_row(), lip, lip + 1};
   for (double reach = foot_ + 2.0 * rim;; reach *= 1.5) {
     places_.clear();
     foot_ = 0.0;
-    const double cells = (level_length_ + reach) / ground_.cell_size();
-    seen_ = ground_.widened(strip, static_cast<Index>(std::ceil(cells)));
+    const auto around = static_cast<Index>(std::ceil(reach / cell));
+    const auto ahead = static_cast<Index>(std::ceil(level_length_ / cell));
+    const CellBlock level = {swath_.first_row(), swath_.end_row(), lip - ahead, lip + 1};
+    seen_ = ground_.widened(level, around);
     ground_.cover(seen_);
     for (Index col = seen_.col_begin; col < seen_.col_end; ++col) look_at_column(col, reach);
     if (foot_ + rim < reach || reach > farthest) return true;
@@ -48,36 +50,45 @@ void PileAhead::look_at_column(Index col, double reach) {
   // The bucket stands behind the lip; beside it there is room.
   const bool behind = left >= lip_x_;
   const double centre = 0.5 * (left + (behind ? right : std::min(right, lip_x_)));
-  const double along = behind ? centre - lip_x_ : std::max(0.0, lip_x_ - centre - level_length_);
-  const double ahead = behind ? 0.0 : std::min(1.0, (lip_x_ - left) / map.cell_size);
+  const double along =
+      behind ? centre - lip_x_ : std::max(0.0, lip_x_ - centre - level_length_);
   if (along > reach) return;
-  for (Index row = seen_.row_begin; row < seen_.row_end; ++row) {
-    const bool beside = row < swath_.first_row() || row >= swath_.end_row();
-    const double share = beside ? 1.0 : ahead;
-    if (!(share > 0.0)) continue;
-    const std::size_t cell = ground_.at(row, col);
-    const double height = ground_.height(cell);
-    if (std::isnan(height)) continue;
-    const double across = beside ? std::abs(map.y(row)) - half_width_ : 0.0;
-    const double distance = across > 0.0 ? std::sqrt(along * along + across * across) : along;
-    if (distance > reach) continue;
-    const double base = height + slope_ * distance;
-    if (!(base < seen_to_)) continue;
-    places_.push_back({cell, base, share});
-    foot_ = std::max(foot_, distance);
-  }
+  const double beside = std::sqrt(reach * reach - along * along);
+  const auto rows = static_cast<Index>(std::ceil(beside / map.cell_size));
+  const Index first = std::max(seen_.row_begin, swath_.first_row() - rows);
+  const Index end = std::min(seen_.row_end, swath_.end_row() + rows);
+  const double ahead = behind ? 0.0 : std::min(1.0, (lip_x_ - left) / map.cell_size);
+  const auto look_at_rows = [&](Index begin, Index stop, double share) {
+    for (Index row = begin; row < stop; ++row) look_at_cell(row, col, along, share, reach);
+  };
+  look_at_rows(first, swath_.first_row(), 1.0);
+  if (ahead > 0.0) look_at_rows(swath_.first_row(), swath_.end_row(), ahead);
+  look_at_rows(swath_.end_row(), end, 1.0);
+}
+
+/// `along`: distance from the level top in the direction of travel, `share`: of the cell that is
+/// ahead of the lip.
+void PileAhead::look_at_cell(Index row, Index col, double along, double share, double reach) {
+  const std::size_t cell = ground_.at(row, col);
+  const double height = ground_.height(cell);
+  const double across =
+      std::max(0.0, std::abs(ground_.before().bank.y(row)) - half_width_);
+  const double distance = across > 0.0 ? std::sqrt(along * along + across * across) : along;
+  const double base = height + slope_ * distance;
+  if (distance > reach || !(base < seen_to_)) return;  // also on unknown ground
+  places_.push_back({cell, base, share});
+  foot_ = std::max(foot_, distance);
 }
 
 PileAhead::Size PileAhead::size(double top) const {
-  const double cell_area = ground_.cell_size() * ground_.cell_size();
-  Size size;
+  double volume = 0.0;
+  double area = 0.0;
   for (const Place& place : places_) {
-    const double thickness = top - place.base;
-    if (!(thickness > 0.0)) continue;
-    size.volume += place.share * thickness;
-    size.area += place.share;
+    volume += place.share * std::max(0.0, top - place.base);
+    area += top > place.base ? place.share : 0.0;
   }
-  return {size.volume * cell_area, size.area * cell_area};
+  const double cell_area = ground_.cell_size() * ground_.cell_size();
+  return {volume * cell_area, area * cell_area};
 }
 
 CellBlock PileAhead::lay(double top) {

@@ -44,6 +44,7 @@ class PileAhead {
     double share = 0.0;  ///< of it that lies ahead of the lip
   };
   void look_at_column(Eigen::Index col, double reach);
+  void look_at_cell(Eigen::Index row, Eigen::Index col, double along, double share, double reach);
 
   GroundWindow& ground_;
   const Swath& swath_;

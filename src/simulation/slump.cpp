@@ -97,7 +97,7 @@ class Slide {
     return {onwards ? cell + step : cell - step, other < 0.0 ? mean : lower};
   }
 
-  /// From height `top` of a cell down to one beside it; 0 to cells that are unknown, walled or off
+  /// From height `top` of a cell down to one beside it; 0 to cells that are unknown or off
   /// the map, and over the edge of a wall on larger cells, which do not see how far it is.
   double drop(double top, std::size_t cell, std::size_t beside) const {
     if constexpr (!has_bank) {
@@ -189,13 +189,10 @@ constexpr double large_cell = 0.08;    // cells as large as these have no larger
 constexpr int large_slide = 32;        // cells that slid, from which larger ones pay; ours
 constexpr double steepest_bank = 2.0;  // over the repose: steeper is a wall on larger cells; ours
 
-/// How often the largest cells are swept in one pass.
-constexpr int large_sweeps = 1;
-
 bool is_large(double cell) { return !(cell < large_cell); }
 
 /// Cells around a block that soil from it can reach in one pass on cells of this size and larger.
-int reach(double cell) { return is_large(cell) ? large_sweeps + 1 : 2 * reach(2.0 * cell) + 2; }
+int reach(double cell) { return is_large(cell) ? 2 : 2 * reach(2.0 * cell) + 2; }
 
 /// One pass over the block on cells of twice the size, after one on yet larger ones; returns the
 /// cells that changed.
@@ -206,21 +203,15 @@ CellBlock slide_on_larger_cells(Ground& ground, CoarseGround& coarse, const Cell
   const CellBlock whole = CoarseGround::whole(ground.cells());
   const CellBlock half = CoarseGround::half(block);
   const CellBlock seen = half.around(reach(2.0 * ground.cell_size())).common(whole);
-  const bool largest = is_large(2.0 * ground.cell_size());
-  const CellBlock swept = half.around(largest ? large_sweeps : 1).common(whole);
+  const CellBlock swept = half.around(1).common(whole);
   if (swept.empty()) return {};
   coarse.look_at(ground, seen, steepest_bank * limits.loose_slope * ground.cell_size());
   slide_on_larger_cells(coarse, coarse.coarser(), swept, limits, order ^ 2);
-  Slide<CoarseGround> slide(coarse, limits);
-  for (int i = 0; i < (largest ? large_sweeps : 1); ++i) slide.sweep(swept, orders[(order + i) % 4]);
+  Slide<CoarseGround>(coarse, limits).sweep(swept, order);
   return coarse.give_back(ground, seen);
 }
 
 }  // namespace
-
-double largest_slumping_cell(double cell) {
-  return is_large(cell) ? cell : largest_slumping_cell(2.0 * cell);
-}
 
 CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits, int sweeps) {
   Slide<GroundWindow> slide(ground, limits);
@@ -232,9 +223,6 @@ CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits
       block.include(slide_on_larger_cells(ground, state.coarser, block, limits, order ^ 2));
     }
     block = slide.sweep(ground.widened(block, 1), order);
-    for (int j = 1; j < large_sweeps && is_large(ground.cell_size()); ++j) {
-      block = slide.sweep(ground.widened(block, 1), orders[(order + j) % 4]);
-    }
     state.slid = slide.slid();
   }
   return block;

@@ -21,12 +21,9 @@ struct SlopeLimits {
 /// soil leaves it. Undisturbed soil breaks off walls above its critical height down to its friction
 /// angle. At most `sweeps` passes, each after one on cells of twice the size where these are small
 /// and soil slides: the same soil gets as far on small cells as on large ones. Returns the block
-/// that may still move, empty once all is at rest. Solids are conserved to rounding; unknown and
-/// walled cells are walls.
+/// that may still move, empty once all is at rest. Solids are conserved to rounding; unknown
+/// cells are walls.
 CellBlock slump(GroundWindow& ground, CellBlock block, const SlopeLimits& limits, int sweeps);
-
-/// The largest cells on which a pass on cells of this size moves soil [m].
-double largest_slumping_cell(double cell);
 
 /// Heaps `volume` of loose soil on the terrain as a cone of the given slope with its axis at (x,
 /// y).

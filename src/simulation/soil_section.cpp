@@ -64,15 +64,14 @@ CutArea cut_column(Column& column, double from, double to, const Below& line) {
   return {sum.bank + before.bank + after.bank, before.loose + after.loose, 0.0};
 }
 
-/// Share of a heap of this cross-section, piled over the width, that comes to rest beside it: the
-/// heap is a trapezoid through its mid-height at both edges, or a triangle.
+/// Share of a pile of this cross-section that comes to rest beside the bucket: it is level over the
+/// width and falls from both edges.
 double area_beside(double area, double width, double slope) {
-  const double top = area / width;
-  if (top <= width * slope) return 0.25 * top * top / slope;
-  return slope * square(std::sqrt(area / slope) - 0.5 * width);
+  return slope * square(std::sqrt(0.25 * width * width + area / slope) - 0.5 * width);
 }
 
-/// Its height over the distance from the bucket's side plane.
+/// Height of a heap of this cross-section, a trapezoid through its mid-height at both edges or a
+/// triangle, over the distance from the bucket's side plane.
 class HeapShape {
  public:
   HeapShape(double area, double width, double slope) : slope_(slope), top_(area / width) {

