@@ -205,8 +205,10 @@ class Dig {
       level = std::isinf(high) ? low + 0.1 : std::isinf(low) ? high - 0.1 : 0.5 * (low + high);
     }
     top_of_pile_ = level;
-    fill_ = std::max(0.0, fill_ - pile_.size(level).volume);
-    moving_.include(pile_.lay(level));
+    const double spilled = std::min(fill_, pile_.size(level).volume);
+    if (!(spilled > 0.0)) return;
+    fill_ -= spilled;
+    moving_.include(pile_.lay(level, spilled));
   }
 
   // ---- energy ----------------------------------------------------------------------------------

@@ -91,9 +91,11 @@ PileAhead::Size PileAhead::size(double top) const {
   return {volume * cell_area, area * cell_area};
 }
 
-CellBlock PileAhead::lay(double top) {
+CellBlock PileAhead::lay(double top, double volume) {
+  const double share = volume / size(top).volume;
   for (const Place& place : places_) {
-    if (top > place.base) ground_.raise_loose(place.cell, place.share * (top - place.base));
+    if (!(top > place.base)) continue;
+    ground_.raise_loose(place.cell, share * place.share * (top - place.base));
   }
   return seen_;
 }

@@ -33,8 +33,9 @@ class PileAhead {
   };
   Size size(double top) const;
 
-  /// Raises the ground to such a pile; returns the cells of it.
-  CellBlock lay(double top);
+  /// Raises the ground to such a pile, of which `volume` is its size but for rounding; returns the
+  /// cells that it is on.
+  CellBlock lay(double top, double volume);
 
  private:
   /// A cell that the pile may cover.
