@@ -75,9 +75,6 @@ void declare(Arguments& arguments, Inputs& inputs) {
 /// Checks made before anything is read.
 void check(const Inputs& inputs) {
   check(inputs.density);
-  if (start_rule_of(inputs.dig_search).kind == StartRule::Kind::searched && !inputs.search) {
-    usage_error("--start search needs --search");
-  }
   check(inputs.dig_search);
 }
 

@@ -21,6 +21,7 @@ constexpr double much_steeper =
     0.04;  // than the library's slopes [rad]; ours, docs/formats.md#warning-codes
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
 constexpr double likely_stall = 0.05;  // probability; ours
+constexpr double start_step = 0.25;      // between starts tried with a known path [m]; ours
 constexpr double worth_making = 0.1;   // fill of the bucket; ours
 
 struct Task {
@@ -92,16 +93,48 @@ std::variant<PlannedDig, std::string> known_dig(const PathLibrary& library, cons
   }
 }
 
+/// A dig from the best of starts along the reach, and from that of least work.
+std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayout& layout,
+                                                const DigParameters& parameters, DigPlan& plan) {
+  const Machine& machine = task.machine;
+  const auto simulator = task.options.simulator.make(machine, task.soil, task.density.percent);
+  std::variant<PlannedDig, DigFailure> best;
+  double rank = 0.0;
+  const auto compare = [&](const std::variant<DigPath, Infeasible>& laid) {
+    if (const auto* infeasible = std::get_if<Infeasible>(&laid)) return DigFailure(*infeasible);
+    const auto& path = std::get<DigPath>(laid);
+    const auto outcome = dig_along(machine, *simulator, task.ground, path, task.objective());
+    ++plan.evaluations;
+    if (const auto* failure = std::get_if<DigFailure>(&outcome)) return *failure;
+    const auto& dig = std::get<PlannedDig>(outcome);
+    if (task.objective().rank(dig) > rank) {
+      rank = task.objective().rank(dig);
+      best = dig;
+      plan.path = path;
+    }
+    return DigFailure();
+  };
+  const DigFailure failure = compare(layout.path(parameters, StartRule::Kind::least_work));
+  const double reach = machine.boom_pin.x() + machine.full_length();
+  for (double x = machine.track_front; x < reach; x += start_step) {
+    compare(layout.path_from(parameters, x));
+  }
+  return rank > 0.0 ? best : std::variant<PlannedDig, DigFailure>(failure);
+}
+
 /// A dig of the library laid out where it is needed, and simulated if its figures do not hold
 /// there.
 std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrary& library,
                                               const PlannedDig& known, DigPlan& plan) {
+  const SimulatorKind& kind = task.options.simulator;
   const DigLayout layout(task.machine, task.ground);
+  if (!task.level && task.options.search.start_rule.kind == StartRule::Kind::searched) {
+    return best_start(task, layout, known.parameters, plan);
+  }
   auto path = task.level ? layout.path_near(known.parameters, known.start_x)
                          : layout.path(known.parameters, task.options.search.start_rule);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
   plan.path = std::get<DigPath>(std::move(path));
-  const SimulatorKind& kind = task.options.simulator;
   if (task.level && library.simulator == kind.name) {
     PlannedDig dig = known;
     dig.start_x = plan.path.start_x;
@@ -193,6 +226,11 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
     plan.path = best->path;
     plan.evaluations = found->evaluations;
     plan.search = PlanSearch{best->worth, best->stopped_by, best->refused, best->insight.seen, {}};
+    for (const DigParameterInfo* info : best->at_bound) {
+      warn(plan, "optimum_at_bound",
+           std::string("the best path found lies at an end of the search range of the ") +
+               info->text + ": a wider range may hold a better one");
+    }
   }
   plan.stopped = best ? best->stopped : found.stopped;
   if (best || plan.stopped) return;

@@ -95,9 +95,10 @@ void check(const std::vector<PossibleSoil>& soils) {
 }
 
 void check(const DigSearchOptions& options, const Machine& machine) {
+  const DigBounds bounds = machine_bounds(machine, options.bounds);
   for (const DigParameterInfo& info : dig_parameter_table()) {
-    const double lower = options.bounds.lower.*info.field;
-    const double upper = options.bounds.upper.*info.field;
+    const double lower = bounds.lower.*info.field;
+    const double upper = bounds.upper.*info.field;
     const std::string what = std::string("the search range of the ") + info.text;
     require(lower >= 0.0 && std::isfinite(lower), "the lower end of " + what, lower,
             "finite and at least 0");
@@ -118,7 +119,11 @@ DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& 
 
 DigProblem::DigProblem(const Machine& machine, const std::vector<PossibleSoil>& soils,
                        const Terrain& terrain, const DigSearchOptions& options)
-    : soils_(soils), terrain_(terrain), options_(options), layout_(machine, terrain) {
+    : soils_(soils),
+      terrain_(terrain),
+      options_(options),
+      bounds_(machine_bounds(machine, options.bounds)),
+      layout_(machine, terrain) {
   check(options, machine);
 }
 
@@ -143,8 +148,23 @@ DigProblem::Best DigProblem::best_of(const SearchResult& found) const {
   result.infeasible = found.infeasible;
   result.stopped = found.stopped_by == StopReason::cancelled;
   result.stopped_by = found.stopped_by;
+  result.at_bound = at_bound(result.dig.parameters);
   result.insight = explain(box(), found);
   return best;
+}
+
+std::vector<const DigParameterInfo*> DigProblem::at_bound(const DigParameters& best) const {
+  constexpr double near = 0.01;  // of the range; ours
+  std::vector<const DigParameterInfo*> found;
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    const double lower = bounds_.lower.*info.field;
+    const double upper = bounds_.upper.*info.field;
+    const double margin = near * (upper - lower);
+    const double value = best.*info.field;
+    const bool low = lower > 0.0 && value < lower + margin;
+    if (margin > 0.0 && (low || value > upper - margin)) found.push_back(&info);
+  }
+  return found;
 }
 
 std::optional<NearestDig> DigProblem::nearest_of(const SearchResult& found) const {
@@ -155,7 +175,7 @@ std::optional<NearestDig> DigProblem::nearest_of(const SearchResult& found) cons
 
 SearchBox DigProblem::box() const {
   const Machine& machine = layout_.machine();
-  SearchBox box{to_vector(options_.bounds.lower), to_vector(options_.bounds.upper)};
+  SearchBox box{to_vector(bounds_.lower), to_vector(bounds_.upper)};
   if (start_is_searched()) {
     append(box.lower, machine.track_front);
     append(box.upper, machine.boom_pin.x() + machine.full_length());

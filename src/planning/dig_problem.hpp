@@ -48,6 +48,7 @@ class DigProblem {
  private:
   bool start_is_searched() const { return options_.start_rule.kind == StartRule::Kind::searched; }
   SearchBox box() const;
+  std::vector<const DigParameterInfo*> at_bound(const DigParameters& best) const;
   Eigen::VectorXd point_of(const DigParameters& dig) const;
   std::variant<Eigen::VectorXd, Evaluation> lay_out(const Eigen::VectorXd& point);
   Evaluation simulate(const Eigen::VectorXd& point) const;
@@ -60,6 +61,7 @@ class DigProblem {
   const std::vector<PossibleSoil>& soils_;
   const Terrain& terrain_;
   const DigSearchOptions& options_;
+  const DigBounds bounds_;
   DigLayout layout_;
   mutable std::mutex mutex_;
   std::map<PointKey, double> starts_;  ///< of the drivable paths asked for

@@ -58,7 +58,8 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.text(
       "start", "RULE|LENGTH", inputs.start,
       "start point of the dig: work (least work of the links), margin (largest margin to "
-      "the joint limits), search (together with the path), or its x");
+      "the joint limits), search (together with the path; a known path: the best of some along the "
+      "reach), or its x");
   for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
     const DigParameterInfo& info = dig_parameter_table()[i];
     arguments.text(range_option(info), "FROM,TO", inputs.ranges[i],

@@ -17,7 +17,7 @@ namespace excavplan::tools {
 /// Settings of a search for a dig, from the command line.
 struct SearchInputs {
   GoalInputs goal;
-  std::string start = start_rules().front().word;
+  std::string start = "search";
   /// FROM,TO of each number of dig_parameter_table().
   std::vector<std::optional<std::string>> ranges =
       std::vector<std::optional<std::string>>(dig_parameter_table().size());

@@ -16,12 +16,17 @@
 
 namespace excavplan {
 
-/// Between which digs a search chooses: by default those of dig_parameter_table().
+/// Between which digs a search chooses.
 struct DigBounds {
-  DigParameters lower;  ///< smallest value of each
-  DigParameters upper;  ///< largest value of each
+  DigParameters lower;  ///< smallest value of each; NaN: of the machine
+  DigParameters upper;  ///< largest value of each; NaN: of the machine
+  /// All are of the machine.
   DigBounds();
 };
+
+/// The ranges of a machine's digs: in proportion to its bucket, from pin to tip, and wider than any
+/// best dig known (docs/methods.md#planning). @return the bounds, with what was NaN filled in
+DigBounds machine_bounds(const Machine& machine, const DigBounds& bounds = {});
 
 /// An evaluation is a dig, its fitness the rank of the dig's worth.
 struct DigSearchOptions : SearchSettings {
@@ -50,6 +55,9 @@ struct DigSearchResult {
   int infeasible = 0;                               ///< of the evaluations: the machine stalled
   bool stopped = false;                             ///< by `progress`
   StopReason stopped_by = StopReason::generations;  ///< what ended the search
+  /// Numbers of the path that lie at an end of their range, where a wider one may hold a better dig.
+  /// Not those at 0.
+  std::vector<const DigParameterInfo*> at_bound = {};
   SearchInsight insight;  ///< in the order of dig_parameter_table(), the start last if searched
 };
 

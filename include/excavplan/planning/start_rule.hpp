@@ -19,7 +19,7 @@ struct StartRule {
     /// coarse poses, on a grid of 0.2 m and then by halved steps (docs/methods.md#start).
     least_work,
     given,
-    searched,  ///< one more number of the search; for search_dig() only
+    searched,  ///< one more number of a search; the best of some along the reach for a known path
   };
   Kind kind = Kind::largest_margin;  ///< how the start is chosen
   double x = 0.0;                    ///< if given [m]
