@@ -164,8 +164,10 @@ LibraryTask first_search(const LibraryJob& job, const LibraryPlace& place,
   } else if (parents.size() == 2) {
     const double share = (place.density_percent - near_density) / (far_density - near_density);
     DigParameters there = dig_between(near, far, share, false).parameters;
+    const DigBounds bounds = machine_bounds(job.grid.machines[place.machine]);
     for (const DigParameterInfo& info : dig_parameter_table()) {
-      there.*info.field = std::clamp(there.*info.field, info.lower, info.upper);
+      double& number = there.*info.field;
+      number = std::clamp(number, bounds.lower.*info.field, bounds.upper.*info.field);
     }
     task.starts.push_back(there);
     const DigObjective& objective = job.search.objective;

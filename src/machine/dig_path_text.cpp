@@ -24,10 +24,13 @@ nlohmann::ordered_json path_json(const DigParameters& parameters, double start_x
   return json;
 }
 
+constexpr double longest_path = 100.0;  // of any machine [m]; ours
+
 std::pair<DigParameters, double> read_path(JsonObject path) {
   DigParameters parameters;
   for (const DigParameterInfo& info : dig_parameter_table()) {
-    parameters.*info.field = path.number(info.name, info.lower, info.upper);
+    const bool angle = info.unit == std::string("rad");
+    parameters.*info.field = path.number(info.name, 0.0, angle ? 0.5 * pi : longest_path);
   }
   const double start_x = path.number(start_key);
   path.done();

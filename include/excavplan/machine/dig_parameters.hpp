@@ -35,12 +35,13 @@ struct DigParameterInfo {
   const char* text;    ///< readable name: "penetration angle"
   const char* option;  ///< word of the option for the search range: "angle" of --angle-range
   double DigParameters::*field;  ///< where it is kept
-  double lower;                  ///< of the search
-  double upper;                  ///< of the search
+  double lower;                  ///< of usual digs of a machine of 12 t; ours
+  double upper;                  ///< likewise
 };
 
-/// One row per number, in order. The bounds (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m) are ours: the
-/// paper's own search range is in its Table 3, which is not published as text.
+/// One row per number, in order. How far two digs are apart is measured by the usual ranges
+/// (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m); the paper's own search range is in its Table 3, which is not
+/// published as text.
 const std::vector<DigParameterInfo>& dig_parameter_table();
 
 /// The numbers in the order of the table, as a search moves them.
