@@ -23,6 +23,10 @@ constexpr double steep = 1.0;  // ours: on gentler faces the cells are averages 
 /// same along the whole face; ours, from pits with upright walls under simulated cameras.
 constexpr double face_place = 0.15;
 
+/// Of what lies within a cell of the border between a hole and soil beside it, the share that each
+/// may hide of the other; ours, from simulated digs that leave soil at the edge of the hole.
+constexpr double hidden_at_border = 0.1;
+
 /// Sums the difference over each zone: area, volume, place.
 void sum_zones(Area& area) {
   const HeightMap& grid = area.grid;
@@ -102,6 +106,28 @@ void sum_faces(Area& area, const Surface& scan) {
     if (faces[i] == 0.0 || points[i] == 0.0) continue;
     const double spacing = std::sqrt(area.zones[i].area / points[i]);
     area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);
+  }
+}
+
+/// Error of zones that touch: a cell on their border takes in soil that was lost and soil that was
+/// gained, and shows the difference.
+void sum_borders(Area& area) {
+  const auto& zone = area.ground.zone;
+  const auto& difference = area.ground.difference;
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  std::vector<double> hidden(area.zones.size(), 0.0);
+  for_each_cell(zone, [&](Cell at) {
+    const int index = zone(at.row, at.col);
+    if (index < 0) return;
+    for_each_neighbour(zone, at, [&](Cell n) {
+      const int other = zone(n.row, n.col);
+      if (other < 0 || other == index) return;
+      const double step = std::abs(difference(at.row, at.col) - difference(n.row, n.col));
+      if (step > 0.0) hidden[static_cast<std::size_t>(index)] += cell_area * step;
+    });
+  });
+  for (std::size_t i = 0; i < hidden.size(); ++i) {
+    area.zones[i].faces += std::pow(hidden_at_border * hidden[i], 2);
   }
 }
 
@@ -194,6 +220,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   sum_beyond_edge(area);
   sum_faces(area, pair.before);
   sum_faces(area, pair.after);
+  sum_borders(area);
   area.errors = ErrorField{scans.before,
                            area.ground.residual,
                            area.ground.zone,

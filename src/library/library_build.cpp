@@ -88,20 +88,30 @@ class Watch {
 
 /// Of what is looked up midway between two digs.
 /// @param best  worth of the best dig there
-/// @param measured  worths there of their mix and, if they are far apart, of both
+/// @param measured  worths there of their mix and of both
 Interpolation interpolation(const DigObjective& objective, const PlannedDig& below,
                             const PlannedDig& above, double best,
                             const std::vector<double>& measured) {
-  PlannedDig taken = dig_between(below, above, 0.5, false);
+  constexpr double better = 0.03;  // than the rules before, of the best; ours
+  const double lower = measured[1];
+  const double upper = measured[2];
+  Between between = Between::mix;
   double worth = measured[0];
-  const bool nearest = measured.size() == 3 && measured[0] < std::min(measured[1], measured[2]);
-  if (nearest) {
-    taken = measured[2] < measured[1] ? above : below;
-    worth = std::min(measured[1], measured[2]);
-  }
+  const auto prefer = [&](Between rule, double its_worth) {
+    if (its_worth <= worth + (rule == Between::nearest ? 0.0 : better * best)) return;
+    between = rule;
+    worth = its_worth;
+  };
+  if (far_apart(below, above)) prefer(Between::nearest, std::min(lower, upper));
+  prefer(Between::upper, upper);
+  prefer(Between::lower, lower);
+  const bool of_upper = between == Between::upper || (between == Between::nearest && upper < lower);
+  const PlannedDig taken = between == Between::mix ? dig_between(below, above, 0.5)
+                           : of_upper              ? above
+                                                   : below;
   return {{std::clamp(1.0 - worth / best, 0.0, 1.0),
            worth > 0.0 ? objective.worth(taken) / worth - 1.0 : 0.0},
-          nearest};
+          between};
 }
 
 /// Lays out all tasks of a build, and has them done.
@@ -318,9 +328,7 @@ class Build {
     if (!below.found.feasible || !above.found.feasible) return {};
     const PlannedDig& a = below.found.dig;
     const PlannedDig& b = above.found.dig;
-    LibraryTask task{middle, {dig_between(a, b, 0.5, false)}};
-    if (far_apart(a, b)) task.digs.insert(task.digs.end(), {a, b});
-    return to_text(task);
+    return to_text(LibraryTask{middle, {dig_between(a, b, 0.5), a, b}});
   }
 
   std::vector<PathLibrary> libraries() const {

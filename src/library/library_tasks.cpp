@@ -163,7 +163,7 @@ LibraryTask first_search(const LibraryJob& job, const LibraryPlace& place,
     task.starts.push_back(far.parameters);
   } else if (parents.size() == 2) {
     const double share = (place.density_percent - near_density) / (far_density - near_density);
-    DigParameters there = dig_between(near, far, share, false).parameters;
+    DigParameters there = dig_between(near, far, share).parameters;
     const DigBounds bounds = machine_bounds(job.grid.machines[place.machine]);
     for (const DigParameterInfo& info : dig_parameter_table()) {
       double& number = there.*info.field;

@@ -3,6 +3,7 @@
 #include <excavplan/library/path_library.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -32,15 +33,28 @@ void require_order(const JsonObject& file, const std::string& key, const std::ve
   }
 }
 
+/// In the order of Between.
+constexpr std::array between_words = {"mix", "nearest", "lower", "upper"};
+
+const char* word_of(Between between) { return between_words[static_cast<std::size_t>(between)]; }
+
+Between between_of(JsonObject& object, const std::string& key) {
+  const std::string word = object.text(key);
+  for (std::size_t i = 0; i < between_words.size(); ++i) {
+    if (word == between_words[i]) return static_cast<Between>(i);
+  }
+  object.fail(key, "is '" + word + "', must be mix, nearest, lower or upper");
+}
+
 void add(nlohmann::ordered_json& json, const std::string& to, const Interpolation& between) {
   json[to + "_loss"] = between.midway.loss;
   json[to + "_expectation_error"] = between.midway.expectation;
-  json[to + "_nearest"] = between.nearest;
+  json[to + "_between"] = word_of(between.between);
 }
 
 Interpolation read_interpolation(JsonObject& object, const std::string& to) {
   return {{object.number(to + "_loss", 0.0, 1.0), object.number(to + "_expectation_error", -1.0)},
-          object.flag(to + "_nearest")};
+          between_of(object, to + "_between")};
 }
 
 nlohmann::ordered_json entry_json(const PathLibraryEntry& entry) {
@@ -141,7 +155,7 @@ MidwayError larger(const MidwayError& a, const MidwayError& b) {
 
 PlannedDig dig_at(const Densities& place) {
   return dig_between(place.below->dig, place.above->dig, place.share,
-                     place.below->to_next_density.nearest);
+                     place.below->to_next_density.between);
 }
 
 MidwayError error_at(const Densities& place) {
@@ -236,7 +250,7 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
 PlannedDig look_up(const PathLibrary& library, double density_percent, double slope) {
   const Around place = around(library, density_percent, slope);
   return dig_between(dig_at(place.low), dig_at(place.high), place.share,
-                     place.low.nearest()->to_next_slope.nearest);
+                     place.low.nearest()->to_next_slope.between);
 }
 
 MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope) {

@@ -112,9 +112,11 @@ double log_polynomial(const std::vector<std::pair<double, double>>& known, doubl
   return std::exp(sum);
 }
 
-PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool nearest) {
+PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, Between between) {
   if (share == 0.0) return a;
-  if (nearest) return share < 0.5 ? a : b;
+  if (share == 1.0 || between == Between::upper) return b;
+  if (between == Between::lower) return a;
+  if (between == Between::nearest) return share < 0.5 ? a : b;
   const auto mix = [share](double from, double to) { return from + share * (to - from); };
   PlannedDig dig = a;
   for (const DigParameterInfo& info : dig_parameter_table()) {

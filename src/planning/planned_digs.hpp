@@ -44,7 +44,8 @@ bool far_apart(const PlannedDig& a, const PlannedDig& b);
 /// which are > 0: worths of best digs vary so, almost linearly, over density and slope.
 double log_polynomial(const std::vector<std::pair<double, double>>& known, double place);
 
-/// Linear between two digs, or the nearer one.
-PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share, bool nearest);
+/// At a share of the way from one dig to another.
+PlannedDig dig_between(const PlannedDig& a, const PlannedDig& b, double share,
+                       Between between = Between::mix);
 
 }  // namespace excavplan

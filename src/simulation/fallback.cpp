@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <string>
 
 #include <excavplan/error.hpp>
@@ -38,6 +39,32 @@ void add_cell(double floor, double before, double after, double area, Swept& sum
   sum.in_pit += area * (after - floor);
 }
 
+/// Rows between the walls of the cut. A scan blurs a wall over a cell: in the strip along it, as
+/// wide as a cell, the ground goes on as it rises towards it, like soil that slid from there.
+struct Rows {
+  Eigen::Index first = 0;
+  Eigen::Index end = 0;
+  double half = 0.0;    ///< of the width that they cover [m]
+  double beside = 0.0;  ///< width of the strip along each wall [m]
+
+  double cover(Eigen::Index row, const HeightMap& map) const {
+    const double low = map.y(row) - 0.5 * map.cell_size;
+    return std::max(0.0, std::min(half, low + map.cell_size) - std::max(-half, low));
+  }
+};
+
+Rows rows_between_walls(const HeightMap& map, double half_width) {
+  Rows rows;
+  const bool wide = half_width > 3.0 * map.cell_size;
+  rows.beside = wide ? map.cell_size : 0.0;
+  rows.half = half_width - rows.beside;
+  rows.end = map.z.rows();
+  while (rows.first < rows.end && !(rows.cover(rows.first, map) > 0.0)) ++rows.first;
+  while (rows.end > rows.first && !(rows.cover(rows.end - 1, map) > 0.0)) --rows.end;
+  if (rows.end - rows.first < 4) rows.beside = 0.0;
+  return rows;
+}
+
 }  // namespace
 
 Fallback measure_fallback(const Machine& machine, const DigPath& path, const HeightMap& before,
@@ -47,21 +74,25 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
                 "fallback: the maps before and after must be on one grid: same origin, cell and "
                 "size");
   }
-  // A scan blurs the walls of the cut over a cell: the floor between them stands for all of it.
-  const double whole = 0.5 * machine.bucket.width_outside;
-  const double half = whole > 2.0 * before.cell_size ? whole - before.cell_size : whole;
+  const Rows rows = rows_between_walls(before, 0.5 * machine.bucket.width_outside);
   Swept sum;
   for (Eigen::Index col = 0; col < before.z.cols(); ++col) {
     for (int i = 0; i < samples_per_cell; ++i) {
       const double x = before.x(col) + before.cell_size * ((i + 0.5) / samples_per_cell - 0.5);
       const double floor = swept_height(path, x);
       if (std::isnan(floor)) continue;
-      for (Eigen::Index row = 0; row < before.z.rows(); ++row) {
-        const double low = before.y(row) - 0.5 * before.cell_size;
-        const double cover = std::min(half, low + before.cell_size) - std::max(-half, low);
-        if (!(cover > 0.0)) continue;
-        add_cell(floor, before.z(row, col), after.z(row, col),
-                 cover * before.cell_size / samples_per_cell, sum);
+      const double length = before.cell_size / samples_per_cell;
+      for (Eigen::Index row = rows.first; row < rows.end; ++row) {
+        add_cell(floor, before.z(row, col), after.z(row, col), rows.cover(row, before) * length,
+                 sum);
+      }
+      if (rows.beside == 0.0) continue;
+      for (const auto& [edge, inner] : {std::pair(rows.first, rows.first + 1),
+                                        std::pair(rows.end - 1, rows.end - 2)}) {
+        const double fall = after.z(edge, col) - after.z(inner, col);
+        const double further = 0.5 + 0.5 * rows.beside / before.cell_size;  // cells
+        add_cell(floor, before.z(edge, col),
+                 std::max(floor, after.z(edge, col) + further * fall), rows.beside * length, sum);
       }
     }
   }
@@ -76,8 +107,8 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
   }
   Fallback fallback;
   fallback.seen_share = seen_share;
-  fallback.cut = sum.cut / seen_share * whole / half;
-  fallback.in_pit = sum.in_pit / seen_share * whole / half;
+  fallback.cut = sum.cut / seen_share;
+  fallback.in_pit = sum.in_pit / seen_share;
   // A path that lay deeper than thought by d cut d * area more and left as much more in the pit.
   const double fraction = sum.in_pit / sum.cut;
   fallback.fraction.value = std::clamp(fraction, 0.0, 1.0);

@@ -16,6 +16,7 @@
 #include "base/random.hpp"
 
 #include "support/errors.hpp"
+#include "support/machine_file.hpp"
 
 namespace excavplan {
 namespace {
@@ -31,7 +32,7 @@ class FallbackTest : public testing::Test {
     return HeightMapSimulator(machine_, loam_, density).dig(ground_, path_);
   }
 
-  const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  const Machine machine_ = test::zx120_held_down();
   const SoilKind loam_ = load_soil(find_data_file("soils/loam.json"));
   const Terrain ground_ = level_planning_ground(machine_);
   DigPath path_;

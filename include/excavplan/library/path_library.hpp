@@ -29,9 +29,8 @@ struct MidwayError {
 /// From one entry to the next.
 struct Interpolation {
   MidwayError midway;  ///< of the dig looked up between the two
-  /// The nearer dig is looked up and not a mix of the two: they differ so much that the mix was
-  /// found worse midway.
-  bool nearest = false;
+  /// What is looked up between the two.
+  Between between = Between::mix;
 };
 
 /// The best dig for one density on one slope.
@@ -86,7 +85,7 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
                  const std::string& simulator = default_simulator().name);
 
 /// The dig for a density and a slope: parameters and expectations linear between the entries
-/// around, or those of the nearer one (Interpolation::nearest).
+/// around, or those of one of them (Interpolation::between).
 ///
 /// @throws Error (bad_input) if density or slope are outside the library, or in a gap of it
 PlannedDig look_up(const PathLibrary& library, double density_percent, double slope = 0.0);

@@ -21,6 +21,14 @@ struct CycleOptions {
   double rest_of_cycle = 0.0;  ///< waiting time [s]
 };
 
+/// What stands for the best digs between two known ones.
+enum class Between {
+  mix,      ///< linear in all numbers
+  nearest,  ///< of the two, as they differ so much that their mix is worse
+  lower,    ///< the one of the lower density or slope: the mix, or the other, stalls
+  upper,    ///< the other one
+};
+
 /// A dig with its expected payload and cost.
 struct PlannedDig {
   DigParameters parameters;     ///< of its path
