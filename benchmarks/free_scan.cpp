@@ -35,9 +35,9 @@ namespace {
 Machine scaled(Machine machine, double scale) {
   const double force = scale * scale;
   machine.name += " x " + std::to_string(scale);
-  for (double* length : {&machine.boom_length, &machine.arm_length, &machine.bucket_length,
-                         &machine.track_front, &machine.bucket.width_inside,
-                         &machine.bucket.width_outside}) {
+  for (double* length :
+       {&machine.boom_length, &machine.arm_length, &machine.bucket_length, &machine.track_front,
+        &machine.bucket.width_inside, &machine.bucket.width_outside}) {
     *length *= scale;
   }
   machine.boom_pin *= scale;
@@ -110,14 +110,14 @@ class FreeScan {
     for (int seed = 1; seed <= seeds_; ++seed) {
       ranks.push_back(searched(scene, simulator, static_cast<std::uint64_t>(seed), 1));
     }
-    double best = std::max(*std::max_element(ranks.begin(), ranks.end()),
-                           best_of_random(scene, simulator));
+    double best =
+        std::max(*std::max_element(ranks.begin(), ranks.end()), best_of_random(scene, simulator));
     for (std::uint64_t seed = 101; seed < 104; ++seed) {
       best = std::max(best, searched(scene, simulator, seed, 10));
     }
     std::sort(ranks.begin(), ranks.end());
-    const auto good = std::count_if(ranks.begin(), ranks.end(),
-                                    [&](double rank) { return rank >= 0.99 * best; });
+    const auto good =
+        std::count_if(ranks.begin(), ranks.end(), [&](double rank) { return rank >= 0.99 * best; });
     std::printf("%-44s %2ld of %d within 1 %%, worst %5.1f %%, median %5.1f %%\n",
                 scene.name.c_str(), good, seeds_, 100.0 * ranks.front() / best,
                 100.0 * ranks[ranks.size() / 2] / best);
@@ -152,14 +152,13 @@ class FreeScan {
         for (int tries = 0; tries < 1000 && !std::holds_alternative<DigPath>(path); ++tries) {
           DigParameters dig;
           for (const DigParameterInfo& info : dig_parameter_table()) {
-            dig.*info.field =
-                random.uniform(bounds.lower.*info.field, bounds.upper.*info.field);
+            dig.*info.field = random.uniform(bounds.lower.*info.field, bounds.upper.*info.field);
           }
           path = layout.path_from(dig, random.uniform(scene.machine.track_front, reach));
         }
         if (!std::holds_alternative<DigPath>(path)) continue;
-        const auto dug = dig_along(scene.machine, simulator, scene.ground,
-                                   std::get<DigPath>(path), options_.objective);
+        const auto dug = dig_along(scene.machine, simulator, scene.ground, std::get<DigPath>(path),
+                                   options_.objective);
         if (!std::holds_alternative<PlannedDig>(dug)) continue;
         const std::lock_guard<std::mutex> lock(mutex);
         best = std::max(best, options_.objective.rank(std::get<PlannedDig>(dug)));

@@ -89,8 +89,8 @@ class RandomDigs {
            Tally& tally) const {
     Random random(seed_, index);
     while (true) {
-      const auto which = static_cast<std::size_t>(
-          random.uniform() * static_cast<double>(simulators.size()));
+      const auto which =
+          static_cast<std::size_t>(random.uniform() * static_cast<double>(simulators.size()));
       DigParameters parameters;
       for (const DigParameterInfo& info : dig_parameter_table()) {
         parameters.*info.field =
@@ -112,8 +112,8 @@ class RandomDigs {
         ++tally.stalls;
         continue;
       }
-      tally.nearest = std::max(
-          tally.nearest, test::share_of_lifting(machine_, std::get<DigPath>(path), result));
+      tally.nearest = std::max(tally.nearest,
+                               test::share_of_lifting(machine_, std::get<DigPath>(path), result));
       ++tally.digs;
       return;
     }
@@ -122,10 +122,9 @@ class RandomDigs {
   std::uint64_t seed_;
   Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
   DigBounds bounds_ = machine_bounds(machine_);
-  std::vector<SoilKind> soils_ = {load_soil(find_data_file("soils/loam.json")),
-                                  load_soil(find_data_file("soils/sand.json")),
-                                  load_soil(find_data_file("soils/clay.json")),
-                                  load_soil(find_data_file("soils/gravel.json"))};
+  std::vector<SoilKind> soils_ = {
+      load_soil(find_data_file("soils/loam.json")), load_soil(find_data_file("soils/sand.json")),
+      load_soil(find_data_file("soils/clay.json")), load_soil(find_data_file("soils/gravel.json"))};
   Terrain ground_ = level_planning_ground(machine_);
 };
 

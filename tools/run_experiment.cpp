@@ -5,6 +5,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/experiment/experiment.hpp>
 
+#include "shared/experiment_results.hpp"
 #include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
 #include "shared/tool.hpp"
@@ -70,35 +71,6 @@ std::vector<Condition> conditions_of(const Inputs& inputs) {
   return conditions;
 }
 
-nlohmann::ordered_json json_of(const Condition& condition, const ExperimentResult& result) {
-  const HeightMapVolumes& volumes = result.volumes;
-  return {{"name", condition.name},
-          {"density_percent", condition.density},
-          {"volume",
-           {{"excavated_m3", volumes.excavated},
-            {"spilled_m3", volumes.spilled},
-            {"dumped_m3", volumes.dumped}}},
-          {"bulking_factor", volumes.bulking_factor},
-          {"density_estimated_percent", result.estimate.percent},
-          {"fixed", dig_json(result.fixed)},
-          {"planned", dig_json(result.planned)},
-          {"gain_percent", result.gain_percent()},
-          {"gain_path_percent", result.path_gain_percent()},
-          {"gain_start_percent", result.start_gain_percent()},
-          {"start_rule", describe(result.start_rule)}};
-}
-
-std::string line_of(const Condition& condition, const ExperimentResult& result) {
-  return condition.name + ": density " + readable(condition.density) + " %, k " +
-         readable(result.volumes.bulking_factor, 4) + ", estimated " +
-         readable(result.estimate.percent) + " %; fixed " +
-         worth_text(result.objective, result.objective.worth(result.fixed)) + ", planned " +
-         worth_text(result.objective, result.objective.worth(result.planned)) + " (" +
-         path_text(result.planned) + "), gain " + readable(result.gain_percent()) + " % (path " +
-         readable(result.path_gain_percent()) + " %, start " +
-         readable(result.start_gain_percent()) + " %)";
-}
-
 ExperimentOptions options_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {
   ExperimentOptions options;
   options.fixed_path = inputs.path;
@@ -120,8 +92,8 @@ ExperimentOptions options_of(const Inputs& inputs, const Machine& machine, const
 Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  const std::string law_name =
-      inputs.law == "default" ? machine.name + "-" + soil.name : inputs.law;
+  const bool own = inputs.law == "default";
+  const std::string law_name = own ? machine.name + "-" + soil.name : inputs.law;
   const DensityLaw law = load_density_law(shipped_or_file("laws", law_name));
   const ExperimentOptions options = options_of(inputs, machine, soil);
   const std::vector<Condition> conditions = conditions_of(inputs);
@@ -131,8 +103,12 @@ Outcome work(const Inputs& inputs, Console& console) {
                      conditions[i].name);
     const ExperimentResult result =
         run_experiment(machine, soil, law, conditions[i].density, options);
-    outcome.json["conditions"].push_back(json_of(conditions[i], result));
-    outcome.lines.push_back(line_of(conditions[i], result));
+    outcome.json["conditions"].push_back(experiment_json(conditions[i].name, result));
+    outcome.lines.push_back(experiment_line(conditions[i].name, result));
+    if (result.held_because.empty()) continue;
+    const std::string why = ": the machine is held down, as on the fixed path ";
+    outcome.warnings.push_back(
+        {"machine_held_down", conditions[i].name + why + result.held_because});
   }
   outcome.json["law"] = law.name;
   outcome.json.update(goal_json(options.plan.search.objective));

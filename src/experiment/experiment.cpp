@@ -33,6 +33,12 @@ class Experiment {
         ground_(level_planning_ground(machine, options.plan.cell_size)),
         simulator_(options.plan.simulator.make(machine, soil, density_percent)) {}
 
+  /// Digs with the machine held down from now on.
+  void hold_machine() {
+    held_.body.reset();
+    simulator_ = options_.plan.simulator.make(held_, soil_, density_);
+  }
+
   std::variant<PlannedDig, DigFailure> attempt(const DigParameters& parameters,
                                                const StartRule& start) const {
     const auto path = DigLayout(machine_, ground_).path(parameters, start);
@@ -56,7 +62,7 @@ class Experiment {
     dig.simulator = options_.plan.simulator;
     const Terrain ground =
         undisturbed(flat_ground(scene_extent(machine_, dig.dump_at), options_.plan.cell_size));
-    return run_scene(machine_, soil_, density_, ground, dig).volumes;
+    return run_scene(held_, soil_, density_, ground, dig).volumes;
   }
 
   PlannedDig plan(double density) const {
@@ -86,12 +92,21 @@ class Experiment {
 
  private:
   const Machine& machine_;
+  Machine held_ = machine_;
   const SoilKind& soil_;
   double density_;
   const ExperimentOptions& options_;
   Terrain ground_;
   std::unique_ptr<const SoilSimulator> simulator_;
 };
+
+/// Why the fixed path would lift or drag the machine in this soil; empty if it would not.
+std::string what_moves(const Experiment& experiment, const DigParameters& path) {
+  const auto outcome = experiment.attempt(path, {});
+  const auto* failure = std::get_if<DigFailure>(&outcome);
+  const auto* stall = failure ? std::get_if<Stall>(failure) : nullptr;
+  return stall && stall->cause != Stall::Cause::torque ? describe(*failure) : "";
+}
 
 }  // namespace
 
@@ -101,8 +116,10 @@ double ExperimentResult::start_gain_percent() const { return gain(objective, fix
 
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options) {
-  const Experiment experiment(machine, soil, density_percent, options);
+  Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
+  result.held_because = what_moves(experiment, options.fixed_path);
+  if (!result.held_because.empty()) experiment.hold_machine();
   result.density_percent = density_percent;
   result.objective = options.plan.search.objective;
   result.fixed = experiment.dig(options.fixed_path, {});

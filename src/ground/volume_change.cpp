@@ -18,6 +18,7 @@
 namespace excavplan {
 namespace {
 
+constexpr double largest_loss_beside_heap = 0.2;  // of the hole's volume; ours
 constexpr double least_warned_share = 0.01;  // of the volume of its kind; smaller ones are ignored
 constexpr double least_refused_share = 0.1;  // likewise
 constexpr double least_stable_share = 0.4;   // ours
@@ -195,6 +196,26 @@ void warn_of_balance(VolumeChange& change) {
   }
 }
 
+/// Soil is spilled beside a hole; ground that fell beside a heap is spill of swapped scans.
+void warn_of_loss_beside_heap(const std::vector<Area>& areas, const ChangeOptions& options,
+                              VolumeChange& change) {
+  double lost = 0.0;
+  for (const Area& area : areas) {
+    Chosen heap(area.zones.size());
+    for (std::size_t i = 0; i < heap.size(); ++i) heap[i] = area.kinds[i] == ZoneKind::dump;
+    const Chosen beside =
+        zones_near(area.ground.zone, heap, options.spill_distance / area.grid.cell_size);
+    for (std::size_t i = 0; i < heap.size(); ++i) {
+      if (area.kinds[i] == ZoneKind::other && beside[i]) lost -= area.zones[i].volume;
+    }
+  }
+  if (!(lost > largest_loss_beside_heap * change.before.value)) return;
+  change.warnings.push_back(
+      {"looks_swapped", "before and after are probably swapped: the ground fell by " +
+                            litres_as_m3(lost) + " beside what would be the heap, and by " +
+                            litres_as_m3(change.before.value) + " where the hole would be"});
+}
+
 /// Volume of all zones of a kind; infinite for the kind `other`.
 double total_of(const VolumeChange& change, ZoneKind kind) {
   switch (kind) {
@@ -289,6 +310,7 @@ VolumeChange result_of(std::vector<Area> areas, const ChangeOptions& options) {
   VolumeChange change;
   sum_volumes(areas, change);
   warn_of_balance(change);
+  warn_of_loss_beside_heap(areas, options, change);
   warn_of_others(areas, change);
   for (Area& area : areas) report(area, options, change);
   return change;

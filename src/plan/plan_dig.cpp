@@ -21,7 +21,7 @@ constexpr double much_steeper =
     0.04;  // than the library's slopes [rad]; ours, docs/formats.md#warning-codes
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
 constexpr double likely_stall = 0.05;  // probability; ours
-constexpr double start_step = 0.25;      // between starts tried with a known path [m]; ours
+constexpr double start_step = 0.25;    // between starts tried with a known path [m]; ours
 constexpr double worth_making = 0.1;   // fill of the bucket; ours
 
 struct Task {

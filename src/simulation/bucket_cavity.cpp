@@ -22,8 +22,7 @@ Vector2d turned(const Vector2d& v, double angle) {
 
 }  // namespace
 
-Cavity::Cavity(const Bucket& bucket)
-    : bucket_(bucket), corners_(bucket.profile.size()) {
+Cavity::Cavity(const Bucket& bucket) : bucket_(bucket), corners_(bucket.profile.size()) {
   turn_to(0.0);
 }
 

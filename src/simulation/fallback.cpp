@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <string>
 
 #include <excavplan/error.hpp>
@@ -39,8 +38,8 @@ void add_cell(double floor, double before, double after, double area, Swept& sum
   sum.in_pit += area * (after - floor);
 }
 
-/// Rows between the walls of the cut. A scan blurs a wall over a cell: in the strip along it, as
-/// wide as a cell, the ground goes on as it rises towards it, like soil that slid from there.
+/// Rows between the walls of the cut. A scan blurs a wall over a cell: the strip along it, as wide
+/// as a cell, stands as high as the row beside it.
 struct Rows {
   Eigen::Index first = 0;
   Eigen::Index end = 0;
@@ -86,13 +85,8 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
         add_cell(floor, before.z(row, col), after.z(row, col), rows.cover(row, before) * length,
                  sum);
       }
-      if (rows.beside == 0.0) continue;
-      for (const auto& [edge, inner] : {std::pair(rows.first, rows.first + 1),
-                                        std::pair(rows.end - 1, rows.end - 2)}) {
-        const double fall = after.z(edge, col) - after.z(inner, col);
-        const double further = 0.5 + 0.5 * rows.beside / before.cell_size;  // cells
-        add_cell(floor, before.z(edge, col),
-                 std::max(floor, after.z(edge, col) + further * fall), rows.beside * length, sum);
+      for (const Eigen::Index edge : {rows.first, rows.end - 1}) {
+        add_cell(floor, before.z(edge, col), after.z(edge, col), rows.beside * length, sum);
       }
     }
   }

@@ -98,9 +98,8 @@ class Dig {
     cut(s);
     pile_.move_to(s.to.x(), resistance.wedge_length);
     const double ahead = level_ahead(s.to.x());
-    spill(ahead, [&](double level) {
-      return room_in_bucket(std::max(ahead, level) - s.to.y(), before);
-    });
+    spill(ahead,
+          [&](double level) { return room_in_bucket(std::max(ahead, level) - s.to.y(), before); });
   }
 
   /// Level of the surface just ahead of the lip.

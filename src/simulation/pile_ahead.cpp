@@ -50,8 +50,7 @@ void PileAhead::look_at_column(Index col, double reach) {
   // The bucket stands behind the lip; beside it there is room.
   const bool behind = left >= lip_x_;
   const double centre = 0.5 * (left + (behind ? right : std::min(right, lip_x_)));
-  const double along =
-      behind ? centre - lip_x_ : std::max(0.0, lip_x_ - centre - level_length_);
+  const double along = behind ? centre - lip_x_ : std::max(0.0, lip_x_ - centre - level_length_);
   if (along > reach) return;
   const double beside = std::sqrt(reach * reach - along * along);
   const auto rows = static_cast<Index>(std::ceil(beside / map.cell_size));
@@ -71,8 +70,7 @@ void PileAhead::look_at_column(Index col, double reach) {
 void PileAhead::look_at_cell(Index row, Index col, double along, double share, double reach) {
   const std::size_t cell = ground_.at(row, col);
   const double height = ground_.height(cell);
-  const double across =
-      std::max(0.0, std::abs(ground_.before().bank.y(row)) - half_width_);
+  const double across = std::max(0.0, std::abs(ground_.before().bank.y(row)) - half_width_);
   const double distance = across > 0.0 ? std::sqrt(along * along + across * across) : along;
   const double base = height + slope_ * distance;
   if (distance > reach || !(base < seen_to_)) return;  // also on unknown ground

@@ -39,7 +39,7 @@ struct SectionResistance {
   Eigen::Vector2d heel = Eigen::Vector2d::Zero();
   Eigen::Vector2d heel_at = Eigen::Vector2d::Zero();
   double wedge_length = 0.0;  ///< of the top of the wedge that is pushed, ahead of the lip [m]
-  double on_floor = 0.0;  ///< volume of payload whose weight is in the force already [m^3]
+  double on_floor = 0.0;      ///< volume of payload whose weight is in the force already [m^3]
 
   Eigen::Vector2d total() const { return face + tip + heel; }
 };

@@ -101,13 +101,11 @@ class SoilSection {
   /// beyond its start the ground.
   const std::vector<Eigen::Vector2d>& left_behind() const { return left_behind_; }
 
+  /// Length of a pile's level top [m], its height there [m], and the fall from there on per metre.
   struct PileProfile {
-    double level = 0.0;  ///< length of its level top [m]
-    double high = 0.0;   ///< height there [m]
-    double fall = 0.0;   ///< of its surface from there on, per metre
+    double level, high, fall;
   };
-  /// Sheds the sides of a pile that are too steep into windrows. The pile leans against x. Returns
-  /// the area that it loses.
+  /// Sheds the sides of a pile at x into windrows. Returns the area that it loses.
   double shed(double x, const PileProfile& pile, double slope);
 
   enum class Side { ahead, behind, both };

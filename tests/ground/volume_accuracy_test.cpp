@@ -77,7 +77,7 @@ TEST(AccuracyOfBulking, BudgetAddsUpAndNamesTheSource) {
     const BulkingErrors by = bulking_errors(change);
     const double sd = bulking_factor(change).value_or(Measured{}).sd;
     EXPECT_NEAR(std::sqrt(by.noise * by.noise + by.correlated * by.correlated +
-                          by.datum * by.datum + by.holes * by.holes),
+                          by.datum * by.datum + by.holes * by.holes + by.faces * by.faces),
                 sd, 1e-9);
     if (by.correlated > 0.7 * sd) return "correlated";
     if (by.holes > 0.7 * sd) return "holes";

@@ -765,7 +765,7 @@ TEST_F(Planner, NoGroundAtAllIsNoPlan) {
 
 TEST_F(Planner, WhereTheMachineAlwaysStallsTheNearestDigIsTheOneThatGoesOnLongest) {
   const Machine weak = weakened(8e3);
-  const HeightMapSimulator hard(weak, soil_, 100.0), medium(weak, soil_, 60.0);
+  const HeightMapSimulator hard(weak, soil_, 100.0), medium(weak, soil_, 90.0);
   const auto found = search_dig(weak, hard, level_, small_search());
   ASSERT_FALSE(found);
   ASSERT_TRUE(found.nearest && found.nearest->start_x);

@@ -148,7 +148,8 @@ std::pair<double, double> drag_force(const DigResult& result) {
 }
 
 // Discrete elements and filling tests show it (docs/judge.md; Coetzee and Els 2009). In dense loam
-// the soil that packs into the bucket is an easier face than its floor, by as much as the load adds.
+// the soil that packs into the bucket is an easier face than its floor, by as much as the load
+// adds.
 TEST_F(Simulator, TheForceRisesWhileTheBucketFills) {
   DigOptions options;
   options.history = true;

@@ -32,8 +32,7 @@ TEST_F(SceneTest, HoldsTheHeapBesideTheHole) {
   EXPECT_TRUE(dug.warnings.empty());
   EXPECT_NEAR(dug.volumes.dumped, dug.dig.payload_volume, 0.01 * dug.dig.payload_volume);
   // Soil that slides back into the cut hides part of the hole.
-  const double freed =
-      free_of_fallback(dug.volumes.bulking_factor, dug.dig.soil.fallback_fraction);
+  const double freed = free_of_fallback(dug.volumes.bulking_factor, dug.dig.soil.fallback_fraction);
   EXPECT_NEAR(freed, dug.bulking_factor_true, 1e-3);
   EXPECT_GT(height_at(dug.after.surface(), dug.dump_at.x(), dug.dump_at.y()), 0.2);
   EXPECT_TRUE(dug.dig.history.empty());

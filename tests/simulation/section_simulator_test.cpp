@@ -428,7 +428,8 @@ TEST_P(SectionAgainstMap, AgreesOverDensitiesAndPaths) {
 
 INSTANTIATE_TEST_SUITE_P(Grounds, SectionAgainstMap,
                          testing::Values(CrossCheck{"loam_level", "loam"},
-                                         CrossCheck{"loam_plain_lip", "loam", 0.0, 0.1, 0.06, false},
+                                         CrossCheck{"loam_plain_lip", "loam", 0.0, 0.1, 0.06,
+                                                    false},
                                          CrossCheck{"loam_rising", "loam", -0.1, 0.1, 0.1},
                                          CrossCheck{"loam_falling", "loam", 0.1},
                                          CrossCheck{"sand_level", "sand", 0.0, 0.1, 0.08},

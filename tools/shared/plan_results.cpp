@@ -36,7 +36,8 @@ nlohmann::ordered_json search_json(const PlanSearch& search, const DigGoalInfo& 
 
 nlohmann::ordered_json expectation_json(const PlanSearch& search, const DigGoalInfo& goal) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  if (goal.goal == DigObjective::Goal::energy) json["expected_efficiency_kg_per_kj"] = goal.per_si * search.worth;
+  if (goal.goal == DigObjective::Goal::energy)
+    json["expected_efficiency_kg_per_kj"] = goal.per_si * search.worth;
   if (search.value_of_knowing) json["value_of_knowing_percent"] = 100.0 * *search.value_of_knowing;
   return json;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
@@ -31,6 +33,9 @@ struct ExperimentResult {
   StartRule start_rule;          ///< that puts the start of the planned dig nearest to where it is
   PlannedDig fixed_moved;        ///< the fixed path, its start by that rule
   DigObjective objective;        ///< that the dig was planned for
+  /// Why the fixed path would lift or drag the machine: then it is held down in all digs here, as
+  /// if only its joints could stall. Empty if it need not be.
+  std::string held_because;
 
   /// Of the planned over the fixed dig in worth, by default the efficiency [%]. Its parts, of the
   /// path and of the start: (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).

@@ -40,8 +40,8 @@ struct DigParameterInfo {
 };
 
 /// One row per number, in order. How far two digs are apart is measured by the usual ranges
-/// (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m); the paper's own search range is in its Table 3, which is not
-/// published as text.
+/// (0.2-1.4 rad, 0.1-0.9 m, 0.3-3.0 m); the paper's own search range is in its Table 3, which is
+/// not published as text.
 const std::vector<DigParameterInfo>& dig_parameter_table();
 
 /// The numbers in the order of the table, as a search moves them.

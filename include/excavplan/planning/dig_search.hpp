@@ -55,8 +55,8 @@ struct DigSearchResult {
   int infeasible = 0;                               ///< of the evaluations: the machine stalled
   bool stopped = false;                             ///< by `progress`
   StopReason stopped_by = StopReason::generations;  ///< what ended the search
-  /// Numbers of the path that lie at an end of their range, where a wider one may hold a better dig.
-  /// Not those at 0.
+  /// Numbers of the path that lie at an end of their range, where a wider one may hold a better
+  /// dig. Not those at 0.
   std::vector<const DigParameterInfo*> at_bound = {};
   SearchInsight insight;  ///< in the order of dig_parameter_table(), the start last if searched
 };
