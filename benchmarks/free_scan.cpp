@@ -20,6 +20,7 @@
 #include <vector>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
@@ -99,7 +100,6 @@ class FreeScan {
       : random_digs_(random_digs), seeds_(seeds) {
     options_ = budget_search();
     options_.objective = goal;
-    options_.stop.evaluations = evaluation_budget(false, false);
   }
 
   const DigSearchOptions& options() const { return options_; }
@@ -108,7 +108,7 @@ class FreeScan {
     const HeightMapSimulator simulator(scene.machine, scene.soil, scene.density);
     std::vector<double> ranks;
     for (int seed = 1; seed <= seeds_; ++seed) {
-      ranks.push_back(searched(scene, simulator, static_cast<std::uint64_t>(seed), 1));
+      ranks.push_back(planned(scene, static_cast<std::uint64_t>(seed)));
     }
     double best =
         std::max(*std::max_element(ranks.begin(), ranks.end()), best_of_random(scene, simulator));
@@ -129,11 +129,22 @@ class FreeScan {
   void print() const { std::printf("%d of %d scenes\n", good_scenes_, scenes_); }
 
  private:
+  /// As plan-path --search.
+  double planned(const Scene& scene, std::uint64_t seed) const {
+    PlanOptions options;
+    options.method = PlanMethod::search;
+    options.search = options_;
+    options.search.seed = seed;
+    const DigPlan plan =
+        plan_dig(scene.machine, scene.soil, GroundDensity(scene.density), scene.ground, options);
+    return plan.dig ? options_.objective.rank(*plan.dig) : 0.0;
+  }
+
   double searched(const Scene& scene, const SoilSimulator& simulator, std::uint64_t seed,
                   int budgets) const {
     DigSearchOptions options = options_;
     options.seed = seed;
-    options.stop.evaluations *= budgets;
+    options.stop.evaluations = budgets * evaluation_budget(false, false);
     const auto found = search_dig(scene.machine, simulator, scene.ground, options);
     return found ? options.objective.rank(found->dig) : 0.0;
   }

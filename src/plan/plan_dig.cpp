@@ -218,6 +218,22 @@ DigSearchOptions search_options(const Task& task, DigPlan& plan) {
   return options;
 }
 
+/// Searches the path first, with the start of least work: without a fourth number that finds the
+/// valley that the search goes on in.
+void add_path_of_least_work(const Task& task, const SoilSimulator& simulator,
+                            DigSearchOptions& options) {
+  const bool budgeted =
+      options.stop.evaluations > 0 && std::holds_alternative<MemeticSearch>(options.method);
+  if (options.start_rule.kind != StartRule::Kind::searched || !budgeted) return;
+  DigSearchOptions first = options;
+  first.start_rule = StartRule::Kind::least_work;
+  first.checkpoint = {};
+  first.stop.evaluations = options.stop.evaluations / 3;
+  const auto found = search_dig(task.machine, simulator, task.ground, first);
+  options.stop.evaluations -= found ? found->evaluations : first.stop.evaluations;
+  if (found) options.start.insert(options.start.begin(), found->dig.parameters);
+}
+
 /// @param best  of what was found, if anything was
 template <typename Result>
 void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan) {
@@ -239,7 +255,9 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
 }
 
 void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
-  const DigSearchOptions options = search_options(task, plan);
+  DigSearchOptions options = search_options(task, plan);
+  const int budget = options.stop.evaluations;
+  if (!task.uncertain()) add_path_of_least_work(task, *soils.front().simulator, options);
   plan.start_rule = describe(options.start_rule);
   if (task.uncertain()) {
     const auto found = search_dig(task.machine, soils, task.ground, options);
@@ -248,6 +266,7 @@ void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPl
   } else {
     const auto found = search_dig(task.machine, *soils.front().simulator, task.ground, options);
     take(found, found ? &*found : nullptr, plan);
+    plan.evaluations += budget - options.stop.evaluations;
   }
 }
 

@@ -49,7 +49,7 @@ DigSearchOptions budget_search() {
 }
 
 int evaluation_budget(bool uncertain, bool from_known) {
-  if (!uncertain) return 400;
+  if (!uncertain) return 600;
   return from_known ? 100 : 200;
 }
 

@@ -159,7 +159,7 @@ class Slide {
     ++slid_;
     const double along_x = thickness * x.height / (x.height + y.height);
     if (x.height != 0.0) ground_.raise_loose(x.to, along_x);
-    if (y.height != 0.0) ground_.raise_loose(y.to, thickness - along_x);
+    if (y.height != 0.0) ground_.raise_loose(y.to, std::max(0.0, thickness - along_x));
     moved_.row_begin = std::min(moved_.row_begin, from.row);
     moved_.row_end = std::max(moved_.row_end, from.row + 1);
     moved_.col_begin = std::min(moved_.col_begin, from.col);

@@ -90,15 +90,12 @@ class SoilSection {
 
   /// Removes exactly the soil above the line from p to q; the tip has come to q.
   CutArea cut(Eigen::Vector2d p, Eigen::Vector2d q);
-
   /// Through the ground up to 0.25 m ahead.
   GroundAhead ahead(double x) const;
-
   /// Level of the undisturbed ground, between the middles of columns.
   double uncut(double x) const;
 
-  /// The top of the bank from the tip backwards, last point first: the line the tip has left, and
-  /// beyond its start the ground.
+  /// The top of the bank from the tip backwards, last point first, beyond its start the ground.
   const std::vector<Eigen::Vector2d>& left_behind() const { return left_behind_; }
 
   /// Length of a pile's level top [m], its height there [m], and the fall from there on per metre.

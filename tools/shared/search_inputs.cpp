@@ -75,7 +75,7 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
       "generations of the search, 0 for as many as --evaluations allows, or the paper's");
   arguments.option(
       "evaluations", inputs.evaluations,
-      "largest number of simulated digs per search, 0 for the default of the method: 400 "
+      "largest number of simulated digs per search, 0 for the default of the method: 600 "
       "(for each of several densities 100, or 200 without a library dig to start "
       "from), or all generations of the paper");
   arguments.file("checkpoint", inputs.checkpoint,

@@ -40,8 +40,8 @@ struct DigSearchOptions : SearchSettings {
 /// of evaluations allows.
 DigSearchOptions budget_search();
 
-/// Digs of one search that reach 99 % of the optimum from any seed (docs/methods.md#planning): 400;
-/// for each soil that uncertain ground may be, and for all together, 100 from a known good dig on
+/// Digs of one search that come within 1 % of the best on level ground (docs/methods.md#planning):
+/// 600; for each soil that uncertain ground may be, and for all together, 100 from a known good dig on
 /// and 200 from nothing. Ours.
 int evaluation_budget(bool uncertain, bool from_known);
 
