@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <variant>
 
@@ -22,6 +23,7 @@ constexpr double much_steeper =
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
 constexpr double likely_stall = 0.05;  // probability; ours
 constexpr double start_step = 0.25;    // between starts tried with a known path [m]; ours
+constexpr int least_to_divide = 60;    // digs of a search in two parts; ours
 constexpr double worth_making = 0.1;   // fill of the bucket; ours
 
 struct Task {
@@ -218,20 +220,36 @@ DigSearchOptions search_options(const Task& task, DigPlan& plan) {
   return options;
 }
 
+/// Progress of a search that others precede or follow.
+std::function<bool(const SearchProgress&)> as_part_of(
+    const std::function<bool(const SearchProgress&)>& progress, int before, int planned) {
+  if (!progress) return nullptr;
+  return [=](SearchProgress now) {
+    now.evaluations += before;
+    now.planned = planned;
+    return progress(now);
+  };
+}
+
 /// Searches the path first, with the start of least work: without a fourth number that finds the
-/// valley that the search goes on in.
-void add_path_of_least_work(const Task& task, const SoilSimulator& simulator,
-                            DigSearchOptions& options) {
-  const bool budgeted =
-      options.stop.evaluations > 0 && std::holds_alternative<MemeticSearch>(options.method);
-  if (options.start_rule.kind != StartRule::Kind::searched || !budgeted) return;
+/// valley that the search goes on in. @return digs that it took
+int add_path_of_least_work(const Task& task, const SoilSimulator& simulator,
+                           DigSearchOptions& options) {
+  const int budget = options.stop.evaluations;
+  const bool memetic = std::holds_alternative<MemeticSearch>(options.method);
+  if (options.start_rule.kind != StartRule::Kind::searched || !memetic) return 0;
+  if (budget < least_to_divide) return 0;
   DigSearchOptions first = options;
   first.start_rule = StartRule::Kind::least_work;
   first.checkpoint = {};
-  first.stop.evaluations = options.stop.evaluations / 3;
+  first.stop.evaluations = budget / 3;
+  first.progress = as_part_of(options.progress, 0, budget);
   const auto found = search_dig(task.machine, simulator, task.ground, first);
-  options.stop.evaluations -= found ? found->evaluations : first.stop.evaluations;
+  const int used = found ? found->evaluations : first.stop.evaluations;
+  options.stop.evaluations = budget - used;
+  options.progress = as_part_of(options.progress, used, budget);
   if (found) options.start.insert(options.start.begin(), found->dig.parameters);
+  return used;
 }
 
 /// @param best  of what was found, if anything was
@@ -256,17 +274,17 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
 
 void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
   DigSearchOptions options = search_options(task, plan);
-  const int budget = options.stop.evaluations;
-  if (!task.uncertain()) add_path_of_least_work(task, *soils.front().simulator, options);
   plan.start_rule = describe(options.start_rule);
   if (task.uncertain()) {
     const auto found = search_dig(task.machine, soils, task.ground, options);
     take(found, found ? &found->expected : nullptr, plan);
     if (plan.dig && !plan.stopped) plan.search->value_of_knowing = found->value_of_knowing();
   } else {
-    const auto found = search_dig(task.machine, *soils.front().simulator, task.ground, options);
+    const SoilSimulator& simulator = *soils.front().simulator;
+    const int used = add_path_of_least_work(task, simulator, options);
+    const auto found = search_dig(task.machine, simulator, task.ground, options);
     take(found, found ? &*found : nullptr, plan);
-    plan.evaluations += budget - options.stop.evaluations;
+    plan.evaluations += used;
   }
 }
 

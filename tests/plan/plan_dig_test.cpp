@@ -218,7 +218,7 @@ TEST_F(PlanDig, SearchHasABudgetUnlessToldOtherwise) {
   PlanOptions options = searched(0);
   options.simulator = own_simulator();
   EXPECT_EQ(plan(40.0, options).search->stopped_by, StopReason::evaluations);
-  EXPECT_EQ(plan(40.0, options).evaluations, 400);
+  EXPECT_EQ(plan(40.0, options).evaluations, 600);
   const DigPlan uncertain = plan(GroundDensity(40.0, 5.0), options);
   EXPECT_GE(uncertain.evaluations, 300);
   EXPECT_LE(uncertain.evaluations, 3 * 100 + 3 * 100 + 3);
