@@ -41,8 +41,8 @@ struct DigSearchOptions : SearchSettings {
 DigSearchOptions budget_search();
 
 /// Digs of one search that come within 1 % of the best on level ground (docs/methods.md#planning):
-/// 600; for each soil that uncertain ground may be, and for all together, 100 from a known good dig on
-/// and 200 from nothing. Ours.
+/// 600; for each soil that uncertain ground may be, and for all together, 100 from a known good dig
+/// on and 200 from nothing. Ours.
 int evaluation_budget(bool uncertain, bool from_known);
 
 /// The best dig found.
