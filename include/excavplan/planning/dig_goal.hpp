@@ -30,6 +30,7 @@ struct DigObjective : CycleOptions {
   /// What searches maximise: the worth, and of a dig that fills less than min_fill a half of it and
   /// less, by the tenth power of fill / min_fill; ours.
   double rank(double worth, double fill) const;
+  /// Of a dig, by its worth and fill.
   double rank(const PlannedDig& dig) const { return rank(worth(dig), dig.fill); }
 };
 
@@ -54,13 +55,14 @@ const DigGoalInfo& info_of(DigObjective::Goal goal);
 
 /// A number of an objective. Checks, checkpoints, libraries and options follow the table of them.
 struct DigObjectiveParameter {
-  const char* name;    ///< key in JSON, ends in the unit: "swing_rad"
-  const char* unit;    ///< "rad", "m", "s", "W" or "-"
-  const char* text;    ///< readable
-  const char* option;  ///< on the command line, "swing"; empty: follows the goal's word
-  double DigObjective::*field;
-  double highest = 1e9;  ///< the lowest is 0
+  const char* name;             ///< key in JSON, ends in the unit: "swing_rad"
+  const char* unit;             ///< "rad", "m", "s", "W" or "-"
+  const char* text;             ///< readable
+  const char* option;           ///< on the command line, "swing"; empty: follows the goal's word
+  double DigObjective::*field;  ///< where it is kept
+  double highest = 1e9;         ///< the lowest is 0
 
+  /// Whether the worth by this goal depends on it.
   bool matters_to(const DigGoalInfo& goal) const;
 };
 const std::vector<DigObjectiveParameter>& objective_parameters();
