@@ -420,10 +420,10 @@ class Panel:
         self.parts.append(f'<polyline points="{where}" fill="none" stroke="{colour}" '
                           f'stroke-width="{width}" stroke-dasharray="{dash}"/>')
 
-    def dot(self, point, colour, label):
+    def dot(self, point, colour, label, below=False):
         x, y = self.at(*point)
         self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>')
-        self.text((x, y), (6, -5), label, "start")
+        self.text((x, y), (6, 12 if below else -5), label, "start")
 
 
 def reference(group):
@@ -459,21 +459,23 @@ def picture(done):
     ten = [dig for name, dig in done.items() if name.startswith("ten-")]
     panels = [Panel((60, 70), "Fixed path: drag force", ("drag [m]", "kN"), ((0, 1.5), (0, 10))),
               Panel((460, 70), "Fixed path: soil in the bucket", ("drag [m]", "kg"),
-                    ((0, 1.5), (0, 600)))]
+                    ((0, 1.5), (0, 300)))]
     forces(panels[0], fixed)
     fill(panels[1], fixed)
     if longs:
         panels.append(Panel((60, 380), "Long shallow path: drag force", ("drag [m]", "kN"),
-                            ((0, 3), (0, 10))))
+                            ((0, 3), (0, 5))))
         forces(panels[-1], longs)
     if ten:
         pairs = [(per_work(dig.judge), per_work(dig.ours)) for dig in ten]
         panels.append(Panel((460, 380), "Ten paths: kg per kJ of the tool",
                             ("judge", "excavplan"),
                             ((0, top(max(p[0] for p in pairs), 10)),
-                             (0, top(max(p[1] for p in pairs), 50)))))
+                             (0, top(max(p[1] for p in pairs), 10)))))
         for dig, pair in zip(ten, pairs):
-            panels[-1].dot(pair, RED, dig.name[-2:].lstrip("0"))
+            crowded = any(0 < other[1] - pair[1] < 5 and abs(other[0] - pair[0]) < 2
+                          for other in pairs)
+            panels[-1].dot(pair, RED, dig.name[-2:].lstrip("0"), crowded)
     key = [(LIGHT, "", "judge, 35, 40 mm"), (GREY, "", "30 mm"), (BLUE, "", "20, 25 mm"),
            (RED, "", "excavplan, peak friction"), (RED, "6 4", "critical friction")]
     parts = [part for panel in panels for part in panel.parts]
