@@ -3,6 +3,7 @@
 #include <excavplan/experiment/experiment.hpp>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <variant>
@@ -83,7 +84,10 @@ class Experiment {
   /// The rule that puts the start of a planned dig nearest to where it is.
   StartRule rule_behind(const PlannedDig& planned) const {
     const auto distance = [&](const StartRule& rule) {
-      return std::abs(dig(planned.parameters, rule).start_x - planned.start_x);
+      const auto path = DigLayout(machine_, ground_).path(planned.parameters, rule);
+      const auto* laid = std::get_if<DigPath>(&path);
+      return laid ? std::abs(laid->start_x - planned.start_x)
+                  : std::numeric_limits<double>::infinity();
     };
     const StartRule work = StartRule::Kind::least_work;
     const StartRule margin = StartRule::Kind::largest_margin;
@@ -102,10 +106,14 @@ class Experiment {
 
 /// Why the fixed path would lift or drag the machine in this soil; empty if it would not.
 std::string what_moves(const Experiment& experiment, const DigParameters& path) {
-  const auto outcome = experiment.attempt(path, {});
-  const auto* failure = std::get_if<DigFailure>(&outcome);
-  const auto* stall = failure ? std::get_if<Stall>(failure) : nullptr;
-  return stall && stall->cause != Stall::Cause::torque ? describe(*failure) : "";
+  for (const StartRule::Kind rule :
+       {StartRule::Kind::largest_margin, StartRule::Kind::least_work}) {
+    const auto outcome = experiment.attempt(path, rule);
+    const auto* failure = std::get_if<DigFailure>(&outcome);
+    const auto* stall = failure ? std::get_if<Stall>(failure) : nullptr;
+    if (stall && stall->cause != Stall::Cause::torque) return describe(*failure);
+  }
+  return {};
 }
 
 }  // namespace

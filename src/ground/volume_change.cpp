@@ -209,7 +209,10 @@ void warn_of_loss_beside_heap(const std::vector<Area>& areas, const ChangeOption
       if (area.kinds[i] == ZoneKind::other && beside[i]) lost -= area.zones[i].volume;
     }
   }
-  if (!(lost > largest_loss_beside_heap * change.before.value)) return;
+  const bool known = std::any_of(change.warnings.begin(), change.warnings.end(),
+                                 [](const Warning& w) { return w.code == "looks_swapped"; });
+  const double hole = change.before.value;
+  if (known || !(hole > 0.0) || !(lost > largest_loss_beside_heap * hole)) return;
   change.warnings.push_back(
       {"looks_swapped", "before and after are probably swapped: the ground fell by " +
                             litres_as_m3(lost) + " beside what would be the heap, and by " +

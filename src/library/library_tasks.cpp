@@ -93,7 +93,8 @@ class EntrySearch {
     if (!attempts_.best() || attempts_.rank() < task.expected) {
       attempt(cold_search(search_, 1));
     }
-    if (!attempts_.fills_enough()) attempt(cold_search(search_, 8));
+    const bool anchored = std::holds_alternative<AnchoredSearch>(search_.method);
+    if (anchored && !attempts_.fills_enough()) attempt(cold_search(search_, 8));
   }
 
   /// Half the effort, and the other half where it pays. @return whether it did

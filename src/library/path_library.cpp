@@ -142,10 +142,14 @@ Around around(const PathLibrary& library, double density, double slope) {
           from == to ? 0.0 : (slope - from) / (to - from)};
 }
 
-/// The error at a share of the way from one entry to the next.
-MidwayError scaled(const MidwayError& midway, double share) {
-  const double size = 4.0 * share * (1.0 - share);
-  return {size * midway.loss, size * midway.expectation};
+/// The error at a share of the way from one entry to the next. It is none at the entry whose dig is
+/// used.
+MidwayError scaled(const MidwayError& midway, Between between, double share) {
+  const double size = share == 0.0 || share == 1.0 ? 0.0
+                      : between == Between::upper  ? 2.0 * (1.0 - share)
+                      : between == Between::lower  ? 2.0 * share
+                                                   : 4.0 * share * (1.0 - share);
+  return {std::min(1.0, size * midway.loss), size * midway.expectation};
 }
 
 MidwayError larger(const MidwayError& a, const MidwayError& b) {
@@ -159,7 +163,8 @@ PlannedDig dig_at(const Densities& place) {
 }
 
 MidwayError error_at(const Densities& place) {
-  return scaled(place.below->to_next_density.midway, place.share);
+  const Interpolation& next = place.below->to_next_density;
+  return scaled(next.midway, next.between, place.share);
 }
 
 std::string difference(const std::string& what, const std::string& own, const std::string& asked) {
@@ -258,7 +263,7 @@ MidwayError look_up_error(const PathLibrary& library, double density_percent, do
   const MidwayError of_density = larger(error_at(place.low), error_at(place.high));
   const MidwayError of_slope =
       scaled(larger(place.low.below->to_next_slope.midway, place.low.above->to_next_slope.midway),
-             place.share);
+             place.low.nearest()->to_next_slope.between, place.share);
   return {std::min(1.0, of_density.loss + of_slope.loss),
           of_density.expectation + of_slope.expectation};
 }

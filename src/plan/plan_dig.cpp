@@ -232,24 +232,29 @@ std::function<bool(const SearchProgress&)> as_part_of(
 }
 
 /// Searches the path first, with the start of least work: without a fourth number that finds the
-/// valley that the search goes on in. @return digs that it took
-int add_path_of_least_work(const Task& task, const SoilSimulator& simulator,
-                           DigSearchOptions& options) {
-  const int budget = options.stop.evaluations;
-  const bool memetic = std::holds_alternative<MemeticSearch>(options.method);
-  if (options.start_rule.kind != StartRule::Kind::searched || !memetic) return 0;
-  if (budget < least_to_divide) return 0;
+/// valley that the search goes on in. Only where the number of digs alone ends a search.
+/// @param options  of the search that follows, which goes on from there
+/// @return nothing if the search is not divided
+std::optional<Found<DigSearchResult>> search_by_least_work(const Task& task,
+                                                           const SoilSimulator& simulator,
+                                                           DigSearchOptions& options) {
+  const StopRules& stop = options.stop;
+  const bool by_digs = std::holds_alternative<MemeticSearch>(options.method) &&
+                       stop.evaluations >= least_to_divide && stop.stall == 0 &&
+                       stop.seconds == 0.0 && !stop.target;
+  if (options.start_rule.kind != StartRule::Kind::searched || !by_digs) return std::nullopt;
+  const int budget = stop.evaluations;
   DigSearchOptions first = options;
   first.start_rule = StartRule::Kind::least_work;
   first.checkpoint = {};
   first.stop.evaluations = budget / 3;
   first.progress = as_part_of(options.progress, 0, budget);
-  const auto found = search_dig(task.machine, simulator, task.ground, first);
-  const int used = found ? found->evaluations : first.stop.evaluations;
+  auto found = search_dig(task.machine, simulator, task.ground, first);
+  const int used = found ? found->evaluations : found.evaluations;
   options.stop.evaluations = budget - used;
   options.progress = as_part_of(options.progress, used, budget);
   if (found) options.start.insert(options.start.begin(), found->dig.parameters);
-  return used;
+  return found;
 }
 
 /// @param best  of what was found, if anything was
@@ -267,9 +272,22 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
     }
   }
   plan.stopped = best ? best->stopped : found.stopped;
+  if (!best) plan.evaluations = found.evaluations;
   if (best || plan.stopped) return;
   plan.reason = "no dig inside the search ranges can be done on this ground";
   plan.nearest = found.nearest;
+}
+
+void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchOptions& options,
+                    DigPlan& plan) {
+  const auto first = search_by_least_work(task, simulator, options);
+  if (first && (*first ? (*first)->stopped : first->stopped)) {
+    take(*first, *first ? &**first : nullptr, plan);
+    return;
+  }
+  const auto found = search_dig(task.machine, simulator, task.ground, options);
+  take(found, found ? &*found : nullptr, plan);
+  if (first) plan.evaluations += *first ? (*first)->evaluations : first->evaluations;
 }
 
 void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
@@ -280,11 +298,7 @@ void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPl
     take(found, found ? &found->expected : nullptr, plan);
     if (plan.dig && !plan.stopped) plan.search->value_of_knowing = found->value_of_knowing();
   } else {
-    const SoilSimulator& simulator = *soils.front().simulator;
-    const int used = add_path_of_least_work(task, simulator, options);
-    const auto found = search_dig(task.machine, simulator, task.ground, options);
-    take(found, found ? &*found : nullptr, plan);
-    plan.evaluations += used;
+    search_certain(task, *soils.front().simulator, options, plan);
   }
 }
 

@@ -62,6 +62,7 @@ Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& s
   Found<DigSearchResult> none;
   none.nearest = problem.nearest_of(found);
   none.stopped = found.stopped_by == StopReason::cancelled;
+  none.evaluations = found.evaluations;
   return none;
 }
 

@@ -85,6 +85,7 @@ Fallback measure_fallback(const Machine& machine, const DigPath& path, const Hei
         add_cell(floor, before.z(row, col), after.z(row, col), rows.cover(row, before) * length,
                  sum);
       }
+      if (!(rows.beside > 0.0)) continue;
       for (const Eigen::Index edge : {rows.first, rows.end - 1}) {
         add_cell(floor, before.z(edge, col), after.z(edge, col), rows.beside * length, sum);
       }

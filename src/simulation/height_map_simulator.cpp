@@ -49,11 +49,13 @@ class Dig {
     const std::vector<DigPose>& poses = path_.poses;
     DigResult& result = account_.result;
     const double energy_worth = energy_worth_spending(poses.back(), options_.give_up_below);
-    for (std::size_t i = 0; i + 1 < poses.size() && !result.stall && !result.given_up; ++i) {
-      advance(stretch(i));
+    std::size_t reached = 0;
+    while (reached + 1 < poses.size() && !result.stall && !result.given_up) {
+      advance(stretch(reached));
+      if (!result.stall) ++reached;
       result.given_up = result.energy.total > energy_worth;
     }
-    come_clear(poses.back());
+    come_clear(poses[reached].bucket, poses.back());
     if (options_.settle) slump(ground_, moving_, {model_.slopes.heap, false}, sweeps_at_the_end);
     sum_loose_soil(result.soil);
     account_.close(ground_, fill_, model_.slopes.heap);
@@ -97,14 +99,24 @@ class Dig {
     const double before = fill_;
     cut(s);
     pile_.move_to(s.to.x(), resistance.wedge_length);
-    const double ahead = level_ahead(s.to.x());
+    const double ahead = level_ahead(s.to);
     spill(ahead,
           [&](double level) { return room_in_bucket(std::max(ahead, level) - s.to.y(), before); });
   }
 
-  /// Level of the surface just ahead of the lip.
-  double level_ahead(double lip_x) const {
-    return resistance_.surface_at(swath_.column(lip_x - ground_.cell_size()));
+  /// Level of the surface just ahead of the lip, where it is known; else that of the lip.
+  double level_ahead(const Vector2d& lip) const {
+    const Index col = swath_.nearest_column(lip.x() - ground_.cell_size());
+    double sum = 0.0;
+    double known = 0.0;
+    for (Index i = 0; i < swath_.rows(); ++i) {
+      const Index row = swath_.first_row() + i;
+      const double surface = ground_.before().bank.z(row, col) + ground_.loose(row, col);
+      if (std::isnan(surface)) continue;
+      sum += swath_.cover(i) * surface;
+      known += swath_.cover(i);
+    }
+    return known > 0.0 ? sum / known : lip.y();
   }
 
   /// How much soil the bucket may hold while it is pushed in, with the soil ahead `support` above
@@ -203,9 +215,9 @@ class Dig {
       if (gain_ > 0.0 && level > low && level < high) continue;
       level = std::isinf(high) ? low + 0.1 : std::isinf(low) ? high - 0.1 : 0.5 * (low + high);
     }
-    top_of_pile_ = level;
     const double spilled = std::min(fill_, pile_.size(level).volume);
     if (!(spilled > 0.0)) return;
+    top_of_pile_ = level;
     fill_ -= spilled;
     moving_.include(pile_.lay(level, spilled));
   }
@@ -252,12 +264,12 @@ class Dig {
     return cavity_.capacity(0.0, slopes) * model_.loose.bulk_density / efficiency;
   }
 
-  /// The bucket leaves the ground: what no soil ahead supports any more falls off, no wall is held
-  /// any more.
-  void come_clear(const DigPose& last) {
+  /// The bucket leaves the ground where it has come to, in the attitude of its last pose: what no
+  /// soil ahead supports any more falls off, no wall is held any more.
+  void come_clear(const BucketPose& at, const DigPose& last) {
     const HoldingSlopes slopes = turn_clear(last);
-    pile_.move_to(last.bucket.x, 0.0);
-    spill(level_ahead(last.bucket.x), [&](double) { return cavity_.capacity(0.0, slopes); });
+    pile_.move_to(at.x, 0.0);
+    spill(level_ahead({at.x, at.z}), [&](double) { return cavity_.capacity(0.0, slopes); });
     moving_.include(passed_);
     ground_.wake(ground_.widened(moving_, 1));
   }

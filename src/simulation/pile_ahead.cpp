@@ -29,7 +29,7 @@ bool PileAhead::look(double top) {
   seen_to_ = top + spare_top;
   const double cell = ground_.cell_size();
   const double rim = 1.5 * cell;
-  const Index lip = swath_.column(lip_x_);
+  const Index lip = swath_.nearest_column(lip_x_);
   for (double reach = foot_ + 2.0 * rim;; reach *= 1.5) {
     places_.clear();
     foot_ = 0.0;

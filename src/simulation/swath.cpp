@@ -59,6 +59,11 @@ Index Swath::column(double x) const {
   return static_cast<Index>(col);
 }
 
+Index Swath::nearest_column(double x) const {
+  const double col = std::floor((x - map_.origin.x()) / map_.cell_size);
+  return static_cast<Index>(std::clamp(col, 0.0, static_cast<double>(map_.z.cols() - 1)));
+}
+
 bool Swath::is_known(Index col) const {
   return !map_.z.col(col).segment(first_row_, rows()).isNaN().any();
 }

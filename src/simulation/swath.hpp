@@ -26,10 +26,11 @@ class Swath {
   Eigen::Index rows() const { return cover_.size(); }
   Eigen::Index end_row() const { return first_row_ + cover_.size(); }
   double cover(Eigen::Index i) const { return cover_(i); }  ///< of row first_row() + i, 0 .. 1
-  double cover_sum() const { return cover_.sum(); }
 
   /// @throws Error (bad_input) if x is off the map
   Eigen::Index column(double x) const;
+  /// The same, but the column at the edge of the map if x is off it.
+  Eigen::Index nearest_column(double x) const;
 
   /// True if the column is known in every row.
   bool is_known(Eigen::Index col) const;

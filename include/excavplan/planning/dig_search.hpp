@@ -40,9 +40,8 @@ struct DigSearchOptions : SearchSettings {
 /// of evaluations allows.
 DigSearchOptions budget_search();
 
-/// Digs of one search that come within 1 % of the best on level ground (docs/methods.md#planning):
-/// 600; for each soil that uncertain ground may be, and for all together, 100 from a known good dig
-/// on and 200 from nothing. Ours.
+/// Digs of one search; what they reach: docs/methods.md#planning. 600; for each soil that uncertain
+/// ground may be, and for all together, 100 from a known good dig on and 200 from nothing. Ours.
 int evaluation_budget(bool uncertain, bool from_known);
 
 /// The best dig found.
@@ -79,6 +78,7 @@ struct Found : std::optional<Result> {
   using std::optional<Result>::optional;
   std::optional<NearestDig> nearest;  ///< if empty; nothing if it was stopped before the first dig
   bool stopped = false;               ///< if empty: by `progress`
+  int evaluations = 0;                ///< if empty: digs simulated, of a search in one soil
 };
 
 /// Searches the numbers of a dig for the highest worth. All checks of the path come before the

@@ -25,7 +25,7 @@ struct CycleOptions {
 enum class Between {
   mix,      ///< linear in all numbers
   nearest,  ///< of the two, as they differ so much that their mix is worse
-  lower,    ///< the one of the lower density or slope: the mix, or the other, stalls
+  lower,    ///< the one of the lower density or slope, as the others are worse or stall
   upper,    ///< the other one
 };
 
