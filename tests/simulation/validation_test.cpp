@@ -174,7 +174,7 @@ std::uint64_t hash_of_mathematics() {
 
 // One number for g++ and clang++, -O0 and -O3: no fused multiply-add, no reordered sums.
 TEST_F(Validation, SameBytesFromEveryCompilerAndOptimisationLevel) {
-  if (hash_of_mathematics() != 0x73bdbefd5cf88d48ULL) {
+  if (hash_of_mathematics() != 0xe221c715684e55b4ULL) {
     GTEST_SKIP() << "this C library rounds otherwise than the one of the golden number: 0x"
                  << std::hex << hash_of_mathematics();
   }
@@ -184,7 +184,7 @@ TEST_F(Validation, SameBytesFromEveryCompilerAndOptimisationLevel) {
   for (const double loose : result.patch.loose.reshaped()) hash.add(loose);
   hash.add(result.payload_mass);
   hash.add(result.energy.total);
-  EXPECT_EQ(hash.value(), 0x73bdbefd5cf88d48ULL) << "0x" << std::hex << hash.value();
+  EXPECT_EQ(hash.value(), 0xd14041b4c376470cULL) << "0x" << std::hex << hash.value();
 }
 
 }  // namespace
