@@ -28,6 +28,7 @@ using Eigen::Vector2d;
 // Numbers of our own choice; reasons: docs/methods.md#simulation.
 constexpr int sweeps_at_the_end = 2000;  // until all is at rest; a dig needs some tens
 constexpr double room_around = 0.5;      // of the window around the path at first [m]
+constexpr double rounding = 1e-15;       // of a volume [m^3]
 constexpr double spill_error = 1e-8;     // of the soil that has no room in the bucket [m^3]
 
 /// One dig from its first pose to its end.
@@ -218,7 +219,7 @@ class Dig {
     const double spilled = std::min(fill_, pile_.size(level).volume);
     if (!(spilled > 0.0)) return;
     top_of_pile_ = level;
-    fill_ -= spilled;
+    fill_ = fill_ - spilled > rounding ? fill_ - spilled : 0.0;
     moving_.include(pile_.lay(level, spilled));
   }
 
