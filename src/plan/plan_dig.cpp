@@ -214,8 +214,13 @@ std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
 DigSearchOptions search_options(const Task& task, DigPlan& plan) {
   DigSearchOptions options = task.options.search;
   if (options.start.empty()) options.start = known_start(task, plan);
-  if (options.stop.evaluations == 0 && std::holds_alternative<MemeticSearch>(options.method)) {
+  auto* memetic = std::get_if<MemeticSearch>(&options.method);
+  if (options.stop.evaluations == 0 && memetic) {
     options.stop.evaluations = evaluation_budget(task.uncertain(), !options.start.empty());
+    if (!task.uncertain()) {  // slopes and pits have more valleys than level ground
+      memetic->first_generation = 48;
+      memetic->polish_evaluations = 30;
+    }
   }
   return options;
 }
