@@ -45,7 +45,8 @@ HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,
       }
     }
   }
-  if (volumes.excavated > 0.0) {
+  constexpr double least_hole = 1e-6;  // that has a bulking factor [m^3]; ours
+  if (volumes.excavated > least_hole) {
     volumes.bulking_factor = (volumes.spilled + volumes.dumped) / volumes.excavated;
   }
   return volumes;

@@ -14,7 +14,9 @@
 namespace excavplan {
 namespace {
 
-constexpr double steepest_friction = 1.05;       // 60 deg; no soil has more [rad]
+constexpr double steepest_friction = 1.05;  // 60 deg; no soil has more [rad]
+// The resistance has terms of cohesion over its tangent; ours [rad].
+constexpr double flattest_friction = 0.01;
 constexpr double least_overburden_depth = 0.01;  // the stress law ends here: q -> 0 at the surface
 constexpr double pascal_per_kilopascal = 1000.0;
 
@@ -54,10 +56,11 @@ void check_consistency(const JsonObject& file, const SoilKind& soil) {
                                    number_text(saturation) + " times over; must not exceed 1");
   }
   const double densest = soil.friction_loosest + soil.friction_gain;
-  if (densest < 0.0 || densest > steepest_friction) {
+  if (densest < flattest_friction || densest > steepest_friction) {
     file.fail("friction_gain_rad", "is " + number_text(soil.friction_gain) +
                                        ", which makes the friction angle of the densest state " +
-                                       number_text(densest) + " rad; must be in 0 .. " +
+                                       number_text(densest) + " rad; must be in " +
+                                       number_text(flattest_friction) + " .. " +
                                        number_text(steepest_friction));
   }
 }
@@ -104,7 +107,7 @@ SoilKind load_soil(const std::string& path) {
   soil.void_ratio_loose = file.number("void_ratio_loose", 0.01, 20.0);
   soil.cohesion_loosest = file.number("cohesion_loosest_pa", 0.0, 1e6);
   soil.cohesion_growth = file.number("cohesion_growth", 0.0, 10.0);
-  soil.friction_loosest = file.number("friction_loosest_rad", 0.0, steepest_friction);
+  soil.friction_loosest = file.number("friction_loosest_rad", flattest_friction, steepest_friction);
   soil.friction_gain = file.number("friction_gain_rad", -steepest_friction, steepest_friction);
   soil.tool_friction_ratio = file.number("tool_friction_ratio", 0.0, 1.0);
   soil.adhesion_ratio = file.number("adhesion_ratio", 0.0, 1.0);
