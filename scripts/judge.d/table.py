@@ -291,7 +291,7 @@ def sizes_table(done):
 def size_zero(group):
     """The line through sizes that leave 3.5 diameters between cut and bottom of the box."""
     group = [dig for dig in group if 7 * dig.run.radius <= dig.run.margins[3]]
-    if len({dig.run.radius for dig in group}) < 2:
+    if len({dig.run.radius for dig in group}) < 3:
         return []
     found = {name: at_zero([(dig.run.radius, dig.judge[name]) for dig in group])
              for name in FIGURES}
