@@ -236,6 +236,14 @@ std::function<bool(const SearchProgress&)> as_part_of(
   };
 }
 
+int digs_of(const Found<DigSearchResult>& found) {
+  return found ? found->evaluations : found.evaluations;
+}
+
+bool was_stopped(const Found<DigSearchResult>& found) {
+  return found ? found->stopped : found.stopped;
+}
+
 /// Searches the path first, with the start of least work: without a fourth number that finds the
 /// valley that the search goes on in. Only where the number of digs alone ends a search.
 /// @param options  of the search that follows, which goes on from there
@@ -255,9 +263,8 @@ std::optional<Found<DigSearchResult>> search_by_least_work(const Task& task,
   first.stop.evaluations = budget / 3;
   first.progress = as_part_of(options.progress, 0, budget);
   auto found = search_dig(task.machine, simulator, task.ground, first);
-  const int used = found ? found->evaluations : found.evaluations;
-  options.stop.evaluations = budget - used;
-  options.progress = as_part_of(options.progress, used, budget);
+  options.stop.evaluations = budget - digs_of(found);
+  options.progress = as_part_of(options.progress, digs_of(found), budget);
   if (found) options.start.insert(options.start.begin(), found->dig.parameters);
   return found;
 }
@@ -286,13 +293,10 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
 void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchOptions& options,
                     DigPlan& plan) {
   const auto first = search_by_least_work(task, simulator, options);
-  if (first && (*first ? (*first)->stopped : first->stopped)) {
-    take(*first, *first ? &**first : nullptr, plan);
-    return;
-  }
-  const auto found = search_dig(task.machine, simulator, task.ground, options);
+  const bool ended = first && was_stopped(*first);
+  const auto found = ended ? *first : search_dig(task.machine, simulator, task.ground, options);
   take(found, found ? &*found : nullptr, plan);
-  if (first) plan.evaluations += *first ? (*first)->evaluations : first->evaluations;
+  if (first && !ended) plan.evaluations += digs_of(*first);
 }
 
 void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {

@@ -187,9 +187,7 @@ class Dig {
       account_.result.soil.bank_cut += bank * area;
       account_.result.soil.loose_cut += loose * area;
     }
-    const CellBlock column = {swath_.first_row(), swath_.end_row(), col, col + 1};
-    moving_.include(column);
-    passed_.include(column);
+    moving_.include({swath_.first_row(), swath_.end_row(), col, col + 1});
   }
 
   /// What has no room in the bucket comes to lie in the pile ahead. That rises from `level`, or is
@@ -271,7 +269,6 @@ class Dig {
     const HoldingSlopes slopes = turn_clear(last);
     pile_.move_to(at.x, 0.0);
     spill(level_ahead({at.x, at.z}), [&](double) { return cavity_.capacity(0.0, slopes); });
-    moving_.include(passed_);
     ground_.wake(ground_.widened(moving_, 1));
   }
 
@@ -305,8 +302,9 @@ class Dig {
   double top_of_pile_ = -std::numeric_limits<double>::infinity();  ///< lately [m]
   double gain_ = 0.0;  ///< of soil in and ahead of the bucket per rise of that, lately [m^2]
   double fill_ = 0.0;  ///< loose soil in the bucket [m^3]
-  CellBlock moving_;   ///< cells that may not be at rest
-  CellBlock passed_;   ///< cells the lip has passed, whose walls the bucket holds until it is out
+  /// Cells that may not be at rest: those that the lip has passed, whose walls the bucket holds
+  /// until it is out, and those of the pile.
+  CellBlock moving_;
 };
 
 }  // namespace

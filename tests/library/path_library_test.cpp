@@ -504,7 +504,12 @@ TEST(PathLibrary, TakesTheDigOfOneEntryWhereTheOthersStall) {
   EXPECT_DOUBLE_EQ(look_up(library, 0.0).payload_mass, 400.0);
   EXPECT_DOUBLE_EQ(look_up(library, 10.0).payload_mass, 500.0);
   EXPECT_DOUBLE_EQ(look_up(library, 50.0).payload_mass, 500.0);
+  // Measured midway, 0.01; largest where the dig is farthest from its entry.
+  EXPECT_DOUBLE_EQ(look_up_error(library, 10.0).loss, 0.016);
+  EXPECT_DOUBLE_EQ(look_up_error(library, 25.0).loss, 0.01);
+  EXPECT_DOUBLE_EQ(look_up_error(library, 50.0).loss, 0.0);
   library.entries[0].to_next_density.between = Between::lower;
+  EXPECT_DOUBLE_EQ(look_up_error(library, 40.0).loss, 0.016);
   EXPECT_DOUBLE_EQ(look_up(library, 40.0).payload_mass, 400.0);
   EXPECT_DOUBLE_EQ(look_up(library, 50.0).payload_mass, 500.0);
 }

@@ -391,10 +391,12 @@ TEST(MachineFile, EveryNumberHasASource) {
   expect_sources(file, json::object(), "");
 }
 
+/// What is said about the shipped file with one value changed.
+std::string set(const char* pointer, const json& value) {
+  return complaint_about([&](json& f) { f[json::json_pointer(pointer)] = value; });
+}
+
 TEST(MachineFile, NamesKeyValueAndRuleOfWhatItRefuses) {
-  const auto set = [](const char* pointer, const json& value) {
-    return complaint_about([&](json& f) { f[json::json_pointer(pointer)] = value; });
-  };
   EXPECT_EQ(complaint_about([](json&) {}), "no error");
   EXPECT_EQ(set("/geometry/boom_length_m", 0.0),
             "geometry.boom_length_m: is 0, must be above 0 and at most 100");
@@ -497,9 +499,6 @@ TEST(MachineFile, NamesKeyValueAndRuleOfABodyItRefuses) {
 }
 
 TEST(MachineFile, NamesKeyValueAndRuleOfSwingAndEngineItRefuses) {
-  const auto set = [](const char* pointer, const json& value) {
-    return complaint_about([&](json& f) { f[json::json_pointer(pointer)] = value; });
-  };
   EXPECT_EQ(set("/swing/speed_rad_per_s", 0),
             "swing.speed_rad_per_s: is 0, must be above 0 and at most 100");
   EXPECT_EQ(set("/swing/torque_n_m", -1),

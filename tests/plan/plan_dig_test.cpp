@@ -313,12 +313,17 @@ TEST_F(PlanDig, LooksUpInTheLibraryOfItsGoal) {
             std::string::npos);
 }
 
+TEST_F(PlanDig, NoRangeOfTheMachineEndsAtItsBestDig) {
+  EXPECT_FALSE(warns(plan(40.0, searched(0)), "optimum_at_bound"));
+}
+
 TEST_F(PlanDig, SaysWhereTheBucketCannotBeFilledAsAsked) {
   PlanOptions options = searched(30);
   options.search.bounds.upper = {0.5, 0.3, 0.6};  // too flat for the scoop to fill it
   const DigPlan found = plan(40.0, options);
   EXPECT_LT(found.dig->fill, 0.8);
   EXPECT_TRUE(warns(found, "min_fill_relaxed"));
+  EXPECT_TRUE(warns(found, "optimum_at_bound"));
   options.search.objective.min_fill = 0.0;
   EXPECT_FALSE(warns(plan(40.0, options), "min_fill_relaxed"));
 }

@@ -66,6 +66,7 @@ TEST_F(Tools, PlannedPathBeatsTheFixedOneInEverySoil) {
               << gain << " %\n";
     EXPECT_GT(gain, 0.0);
     EXPECT_NEAR(gain, 100.0 * (planned / fixed - 1.0), 1e-9);
+    EXPECT_EQ(condition.at("machine_held_down"), expected[i].first == "hard");
     EXPECT_NEAR(number(condition, "/fixed/path/penetration_angle_rad"), std::atan(1.0), 1e-12);
     EXPECT_NEAR(number(condition, "/fixed/path/penetration_length_m"), 0.35, 1e-12);
     EXPECT_NEAR(number(condition, "/fixed/path/drag_length_m"), 1.5, 1e-12);
