@@ -36,8 +36,9 @@ BulkingErrors bulking_errors(const VolumeChange& change) {
   const auto sd = [&](const Eigen::Matrix3d& covariance) {
     return std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
   };
-  return {sd(change.errors.noise), sd(change.errors.correlated), sd(change.errors.datum),
-          sd(change.errors.holes), sd(change.errors.faces)};
+  return {sd(change.errors.noise),  sd(change.errors.correlated), sd(change.errors.datum),
+          sd(change.errors.holes),  sd(change.errors.faces),      sd(change.errors.attribution),
+          sd(change.errors.scans())};
 }
 
 double free_of_fallback(double bulking_measured, double fallback_fraction) {

@@ -126,8 +126,10 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
                   std::vector<Warning>& warnings) {
   const std::string what = text_of(zone);
   if (zone.is_cut) {
-    warnings.push_back({"zone_at_border", what + " reaches the edge of the surveyed ground: its "
-                                                 "volume may be incomplete"});
+    warnings.push_back({"zone_at_border",
+                        what + " reaches the edge of the surveyed ground: its "
+                               "volume may be incomplete",
+                        true});
   }
   const double share = zone.unknown / zone.area;
   if (share > options.refused_unknown_share && matters) {
@@ -138,10 +140,11 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
                                            " %: its volume is not trustworthy, so the bulking "
                                            "factor is unknown"});
   } else if (share > options.max_unknown_share) {
-    warnings.push_back(
-        {"zone_partly_unseen", what + " was seen by no scan in " + hundredths(100.0 * share) +
-                                   " % of its cells, which were interpolated; the limit is " +
-                                   hundredths(100.0 * options.max_unknown_share) + " %"});
+    warnings.push_back({"zone_partly_unseen",
+                        what + " was seen by no scan in " + hundredths(100.0 * share) +
+                            " % of its cells, which were interpolated; the limit is " +
+                            hundredths(100.0 * options.max_unknown_share) + " %",
+                        true});
   }
 }
 

@@ -149,6 +149,10 @@ void apply_law(DensityEstimate& estimate) {
   estimate.density = relative_density(law, k);
   estimate.trustworthy = known_error && estimate.density->trustworthy;
   for (const Warning& warning : estimate.density->warnings) estimate.warnings.push_back(warning);
+  for (const Reading& reading : estimate.change.readings) {
+    const double shift = reading.bulking.value - estimate.bulking->value;
+    estimate.readings.push_back({reading, density_of_bulking(law.form, k.value + shift)});
+  }
 }
 
 Warning warning_of(const BlockReport& report) {
@@ -169,9 +173,7 @@ void judge_scans(DensityEstimate& estimate) {
     estimate.trustworthy = false;
   }
   for (const Warning& warning : estimate.change.warnings) {
-    if (warning.code == "zone_at_border" || warning.code == "zone_partly_unseen") {
-      estimate.trustworthy = false;
-    }
+    if (warning.ends_trust) estimate.trustworthy = false;
   }
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <excavplan/ground/bulking.hpp>
+
 #include "shared/quantity.hpp"
 #include "shared/results.hpp"
 
@@ -66,6 +68,30 @@ nlohmann::ordered_json zones_json(const VolumeChange& change) {
   return list;
 }
 
+nlohmann::ordered_json attribution_json(const VolumeChange& change) {
+  auto list = nlohmann::ordered_json::array();
+  for (const AttributedChange& open : change.attribution) {
+    list.push_back({{"what", open.what},
+                    {"volume_m3", open.volume.value},
+                    {"volume_sd_m3", open.volume.sd},
+                    {"counted", open.counted},
+                    {"probability", open.probability}});
+  }
+  return list;
+}
+
+nlohmann::ordered_json readings_json(const DensityEstimate& estimate) {
+  auto list = nlohmann::ordered_json::array();
+  for (const DensityReading& each : estimate.readings) {
+    list.push_back({{"what", each.reading.what},
+                    {"weight", each.reading.weight},
+                    {"bulking_factor", each.reading.bulking.value},
+                    {"bulking_factor_sd", each.reading.bulking.sd},
+                    {"density_percent", std::clamp(each.density_percent, 0.0, 100.0)}});
+  }
+  return list;
+}
+
 const char* name(VolumeMethod method) {
   return method == VolumeMethod::paper ? "paper" : "surface";
 }
@@ -75,6 +101,7 @@ nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
   json["volume"] = volumes_json(estimate.change);
   json["bulking_factor"] = nullptr;
   json["bulking_factor_sd"] = nullptr;
+  json["bulking_factor_sd_scans"] = nullptr;
   json["density_percent"] = nullptr;
   json["density_raw_percent"] = nullptr;
   json["density_sd_percent"] = nullptr;
@@ -82,6 +109,7 @@ nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
   if (estimate.bulking) {
     json["bulking_factor"] = estimate.bulking->value;
     json["bulking_factor_sd"] = estimate.bulking->sd;
+    json["bulking_factor_sd_scans"] = bulking_errors(estimate.change).scans;
     json["density_percent"] = estimate.density->percent;
     json["density_raw_percent"] = estimate.density->raw_percent;
     json["density_sd_percent"] = estimate.density->sd_percent;
@@ -111,6 +139,8 @@ nlohmann::ordered_json survey_json(const DensityEstimate& estimate) {
                             {"dump", registration_json(estimate.dump_registration)}};
   }
   json["zones"] = zones_json(estimate.change);
+  json["attribution"] = attribution_json(estimate.change);
+  json["readings"] = readings_json(estimate);
   return json;
 }
 

@@ -18,11 +18,13 @@ std::optional<Measured> bulking_factor(const VolumeChange& change);
 
 /// Standard deviation of the bulking factor by source [-].
 struct BulkingErrors {
-  double noise = 0.0;       ///< as in VolumeErrors
-  double correlated = 0.0;  ///< likewise
-  double datum = 0.0;       ///< likewise
-  double holes = 0.0;       ///< likewise
-  double faces = 0.0;       ///< likewise
+  double noise = 0.0;        ///< as in VolumeErrors
+  double correlated = 0.0;   ///< likewise
+  double datum = 0.0;        ///< likewise
+  double holes = 0.0;        ///< likewise
+  double faces = 0.0;        ///< likewise
+  double attribution = 0.0;  ///< likewise
+  double scans = 0.0;        ///< all but attribution
 };
 
 /// The standard deviation of bulking_factor() by source; all zero where there is no factor.

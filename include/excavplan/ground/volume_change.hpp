@@ -8,17 +8,12 @@
 #include <Eigen/Core>
 
 #include <excavplan/error.hpp>
+#include <excavplan/ground/attribution.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/ground/registration.hpp>
 #include <excavplan/ground/surface.hpp>
 
 namespace excavplan {
-
-/// A figure with its standard deviation.
-struct Measured {
-  double value = 0.0;  ///< in the unit of the figure
-  double sd = 0.0;     ///< standard deviation, likewise
-};
 
 /// Kind of a change of the ground.
 enum class ZoneKind {
@@ -69,14 +64,17 @@ struct ChangeOptions {
 
 /// Covariance of (excavated, spilled, dumped) by source [m^6].
 struct VolumeErrors {
-  Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();       ///< of each cell on its own
-  Eigen::Matrix3d correlated = Eigen::Matrix3d::Zero();  ///< that neighbouring cells share
-  Eigen::Matrix3d datum = Eigen::Matrix3d::Zero();       ///< motion left between the scans
-  Eigen::Matrix3d holes = Eigen::Matrix3d::Zero();       ///< ground that no scan saw
-  Eigen::Matrix3d faces = Eigen::Matrix3d::Zero();       ///< position of steep faces
+  Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();        ///< of each cell on its own
+  Eigen::Matrix3d correlated = Eigen::Matrix3d::Zero();   ///< that neighbouring cells share
+  Eigen::Matrix3d datum = Eigen::Matrix3d::Zero();        ///< motion left between the scans
+  Eigen::Matrix3d holes = Eigen::Matrix3d::Zero();        ///< ground that no scan saw
+  Eigen::Matrix3d faces = Eigen::Matrix3d::Zero();        ///< position of steep faces
+  Eigen::Matrix3d attribution = Eigen::Matrix3d::Zero();  ///< changes that are open
 
+  /// Covariance by the scans alone.
+  Eigen::Matrix3d scans() const { return noise + correlated + datum + holes + faces; }
   /// Covariance by all sources.
-  Eigen::Matrix3d total() const { return noise + correlated + datum + holes + faces; }
+  Eigen::Matrix3d total() const { return scans() + attribution; }
 };
 
 /// Volumes of one dig [m^3]: before = excavated, after = spilled + dumped (the paper's eqs. 3, 4).
@@ -91,6 +89,8 @@ struct VolumeChange {
   std::vector<ChangeZone> zones;         ///< of all areas
   std::vector<AreaChange> areas;         ///< one for a whole scene, two for a dig and a dump area
   std::vector<Warning> warnings;         ///< codes: measure_change()
+  std::vector<AttributedChange> attribution;  ///< changes that are open
+  std::vector<Reading> readings;  ///< of the scene, likeliest first; empty if one alone is likely
 };
 
 /// Surfaces of one area before and after a dig, on one grid, and their alignment.

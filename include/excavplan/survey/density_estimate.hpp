@@ -59,6 +59,12 @@ struct ScanRegistration {
   Alignment found;                                           ///< before anything was corrected
 };
 
+/// A reading of the scene with its density.
+struct DensityReading {
+  Reading reading;               ///< bulking factor as the scans give it
+  double density_percent = 0.0;  ///< by the law, also outside 0 .. 100
+};
+
 /// Result of estimate_density(). Without dumped soil in the scans it holds volumes, a warning, and
 /// neither bulking factor nor density.
 struct DensityEstimate {
@@ -71,6 +77,7 @@ struct DensityEstimate {
   BlockReport blocks;                            ///< voids between blocks of hard soil
   std::optional<Measured> corrected;             ///< k corrected for fallback and voids, if any [-]
   std::optional<RelativeDensity> density;        ///< percent, raw, sd, 95 % interval
+  std::vector<DensityReading> readings;          ///< as VolumeChange::readings
   double density_without_fallback = 0.0;         ///< assuming no fallback, where k is known [%]
   DensityLaw law;                                ///< that was used
   bool trustworthy = true;                       ///< false: see the warnings
