@@ -49,7 +49,7 @@ void sum_zones(Area& area) {
     if (area.unknown(cell.row, cell.col) != 0) zone.unknown += cell_area;
   });
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].centre /= area.zones[i].area;
+    if (area.zones[i].area > 0.0) area.zones[i].centre /= area.zones[i].area;
     area.zones[i].is_cut = ground.zone_is_cut[i];
   }
 }
@@ -201,6 +201,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.unknown = difference.isNaN().cast<int>();
   area.ground =
       find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell_size, options);
+  area.parts = part_zones(area.ground, area.grid.cell_size);
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 

@@ -12,8 +12,8 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "ground/attribution.hpp"
 #include "ground/surveyed_area.hpp"
-#include "ground/zone_kinds.hpp"
 
 namespace excavplan {
 namespace {
@@ -72,13 +72,21 @@ void sum_volumes(const std::vector<Area>& areas, VolumeChange& change) {
     change.errors.correlated += part * area.errors.correlated * part.transpose();
     change.errors.datum += part * area.errors.datum * part.transpose();
   }
+  change.excavated.value = volume(0);
+  change.spilled.value = volume(1);
+  change.dumped.value = volume(2);
+  change.before.value = volume(0);
+  change.after.value = volume(1) + volume(2);
+}
+
+/// Deviations of the volumes from the covariance by all sources.
+void set_deviations(VolumeChange& change) {
   const Eigen::Matrix3d covariance = change.errors.total();
   const Eigen::Vector3d after(0.0, 1.0, 1.0);
-  change.excavated = {volume(0), std::sqrt(covariance(0, 0))};
-  change.spilled = {volume(1), std::sqrt(covariance(1, 1))};
-  change.dumped = {volume(2), std::sqrt(covariance(2, 2))};
-  change.before = change.excavated;
-  change.after = {volume(1) + volume(2), std::sqrt(after.dot(covariance * after))};
+  change.excavated.sd = change.before.sd = std::sqrt(covariance(0, 0));
+  change.spilled.sd = std::sqrt(covariance(1, 1));
+  change.dumped.sd = std::sqrt(covariance(2, 2));
+  change.after.sd = std::sqrt(after.dot(covariance * after));
   change.covariance_before_after = covariance.row(0).dot(after);
 }
 
@@ -204,9 +212,9 @@ void warn_of_loss_beside_heap(const std::vector<Area>& areas, const ChangeOption
                               VolumeChange& change) {
   double lost = 0.0;
   for (const Area& area : areas) {
-    Chosen heap(area.zones.size());
+    std::vector<bool> heap(area.zones.size());
     for (std::size_t i = 0; i < heap.size(); ++i) heap[i] = area.kinds[i] == ZoneKind::dump;
-    const Chosen beside =
+    const std::vector<bool> beside =
         zones_near(area.ground.zone, heap, options.spill_distance / area.grid.cell_size);
     for (std::size_t i = 0; i < heap.size(); ++i) {
       if (area.kinds[i] == ZoneKind::other && beside[i]) lost -= area.zones[i].volume;
@@ -313,10 +321,14 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
 }
 
 VolumeChange result_of(std::vector<Area> areas, const ChangeOptions& options) {
+  const Attribution attribution = attribute(areas, options);
   VolumeChange change;
   sum_volumes(areas, change);
+  set_deviations(change);
   warn_of_balance(change);
   warn_of_loss_beside_heap(areas, options, change);
+  state_open_changes(areas, attribution, change);
+  set_deviations(change);
   warn_of_others(areas, change);
   for (Area& area : areas) report(area, options, change);
   return change;
@@ -342,7 +354,6 @@ VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& optio
   check(options);
   std::vector<Area> areas(1);
   areas[0] = survey(scene, options);
-  classify_scene(areas[0], options);
   return result_of(std::move(areas), options);
 }
 
@@ -352,8 +363,6 @@ VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
   std::vector<Area> areas(2);
   areas[0] = survey(dig, options);
   areas[1] = survey(dump, options);
-  classify_hole(areas[0], options);
-  classify_heap(areas[1], options);
   return result_of(std::move(areas), options);
 }
 
