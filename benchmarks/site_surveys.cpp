@@ -14,7 +14,7 @@
 #include <excavplan/survey/density_estimate.hpp>
 
 #include "base/parallel.hpp"
-#include "support/site_families.hpp"
+#include "support/site_scenes.hpp"
 
 /// @file
 /// Surveys of scenes with what a site brings, whose volumes are known, from clouds in memory to the

@@ -103,14 +103,12 @@ class Draft {
     return {centre.x() + reach * std::cos(angle), centre.y() + reach * std::sin(angle)};
   }
 
-  /// Puts loose soil into a further heap between nearest and farthest from the centre of the main
-  /// one, or as near as both have room.
-  void add_heap(double volume, double nearest, double farthest) {
+  /// Puts loose soil into a further heap, its foot `gap` away from that of the main one.
+  void add_heap(double volume, double gap) {
     Cone cone{0.0, 0.0, volume, random.uniform(28.0, 38.0) * degree};
     elsewhere += volume;
     compose();
-    const double free = scene.dig.heap_radius() + 0.5 * scene.dig.heap_crest + cone.radius() + 0.1;
-    const double reach = std::max(free, random.uniform(nearest, farthest));
+    const double reach = scene.dig.heap_radius() + 0.5 * scene.dig.heap_crest + cone.radius() + gap;
     const Eigen::Vector2d at = beside(scene.heap, reach, 0.0);
     cone.x = at.x();
     cone.y = at.y();

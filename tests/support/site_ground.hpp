@@ -12,21 +12,15 @@
 #include "support/site_draft.hpp"
 
 /// @file
-/// Families of scenes: what a site brings to a survey, one function for each.
+/// Families of scenes by what lies on a site, one function for each: further soil, tracks, things.
 
 namespace excavplan::scenes {
-
-/// A family of scenes and how one of them is made.
-struct Family {
-  std::string name;
-  void (*shape)(Draft&);
-};
 
 // ---- More soil, other soil --------------------------------------------------------------------
 
 inline void second_heap(Draft& d) {
   const double loose = d.bulking * d.scene.truth.hole;
-  d.add_heap(d.random.uniform(0.08, 0.16) * loose, 1.5, 3.0);
+  d.add_heap(d.random.uniform(0.08, 0.16) * loose, d.random.uniform(0.8, 2.5));
 }
 
 inline void second_scrape(Draft& d) {
@@ -68,20 +62,23 @@ inline void two_pits(Draft& d) {
 
 inline void two_pits_two_heaps(Draft& d) {
   two_pits(d);
-  d.add_heap(d.random.uniform(0.35, 0.5) * d.scene.truth.heap, 2.5, 3.5);
+  d.add_heap(d.random.uniform(0.35, 0.5) * d.scene.truth.heap, d.random.uniform(0.1, 1.5));
 }
 
 inline void two_heaps_alike(Draft& d) {
-  d.add_heap(d.random.uniform(0.45, 0.55) * d.scene.truth.heap, 2.0, 3.0);
+  d.add_heap(d.random.uniform(0.45, 0.55) * d.scene.truth.heap, d.random.uniform(0.1, 1.5));
 }
 
+/// Along an arc from the pit to the heap.
 inline void clods(Draft& d) {
   const auto count = 5 + d.random.index(16);
+  const double bow = d.random.uniform(-1.2, 1.2);
   for (std::uint64_t i = 0; i < count; ++i) {
     Clod clod;
     clod.volume = d.random.uniform(0.001, 0.004);
-    clod.x = d.random.uniform(2.0, d.scene.heap.x() - d.scene.dig.heap_radius());
-    clod.y = d.scene.heap.y() * clod.x / d.scene.heap.x() + 0.3 * d.random.normal();
+    const double along = d.random.uniform(0.3, 0.8);
+    clod.x = along * d.scene.heap.x();
+    clod.y = along * d.scene.heap.y() + 4.0 * along * (1.0 - along) * bow + 0.2 * d.random.normal();
     d.elsewhere += clod.volume;
     d.soil.emplace_back(clod);
   }
@@ -103,7 +100,7 @@ inline void rut_shallow(Draft& d) {
 }
 
 inline void ruts_apart(Draft& d) {
-  d.scene.other = d.tracks_from_pit(d.random.uniform(0.4, 0.9)).change();
+  d.scene.other = d.tracks_from_pit(d.random.uniform(0.4, 1.5)).change();
 }
 
 inline void berms_joined(Draft& d) {
@@ -206,47 +203,6 @@ inline void heap_at_wall(Draft& d) {
   d.scene.truth.heap = volume_of(d.scene.moved, {2.8, -4.0, 9.0, 4.0});
   d.scene.walls.push_back(wall);
   d.scene.sampling.face_share = 0.04;
-}
-
-// ---- All of them ------------------------------------------------------------------------------
-
-inline void nothing(Draft&) {}
-
-inline const std::vector<Family>& families() {
-  static const std::vector<Family> all = {{"clean", nothing},
-                                          {"second-heap", second_heap},
-                                          {"second-scrape", second_scrape},
-                                          {"two-pits", two_pits},
-                                          {"two-pits-two-heaps", two_pits_two_heaps},
-                                          {"two-heaps-alike", two_heaps_alike},
-                                          {"ruts-joined", ruts_joined},
-                                          {"rut-shallow", rut_shallow},
-                                          {"ruts-apart", ruts_apart},
-                                          {"berms-joined", berms_joined},
-                                          {"churned", churned},
-                                          {"crate-on-heap", crate_on_heap},
-                                          {"crate-in-pit", crate_in_pit},
-                                          {"clods", clods},
-                                          {"water", water},
-                                          {"water-even", water_even},
-                                          {"lawn", lawn},
-                                          {"grass", grass},
-                                          {"pressed", pressed},
-                                          {"heap-at-wall", heap_at_wall}};
-  return all;
-}
-
-/// A scene of the family; another for every seed, and for equal seeds another in every family.
-/// @param points in a cloud, where the family leaves them open
-inline SiteScene site_scene(const Family& family, std::uint64_t seed, std::size_t points) {
-  std::uint64_t of_name = 14695981039346656037ULL;  // FNV-1a
-  for (const char letter : family.name) {
-    of_name = (of_name ^ static_cast<unsigned char>(letter)) * 1099511628211ULL;
-  }
-  Draft draft(of_name ^ seed);
-  draft.scene.sampling.points = points;
-  family.shape(draft);
-  return draft.scene;
 }
 
 }  // namespace excavplan::scenes
