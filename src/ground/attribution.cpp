@@ -3,6 +3,7 @@
 #include "ground/attribution.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "base/text.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/robust.hpp"
 #include "ground/zone_shape.hpp"
 
 namespace excavplan {
@@ -31,9 +33,7 @@ constexpr double shallow_fall = 0.15;  // ground that sank by far less than the 
 constexpr double no_soil = 0.03;       // ruts and their berms, things, outside a given area
 }  // namespace prior
 
-constexpr double highest_track = 0.10;    // of a rut or a berm [m]
-constexpr double widest_track = 1.0;      // [m]
-constexpr double shortest_track = 0.8;    // [m]
+constexpr double highest_berm = 0.10;     // [m]
 constexpr double lasting_track = 0.6;     // a tail that keeps this share of its depth is one
 constexpr double berm_reach = 0.6;        // from a rut [m]
 constexpr double berm_share = 0.6;        // of its cells that lie there
@@ -41,6 +41,7 @@ constexpr double upright = 1.3;           // slope that no loose soil has: 52 de
 constexpr double least_upright = 0.12;    // height of a thing [m]
 constexpr double largest_upright = 0.25;  // of the hole's volume
 constexpr double small_share = 0.03;      // of the hole's volume: a clod, a blemish
+constexpr double shallow = 0.03;          // what feet, tracks and settling do [m]
 constexpr double shallow_share = 0.2;     // of the hole's height
 constexpr double swing_bulge = 1.25;      // ellipse about hole and heap
 constexpr double swing_room = 0.5;        // [m]
@@ -67,12 +68,47 @@ double likelihood_of_bulking(double k) {
 
 std::string hundredths(double value) { return number_text(std::round(value * 100.0) / 100.0); }
 
+/// Mean |D| of the far half of a tail over that of its near half, by distance from its parent.
+double lasting_of(const Area& area, std::size_t tail, const std::vector<Cell>& cells) {
+  const Eigen::ArrayXXd away = distance_to(area.ground.zone == area.parts.parent[tail]);
+  std::vector<double> distances;
+  for (const Cell at : cells) distances.push_back(away(at.row, at.col));
+  std::vector<double> sorted = distances;
+  const double middle = median(sorted);
+  std::array<double, 2> sums = {0.0, 0.0};
+  std::array<double, 2> counts = {0.0, 0.0};
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::size_t half = distances[i] > middle ? 1 : 0;
+    sums[half] += std::abs(area.ground.difference(cells[i].row, cells[i].col));
+    counts[half] += 1.0;
+  }
+  return counts[1] > 0.0 && sums[0] > 0.0 ? sums[1] / counts[1] / (sums[0] / counts[0]) : 1.0;
+}
+
+/// The zones of an area as the attribution sees them.
+struct Look {
+  ZoneShape shape;
+  double lasting = 1.0;  ///< lasting_of() a tail
+};
+
+std::vector<Look> looks_of(const Area& area) {
+  const std::vector<std::vector<Cell>> cells = cells_of(area.ground);
+  std::vector<Look> looks;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    looks.push_back({shape_of(area.ground.difference, cells[i], area.grid.cell_size)});
+    if (area.parts.part[i] == Part::tail && !cells[i].empty()) {
+      looks.back().lasting = lasting_of(area, i, cells[i]);
+    }
+  }
+  return looks;
+}
+
 /// Finds the changes of a scene.
 class ChangeReader {
  public:
   ChangeReader(std::vector<Area>& areas, const ChangeOptions& options)
       : areas_(areas), options_(options) {
-    for (const Area& area : areas) shapes_.push_back(shapes_of(area));
+    for (const Area& area : areas) looks_.push_back(looks_of(area));
     hole_ = largest(0, -1.0);
     if (hole_) mark_beside();
     heap_ = largest(areas.size() - 1, 1.0);
@@ -93,7 +129,7 @@ class ChangeReader {
   using Place = Change::Place;
 
   const ZoneSum& zone(Place p) const { return areas_[p.area].zones[p.zone]; }
-  const ZoneShape& shape(Place p) const { return shapes_[p.area][p.zone]; }
+  const ZoneShape& shape(Place p) const { return looks_[p.area][p.zone].shape; }
   Part part(Place p) const { return areas_[p.area].parts.part[p.zone]; }
   bool is(Place p, const std::optional<Place>& other) const {
     return other && p.area == other->area && p.zone == other->zone;
@@ -131,10 +167,20 @@ class ChangeReader {
   // ---- Tracks ---------------------------------------------------------------------------------
 
   bool looks_like_track(Place p) const {
-    const ZoneShape& s = shape(p);
     if (is(p, hole_) || is(p, heap_) || part(p) == Part::churn) return false;
-    return s.is_strip() && s.height < highest_track && s.width < widest_track &&
-           s.length > shortest_track && s.lasting > lasting_track;
+    return shape(p).is_track_wide() && looks_[p.area][p.zone].lasting > lasting_track &&
+           (shape(p).is_strip() || has_twin(p));
+  }
+
+  bool has_twin(Place p) const {
+    for (std::size_t z = 0; z < looks_[p.area].size(); ++z) {
+      const Place other{p.area, z};
+      if (z != p.zone && part(other) != Part::churn && zone(other).volume * zone(p).volume > 0.0 &&
+          !is(other, hole_) && !is(other, heap_) && shape(p).is_twin_of(shape(other))) {
+        return true;
+      }
+    }
+    return false;
   }
 
   void find_ruts() {
@@ -168,38 +214,43 @@ class ChangeReader {
 
   bool is_berm(Place p) const {
     const ZoneShape& s = shape(p);
-    if (s.height > highest_track || is(p, heap_)) return false;
+    if (s.height > highest_berm || is(p, heap_)) return false;
     if (part(p) == Part::tail && looks_like_track(p) && !beside(p)) return true;
     return lies_along_ruts(p) && (s.is_strip() || part(p) == Part::tail);
   }
 
   // ---- What a change looks like ---------------------------------------------------------------
 
-  struct Look {
+  struct Meaning {
     std::string what;
     double prior;
     bool is_group;  ///< all that look like this are one change
   };
 
-  Look look_of(Place p) const {
+  Meaning meaning_of(Place p) const {
     const bool fell = zone(p).volume < 0.0;
     if (part(p) == Part::churn) return {"stirred ground", prior::no_soil, true};
     if (!in_given(p, fell ? -1.0 : 1.0) && (fell || !beside(p))) {
       return {"ground outside the given area", prior::no_soil, true};
     }
-    return fell ? look_of_fall(p) : look_of_rise(p);
+    return fell ? meaning_of_fall(p) : meaning_of_rise(p);
   }
 
-  Look look_of_fall(Place p) const {
+  /// Of a tail that is no track: soil thins out, something else beside it does not.
+  double edge_prior(Place p) const {
+    return looks_[p.area][p.zone].lasting > lasting_track ? prior::low_edge : prior::certain;
+  }
+
+  Meaning meaning_of_fall(Place p) const {
     if (areas_.size() > 1 && p.area == 1) {
       return {"ground that fell in the dump area", prior::no_soil, true};
     }
     if (is(p, hole_)) return {"the hole", given(-1.0) ? prior::certain : prior::main_hole, false};
     if (is_rut_[p.area][p.zone]) return {"ruts", prior::no_soil, true};
-    if (part(p) == Part::tail) return {"the low edge of a hole", prior::low_edge, false};
+    if (part(p) == Part::tail) return {"the low edge of a hole", edge_prior(p), false};
     if (given(-1.0)) return {"a hole in the given area", prior::certain, false};
     if (beside(p)) return {"a hole beside the largest", prior::beside_main, false};
-    const bool is_shallow = shape(p).height < shallow_share * hole_height();
+    const bool is_shallow = shape(p).height < std::min(shallow, shallow_share * hole_height());
     if (is_shallow) return {"ground that fell a little", prior::shallow_fall, false};
     if (-zone(p).volume < small_share * hole_volume()) {
       return {"a small hole", prior::anywhere, false};
@@ -207,7 +258,7 @@ class ChangeReader {
     return {"a second hole", prior::second, false};
   }
 
-  Look look_of_rise(Place p) const {
+  Meaning meaning_of_rise(Place p) const {
     if (is(p, heap_)) return {"the heap", prior::certain, false};
     if (is_berm(p)) return {"berms of tracks", prior::no_soil, true};
     const bool is_small = zone(p).volume < small_share * hole_volume();
@@ -215,7 +266,7 @@ class ChangeReader {
                           zone(p).volume < largest_upright * hole_volume();
     if (is_thing && !beside(p)) return {"a thing that is no soil", prior::no_soil, false};
     if (beside(p)) return {"spill beside the hole", prior::certain, true};
-    if (part(p) == Part::tail) return {"the low edge of a heap", prior::low_edge, false};
+    if (part(p) == Part::tail) return {"the low edge of a heap", edge_prior(p), false};
     if (given(1.0)) return {"a heap in the given area", prior::certain, false};
     if (heap_ && near(*heap_)[p.zone] && p.area == heap_->area) {
       return {"soil beside the heap", prior::beside_main, false};
@@ -239,25 +290,25 @@ class ChangeReader {
   }
 
   void add(Place p) {
-    Look look = look_of(p);
+    Meaning meaning = meaning_of(p);
     const double volume = zone(p).volume;
-    if (look.is_group) {
+    if (meaning.is_group) {
       for (Change& change : changes_) {
-        if (change.what != look.what || (change.volume > 0.0) != (volume > 0.0)) continue;
+        if (change.what != meaning.what || (change.volume > 0.0) != (volume > 0.0)) continue;
         change.zones.push_back(p);
         change.volume += volume;
         return;
       }
-    } else if (look.prior < prior::certain && !is(p, hole_)) {
-      look.what += " around (" + hundredths(zone(p).centre.x()) + ", " +
-                   hundredths(zone(p).centre.y()) + ") m";
+    } else if (meaning.prior < prior::certain && !is(p, hole_)) {
+      meaning.what += " around (" + hundredths(zone(p).centre.x()) + ", " +
+                      hundredths(zone(p).centre.y()) + ") m";
     }
-    changes_.push_back({look.what, {p}, volume, look.prior, look.prior});
+    changes_.push_back({meaning.what, {p}, volume, meaning.prior, meaning.prior});
   }
 
   std::vector<Area>& areas_;
   const ChangeOptions& options_;
-  std::vector<std::vector<ZoneShape>> shapes_;
+  std::vector<std::vector<Look>> looks_;
   std::optional<Change::Place> hole_;
   std::optional<Change::Place> heap_;
   std::vector<bool> beside_;

@@ -10,9 +10,12 @@
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/robust.hpp"
+#include "ground/zone_shape.hpp"
 
 namespace excavplan {
 namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
@@ -23,22 +26,17 @@ constexpr double edge_margin = 0.05;     // that a zone was widened by [m]
 constexpr double least_tail_area = 0.1;  // [m^2]
 constexpr double like_tail_low = 0.3;    // of a tail's height, between which the edge is the tail's
 constexpr double like_tail_high = 1.5;
-constexpr double highest_churn = 0.10;  // of a stirred zone [m]
-constexpr double widest_churn = 1.5;    // [m^2]
-constexpr int fewest_churned = 8;       // zones of both signs
-constexpr double least_balance = 0.25;  // of the smaller sign's volume to the larger's
-constexpr double churn_reach = 0.3;     // ground this near to a stirred zone is stirred [m]
-constexpr double least_exposure = 0.1;  // of the ground around a zone
-
-/// Cells of each zone.
-std::vector<std::vector<Cell>> cells_of(const ChangedGround& ground) {
-  std::vector<std::vector<Cell>> cells(ground.zone_is_cut.size());
-  for_each_cell(ground.zone, [&](Cell at) {
-    const int index = ground.zone(at.row, at.col);
-    if (index >= 0) cells[static_cast<std::size_t>(index)].push_back(at);
-  });
-  return cells;
-}
+constexpr double highest_churn = 0.10;         // change of a cell of stirred ground [m]
+constexpr double highest_churned_zone = 0.04;  // mean height of a zone of it [m]
+constexpr double churn_window = 0.6;           // half width of what is looked at together [m]
+constexpr double least_churn = 0.005;          // rms of stirred ground [m]
+constexpr double churn_to_noise = 3.0;         // likewise, over the quietest tenth of the ground
+constexpr double largest_lean = 0.6;           // of its mean to its rms: else it rose or fell
+constexpr double least_churned_area = 3.0;     // [m^2]
+constexpr double churn_height = 3.0;           // of its rms, up to which a zone is part of it
+constexpr double churn_share = 0.6;            // of the cells of such a zone that lie in it
+constexpr double track_room = 0.3;             // around tracks, which are not stirred ground [m]
+constexpr double least_exposure = 0.05;        // of the ground around a zone
 
 /// Height of a zone as its soil sees it: the mean of |D| weighted by |D|.
 double height_of(const ChangedGround& ground, const std::vector<Cell>& cells) {
@@ -52,10 +50,45 @@ double height_of(const ChangedGround& ground, const std::vector<Cell>& cells) {
   return sum > 0.0 ? squares / sum : 0.0;
 }
 
-double volume_of(const ChangedGround& ground, const std::vector<Cell>& cells, double cell_size) {
-  double sum = 0.0;
-  for (const Cell at : cells) sum += ground.difference(at.row, at.col);
-  return sum * cell_size * cell_size;
+/// Mean and mean square of the known cells of a square around each cell.
+struct Windows {
+  Eigen::ArrayXXd mean;
+  Eigen::ArrayXXd square;
+  Eigen::ArrayXXd share;  ///< of the window that is known
+};
+
+/// Sums from the first row and column up to each cell, with a margin of zeros.
+Eigen::ArrayXXd integral_of(const Eigen::ArrayXXd& field) {
+  Eigen::ArrayXXd sums = Eigen::ArrayXXd::Zero(field.rows() + 1, field.cols() + 1);
+  for_each_cell(field, [&](Cell at) {
+    sums(at.row + 1, at.col + 1) = field(at.row, at.col) + sums(at.row, at.col + 1) +
+                                   sums(at.row + 1, at.col) - sums(at.row, at.col);
+  });
+  return sums;
+}
+
+Windows windows_of(const Eigen::ArrayXXd& field, Eigen::Index half) {
+  const Eigen::ArrayXXd known = 1.0 - field.isNaN().cast<double>();
+  const Eigen::ArrayXXd filled = field.isNaN().select(0.0, field);
+  const Eigen::ArrayXXd counts = integral_of(known);
+  const Eigen::ArrayXXd sums = integral_of(filled);
+  const Eigen::ArrayXXd squares = integral_of(filled.square());
+  Windows windows{filled, filled, known};
+  const double whole = std::pow(2.0 * static_cast<double>(half) + 1.0, 2);
+  for_each_cell(field, [&](Cell at) {
+    const Eigen::Index r0 = std::max<Eigen::Index>(at.row - half, 0);
+    const Eigen::Index c0 = std::max<Eigen::Index>(at.col - half, 0);
+    const Eigen::Index r1 = std::min(at.row + half + 1, field.rows());
+    const Eigen::Index c1 = std::min(at.col + half + 1, field.cols());
+    const auto total = [&](const Eigen::ArrayXXd& integral) {
+      return integral(r1, c1) - integral(r0, c1) - integral(r1, c0) + integral(r0, c0);
+    };
+    const double count = std::max(total(counts), 1.0);
+    windows.mean(at.row, at.col) = total(sums) / count;
+    windows.square(at.row, at.col) = total(squares) / count;
+    windows.share(at.row, at.col) = total(counts) / whole;
+  });
+  return windows;
 }
 
 class Parter {
@@ -67,7 +100,9 @@ class Parter {
 
   ZoneParts find() {
     const std::vector<std::vector<Cell>> zones = cells_of(ground_);
+    const std::vector<bool> was_cut = ground_.zone_is_cut;
     for (std::size_t i = 0; i < zones.size(); ++i) cut_tails(static_cast<int>(i), zones[i]);
+    find_cut_parts(was_cut);
     parts_.stirred.assign(parts_.part.size(), 0.0);
     find_churn();
     return std::move(parts_);
@@ -78,15 +113,20 @@ class Parter {
     return core_share * height / gentlest_edge + edge_margin + 2.0 * cell_size_;
   }
 
-  void cut_tails(int index, const std::vector<Cell>& cells) {
-    const double height = height_of(ground_, cells);
+  /// The cells of a zone that are no edge.
+  Mask core_of(const std::vector<Cell>& cells, double height) const {
     Mask core = Mask::Constant(ground_.zone.rows(), ground_.zone.cols(), false);
     for (const Cell at : cells) {
       core(at.row, at.col) = std::abs(ground_.difference(at.row, at.col)) > core_share * height;
     }
+    return core;
+  }
+
+  void cut_tails(int index, const std::vector<Cell>& cells) {
+    const double height = height_of(ground_, cells);
     const double reach = reach_of(height) / cell_size_;
-    const Eigen::ArrayXXd away = distance_to(core);
-    Eigen::ArrayXXi label = Eigen::ArrayXXi::Constant(core.rows(), core.cols(), -2);
+    const Eigen::ArrayXXd away = distance_to(core_of(cells, height));
+    Eigen::ArrayXXi label = Eigen::ArrayXXi::Constant(away.rows(), away.cols(), -2);
     for (const Cell at : cells) label(at.row, at.col) = away(at.row, at.col) > reach ? -1 : -3;
     for (const Cell seed : cells) {
       if (label(seed.row, seed.col) != -1) continue;
@@ -95,9 +135,33 @@ class Parter {
     }
   }
 
+  /// Of a zone that the edge of the survey cuts, the parts that lie at that edge.
+  void find_cut_parts(const std::vector<bool>& was_cut) {
+    constexpr double rim = 3.0;  // cells that a zone ends before the edge, at most
+    const Mask outside = ground_.difference.isNaN();
+    const Eigen::ArrayXXd away = distance_to(outside);
+    std::vector<bool> at_edge(parts_.part.size(), false);
+    const Eigen::Index rows = outside.rows();
+    const Eigen::Index cols = outside.cols();
+    for_each_cell(ground_.zone, [&](Cell at) {
+      const int zone = ground_.zone(at.row, at.col);
+      if (zone < 0) return;
+      const auto from_border =
+          static_cast<double>(std::min({at.row, at.col, rows - 1 - at.row, cols - 1 - at.col}) + 1);
+      if (std::min(away(at.row, at.col), from_border) <= rim) {
+        at_edge[static_cast<std::size_t>(zone)] = true;
+      }
+    });
+    for (std::size_t i = 0; i < at_edge.size(); ++i) {
+      const int parent = parts_.parent[i];
+      const bool is_cut = was_cut[parent < 0 ? i : static_cast<std::size_t>(parent)];
+      ground_.zone_is_cut[i] = is_cut && at_edge[i];
+    }
+  }
+
   bool is_tail(const std::vector<Cell>& cells) const {
     const double area = static_cast<double>(cells.size()) * cell_size_ * cell_size_;
-    return area >= least_tail_area && height_of(ground_, cells) > 2.0 * ground_.noise_sd;
+    return area >= least_tail_area && height_of(ground_, cells) > ground_.noise_sd;
   }
 
   /// A tail reaches through the zone's edge up to where the zone is higher than it.
@@ -118,13 +182,8 @@ class Parter {
       });
     }
     const int tail = static_cast<int>(parts_.part.size());
-    bool is_cut = false;
-    for (const Cell at : cells) {
-      ground_.zone(at.row, at.col) = tail;
-      is_cut = is_cut || on_border(ground_.zone, at);
-    }
-    const bool parent_is_cut = ground_.zone_is_cut[static_cast<std::size_t>(index)];
-    ground_.zone_is_cut.push_back(parent_is_cut && is_cut);
+    for (const Cell at : cells) ground_.zone(at.row, at.col) = tail;
+    ground_.zone_is_cut.push_back(false);
     parts_.part.push_back(Part::tail);
     parts_.parent.push_back(index);
   }
@@ -133,75 +192,116 @@ class Parter {
 
   void find_churn() {
     const std::vector<std::vector<Cell>> zones = cells_of(ground_);
-    std::vector<std::size_t> low;
-    double rise = 0.0;
-    double fall = 0.0;
-    int risen = 0;
-    for (std::size_t i = 0; i < zones.size(); ++i) {
-      if (!may_be_churn(zones[i])) continue;
-      const double volume = volume_of(ground_, zones[i], cell_size_);
-      (volume > 0.0 ? rise : fall) += std::abs(volume);
-      risen += volume > 0.0 ? 1 : 0;
-      low.push_back(i);
-    }
-    const int count = static_cast<int>(low.size());
-    const bool both = std::min(risen, count - risen) >= fewest_churned / 4;
-    if (count < fewest_churned || !both) return;
-    if (std::min(rise, fall) < least_balance * std::max(rise, fall)) return;
-    Mask churned = Mask::Constant(ground_.zone.rows(), ground_.zone.cols(), false);
-    for (const std::size_t i : low) {
-      parts_.part[i] = Part::churn;
-      for (const Cell at : zones[i]) churned(at.row, at.col) = true;
-    }
-    spread_over_zones(zones, churned);
-  }
-
-  bool may_be_churn(const std::vector<Cell>& cells) const {
-    const double area = static_cast<double>(cells.size()) * cell_size_ * cell_size_;
-    return !cells.empty() && area < widest_churn && height_of(ground_, cells) < highest_churn;
-  }
-
-  /// Zones in stirred ground take it in, and get its variance.
-  void spread_over_zones(const std::vector<std::vector<Cell>>& zones, const Mask& churned) {
-    const Eigen::ArrayXXd to_churn = distance_to(churned);
-    Eigen::ArrayXXd field = ground_.difference;
-    for_each_cell(field, [&](Cell at) {
-      const int zone = ground_.zone(at.row, at.col);
-      const bool is_stirred =
-          to_churn(at.row, at.col) * cell_size_ <= churn_reach &&
-          (zone < 0 || parts_.part[static_cast<std::size_t>(zone)] == Part::churn);
-      if (!is_stirred) field(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
-    });
+    const Mask stirred = stirred_ground(zones);
+    if (!stirred.any()) return;
+    const Eigen::ArrayXXd field = stirred.select(
+        low_change(), Eigen::ArrayXXd::Constant(stirred.rows(), stirred.cols(), unknown));
     const NoiseModel noise = find_noise(field, cell_size_);
-    const double per_area = noise.white * cell_size_ * cell_size_ + noise.integral();
+    const double rms = std::sqrt(noise.white + noise.correlated);
+    const int churn = static_cast<int>(zones.size());
+    ground_.zone_is_cut.push_back(false);
+    parts_.part.push_back(Part::churn);
+    parts_.parent.push_back(-1);
+    parts_.stirred.push_back(0.0);
+    std::vector<std::size_t> rest;
     for (std::size_t i = 0; i < zones.size(); ++i) {
-      if (parts_.part[i] == Part::churn || zones[i].empty()) continue;
-      take_in(static_cast<int>(i), zones[i], field, per_area);
+      if (zones[i].empty()) continue;
+      if (is_churn(zones[i], stirred, rms)) {
+        for (const Cell at : zones[i]) ground_.zone(at.row, at.col) = churn;
+      } else {
+        rest.push_back(i);
+      }
     }
+    const double per_area = noise.white * cell_size_ * cell_size_ + noise.integral();
+    for (const std::size_t i : rest) take_in(static_cast<int>(i), zones[i], stirred, per_area);
   }
 
-  void take_in(int index, const std::vector<Cell>& cells, const Eigen::ArrayXXd& stirred,
-               double per_area) {
-    Mask core = Mask::Constant(ground_.zone.rows(), ground_.zone.cols(), false);
-    const double height = height_of(ground_, cells);
-    for (const Cell at : cells) {
-      core(at.row, at.col) = std::abs(ground_.difference(at.row, at.col)) > core_share * height;
+  Eigen::ArrayXXd low_change() const {
+    return (ground_.difference.abs() < highest_churn).select(ground_.difference, unknown);
+  }
+
+  /// Zones that are too high to be stirred ground, with their edges.
+  Mask high_ground(const std::vector<std::vector<Cell>>& zones) const {
+    Mask high = Mask::Constant(ground_.zone.rows(), ground_.zone.cols(), false);
+    for (const std::vector<Cell>& cells : zones) {
+      const double height = height_of(ground_, cells);
+      if (height < highest_churned_zone) continue;
+      const Eigen::ArrayXXd away = distance_to(core_of(cells, height));
+      high = high || away * cell_size_ <= reach_of(height);
     }
-    const Eigen::ArrayXXd away = distance_to(core);
+    return high;
+  }
+
+  /// Ground whose change has a large rms and a small mean, away from tracks.
+  Mask stirred_ground(const std::vector<std::vector<Cell>>& zones) const {
+    Mask tracks = Mask::Constant(ground_.zone.rows(), ground_.zone.cols(), false);
+    for (const std::vector<Cell>& cells : zones) {
+      if (cells.empty() || !shape_of(ground_.difference, cells, cell_size_).is_track()) continue;
+      for (const Cell at : cells) tracks(at.row, at.col) = true;
+    }
+    const Mask left_out = distance_to(tracks) * cell_size_ < track_room || high_ground(zones);
+    const auto half = static_cast<Eigen::Index>(std::ceil(churn_window / cell_size_));
+    const Windows windows =
+        windows_of(left_out.select(Eigen::ArrayXXd::Constant(tracks.rows(), tracks.cols(), unknown),
+                                   low_change()),
+                   half);
+    const Mask is_known = windows.share > 0.3;
+    std::vector<double> squares;
+    for_each_cell(tracks, [&](Cell at) {
+      if (is_known(at.row, at.col)) squares.push_back(windows.square(at.row, at.col));
+    });
+    if (squares.empty()) return tracks;
+    const auto tenth = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 10);
+    std::nth_element(squares.begin(), tenth, squares.end());
+    const double least = std::max(churn_to_noise * std::sqrt(*tenth), least_churn);
+    const Mask found = is_known && !left_out && windows.square > least * least &&
+                       windows.mean.square() < largest_lean * largest_lean * windows.square;
+    return large_parts(found);
+  }
+
+  /// The connected parts of at least the area of stirred ground.
+  Mask large_parts(const Mask& found) const {
+    Eigen::ArrayXXi label = found.select(Eigen::ArrayXXi::Constant(found.rows(), found.cols(), -1),
+                                         Eigen::ArrayXXi::Zero(found.rows(), found.cols()));
+    Mask large = Mask::Constant(found.rows(), found.cols(), false);
+    for_each_cell(found, [&](Cell seed) {
+      if (label(seed.row, seed.col) != -1) return;
+      const auto cells = mark_connected(label, seed, 0, [](Cell) { return true; });
+      if (static_cast<double>(cells.size()) * cell_size_ * cell_size_ < least_churned_area) return;
+      for (const Cell at : cells) large(at.row, at.col) = true;
+    });
+    return large;
+  }
+
+  bool is_churn(const std::vector<Cell>& cells, const Mask& stirred, double rms) const {
+    double inside = 0.0;
+    for (const Cell at : cells) inside += stirred(at.row, at.col) ? 1.0 : 0.0;
+    return inside > churn_share * static_cast<double>(cells.size()) &&
+           height_of(ground_, cells) < churn_height * rms;
+  }
+
+  /// A zone in stirred ground ends where its own edge does, takes in all that lies within that
+  /// reach, and has the variance of the ground around it.
+  void take_in(int index, const std::vector<Cell>& cells, const Mask& stirred, double per_area) {
+    const double height = height_of(ground_, cells);
+    const Eigen::ArrayXXd away = distance_to(core_of(cells, height));
     const double reach = reach_of(height) / cell_size_;
     double around = 0.0;
     double exposed = 0.0;
     for_each_cell(ground_.zone, [&](Cell at) {
-      if (away(at.row, at.col) > 2.0 * reach || ground_.zone(at.row, at.col) == index) return;
+      if (away(at.row, at.col) > 2.0 * reach || away(at.row, at.col) < reach) return;
       around += 1.0;
-      exposed += std::isnan(stirred(at.row, at.col)) ? 0.0 : 1.0;
+      exposed += stirred(at.row, at.col) ? 1.0 : 0.0;
     });
     if (!(exposed > least_exposure * around)) return;
     parts_.stirred[static_cast<std::size_t>(index)] = per_area * exposed / around;
+    const int churn = static_cast<int>(parts_.part.size()) - 1;
     for_each_cell(ground_.zone, [&](Cell at) {
-      if (away(at.row, at.col) <= reach && !std::isnan(stirred(at.row, at.col))) {
-        ground_.zone(at.row, at.col) = index;
-      }
+      int& zone = ground_.zone(at.row, at.col);
+      if (!stirred(at.row, at.col)) return;
+      const bool is_near = away(at.row, at.col) <= reach;
+      if (is_near && (zone < 0 || zone == churn)) zone = index;
+      if (!is_near && zone == index) zone = churn;
     });
   }
 
@@ -214,6 +314,15 @@ class Parter {
 
 ZoneParts part_zones(ChangedGround& ground, double cell_size) {
   return Parter(ground, cell_size).find();
+}
+
+std::vector<std::vector<Cell>> cells_of(const ChangedGround& ground) {
+  std::vector<std::vector<Cell>> cells(ground.zone_is_cut.size());
+  for_each_cell(ground.zone, [&](Cell at) {
+    const int index = ground.zone(at.row, at.col);
+    if (index >= 0) cells[static_cast<std::size_t>(index)].push_back(at);
+  });
+  return cells;
 }
 
 Eigen::ArrayXXd distance_to(const Mask& marked) {

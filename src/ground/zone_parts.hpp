@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "ground/change_zones.hpp"
+#include "ground/grid_cells.hpp"
 
 namespace excavplan {
 
@@ -14,7 +15,7 @@ namespace excavplan {
 enum class Part {
   whole,  ///< a zone, or what is left of it without its tails
   tail,   ///< low ground that a deep or high zone runs out into, farther than its own edge reaches
-  churn,  ///< one of many low zones of both signs: ground that was stirred, not moved
+  churn,  ///< ground that was stirred: it rose and fell in many small places
 };
 
 /// The parts of the zones of an area, and how much stirred ground differs from cell to cell.
@@ -29,6 +30,9 @@ struct ZoneParts {
 /// counted zone in stirred ground takes in all of it that is near, whether it rose or fell, so that
 /// its signed sum has no bias.
 ZoneParts part_zones(ChangedGround& ground, double cell_size);
+
+/// The cells of each zone.
+std::vector<std::vector<Cell>> cells_of(const ChangedGround& ground);
 
 /// Distance of every cell to the nearest one that is marked, in cells, within 8 % (chamfer).
 Eigen::ArrayXXd distance_to(const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& marked);
