@@ -32,8 +32,9 @@ constexpr double churn_window = 0.6;           // half width of what is looked a
 constexpr double least_churn = 0.005;          // rms of stirred ground [m]
 constexpr double churn_to_noise = 3.0;         // likewise, over the quietest tenth of the ground
 constexpr double largest_lean = 0.6;           // of its mean to its rms: else it rose or fell
+constexpr double least_known_window = 0.3;     // share of the cells of a window
 constexpr double least_churned_area = 3.0;     // [m^2]
-constexpr double churn_height = 3.0;           // of its rms, up to which a zone is part of it
+constexpr double churn_height = 2.2;           // of its rms, up to which a zone is part of it
 constexpr double churn_share = 0.6;            // of the cells of such a zone that lie in it
 constexpr double track_room = 0.3;             // around tracks, which are not stirred ground [m]
 constexpr double least_exposure = 0.05;        // of the ground around a zone
@@ -232,31 +233,38 @@ class Parter {
     return high;
   }
 
-  /// Ground whose change has a large rms and a small mean, away from tracks.
+  /// Ground whose change has a large rms and a small mean, away from tracks. Beside high zones,
+  /// whose own edges hide it, it is taken to go on.
   Mask stirred_ground(const std::vector<std::vector<Cell>>& zones) const {
     Mask tracks = Mask::Constant(ground_.zone.rows(), ground_.zone.cols(), false);
     for (const std::vector<Cell>& cells : zones) {
       if (cells.empty() || !shape_of(ground_.difference, cells, cell_size_).is_track()) continue;
       for (const Cell at : cells) tracks(at.row, at.col) = true;
     }
-    const Mask left_out = distance_to(tracks) * cell_size_ < track_room || high_ground(zones);
+    const Mask is_track = distance_to(tracks) * cell_size_ < track_room;
+    const Mask high = high_ground(zones);
+    const Mask found = large_parts(churned_where(is_track || high));
+    if (!found.any()) return found;
+    const Mask beside = distance_to(found) * cell_size_ < 2.0 * churn_window;
+    return (found || (high && beside)) && !is_track && !ground_.difference.isNaN();
+  }
+
+  Mask churned_where(const Mask& left_out) const {
     const auto half = static_cast<Eigen::Index>(std::ceil(churn_window / cell_size_));
-    const Windows windows =
-        windows_of(left_out.select(Eigen::ArrayXXd::Constant(tracks.rows(), tracks.cols(), unknown),
-                                   low_change()),
-                   half);
-    const Mask is_known = windows.share > 0.3;
+    const Eigen::ArrayXXd field = left_out.select(
+        Eigen::ArrayXXd::Constant(left_out.rows(), left_out.cols(), unknown), low_change());
+    const Windows windows = windows_of(field, half);
+    const Mask is_known = windows.share > least_known_window;
     std::vector<double> squares;
-    for_each_cell(tracks, [&](Cell at) {
+    for_each_cell(left_out, [&](Cell at) {
       if (is_known(at.row, at.col)) squares.push_back(windows.square(at.row, at.col));
     });
-    if (squares.empty()) return tracks;
+    if (squares.empty()) return Mask::Constant(left_out.rows(), left_out.cols(), false);
     const auto tenth = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 10);
     std::nth_element(squares.begin(), tenth, squares.end());
     const double least = std::max(churn_to_noise * std::sqrt(*tenth), least_churn);
-    const Mask found = is_known && !left_out && windows.square > least * least &&
-                       windows.mean.square() < largest_lean * largest_lean * windows.square;
-    return large_parts(found);
+    return is_known && !left_out && windows.square > least * least &&
+           windows.mean.square() < largest_lean * largest_lean * windows.square;
   }
 
   /// The connected parts of at least the area of stirred ground.
