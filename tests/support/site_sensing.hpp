@@ -40,6 +40,7 @@ inline Lidar lidar_at(const SiteScene& scene, const Eigen::Vector3d& position) {
     }
   }
   lidar.elevation = {-75.0 * degree, -std::atan2(position.z(), far)};
+  lidar.range_noise = 0.01;
   lidar.max_range = 1.1 * std::hypot(far, position.z());
   return lidar;
 }
