@@ -45,8 +45,10 @@ inline Lidar lidar_at(const SiteScene& scene, const Eigen::Vector3d& position) {
   return lidar;
 }
 
-/// As many equal steps as give about this many points; 0.6 of the beams meet the scene.
+/// As many equal steps as give about this many points, at most 150,000; 0.6 of the beams meet the
+/// scene.
 inline void step_for(Lidar& lidar, std::size_t points) {
+  points = std::min<std::size_t>(points, 150000);
   const double window =
       (lidar.azimuth(1) - lidar.azimuth(0)) * (lidar.elevation(1) - lidar.elevation(0));
   lidar.angle_step.setConstant(std::sqrt(0.6 * window / static_cast<double>(points)));
@@ -175,14 +177,14 @@ inline void swapped_areas(Draft& d) {
   d.scene.two_areas = true;
 }
 
-/// Both scans by the same offset: on the grid of cells, or to a far origin.
+/// Both scans by the same offset: on the grid of cells, to a far origin, or in UTM.
 inline void offsets(Draft& d) {
-  const double reach = d.random.uniform() < 0.5 ? 1.0 : 1000.0;
-  const auto any = [&] { return d.random.uniform(-reach, reach); };
-  const double x = any();
-  const double y = any();
-  const Eigen::Isometry3d offset(Eigen::Translation3d(x, y, any()));
-  d.scene.frame_before = d.scene.frame_after = moved(offset);
+  const auto kind = d.random.index(3);
+  const double reach = kind == 0 ? 1.0 : 1000.0;
+  Eigen::Vector3d offset(kind == 2 ? 4.5e5 : 0.0, kind == 2 ? 5.4e6 : 0.0, 0.0);
+  for (double& coordinate : offset) coordinate += d.random.uniform(-reach, reach);
+  d.scene.frame_before = d.scene.frame_after =
+      moved(Eigen::Isometry3d(Eigen::Translation3d(offset)));
   d.scene.offset_pair = true;
 }
 

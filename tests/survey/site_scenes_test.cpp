@@ -39,7 +39,7 @@ TEST_P(Integrated, SoilIsWhatTheTruthSays) {
 INSTANTIATE_TEST_SUITE_P(SiteScenes, Integrated,
                          testing::Values("clean", "second-heap", "second-scrape", "two-pits",
                                          "two-pits-two-heaps", "two-heaps-alike", "clods",
-                                         "heap-at-wall", "lidar-one"),
+                                         "heap-at-wall", "lidar-one", "heap-spread", "thin-dig"),
                          [](const auto& family) {
                            std::string name = family.param;
                            std::replace(name.begin(), name.end(), '-', '_');
