@@ -148,10 +148,12 @@ inline void tilted(Draft& d) {
   d.scene.frame_before = d.scene.frame_after = moved(frame);
 }
 
-/// x right, y down, z forward of a camera that looks at the scene from its side.
+/// x right, y down, z forward of a camera beside the scene or above it.
 inline void camera_frame(Draft& d) {
-  const Eigen::Vector3d position = standpoint(d, -1.0, d.random.uniform(3.0, 6.0));
-  const Eigen::Vector3d forward = (Eigen::Vector3d(2.7, 0.0, 0.0) - position).normalized();
+  const Eigen::Vector3d centre(2.7, 0.0, 0.0);
+  Eigen::Vector3d position = standpoint(d, -1.0, d.random.uniform(3.0, 6.0));
+  if (d.random.uniform() < 0.5) position = {2.7, -0.3, 7.0};
+  const Eigen::Vector3d forward = (centre - position).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
   Eigen::Isometry3d camera = Eigen::Isometry3d::Identity();
   camera.linear() << right, forward.cross(right), forward;
