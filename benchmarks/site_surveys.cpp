@@ -114,15 +114,15 @@ Record surveyed(const Family& family, std::uint64_t seed, const Settings& settin
 
 constexpr const char* header =
     "family,seed,k_true,k,k_sd,k_sd_scans,error_percent,z,trusted,inside,in_a_reading,refused,"
-    "hole_percent,spill_percent,heap_percent,shift,codes\n";
+    "held,wrong,hole_percent,spill_percent,heap_percent,shift,codes\n";
 
 void print(const Record& r) {
-  std::printf("%s,%llu,%.5f,%.5f,%.5f,%.5f,%.3f,%.2f,%d,%d,%d,%d,%.3f,%.3f,%.3f,%.3f,%s\n",
+  std::printf("%s,%llu,%.5f,%.5f,%.5f,%.5f,%.3f,%.2f,%d,%d,%d,%d,%d,%d,%.3f,%.3f,%.3f,%.3f,%s\n",
               r.family.c_str(), static_cast<unsigned long long>(r.seed), r.truth.bulking(), r.k,
               r.sd, r.sd_scans, r.error(), r.z(), r.trusted ? 1 : 0, r.inside() ? 1 : 0,
-              r.in_a_reading ? 1 : 0, r.refused ? 1 : 0, percent(r.found.hole, r.truth.hole),
-              percent(r.found.spill, r.truth.spill), percent(r.found.heap, r.truth.heap), r.shift,
-              r.codes.c_str());
+              r.in_a_reading ? 1 : 0, r.refused ? 1 : 0, r.held() ? 1 : 0, r.wrong() ? 1 : 0,
+              percent(r.found.hole, r.truth.hole), percent(r.found.spill, r.truth.spill),
+              percent(r.found.heap, r.truth.heap), r.shift, r.codes.c_str());
 }
 
 /// A share of the records [%].

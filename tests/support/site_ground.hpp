@@ -205,4 +205,33 @@ inline void heap_at_wall(Draft& d) {
   d.scene.sampling.face_share = 0.04;
 }
 
+// ---- What surveys could always stand ----------------------------------------------------------
+
+inline void crate_apart(Draft& d) {
+  set_down(d, d.random.uniform(2.0, 2.8), (d.random.uniform() < 0.5 ? -1.0 : 1.0) * 2.2);
+}
+
+inline void steep_ground(Draft& d) { d.ground(d.random.uniform(10.0, 15.0) * degree, 0.01); }
+
+inline void heap_spread(Draft& d) {
+  d.scene.dig.heap_slope = d.random.uniform(4.0, 8.0) * degree;
+  d.compose();
+}
+
+inline void thin_dig(Draft& d) {
+  d.scene.dig.pit_depth = d.random.uniform(0.02, 0.04);
+  d.scene.dig.ridge_height = 0.3 * d.scene.dig.pit_depth;
+  d.compose();
+}
+
+/// In a pit that was there before.
+inline void dug_again(Draft& d) {
+  Dig old = d.scene.dig;
+  old.pit_length *= 1.3;
+  old.pit_width *= 1.6;
+  old.ridge_offset = 1.5 * d.scene.dig.pit_width;
+  old.pit_x += d.random.uniform(-0.5, 0.5);
+  d.scene.older = [old](double x, double y) { return old.dug(x, y); };
+}
+
 }  // namespace excavplan::scenes

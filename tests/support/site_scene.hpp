@@ -56,6 +56,7 @@ struct SiteScene {
   Volumes truth;
   Height moved = flat;     ///< change by the soil of the dig
   Height other = flat;     ///< change that is none of the dig
+  Height older = flat;     ///< on the ground, before the first scan
   double pressed = 0.0;    ///< the ground sank by this under the heap [m]
   double water = -1e9;     ///< level in the pit
   std::vector<Box> boxes;  ///< set down after the first scan
@@ -67,14 +68,14 @@ struct SiteScene {
   bool two_areas = false;    ///< dig and dump are handed over as areas of their own
   bool offset_pair = false;  ///< to compare with the same scene without its frames
 
-  double before(double x, double y) const { return with(walls, ground(x, y), x, y); }
+  double before(double x, double y) const { return with(walls, ground(x, y) + older(x, y), x, y); }
   double after(double x, double y) const {
     const double soil = moved(x, y);
     const double beside = other(x, y);
     double change = soil;
     if (soil == 0.0 || (soil * beside > 0.0 && std::abs(beside) > std::abs(soil))) change = beside;
     if (pressed > 0.0 && soil > 0.0 && x > 0.5 * heap.x()) change -= std::min(pressed, 0.2 * soil);
-    double z = ground(x, y) + change;
+    double z = ground(x, y) + older(x, y) + change;
     if (soil < 0.0) z = std::max(z, water);
     return with(walls, with(boxes, z, x, y), x, y);
   }

@@ -61,6 +61,11 @@ inline const std::vector<Family>& families() {
       {"swapped", swapped},
       {"swapped-areas", swapped_areas},
       {"offsets", offsets},
+      {"crate-apart", crate_apart},
+      {"steep-ground", steep_ground},
+      {"heap-spread", heap_spread},
+      {"thin-dig", thin_dig},
+      {"dug-again", dug_again},
   };
   return all;
 }

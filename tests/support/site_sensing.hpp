@@ -40,12 +40,15 @@ inline Lidar lidar_at(const SiteScene& scene, const Eigen::Vector3d& position) {
     }
   }
   lidar.elevation = {-75.0 * degree, -std::atan2(position.z(), far)};
+  lidar.range_noise = 0.01;
   lidar.max_range = 1.1 * std::hypot(far, position.z());
   return lidar;
 }
 
-/// As many equal steps as give about this many points; 0.6 of the beams meet the scene.
+/// As many equal steps as give about this many points, at most 150,000; 0.6 of the beams meet the
+/// scene.
 inline void step_for(Lidar& lidar, std::size_t points) {
+  points = std::min<std::size_t>(points, 150000);
   const double window =
       (lidar.azimuth(1) - lidar.azimuth(0)) * (lidar.elevation(1) - lidar.elevation(0));
   lidar.angle_step.setConstant(std::sqrt(0.6 * window / static_cast<double>(points)));
@@ -145,10 +148,12 @@ inline void tilted(Draft& d) {
   d.scene.frame_before = d.scene.frame_after = moved(frame);
 }
 
-/// x right, y down, z forward of a camera that looks at the scene from its side.
+/// x right, y down, z forward of a camera beside the scene or above it.
 inline void camera_frame(Draft& d) {
-  const Eigen::Vector3d position = standpoint(d, -1.0, d.random.uniform(3.0, 6.0));
-  const Eigen::Vector3d forward = (Eigen::Vector3d(2.7, 0.0, 0.0) - position).normalized();
+  const Eigen::Vector3d centre(2.7, 0.0, 0.0);
+  Eigen::Vector3d position = standpoint(d, -1.0, d.random.uniform(3.0, 6.0));
+  if (d.random.uniform() < 0.5) position = {2.7, -0.3, 7.0};
+  const Eigen::Vector3d forward = (centre - position).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
   Eigen::Isometry3d camera = Eigen::Isometry3d::Identity();
   camera.linear() << right, forward.cross(right), forward;
@@ -174,14 +179,14 @@ inline void swapped_areas(Draft& d) {
   d.scene.two_areas = true;
 }
 
-/// Both scans by the same offset: on the grid of cells, or to a far origin.
+/// Both scans by the same offset: on the grid of cells, to a far origin, or in UTM.
 inline void offsets(Draft& d) {
-  const double reach = d.random.uniform() < 0.5 ? 1.0 : 1000.0;
-  const auto any = [&] { return d.random.uniform(-reach, reach); };
-  const double x = any();
-  const double y = any();
-  const Eigen::Isometry3d offset(Eigen::Translation3d(x, y, any()));
-  d.scene.frame_before = d.scene.frame_after = moved(offset);
+  const auto kind = d.random.index(3);
+  const double reach = kind == 0 ? 1.0 : 1000.0;
+  Eigen::Vector3d offset(kind == 2 ? 4.5e5 : 0.0, kind == 2 ? 5.4e6 : 0.0, 0.0);
+  for (double& coordinate : offset) coordinate += d.random.uniform(-reach, reach);
+  d.scene.frame_before = d.scene.frame_after =
+      moved(Eigen::Isometry3d(Eigen::Translation3d(offset)));
   d.scene.offset_pair = true;
 }
 

@@ -41,9 +41,9 @@ inline Height largest_of(std::vector<Height> parts) {
   };
 }
 
-/// Volume above 0 less that below, by the midpoint rule on squares of 5 mm.
+/// Volume above 0 less that below, by the midpoint rule on squares of 1 cm.
 inline double volume_of(const Height& height, const Rectangle& extent) {
-  constexpr double step = 0.005;
+  constexpr double step = 0.01;
   double sum = 0.0;
   for (double x = extent.x_min + 0.5 * step; x < extent.x_max; x += step) {
     for (double y = extent.y_min + 0.5 * step; y < extent.y_max; y += step) sum += height(x, y);
