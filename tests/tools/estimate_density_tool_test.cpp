@@ -151,6 +151,61 @@ TEST_F(Tools, AKnownPathCorrectsTheBulkingFactorForFallback) {
   EXPECT_NEAR(number(with, "/density_percent"), 90.0, 5.0);
 }
 
+/// A dig in hard soil that falls as blocks, scanned from five places.
+class HardSoilThatBreaks : public testing::TestWithParam<int> {
+ protected:
+  // That of plan-path --density 90; the paper's fixed path would lift the machine.
+  const std::string angle = "0.44034809077453074";
+  const std::string lengths = "0.4279762549991743,1.33426244953194";
+  const std::string start = "4.734375000000003";
+
+  json rehearsal(const Words& more, json& truth) const {
+    const TemporaryFolder folder;
+    const Words scans = {folder.file("b.pcd"), folder.file("a.pcd")};
+    const Words cameras = {"5.2,0.9,2.6,4.9,0,0", "3.6,-0.9,2.6,3.9,0,0", "5.5,3.1,2.4,5.5,4,0",
+                           "4.7,4.5,2.4,5.5,4,0", "6.3,4.5,2.4,5.5,4,0"};
+    const std::string path = angle + "," + lengths;
+    Words words = {"--density", "90",      "--path",
+                   path,        "--start", start,
+                   "--blocks",  "--seed",  std::to_string(GetParam()),
+                   "--before",  scans[0],  "--after",
+                   scans[1]};
+    for (const std::string& camera : cameras) words = words + Words{"--camera", camera};
+    truth = answer("simulate-dig", words + more);
+    EXPECT_EQ(truth["stalled"], false);
+    return answer("estimate-density",
+                  scans + Words{"--cell", "0.04", "--dug-path", path, "--dug-start", start});
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Tools, HardSoilThatBreaks, testing::Range(1, 5));
+
+TEST_P(HardSoilThatBreaks, ReadsMoreThanAHundredPercentUntilItsVoidsAreTakenOff) {
+  json truth;
+  const json estimate = rehearsal({}, truth);
+  const double k = number(estimate, "/bulking_factor");
+  std::cout << "  k " << k << " (true " << truth["bulking_factor_true"] << "), corrected "
+            << estimate["bulking_factor_corrected"] << ", voids " << estimate["blocks"]["voids_m3"]
+            << " of " << truth["blocks"]["voids_m3"] << " m3, density "
+            << estimate["density_interval_percent"] << " %\n";
+  EXPECT_GT(161.57 * k - 152.87, 120.0);  // the paper's line
+  EXPECT_EQ(estimate["blocks"]["found"], true);
+  EXPECT_TRUE(warns(estimate, "blocks"));
+  EXPECT_EQ(estimate["trustworthy"], false);
+  EXPECT_NEAR(number(estimate, "/bulking_factor_corrected"), number(truth, "/bulking_factor_true"),
+              1.96 * number(estimate, "/bulking_factor_corrected_sd"));
+  EXPECT_LE(number(estimate, "/density_interval_percent/0"), 90.0);
+}
+
+// The correction takes the soil of the blocks for as loose as dumped soil is.
+TEST_P(HardSoilThatBreaks, UndisturbedBlocksReadTooLowAndAreNotTrusted) {
+  json truth;
+  const json estimate = rehearsal({"--block-swell", "0"}, truth);
+  EXPECT_EQ(estimate["blocks"]["found"], true);
+  EXPECT_EQ(estimate["trustworthy"], false);
+  EXPECT_LT(number(estimate, "/density_percent"), 80.0);
+}
+
 TEST_F(Tools, BothMethodsAreShownWhenAsked) {
   const Words words = quickstart(folder) + Words{"--compare-methods"};
   const json both = answer("estimate-density", words);
