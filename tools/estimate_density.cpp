@@ -5,6 +5,7 @@
 #include "base/files.hpp"
 #include "shared/estimate.hpp"
 #include "shared/figures.hpp"
+#include "shared/method_inputs.hpp"
 #include "shared/scans.hpp"
 #include "shared/survey_planning.hpp"
 #include "shared/tool.hpp"
@@ -34,7 +35,7 @@ struct Inputs {
   std::optional<std::string> dump_after;
   ScanFrames frames;
   DensityOptions options;
-  std::string method = "surface";
+  MethodInputs method;
   bool compare = false;
   bool still = false;
   std::optional<std::string> plan_survey;
@@ -60,8 +61,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("before-frame", inputs.frames.before,
                  "4 x 4 matrix that transforms the clouds before into the site frame");
   arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
-  arguments.choice("method", inputs.method, {"surface", "paper"},
-                   "surface: signed change of one height map; paper: the pipeline as published");
+  declare_method(arguments, inputs.method);
   arguments.flag("no-register", inputs.still,
                  "do not register the scans: the sensor did not move between them");
   arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
@@ -93,7 +93,7 @@ DigScans scans_of(const Inputs& inputs) {
 DensityOptions options_of(const Inputs& inputs) {
   DensityOptions options = inputs.options;
   options.registered = !inputs.still;
-  if (inputs.method == "paper") options.method = VolumeMethod::paper;
+  apply_method(inputs.method, options);
   if (inputs.dug_path) {
     options.dug_path = DugPath{machine_named(inputs.machine), *inputs.dug_path, *inputs.dug_start};
   }

@@ -88,9 +88,10 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
 }
 
 VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& surface,
-                              const ChangeOptions& options) {
+                              const DensityOptions& options) {
   const PaperScans scans = {seen.dig.scans, seen.dump ? &seen.dump->scans : nullptr};
-  return about(seen, [&] { return paper_change(scans, surface, options, seen.cell_size); });
+  const PaperSettings settings = {options.change, seen.cell_size, options.paper};
+  return about(seen, [&] { return paper_change(scans, surface, settings); });
 }
 
 // ---- What is known beside the volumes ---------------------------------------------------------
@@ -208,7 +209,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     const bool by_paper = method == VolumeMethod::paper;
     estimate.method = method;
     // eqs. 3 and 4: volumes before and after
-    estimate.change = by_paper ? paper_volumes_of(seen, surface, options.change) : surface;
+    estimate.change = by_paper ? paper_volumes_of(seen, surface, options) : surface;
     estimate.warnings = estimate.change.warnings;
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();

@@ -13,6 +13,7 @@
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/fallback.hpp>
 #include <excavplan/soil/density_law.hpp>
+#include <excavplan/survey/paper_options.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
 /// @file
@@ -49,6 +50,7 @@ struct DensityOptions {
                                     ///< else cell_for() the sparsest scan
   bool registered = true;           ///< false: the sensor did not move, scans are not registered
   ChangeOptions change;             ///< dig area, dump area and more
+  PaperOptions paper;               ///< of VolumeMethod::paper
   std::optional<DugPath> dug_path;  ///< if it is known
   unsigned threads = 0;             ///< 0: one per core; the result is the same for any number
 };
