@@ -128,13 +128,12 @@ RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_
                     number_text(bulking_factor.sd) +
                     "; the factor must be finite and positive, its deviation finite and >= 0");
   }
-  const double residual_sd =
-      std::visit([](const auto& form) { return form.residual_sd; }, law.form);
   RelativeDensity estimate;
   estimate.raw_percent = density_of_bulking(law.form, k);
   estimate.percent = std::clamp(estimate.raw_percent, 0.0, 100.0);
   estimate.sd_given_law_percent = density_slope(law.form, k) * bulking_factor.sd;
-  set_error(estimate, std::hypot(estimate.sd_given_law_percent, residual_sd));
+  set_error(estimate,
+            std::hypot(estimate.sd_given_law_percent, residual_sd_at(law.form, estimate.percent)));
   warn_of_range(law, k, estimate);
   return estimate;
 }
@@ -161,13 +160,28 @@ DensityLaw law_of(const DensityCalibration& calibration) {
 }
 
 void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
-  double squares = 0.0;
+  constexpr double steepest = 0.9;             // of the growth; ours
+  std::array<double, 2> squares = {0.0, 0.0};  // of loose and of dense soil
+  std::array<int, 2> counts = {0, 0};
   for (const BulkingSample& dig : digs) {
-    const double error = density_of_bulking(form, dig.bulking_factor) - dig.density_percent;
-    squares += error * error;
+    const std::size_t half = dig.density_percent < 50.0 ? 0 : 1;
+    squares[half] +=
+        std::pow(density_of_bulking(form, dig.bulking_factor) - dig.density_percent, 2);
+    ++counts[half];
   }
-  const double sd = std::sqrt(squares / static_cast<double>(digs.size()));
-  std::visit([&](auto& f) { f.residual_sd = sd; }, form);
+  const double rms = std::sqrt((squares[0] + squares[1]) / static_cast<double>(digs.size()));
+  double growth = 0.0;
+  if (counts[0] > 0 && counts[1] > 0 && rms > 0.0) {
+    const double loose = std::sqrt(squares[0] / counts[0]);
+    const double dense = std::sqrt(squares[1] / counts[1]);
+    growth = std::clamp(2.0 * (dense - loose) / (dense + loose), -steepest, steepest);
+  }
+  std::visit(
+      [&](auto& f) {
+        f.residual_growth = growth;
+        f.residual_sd = rms / std::sqrt(1.0 + growth * growth / 3.0);  // rms over 0 .. 100 %
+      },
+      form);
 }
 
 std::string to_json(const DensityCalibration& calibration) {

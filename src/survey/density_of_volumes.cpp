@@ -127,7 +127,8 @@ class SoilReader {
     if (estimate_.fallback) law.form = law.freed_form;
     Answer answer;
     answer.density = relative_density(law, k_);
-    answer.sd = std::hypot(answer.density.sd_given_law_percent, scatter_of(law.form));
+    answer.sd = std::hypot(answer.density.sd_given_law_percent,
+                           residual_sd_at(law.form, answer.density.percent));
     answer.evidence = density_slope(law.form, k_.value);
     if (soil && options_.payload_mass && !std::isnan(estimate_.bulking->sd)) {
       add_payload(law, *soil, answer);
@@ -139,10 +140,6 @@ class SoilReader {
   }
 
  private:
-  static double scatter_of(const DensityForm& form) {
-    return std::visit([](const auto& f) { return f.residual_sd; }, form);
-  }
-
   /// The true bulking factor: by the fallback that was measured, or as the law expects it.
   double true_bulking(const DensityLaw& law, double law_density) const {
     const double k = estimate_.bulking->value;
@@ -194,7 +191,8 @@ class SoilReader {
 
     Eigen::Matrix2d covariance =
         given_law + density_scatter(soil, law.freed_form, 0.5 * (by_law + by_mass), scatter);
-    add_path(law, covariance, per_log / k_true / density_slope(law.freed_form, k_true),
+    const double law_scatter = residual_sd_at(law.form, by_law);
+    add_path(law_scatter, covariance, per_log / k_true / density_slope(law.freed_form, k_true),
              given_law(0, 0));
     join({by_law, by_mass}, covariance, given_law, answer);
     answer.evidence *= per_log;
@@ -207,9 +205,9 @@ class SoilReader {
 
   /// Scatter of the law beyond that of the soils: of other paths, where the fallback is the law's,
   /// which then errs in the payload's too.
-  void add_path(const DensityLaw& law, Eigen::Matrix2d& covariance, double payload_per_law,
+  void add_path(double law_scatter, Eigen::Matrix2d& covariance, double payload_per_law,
                 double given_law) const {
-    const double rest = std::pow(scatter_of(law.form), 2) - (covariance(0, 0) - given_law);
+    const double rest = law_scatter * law_scatter - (covariance(0, 0) - given_law);
     if (!(rest > 0.0)) return;
     const double shared = estimate_.fallback ? 0.0 : payload_per_law;
     const Eigen::Vector2d by_path(1.0, shared);

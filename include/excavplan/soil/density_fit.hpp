@@ -81,7 +81,8 @@ struct DensityCalibration {
 /// The law that a calibration gives.
 DensityLaw law_of(const DensityCalibration& calibration);
 
-/// Sets the scatter of a form to the rms error of the densities that it gives for these digs.
+/// Sets the scatter of a form to the rms error of the densities that it gives for these digs,
+/// growing with the density as that of the digs below and above 50 %. @param digs  at least one
 void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs);
 
 /// The text of a law file. @throws nothing

@@ -25,19 +25,21 @@ namespace excavplan {
 
 /// d = a k + b.
 struct DensityLine {
-  double a = 0.0;            ///< [%]
-  double b = 0.0;            ///< [%]
-  double r2 = 0.0;           ///< coefficient of determination of d [-]
-  double residual_sd = 0.0;  ///< scatter of d about the law [%]
+  double a = 0.0;                ///< [%]
+  double b = 0.0;                ///< [%]
+  double r2 = 0.0;               ///< coefficient of determination of d [-]
+  double residual_sd = 0.0;      ///< scatter of d about the law, at 50 % [%]
+  double residual_growth = 0.0;  ///< its relative change from there to 100 %, as residual_sd_at()
 };
 
 /// k = B + A / (1 - r d / 100), d = 100 / r (1 - A / (k - B)).
 struct DensityClosedForm {
-  double A = 0.0;            ///< [-], > 0
-  double B = 0.0;            ///< [-]
-  double r = 0.0;            ///< [-], in (0, 1)
-  double r2 = 0.0;           ///< coefficient of determination of d [-]
-  double residual_sd = 0.0;  ///< scatter of d about the law [%]
+  double A = 0.0;                ///< [-], > 0
+  double B = 0.0;                ///< [-]
+  double r = 0.0;                ///< [-], in (0, 1)
+  double r2 = 0.0;               ///< coefficient of determination of d [-]
+  double residual_sd = 0.0;      ///< scatter of d about the law, at 50 % [%]
+  double residual_growth = 0.0;  ///< its relative change from there to 100 %, as residual_sd_at()
 };
 
 /// The forms a law can have. Law files and fits go by this list.
@@ -77,6 +79,10 @@ double density_of_bulking(const DensityForm& form, double bulking_factor);
 double bulking_of_density(const DensityForm& form, double density_percent);
 
 double density_slope(const DensityForm& form, double bulking_factor);  ///< dd/dk [%]
+
+/// Scatter of d about the law at a density [%]: residual_sd (1 + residual_growth (d / 50 - 1)),
+/// with d in 0 .. 100.
+double residual_sd_at(const DensityForm& form, double density_percent);
 
 /// The formula of a form in the letters of its parameters: "d = a k + b".
 std::string formula(const DensityForm& form);
