@@ -99,7 +99,9 @@ TEST_F(SoilAnswers, ALawForTheFieldPathReadsWhatTheDefaultLawDoesNot) {
     options.dug_path = DugPath{machine_, field_path_, {}};
     const DensityEstimate fitted = test::estimate_of(dig.change, loam_.law, options);
     EXPECT_NEAR(fitted.density->raw_percent, density, 0.5);
-    EXPECT_LT(fitted.density->sd_percent, unknown_path.density->sd_percent);
+    if (density >= 40.0) {
+      EXPECT_LT(fitted.density->sd_percent, 0.9 * unknown_path.density->sd_percent);
+    }
     EXPECT_FALSE(has(fitted.warnings, "law_of_other_path"));
     EXPECT_EQ(fitted.law.path, (std::array<double, 3>{1.023, 0.496, 2.487}));
   }
