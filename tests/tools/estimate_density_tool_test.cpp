@@ -281,7 +281,7 @@ TEST_F(BadInput, IncompleteOptionsAreRefused) {
           {scan, later_scan, "--dug-path", "45deg,0.35m,9m", "--dug-start", "6"});
   refused(3, "holds fewer than 100 finite points inside --area", tool,
           {scan, later_scan, "--area", "100,100,101,101"});
-  refused(2, "--dug-path and --dug-start must be given together", tool,
+  refused(2, "--dug-start needs --dug-path", tool,
           {scan, later_scan, "--dug-start", "6"});
   refused(2, "takes no scans", tool, {scan, later_scan, "--plan-survey", "height=2"});
   refused(2,
