@@ -45,10 +45,10 @@ inline Lidar lidar_at(const SiteScene& scene, const Eigen::Vector3d& position) {
   return lidar;
 }
 
-/// As many equal steps as give about this many points, at most 150,000; 0.6 of the beams meet the
+/// As many equal steps as give about this many points, at most 100,000; 0.6 of the beams meet the
 /// scene.
 inline void step_for(Lidar& lidar, std::size_t points) {
-  points = std::min<std::size_t>(points, 150000);
+  points = std::min<std::size_t>(points, 100000);
   const double window =
       (lidar.azimuth(1) - lidar.azimuth(0)) * (lidar.elevation(1) - lidar.elevation(0));
   lidar.angle_step.setConstant(std::sqrt(0.6 * window / static_cast<double>(points)));
