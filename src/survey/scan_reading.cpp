@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include <excavplan/error.hpp>
 
 #include "base/parallel.hpp"
@@ -76,6 +78,12 @@ void visit_scan(const Scan& scan, const PointVisitor& visit) {
       visit_parts(cloud->points, bring_in);
     }
   }
+}
+
+std::optional<Eigen::Vector3d> sensor_of(const Scan& scan) {
+  const auto& origin = scan.sensor_origin;
+  if (!origin) return std::nullopt;
+  return Eigen::Vector3d((scan.site_from_scan * origin->homogeneous()).head<3>());
 }
 
 Cloud gathered(const Scan& scan) {
