@@ -61,6 +61,7 @@ struct Shadow {
   std::vector<Cell> cells;
   std::vector<Rim> rim;
   std::vector<Rim> hiding;  ///< those that hide the ground behind
+  std::size_t mixed = 0;    ///< cells that held mixed returns
   int hole_zone = -1;
   int heap_zone = -1;
 };
@@ -73,13 +74,13 @@ double value_at(std::vector<double> values, double share) {
 
 class ShadowFiller {
  public:
-  ShadowFiller(const HeightMap& before, HeightMap& after, const Eigen::Vector3d& sensor,
-               ChangedGround& ground)
-      : before_(before),
-        after_(after),
+  ShadowFiller(const ShadowedScans& scans, ChangedGround& ground)
+      : before_(scans.before),
+        after_(scans.after),
+        mixed_(scans.mixed),
         ground_(ground),
-        sight_(after, sensor),
-        change_{after.origin, after.cell_size, after.z - before.z - ground.datum},
+        sight_(scans.after, scans.sensor),
+        change_{after_.origin, after_.cell_size, after_.z - before_.z - ground.datum},
         variance_(ground.zone_is_cut.size(), 0.0) {
     const Gradient gradient = gradient_of(change_);
     slope_ = (gradient.x.square() + gradient.y.square()).sqrt();
@@ -137,22 +138,25 @@ class ShadowFiller {
     double slopes = 0.0;
     double counted = 0.0;
     double middle = 0.0;
+    std::vector<double> gentle;
     for (const Cell at : cells) {
       const double slope = slope_(at.row, at.col);
       if (std::isnan(slope)) continue;
       slopes += slope * change_.cell_size;
       const double height = sign * change(at);
       counted += height > 0.1 * top ? 1.0 : 0.0;
-      middle += height > 0.25 * top && height < 0.75 * top ? 1.0 : 0.0;
+      if (!(height > 0.25 * top && height < 0.75 * top)) continue;
+      middle += 1.0;
+      gentle.push_back(slope);
     }
     const Angle usual = is_hole ? usual_wall : usual_repose;
     if (!(counted > fewest) || !(middle > 0.0) || !(top > 0.0)) return usual;
+    if (!is_hole) return {std::atan(median(gentle)), repose_scatter};
     const double length = slopes / top;                    // of a contour [cell]
     const double blurred = 2.0 * middle / length;          // width of the face [cell]
     const double least = 0.2;                              // ours [cell]
     const double width = std::sqrt(std::max(blurred * blurred - 1.0 / 3.0, least * least));
-    const double own_sd = is_hole ? wall_scatter : repose_scatter;
-    return {std::atan2(top, width * change_.cell_size), own_sd};
+    return {std::atan2(top, width * change_.cell_size), wall_scatter};
   }
 
   /// Level of the deepest cells that are not steep, or what the deepest faces leave open.
@@ -201,6 +205,7 @@ class ShadowFiller {
         }
       }
       note_zone(at, shadow);
+      shadow.mixed += static_cast<std::size_t>(mixed_(at.row, at.col));
     }
     if (2 * shadow.hiding.size() < facing) shadow.hiding.clear();
     return shadow;
@@ -214,40 +219,45 @@ class ShadowFiller {
 
   static bool is_shadow(const Shadow& shadow) {
     constexpr std::size_t fewest = 3;  // ours
-    return shadow.hiding.size() >= fewest && (shadow.hole_zone >= 0 || shadow.heap_zone >= 0);
+    const bool is_hidden =
+        shadow.hiding.size() >= fewest || 2 * shadow.mixed > shadow.cells.size();
+    return is_hidden && (shadow.hole_zone >= 0 || shadow.heap_zone >= 0);
   }
 
   /// The last cell that holds its points ends at the rim of a shadow, on average, but for returns
-  /// that are mixed there; the first ray that is not mixed passes as far beyond the rim.
+  /// that are mixed there; the first ray that is not mixed passes as far beyond the rim. The ground
+  /// goes on to the rim as it lies before it.
   Rim rim_at(Cell at) const {
-    Rim rim{{static_cast<double>(at.col), static_cast<double>(at.row)}, level_of(at)};
-    if (rim.height > 3.0 * ground_.noise_sd) {
-      rim.beyond = 0.0;  // loose soil falls from its crest
-    } else if (sight_.hides(at)) {
+    Rim rim{{static_cast<double>(at.col), static_cast<double>(at.row)}, change(at)};
+    if (!sight_.hides(at)) return rim;
+    const Eigen::Vector3d plane = plane_at(at);
+    if (plane.x() < 3.0 * ground_.noise_sd) {
       rim.beyond = 0.5 * (0.5 + std::clamp(sight_.cells_to_rim(at), -0.5, 1.5));
     }
+    rim.height = plane.x() + rim.beyond * plane.tail<2>().dot(sight_.outward(at));
     return rim;
   }
 
-  /// A plane through the 5 x 5 cells around takes the noise off a rim.
-  double level_of(Cell at) const {
+  /// Level and slope along columns and rows of the change by the 5 x 5 cells around, which takes
+  /// the noise off.
+  Eigen::Vector3d plane_at(Cell at) const {
     constexpr Eigen::Index reach = 2;
-    if (!sight_.hides(at)) return change(at);
+    constexpr double fewest = 8.0;  // ours: cells
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (Eigen::Index c = at.col - reach; c <= at.col + reach; ++c) {
       for (Eigen::Index r = at.row - reach; r <= at.row + reach; ++r) {
         if (r < 0 || c < 0 || r >= after_.z.rows() || c >= after_.z.cols()) continue;
-        if (std::isnan(change({r, c})) || sight_.ceiling({r, c}) < after_.z(r, c)) continue;
+        if (std::isnan(change({r, c}))) continue;
         const Eigen::Vector3d terms(1.0, static_cast<double>(c - at.col),
                                     static_cast<double>(r - at.row));
         normal += terms * terms.transpose();
         right += change({r, c}) * terms;
       }
     }
-    if (normal(0, 0) < 8.0) return change(at);
-    const double level = normal.ldlt().solve(right).x();
-    return std::isfinite(level) ? level : change(at);
+    const Eigen::LDLT<Eigen::Matrix3d> factor(normal);
+    if (normal(0, 0) < fewest || !(factor.rcond() > 1e-3)) return {change(at), 0.0, 0.0};
+    return factor.solve(right);
   }
 
   Shape shape_in(int zone, bool is_hole) const {
@@ -381,6 +391,7 @@ class ShadowFiller {
 
   const HeightMap& before_;
   HeightMap& after_;
+  const Eigen::ArrayXXi& mixed_;
   ChangedGround& ground_;
   SightLines sight_;
   HeightMap change_;  ///< after - before, less the datum
@@ -391,9 +402,8 @@ class ShadowFiller {
 
 }  // namespace
 
-std::vector<double> fill_shadows(const HeightMap& before, HeightMap& after,
-                                 const Eigen::Vector3d& sensor, ChangedGround& ground) {
-  return ShadowFiller(before, after, sensor, ground).fill_all();
+std::vector<double> fill_shadows(const ShadowedScans& scans, ChangedGround& ground) {
+  return ShadowFiller(scans, ground).fill_all();
 }
 
 }  // namespace excavplan

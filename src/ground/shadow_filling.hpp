@@ -12,6 +12,14 @@
 
 namespace excavplan {
 
+/// Two scans of one area, the one after from one known place.
+struct ShadowedScans {
+  const HeightMap& before;
+  HeightMap& after;              ///< NaN where unknown; shadows are filled
+  const Eigen::ArrayXXi& mixed;  ///< 1 where drop_mixed_returns() dropped a cell of `after`
+  Eigen::Vector3d sensor;        ///< [m]
+};
+
 /// Fills ground of the scan after that lies in the shadow of what its sensor saw.
 ///
 /// From the rim of a shadow the ground is taken to fall at the slope of the faces that were seen of
@@ -19,11 +27,7 @@ namespace excavplan {
 /// nowhere above the lowest ray that passed. The cells of a shadow join the zones whose ground they
 /// continue.
 ///
-/// @param before heights [m]
-/// @param after heights, NaN where unknown; shadows are filled
-/// @param ground its zones are widened
 /// @return variance of the sum of the filled heights, by zone [m^2]
-std::vector<double> fill_shadows(const HeightMap& before, HeightMap& after,
-                                 const Eigen::Vector3d& sensor, ChangedGround& ground);
+std::vector<double> fill_shadows(const ShadowedScans& scans, ChangedGround& ground);
 
 }  // namespace excavplan

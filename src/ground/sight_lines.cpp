@@ -40,6 +40,17 @@ class PointsOfLevelCell {
   double scale_ = 0.0;
 };
 
+int unknown_around(const Eigen::ArrayXXd& z, Cell at) {
+  int unknown = 0;
+  for (Eigen::Index c = at.col - 1; c <= at.col + 1; ++c) {
+    for (Eigen::Index r = at.row - 1; r <= at.row + 1; ++r) {
+      if (r < 0 || c < 0 || r >= z.rows() || c >= z.cols()) continue;
+      unknown += std::isnan(z(r, c)) ? 1 : 0;
+    }
+  }
+  return unknown;
+}
+
 }  // namespace
 
 SightLines::SightLines(const HeightMap& map, const Eigen::Vector3d& sensor)
@@ -126,21 +137,34 @@ double SightLines::tangent_at(Cell at) const {
   return std::min(own, tangent_(at.row, at.col));
 }
 
-void drop_mixed_returns(Surface& surface) {
-  if (!surface.sensor) return;
+Eigen::ArrayXXi drop_mixed_returns(Surface& surface) {
+  Eigen::ArrayXXd& z = surface.height.z;
+  Eigen::ArrayXXi dropped = Eigen::ArrayXXi::Zero(z.rows(), z.cols());
+  if (!surface.sensor) return dropped;
   constexpr double least_share = 0.5;  // of the points: the rest ends at the rim on average
   constexpr double least_step = 0.35;  // ours: of a cell; mixed returns lie along one ray
+  constexpr double fewest = 4.0;       // ours: points that tell a part of a cell from the whole
+  constexpr int most_unseen = 2;       // ours: cells around a part of the ground
   const PointsOfLevelCell whole(surface);
   const SightLines sight(surface.height, *surface.sensor);
-  std::vector<Cell> mixed;
-  for_each_cell(surface.height.z, [&](Cell at) {
+  std::vector<Cell> part;
+  for_each_cell(z, [&](Cell at) {
     if (!(surface.points(at.row, at.col) < least_share * whole(at))) return;
-    if (sight.cells_to_rim(at) < least_step) mixed.push_back(at);
+    if (std::isnan(z(at.row, at.col))) return;
+    if (sight.cells_to_rim(at) < least_step) dropped(at.row, at.col) = 1;
+    if (whole(at) >= fewest) part.push_back(at);
   });
-  for (const Cell at : mixed) {
-    surface.height.z(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
-    surface.variance(at.row, at.col) = surface.height.z(at.row, at.col);
+  const auto drop = [&] {
+    z = (dropped != 0).select(std::numeric_limits<double>::quiet_NaN(), z);
+    surface.variance =
+        (dropped != 0).select(std::numeric_limits<double>::quiet_NaN(), surface.variance);
+  };
+  drop();
+  for (const Cell at : part) {
+    if (unknown_around(z, at) > most_unseen) dropped(at.row, at.col) = 1;
   }
+  drop();
+  return dropped;
 }
 
 }  // namespace excavplan

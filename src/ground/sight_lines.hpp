@@ -51,9 +51,10 @@ class SightLines {
   Eigen::ArrayXXd tangent_;  ///< of the lowest ray over a cell; infinite where there is none
 };
 
-/// Makes cells unknown that rays behind them graze and that hold less than half of the points of
-/// level ground: returns mixed from the rim of a shadow and what lies behind it, and cells that are
-/// seen in part. What is left ends where the shadow begins, on average.
-void drop_mixed_returns(Surface& surface);
+/// Makes cells unknown that hold less than half of the points of level ground and are grazed by the
+/// rays behind them, or stand among unknown ones: returns mixed from the rim of a shadow and what
+/// lies behind it, and cells that are seen in part. What is left ends, on average, where the shadow
+/// begins. @return 1 for each of them
+Eigen::ArrayXXi drop_mixed_returns(Surface& surface);
 
 }  // namespace excavplan

@@ -157,6 +157,7 @@ void sum_beyond_edge(Area& area) {
 struct Scans {
   HeightMap before;
   HeightMap after;
+  Eigen::ArrayXXi mixed;            // 1 where returns after were mixed and dropped
   Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where unknown
   Eigen::ArrayXXd variance_after;
 
@@ -175,8 +176,8 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
   Surface before = pair.before;
   Surface after = pair.after;
   drop_mixed_returns(before);
-  drop_mixed_returns(after);
-  Scans scans{before.height, realigned(after.height, pair.alignment), {}, {}};
+  const Eigen::ArrayXXi mixed = drop_mixed_returns(after);
+  Scans scans{before.height, realigned(after.height, pair.alignment), mixed, {}, {}};
   const bool told = before.variance.size() == scans.before.z.size() &&
                     after.variance.size() == scans.after.z.size();
   if (told) {
@@ -212,7 +213,8 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
 
   std::vector<double> shadows(area.zones.size(), 0.0);
   if (pair.after.sensor) {
-    shadows = fill_shadows(scans.before, scans.after, *pair.after.sensor, area.ground);
+    shadows = fill_shadows({scans.before, scans.after, scans.mixed, *pair.after.sensor},
+                           area.ground);
   }
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
