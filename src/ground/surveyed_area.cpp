@@ -11,6 +11,8 @@
 
 #include "ground/grid_cells.hpp"
 #include "ground/relief.hpp"
+#include "ground/shadow_filling.hpp"
+#include "ground/sight_lines.hpp"
 #include "ground/zone_filling.hpp"
 
 namespace excavplan {
@@ -155,6 +157,7 @@ void sum_beyond_edge(Area& area) {
 struct Scans {
   HeightMap before;
   HeightMap after;
+  Eigen::ArrayXXi mixed;            // 1 where returns after were mixed and dropped
   Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where unknown
   Eigen::ArrayXXd variance_after;
 
@@ -170,12 +173,16 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
     throw Error(ErrorKind::bad_input,
                 "the maps before and after must be on one grid: same origin, cell and size");
   }
-  Scans scans{pair.before.height, realigned(pair.after.height, pair.alignment), {}, {}};
-  const bool told = pair.before.variance.size() == scans.before.z.size() &&
-                    pair.after.variance.size() == scans.after.z.size();
+  Surface before = pair.before;
+  Surface after = pair.after;
+  drop_mixed_returns(before);
+  const Eigen::ArrayXXi mixed = drop_mixed_returns(after);
+  Scans scans{before.height, realigned(after.height, pair.alignment), mixed, {}, {}};
+  const bool told = before.variance.size() == scans.before.z.size() &&
+                    after.variance.size() == scans.after.z.size();
   if (told) {
-    scans.variance_before = pair.before.variance;
-    scans.variance_after = pair.after.variance;
+    scans.variance_before = before.variance;
+    scans.variance_after = after.variance;
   }
   objects = take_out_objects(scans.before.z, scans.after.z, scans.before.cell_size,
                              options.margin / scans.before.cell_size);
@@ -194,7 +201,7 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
 
 Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   Area area;
-  const Scans scans = prepared(pair, options, area.objects);
+  Scans scans = prepared(pair, options, area.objects);
   area.grid.origin = scans.before.origin;
   area.grid.cell_size = scans.before.cell_size;
   Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
@@ -205,10 +212,15 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
+  std::vector<double> shadows(area.zones.size(), 0.0);
+  if (pair.after.sensor) {
+    shadows = fill_shadows({scans.before, scans.after, scans.mixed, *pair.after.sensor},
+                           area.ground);
+  }
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].holes = filling.variance[i] * cell_area * cell_area;
+    area.zones[i].holes = (filling.variance[i] + shadows[i]) * cell_area * cell_area;
   }
   area.ground.difference = filling.difference;
 

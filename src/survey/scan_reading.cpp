@@ -145,6 +145,12 @@ void visit_scan(const Scan& scan, const PointVisitor& visit) {
   }
 }
 
+std::optional<Eigen::Vector3d> sensor_of(const Scan& scan) {
+  const auto& origin = scan.sensor_origin;
+  if (!origin) return std::nullopt;
+  return Eigen::Vector3d((scan.site_from_scan * origin->homogeneous()).head<3>());
+}
+
 Cloud gathered(const Scan& scan) {
   Scan held = scan;
   held.files.clear();

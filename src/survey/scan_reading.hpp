@@ -14,6 +14,10 @@ namespace excavplan {
 /// not finite may be among them. The same on every call. @throws Error (bad_file)
 void visit_scan(const Scan& scan, const PointVisitor& visit);
 
+/// Where the sensor of a scan stood, in the site frame; nothing where it is unknown or several
+/// stood at different places.
+std::optional<Eigen::Vector3d> sensor_of(const Scan& scan);
+
 /// All these points at once, for methods that need them.
 /// @throws Error (bad_file) as read_cloud()
 Cloud gathered(const Scan& scan);

@@ -27,6 +27,8 @@ struct Scan {
   std::optional<Rectangle> area;  ///< points outside, in the site frame, are left out
   std::vector<std::shared_ptr<const Cloud>> clouds = {};  ///< in the frame of the files; not null
   double unit = 1.0;  ///< length of a unit of their coordinates; `site_from_scan` is in metres [m]
+  /// Where the sensor stood, in the frame of the files [m]; unset: where they say so themselves.
+  std::optional<Eigen::Vector3d> sensor_origin = {};
 };
 
 /// The error (bad_file) of scans outside the expected area, mostly because `site_from_scan` does
