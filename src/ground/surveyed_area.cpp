@@ -11,6 +11,7 @@
 
 #include "ground/grid_cells.hpp"
 #include "ground/relief.hpp"
+#include "ground/sampling_gaps.hpp"
 #include "ground/zone_filling.hpp"
 
 namespace excavplan {
@@ -107,6 +108,13 @@ void sum_faces(Area& area, const Surface& scan) {
     const double spacing = std::sqrt(area.zones[i].area / points[i]);
     area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);
   }
+}
+
+/// Error of each zone by what lies between the points of a sparse scan.
+void sum_between(Area& area, const Surface& scan) {
+  const std::vector<double> variance =
+      variance_between_points(scan, area.ground.zone, area.zones.size());
+  for (std::size_t i = 0; i < area.zones.size(); ++i) area.zones[i].faces += variance[i];
 }
 
 /// Error of zones that touch: a cell on their border takes in soil that was lost and soil that was
@@ -220,6 +228,8 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   sum_beyond_edge(area);
   sum_faces(area, pair.before);
   sum_faces(area, pair.after);
+  sum_between(area, pair.before);
+  sum_between(area, pair.after);
   sum_borders(area);
   area.errors = ErrorField{scans.before,
                            area.ground.residual,
