@@ -249,11 +249,24 @@ std::optional<double> size_of_blocks(const std::vector<Patch>& heap) {
          (static_cast<double>(peak - bend_per_lag.begin()) + 1.0 + shift);
 }
 
-/// Masks of what rose and what fell in one area.
+/// Masks of what rose in one area, and of the floor of what fell.
 struct AreaMasks {
   Mask risen;
   Mask fallen;
 };
+
+/// Cells of a mask without the walls of the pit: those deeper than a share of its depth.
+Mask floor_of(const Mask& fallen, const Eigen::ArrayXXd& difference) {
+  constexpr double depth_quantile = 0.1;  // of the heights; ours
+  constexpr double floor_share = 0.7;     // ours
+  std::vector<double> heights;
+  for_each_cell(fallen, [&](Cell cell) {
+    const double height = difference(cell.row, cell.col);
+    if (fallen(cell.row, cell.col) && !std::isnan(height)) heights.push_back(height);
+  });
+  if (heights.empty()) return fallen;
+  return fallen && difference < floor_share * quantile(std::move(heights), depth_quantile);
+}
 
 AreaMasks masks_of(const AreaChange& area, const std::vector<ChangeZone>& zones) {
   AreaMasks masks{Mask::Constant(area.zone.rows(), area.zone.cols(), false), {}};
@@ -265,6 +278,7 @@ AreaMasks masks_of(const AreaChange& area, const std::vector<ChangeZone>& zones)
     masks.risen(cell.row, cell.col) = kind == ZoneKind::spill || kind == ZoneKind::dump;
     masks.fallen(cell.row, cell.col) = kind == ZoneKind::dig;
   });
+  masks.fallen = floor_of(masks.fallen, area.difference.z);
   return masks;
 }
 

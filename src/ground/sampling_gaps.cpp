@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 #include <Eigen/Cholesky>
@@ -164,20 +166,42 @@ std::vector<Sampling> sampling_of(const Surface& surface, const Mask& known,
   return zones;
 }
 
-/// Median scatter of some hundred stable cells.
-double stable_scatter(const Surface& surface, const Mask& known, const Eigen::ArrayXXi& zone,
-                      Index radius) {
-  constexpr Index most_tries = 1000;  // ours
-  std::vector<double> scatter;
-  const Index stride = zone.size() / most_tries + 1;
-  for (Index i = 0; i < zone.size(); i += stride) {
-    if (zone(i) >= 0 || !known(i)) continue;
-    const Cell at = {i % zone.rows(), i / zone.rows()};
-    const double value = scatter_around(surface.height.z, known, at, radius);
-    if (!std::isnan(value)) scatter.push_back(value);
+/// Mean scatter of the ground in windows over some cells of a zone, beyond the median of stable
+/// ground [m^2].
+class ZoneScatter {
+ public:
+  ZoneScatter(const Surface& surface, const Mask& known, const Eigen::ArrayXXi& zone)
+      : z_(surface.height.z), known_(known), zone_(zone) {}
+
+  double operator()(int index, Index radius) const {
+    const std::vector<double> inside = values(index, radius);
+    std::vector<double> stable = values(-1, radius);
+    if (inside.empty()) return 0.0;
+    double sum = 0.0;
+    for (const double value : inside) sum += value;
+    const double usual = stable.empty() ? 0.0 : median(stable);
+    return std::max(0.0, sum / static_cast<double>(inside.size()) - usual);
   }
-  return scatter.empty() ? 0.0 : median(scatter);
-}
+
+ private:
+  std::vector<double> values(int index, Index radius) const {
+    constexpr Index most = 1000;  // ours
+    const Index count = (zone_ == index).count();
+    const Index stride = count / most + 1;
+    std::vector<double> found;
+    Index number = 0;
+    for (Index i = 0; i < zone_.size(); ++i) {
+      if (zone_(i) != index || std::isnan(z_(i)) || number++ % stride != 0) continue;
+      const double value = scatter_around(z_, known_, {i % zone_.rows(), i / zone_.rows()}, radius);
+      if (!std::isnan(value)) found.push_back(value);
+    }
+    return found;
+  }
+
+  const Eigen::ArrayXXd& z_;
+  const Mask& known_;
+  const Eigen::ArrayXXi& zone_;
+};
 
 }  // namespace
 
@@ -203,30 +227,37 @@ void fill_sampling_gaps(Surface& surface) {
 
 std::vector<double> variance_between_points(const Surface& surface, const Eigen::ArrayXXi& zone,
                                             std::size_t count) {
-  constexpr double sparse = 0.45;  // ours [cell]: fewer than five points in a cell
-  constexpr double window = 1.5;   // ours [spacing]
-  constexpr double of_scatter = 1.0 / 3.0;
+  constexpr double sparse = 0.45;     // ours [cell]: fewer than five points in a cell
+  constexpr double window = 1.5;      // ours [spacing]
+  constexpr double of_scatter = 9.0;  // ours, for random points
+  constexpr double of_lines = 0.25;   // ours: lines sample faces more evenly
   std::vector<double> variance(count, 0.0);
   if (surface.points.size() == 0) return variance;
   const Mask known = surface.points > 0;
   const std::vector<Sampling> zones = sampling_of(surface, known, zone, count);
-  const auto radius_of = [&](std::size_t i) {
-    return static_cast<Index>(std::ceil(window * zones[i].spacing()));
-  };
-  std::vector<double> usual(count, 0.0);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (zones[i].spacing() > sparse) usual[i] = stable_scatter(surface, known, zone, radius_of(i));
-  }
+  const ZoneScatter scatter(surface, known, zone);
   const double cell_area = surface.height.cell_size * surface.height.cell_size;
-  for_each_cell(zone, [&](Cell at) {
-    if (zone(at.row, at.col) < 0 || std::isnan(surface.height.z(at.row, at.col))) return;
-    const auto i = static_cast<std::size_t>(zone(at.row, at.col));
+  for (std::size_t i = 0; i < count; ++i) {
     const double spacing = zones[i].spacing();
-    if (!(spacing > sparse)) return;
-    const double patch = 4.0 * spacing * spacing * cell_area;
-    const double scatter = scatter_around(surface.height.z, known, at, radius_of(i)) - usual[i];
-    if (scatter > 0.0) variance[i] += of_scatter * cell_area * patch * scatter;
-  });
+    if (!(spacing > sparse)) continue;
+    const auto radius = static_cast<Index>(std::ceil(window * spacing));
+    const double near = scatter(static_cast<int>(i), radius);
+    const double far = scatter(static_cast<int>(i), 2 * radius);
+    if (near == 0.0) continue;
+    const bool in_lines = spacing > 1.5;  // ours
+    const double width = 2.0 * static_cast<double>(radius) + 1.0;
+    const double power = std::clamp(std::log(far / near) / std::log((2.0 * width - 1.0) / width),
+                                    1.0, in_lines ? 2.0 : 3.0);
+    variance[i] = of_scatter * (in_lines ? of_lines : 1.0) * zones[i].cells * cell_area *
+                  cell_area * spacing * spacing * near * std::pow(spacing / width, power);
+    if (getenv("DBG"))
+      fprintf(
+          stderr,
+          "zone %zu cells %g spacing %.2f pts/known %.2f near %.4f far %.4f power %.2f raw %.6f\n",
+          i, zones[i].cells, spacing, zones[i].points / zones[i].known, std::sqrt(near),
+          std::sqrt(far), std::log(far / near) / std::log((2.0 * width - 1.0) / width),
+          std::sqrt(variance[i]));
+  }
   return variance;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -69,14 +71,16 @@ void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_varian
 
 /// How regularly points lie: 0 for random points, whose counts in two cells differ by the square
 /// root of their sum; towards 1 for a lattice, as of a camera.
-double regularity_of(const Eigen::ArrayXXi& points, const Eigen::ArrayXXi& zone) {
+double regularity_of(const Surface& scan, const Eigen::ArrayXXi& zone) {
+  const Eigen::ArrayXXi& points = scan.points;
+  const Eigen::ArrayXXd& z = scan.height.z;
   double squares = 0.0;
   double sums = 0.0;
   for_each_cell(points, [&](Cell at) {
     if (at.row == 0 || zone(at.row, at.col) >= 0 || zone(at.row - 1, at.col) >= 0) return;
     const double one = points(at.row - 1, at.col);
     const double two = points(at.row, at.col);
-    if (one == 0.0 || two == 0.0) return;
+    if (std::isnan(z(at.row - 1, at.col)) || std::isnan(z(at.row, at.col))) return;
     squares += (one - two) * (one - two);
     sums += one + two;
   });
@@ -92,7 +96,7 @@ void sum_faces(Area& area, const Surface& scan) {
   std::vector<double> faces(zones, 0.0);
   std::vector<double> points(zones, 0.0);
   const Gradient gradient = gradient_of(scan.height);
-  const double regularity = regularity_of(scan.points, area.ground.zone);
+  const double regularity = regularity_of(scan, area.ground.zone);
   const double cell_size = area.grid.cell_size;
   const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell_size);
   for_each_cell(area.ground.zone, [&](Cell at) {
@@ -106,7 +110,7 @@ void sum_faces(Area& area, const Surface& scan) {
   for (std::size_t i = 0; i < zones; ++i) {
     if (faces[i] == 0.0 || points[i] == 0.0) continue;
     const double spacing = std::sqrt(area.zones[i].area / points[i]);
-    area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);
+    area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);if(getenv("DBG"))fprintf(stderr,"  faces %zu %.6f reg %.2f\n",i,std::sqrt(regularity * std::pow(face_place * spacing * faces[i], 2)),regularity);
   }
 }
 
@@ -114,7 +118,9 @@ void sum_faces(Area& area, const Surface& scan) {
 void sum_between(Area& area, const Surface& scan) {
   const std::vector<double> variance =
       variance_between_points(scan, area.ground.zone, area.zones.size());
-  for (std::size_t i = 0; i < area.zones.size(); ++i) area.zones[i].faces += variance[i];
+  if (scan.points.size() == 0) return;
+  const double irregularity = 1.0 - regularity_of(scan, area.ground.zone);
+  for (std::size_t i = 0; i < area.zones.size(); ++i) area.zones[i].faces += irregularity * variance[i];
 }
 
 /// Error of zones that touch: a cell on their border takes in soil that was lost and soil that was
@@ -135,7 +141,7 @@ void sum_borders(Area& area) {
     });
   });
   for (std::size_t i = 0; i < hidden.size(); ++i) {
-    area.zones[i].faces += std::pow(hidden_at_border * hidden[i], 2);
+    area.zones[i].faces += std::pow(hidden_at_border * hidden[i], 2);if(getenv("DBG"))fprintf(stderr,"  border %zu %.6f vol %.5f\n",i,hidden_at_border * hidden[i],area.zones[i].volume);
   }
 }
 
