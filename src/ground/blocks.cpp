@@ -14,6 +14,7 @@
 #include "base/angles.hpp"
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 
 namespace excavplan {
@@ -255,17 +256,34 @@ struct AreaMasks {
   Mask fallen;
 };
 
-/// Cells of a mask without the walls of the pit: those deeper than a share of its depth.
-Mask floor_of(const Mask& fallen, const Eigen::ArrayXXd& difference) {
-  constexpr double depth_quantile = 0.1;  // of the heights; ours
-  constexpr double floor_share = 0.7;     // ours
+/// Cells of a pit without its walls. Walls are as wide, from the rim inwards, as half of the cells
+/// are less deep than most of the floor.
+Mask floor_of(const Mask& pit, const Eigen::ArrayXXd& difference) {
+  constexpr double deepest = 0.1;      // quantile of the heights; ours
+  constexpr double floor_share = 0.7;  // of that depth; ours
+  const Eigen::ArrayXXd from_rim =
+      slope_limited(pit.select(std::numeric_limits<double>::infinity(),
+                               Eigen::ArrayXXd::Zero(pit.rows(), pit.cols())),
+                    1.0);
   std::vector<double> heights;
-  for_each_cell(fallen, [&](Cell cell) {
+  std::vector<std::vector<double>> layers;
+  for_each_cell(pit, [&](Cell cell) {
     const double height = difference(cell.row, cell.col);
-    if (fallen(cell.row, cell.col) && !std::isnan(height)) heights.push_back(height);
+    const double away = from_rim(cell.row, cell.col);
+    if (!pit(cell.row, cell.col) || std::isnan(height) || !std::isfinite(away)) return;
+    heights.push_back(height);
+    const auto layer = static_cast<std::size_t>(away);
+    if (layers.size() <= layer) layers.resize(layer + 1);
+    layers[layer].push_back(height);
   });
-  if (heights.empty()) return fallen;
-  return fallen && difference < floor_share * quantile(std::move(heights), depth_quantile);
+  if (heights.empty()) return pit;
+  const double floor_height = floor_share * quantile(std::move(heights), deepest);
+  std::size_t first = 1;
+  while (first < layers.size() &&
+         (layers[first].empty() || quantile(layers[first], 0.5) > floor_height)) {
+    ++first;
+  }
+  return pit && from_rim > static_cast<double>(first) + 1.0;
 }
 
 AreaMasks masks_of(const AreaChange& area, const std::vector<ChangeZone>& zones) {
