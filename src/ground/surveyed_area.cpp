@@ -14,6 +14,7 @@
 #include "ground/grid_cells.hpp"
 #include "ground/relief.hpp"
 #include "ground/sampling_gaps.hpp"
+#include "ground/stripes.hpp"
 #include "ground/zone_filling.hpp"
 
 namespace excavplan {
@@ -227,6 +228,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
 
   Alignment left = pair.alignment;
   const double share = take_relief_off(scans.before, area.ground, left);
+  const std::vector<double> stripes = take_stripes_off(area.ground);
   sum_zones(area);
   NoiseModel noise = find_noise(area.ground.residual, area.grid.cell_size);
   noise.white = std::max(noise.white, least_noise * least_noise);
@@ -245,7 +247,9 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
                            left}
                     .predict();
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].volume -= area.errors.mean(static_cast<Eigen::Index>(i));
+    const auto at = static_cast<Eigen::Index>(i);
+    area.zones[i].volume -= area.errors.mean(at);
+    area.errors.correlated(at, at) += stripes[i] * cell_area * cell_area;
   }
   return area;
 }
