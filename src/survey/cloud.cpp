@@ -202,8 +202,9 @@ ScanOutline CloudOutline::result() const {
   return outline;
 }
 
-double cell_for(const std::vector<ScanOutline>& outlines) {
-  constexpr double points_per_cell = 12.0;
+namespace {
+
+double cell_of_points(const std::vector<ScanOutline>& outlines, double points) {
   constexpr double widest_fine = 0.05;  // [m]
   constexpr double fewest_cells_along = 100.0;
   double least = widest_fine;
@@ -214,7 +215,15 @@ double cell_for(const std::vector<ScanOutline>& outlines) {
     least = std::min(least, std::min(r.x_max - r.x_min, r.y_max - r.y_min) / fewest_cells_along);
     if (outline.density < density) density = outline.density;
   }
-  return std::max(least, std::sqrt(points_per_cell / density));
+  return std::max(least, std::sqrt(points / density));
+}
+
+}  // namespace
+
+double cell_for(const std::vector<ScanOutline>& outlines) { return cell_of_points(outlines, 12.0); }
+
+double survey_cell(const std::vector<ScanOutline>& outlines) {
+  return cell_of_points(outlines, 2.0);
 }
 
 Rectangle plan_extent(const Cloud& cloud) {

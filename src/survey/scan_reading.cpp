@@ -210,8 +210,9 @@ RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool regi
   RasterOptions raster;
   raster.cell_size = cell_size;
   const Rectangle extent = overlap(pair);
+  raster.node = {extent.x_min, extent.y_min};  // cells move with the scans
   if (registered) {
-    return survey_registered(pair.scans, extent, raster, pair.cell_size(), threads);
+    return survey_registered(pair.scans, extent, raster, pair.registration_cell(), threads);
   }
   std::vector<Surface> both =
       survey_surfaces({pair.scans.before, pair.scans.after}, extent, raster, threads);

@@ -31,7 +31,9 @@ struct OutlinedPair {
   ScanOutline before;
   ScanOutline after;
 
-  double cell_size() const { return cell_for({before, after}); }
+  /// Of the survey: no larger than points allow, as walls and narrow zones are lost in large ones.
+  double cell_size() const { return survey_cell({before, after}); }
+  double registration_cell() const { return cell_for({before, after}); }
   std::string names() const { return name_of(scans.before) + ", " + name_of(scans.after); }
 };
 

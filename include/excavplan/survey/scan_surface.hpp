@@ -67,6 +67,11 @@ std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threa
 /// more of what a bucket does (docs/methods.md#volumes).
 double cell_for(const std::vector<ScanOutline>& outlines);
 
+/// Cell for volumes from such scans [m]: as cell_for() but for two points, so that cells of sparse
+/// scans are not coarser than the dig. Points are then tested for outliers in groups of cells
+/// (survey_surface()).
+double survey_cell(const std::vector<ScanOutline>& outlines);
+
 /// The surface of a scan on the grid of rasterise(), which documents the outlier test.
 ///
 /// Within a cell the points are averaged by tiles of equal area as far as they are enough, so that
