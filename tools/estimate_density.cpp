@@ -59,9 +59,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "area of the hole (default: detected)");
   arguments.option("dump-area", inputs.options.change.dump_area,
                    "area of the heap (default: detected)");
-  arguments.file("before-frame", inputs.frames.before,
-                 "4 x 4 matrix that transforms the clouds before into the site frame");
-  arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
+  declare_frames(arguments, inputs.frames);
+  declare_units(arguments, inputs.frames);
   declare_method(arguments, inputs.method);
   arguments.flag("no-register", inputs.still,
                  "do not register the scans: the sensor did not move between them");

@@ -122,7 +122,9 @@ void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
   }
   if (!(sum > least_warned_share * change.excavated.value)) return;
   std::string message =
-      text_of(*largest) + " is neither hole, spill nor heap: excluded from all volumes";
+      text_of(*largest) +
+      " is neither hole, spill nor heap: excluded from all volumes; --dig-area and --dump-area "
+      "take it in, if it belongs to them";
   if (count > 1) {
     message += "; with " + std::to_string(count - 1) + " more such zones " + litres_as_m3(sum) +
                " in total";
@@ -136,7 +138,7 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
   if (zone.is_cut) {
     warnings.push_back({"zone_at_border",
                         what + " reaches the edge of the surveyed ground: its "
-                               "volume may be incomplete",
+                               "volume may be incomplete; scan farther around it, or widen --area",
                         true});
   }
   const double share = zone.unknown / zone.area;
@@ -146,12 +148,13 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
                                            " % of its cells, more than " +
                                            hundredths(100.0 * options.refused_unknown_share) +
                                            " %: its volume is not trustworthy, so the bulking "
-                                           "factor is unknown"});
+                                           "factor is unknown; scan it from a second standpoint"});
   } else if (share > options.max_unknown_share) {
     warnings.push_back({"zone_partly_unseen",
                         what + " was seen by no scan in " + hundredths(100.0 * share) +
                             " % of its cells, which were interpolated; the limit is " +
-                            hundredths(100.0 * options.max_unknown_share) + " %",
+                            hundredths(100.0 * options.max_unknown_share) +
+                            " %: scan it from a second standpoint",
                         true});
   }
 }
@@ -163,13 +166,17 @@ void warn_of_ground(const ChangedGround& ground, std::vector<Warning>& warnings)
                                      " % of the surveyed ground did not change, less than " +
                                      hundredths(100.0 * least_stable_share) +
                                      " %: an area that rose or fell evenly could be "
-                                     "mistaken for stable ground"});
+                                     "mistaken for stable ground; scan more of the ground around "
+                                     "hole and heap"});
   }
   if (ground.noise_sd > largest_noise) {
     warnings.push_back({"scans_do_not_fit",
                         "ground that did not change differs by " + hundredths(ground.noise_sd) +
                             " m between the scans (one standard deviation), more than " +
-                            hundredths(largest_noise) + " m: are both scans in one frame?"});
+                            hundredths(largest_noise) +
+                            " m: bring both scans into one frame by --before-frame and "
+                            "--after-frame, or leave out by --area what moved between them",
+                        true});
   }
 }
 
@@ -179,7 +186,7 @@ void warn_of_balance(VolumeChange& change) {
   if (!(before > 0.0)) {
     change.warnings.push_back({"no_hole_found",
                                "no ground fell by more than the noise of the scans: no hole was "
-                               "found, its volumes are 0"});
+                               "found, its volumes are 0; check that AFTER shows the dig"});
     return;
   }
   const double dumped = change.dumped.value;
@@ -189,7 +196,8 @@ void warn_of_balance(VolumeChange& change) {
                                litres_as_m3(dumped) + " rose away from it and " +
                                litres_as_m3(after - dumped) +
                                " beside it: the dumped soil is not in the scans, so the bulking "
-                               "factor is unknown"});
+                               "factor is unknown; give scans that show it, or those of the dump "
+                               "area by --dump-before and --dump-after"});
     return;
   }
   const double error =
@@ -203,7 +211,9 @@ void warn_of_balance(VolumeChange& change) {
                               " were dug, " + litres_as_m3(after) +
                               " were deposited, a factor of " + hundredths(ratio) +
                               "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
-                              hundredths(largest_bulking) + " times that of the hole"});
+                              hundredths(largest_bulking) +
+                              " times that of the hole; exchange BEFORE and AFTER, or if z points "
+                              "down, give frames with z up by --before-frame and --after-frame"});
   }
 }
 
@@ -227,7 +237,9 @@ void warn_of_loss_beside_heap(const std::vector<Area>& areas, const ChangeOption
   change.warnings.push_back(
       {"looks_swapped", "before and after are probably swapped: the ground fell by " +
                             litres_as_m3(lost) + " beside what would be the heap, and by " +
-                            litres_as_m3(change.before.value) + " where the hole would be"});
+                            litres_as_m3(change.before.value) +
+                            " where the hole would be; exchange BEFORE and AFTER, or if z points "
+                            "down, give frames with z up by --before-frame and --after-frame"});
 }
 
 /// Volume of all zones of a kind; infinite for the kind `other`.

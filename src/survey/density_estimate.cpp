@@ -15,6 +15,7 @@
 #include "base/text.hpp"
 #include "survey/density_of_volumes.hpp"
 #include "survey/paper_change.hpp"
+#include "survey/scan_checks.hpp"
 #include "survey/scan_reading.hpp"
 
 namespace excavplan {
@@ -80,11 +81,7 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  for (const Warning& warning : change.warnings) {
-    if (warning.code == "looks_swapped") {
-      throw Error(ErrorKind::bad_file, seen.dig.names() + ": " + warning.message);
-    }
-  }
+  refuse_swapped(change, seen.dig.names());
   return change;
 }
 
@@ -93,6 +90,36 @@ VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& sur
   const PaperScans scans = {seen.dig.scans, seen.dump ? &seen.dump->scans : nullptr};
   const PaperSettings settings = {options.change, seen.cell_size, options.paper};
   return about(seen, [&] { return paper_change(scans, surface, settings); });
+}
+
+// ---- Whether the scans can be what they are taken for ------------------------------------------
+
+void append(std::vector<Warning> more, std::vector<Warning>& warnings) {
+  for (Warning& warning : more) {
+    const auto same = [&](const Warning& w) { return w.message == warning.message; };
+    if (std::none_of(warnings.begin(), warnings.end(), same)) {
+      warnings.push_back(std::move(warning));
+    }
+  }
+}
+
+std::vector<Warning> doubts_about(const OutlinedScans& seen) {
+  std::vector<Warning> doubts = check_outlines(seen.dig);
+  if (seen.dump) append(check_outlines(*seen.dump), doubts);
+  return doubts;
+}
+
+std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
+                                  const VolumeChange& change) {
+  std::vector<Warning> doubts = check_volumes(change);
+  const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
+                         const AreaChange& area) {
+    append(check_registration(pair), doubts);
+    append(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
+  };
+  check(seen.dig, surfaces.dig, change.areas.front());
+  if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());
+  return doubts;
 }
 
 // ---- What is known beside the volumes ---------------------------------------------------------
@@ -134,7 +161,9 @@ void judge_scans(DensityEstimate& estimate) {
     estimate.warnings.push_back(warning_of(estimate.blocks));
     estimate.trustworthy = false;
   }
-  for (const Warning& warning : estimate.warnings) {
+  for (Warning& warning : estimate.warnings) {
+    const bool is_leant_on = warning.code == "little_stable_ground" && estimate.registration;
+    if (is_leant_on) warning.ends_trust = true;
     if (warning.ends_trust) estimate.trustworthy = false;
   }
 }
@@ -152,8 +181,13 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
                                        const DensityOptions& options,
                                        std::initializer_list<VolumeMethod> methods) {
   const OutlinedScans seen = outline_scans(scans, options);  // extent, density of points, cell
-  const Surfaces surfaces = survey(seen, options);           // height maps on each other
-  const VolumeChange surface = surface_volumes_of(seen, surfaces, options.change);
+  std::vector<Warning> doubts = doubts_about(seen);
+  Surfaces surfaces;
+  const VolumeChange surface = with_doubts(doubts, [&] {
+    surfaces = survey(seen, options);  // height maps on each other
+    return surface_volumes_of(seen, surfaces, options.change);
+  });
+  append(doubts_about(seen, surfaces, surface), doubts);
 
   DensityEstimate known;  // whatever the method
   known.fallback = fallback_of(options, surfaces, surface);
@@ -171,6 +205,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     // eqs. 3 and 4: volumes before and after
     estimate.change = by_paper ? paper_volumes_of(seen, surface, options) : surface;
     estimate.warnings = estimate.change.warnings;
+    append(doubts, estimate.warnings);
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);
