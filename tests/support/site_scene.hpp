@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -197,10 +198,21 @@ inline Scan handed_over(std::vector<Points> clouds, const PointMap& frame) {
   return scan;
 }
 
+/// Where the only lidar stood, in the frame of the clouds.
+inline std::optional<Eigen::Vector3d> origin_of(const std::vector<Lidar>& lidars,
+                                                const PointMap& frame) {
+  if (lidars.size() != 1) return std::nullopt;
+  const Eigen::Vector3d& position = lidars.front().position;
+  return frame ? frame(position) : position;
+}
+
 /// The scans of a scene as estimate_density() takes them.
 inline DigScans scans_of(const SiteScene& scene, std::uint64_t seed) {
+  const Sampling& sampling = scene.sampling;
   DigScans scans{handed_over(scanned(scene, false, seed), scene.frame_before),
                  handed_over(scanned(scene, true, seed), scene.frame_after)};
+  scans.before.sensor_origin = origin_of(sampling.lidars_before, scene.frame_before);
+  scans.after.sensor_origin = origin_of(sampling.lidars_after, scene.frame_after);
   if (scene.swapped) std::swap(scans.before, scans.after);
   if (scene.two_areas) {
     const double middle = 0.5 * (scene.dig.pit_x + scene.heap.x());
