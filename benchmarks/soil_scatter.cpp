@@ -28,13 +28,16 @@ struct Knowledge {
   bool path;
   bool payload;
   bool moisture;
+  bool void_ratios;
 };
-constexpr std::array<Knowledge, 6> cases = {{{"soil unknown", false, false, false, false},
-                                             {"soil known", true, false, false, false},
-                                             {"soil and path known", true, true, false, false},
-                                             {"payload, soil unknown", false, false, true, false},
-                                             {"payload, soil known", true, false, true, false},
-                                             {"payload, moisture known", true, false, true, true}}};
+constexpr std::array<Knowledge, 7> cases = {
+    {{"soil unknown", false, false, false, false, false},
+     {"soil known", true, false, false, false, false},
+     {"soil and path known", true, true, false, false, false},
+     {"payload, soil unknown", false, false, true, false, false},
+     {"payload, soil known", true, false, true, false, false},
+     {"payload, moisture known", true, false, true, true, false},
+     {"payload, moisture, void ratios known", true, false, true, true, true}}};
 
 RelativeDensity found(const SoilDig& dig, const SoilLaw& kind, const Knowledge& known,
                       const Machine& machine, const std::vector<SoilLaw>& laws) {
@@ -46,6 +49,7 @@ RelativeDensity found(const SoilDig& dig, const SoilLaw& kind, const Knowledge& 
   if (known.path) options.dug_path = DugPath{machine, dig.path, {}};
   if (known.payload) options.payload_mass = dig.payload_mass;
   if (known.moisture) options.soil.water_content = {dig.soil.water_content, 0.005};
+  if (known.void_ratios) options.soil.scatter.limit_density = 0.0;
   return *test::estimate_of(dig.change, kind.law, options).density;
 }
 
@@ -62,6 +66,7 @@ int run(int digs) {
     for (const SimulatorKind& simulator : simulator_kinds()) {
       test::SoilDigOptions options;
       options.simulator = simulator;
+      if (known.void_ratios) options.scatter.limit_density = 0.0;
       for (const SoilLaw& kind : laws) {
         // Where the soil is unknown, as many as its weight says; of costly laws, a third.
         const double share = !known.soil ? kind.weight * 4.0 : known.path ? 1.0 / 3.0 : 1.0;

@@ -160,7 +160,7 @@ DensityLaw law_of(const DensityCalibration& calibration) {
 }
 
 void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
-  constexpr double steepest = 0.9;             // of the growth; ours
+  constexpr double steepest = 0.5;             // of the growth: at 0 % there is scatter too; ours
   std::array<double, 2> squares = {0.0, 0.0};  // of loose and of dense soil
   std::array<int, 2> counts = {0, 0};
   for (const BulkingSample& dig : digs) {

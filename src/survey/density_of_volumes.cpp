@@ -157,7 +157,7 @@ class SoilReader {
 
   /// Joins the density by the law with that by the payload.
   void add_payload(const DensityLaw& law, const SoilKind& kind, Answer& answer) const {
-    SoilScatter scatter;
+    SoilScatter scatter = options_.soil.scatter;
     const SoilKind soil = with_water(kind, scatter);
     const VolumeChange& change = estimate_.change;
     const Measured& mass = *options_.payload_mass;

@@ -232,7 +232,7 @@ std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
     lines.push_back(
         "           assumes as much fallback as in the calibration of the law; without fallback, " +
         readable(std::clamp(estimate.density_without_fallback, 0.0, 100.0)) +
-        " % (--dug-path measures it)");
+        " % (--dug-path with --dug-start measures it)");
   }
   return lines;
 }

@@ -24,7 +24,10 @@ struct SoilKnowledge {
   bool assumed = false;                ///< nobody said which kind it is: warning soil_assumed
   bool unknown = false;                ///< the answer is that of any soil in `possible`
   std::vector<SoilLaw> possible = {};  ///< kinds that the soil may be, with their laws
-  /// Measured water per dry mass [-]; else that of the kind with the scatter of SoilScatter.
+  /// Of the soil about its kind, for the payload. A soil whose void ratios were measured on the
+  /// site has a smaller one.
+  SoilScatter scatter = {};
+  /// Measured water per dry mass [-]; else that of the kind with its scatter.
   std::optional<Measured> water_content = {};
 };
 
