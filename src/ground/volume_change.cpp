@@ -258,25 +258,27 @@ double total_of(const VolumeChange& change, ZoneKind kind) {
 }
 
 /// The warning of the largest of some objects.
-Warning object_warning(const ChangeZone& zone, bool is_before, std::size_t count) {
+Warning object_warning(const ChangeZone& zone, bool is_before, bool is_low, std::size_t count) {
   const Eigen::Vector2d centre(0.5 * (zone.extent.x_min + zone.extent.x_max),
                                0.5 * (zone.extent.y_min + zone.extent.y_max));
-  std::string message = std::string("an object too steep for soil is in the scan ") +
+  std::string message = std::string(is_low ? "a thing with a level top and steep sides lies on dug "
+                                             "ground in the scan "
+                                           : "an object too steep for soil is in the scan ") +
                         (is_before ? "before" : "after") + " around (" + hundredths(centre.x()) +
                         ", " + hundredths(centre.y()) + ") m, over " + hundredths(zone.area) +
                         " m^2: it was removed, and the ground under it counts as unseen";
   if (count > 1) message += "; so were " + std::to_string(count - 1) + " smaller ones";
-  return {"object_taken_out", std::move(message)};
+  return {is_low ? "object_on_soil" : "object_taken_out", std::move(message)};
 }
 
-/// Objects are reported as zones of kind `other`.
-void report_objects(const Area& area, VolumeChange& change, AreaChange& result) {
+/// Objects, low or high ones, are reported as zones of kind `other`.
+void report_objects(const Area& area, bool are_low, VolumeChange& change, AreaChange& result) {
   const double half = 0.5 * area.grid.cell_size;
   std::size_t count = 0;
   std::optional<ChangeZone> largest;
   bool largest_is_before = false;
   for (const Object& object : area.objects) {
-    if (object.is_blunder) continue;
+    if (object.is_blunder || object.is_low != are_low) continue;
     ChangeZone zone;
     zone.volume.value = object.volume;
     zone.area =
@@ -296,7 +298,8 @@ void report_objects(const Area& area, VolumeChange& change, AreaChange& result) 
     change.zones.push_back(zone);
     ++count;
   }
-  if (largest) change.warnings.push_back(object_warning(*largest, largest_is_before, count));
+  if (!largest) return;
+  change.warnings.push_back(object_warning(*largest, largest_is_before, are_low, count));
 }
 
 /// Enters the zones of one area into the result.
@@ -326,7 +329,7 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
   result.difference.z =
       (area.unknown != 0).select(std::numeric_limits<double>::quiet_NaN(), area.ground.difference);
   result.zone = (area.ground.zone >= 0).select(area.ground.zone + first, -1);
-  report_objects(area, change, result);
+  for (const bool low : {false, true}) report_objects(area, low, change, result);
   result.noise_sd = area.ground.noise_sd;
   result.datum = area.ground.datum;
   change.areas.push_back(std::move(result));

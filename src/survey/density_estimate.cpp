@@ -13,6 +13,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/text.hpp"
+#include "ground/cover.hpp"
 #include "survey/density_of_volumes.hpp"
 #include "survey/paper_change.hpp"
 #include "survey/scan_checks.hpp"
@@ -46,6 +47,11 @@ struct Surfaces {
   RegisteredPair dig;
   std::optional<RegisteredPair> dump;
 
+  std::vector<const SurfacePair*> pairs() const {
+    std::vector<const SurfacePair*> all = {&dig.surfaces};
+    if (dump) all.push_back(&dump->surfaces);
+    return all;
+  }
   std::vector<HeightMap> after() const {
     std::vector<HeightMap> maps = {dig.surfaces.after.height};
     if (dump) maps.push_back(dump->surfaces.after.height);
@@ -81,7 +87,8 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  refuse_swapped(change, seen.dig.names());
+  with_doubts(check_cover(surfaces.pairs(), change),
+              [&] { refuse_swapped(change, seen.dig.names()); });
   return change;
 }
 
@@ -119,6 +126,7 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
   };
   check(seen.dig, surfaces.dig, change.areas.front());
   if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());
+  append(check_cover(surfaces.pairs(), change), doubts);
   return doubts;
 }
 
