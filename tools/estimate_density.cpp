@@ -60,6 +60,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("before-frame", inputs.frames.before,
                  "4 x 4 matrix that transforms the clouds before into the site frame");
   arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
+  arguments.option("sensor-origin", inputs.frames.sensor_origin,
+                   "where the sensor stood, in the frame of the scans (default: VIEWPOINT of PCD)");
   arguments.choice("method", inputs.method, {"surface", "paper"},
                    "surface: signed change of one height map; paper: the pipeline as published");
   arguments.flag("no-register", inputs.still,
@@ -129,9 +131,7 @@ Outcome work_on_scans(const Inputs& inputs) {
 
 Outcome work(const Inputs& inputs) {
   if (inputs.plan_survey) {
-    if (inputs.before || inputs.after) {
-      usage_error("--plan-survey takes no scans");
-    }
+    if (inputs.before || inputs.after) usage_error("--plan-survey takes no scans");
     return planned_survey(*inputs.plan_survey, law_named(inputs.law));
   }
   if (!inputs.before || !inputs.after) {

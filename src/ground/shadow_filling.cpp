@@ -420,10 +420,12 @@ class ShadowFiller {
     }
   }
 
-  /// The rim lies anywhere in its cells, and neighbours share that where it runs along the grid.
+  /// The mean of two places of the rim, each of which is even over a cell; where the rim runs along
+  /// the grid neighbours share the error.
   static double rim_variance(const Shadow& shadow, const Shape& hole) {
     constexpr double shared = 8.0;  // ours: cells
-    return hole.floor * hole.floor / 12.0 * shared * static_cast<double>(shadow.hiding.size());
+    constexpr double of_place = 1.0 / 24.0;
+    return hole.floor * hole.floor * of_place * shared * static_cast<double>(shadow.hiding.size());
   }
 
   void enter(Cell at, double height, int zone) {

@@ -13,7 +13,8 @@ namespace excavplan::tools {
 struct ScanFrames {
   std::optional<std::string> before;  ///< file with the matrix of the scans before
   std::optional<std::string> after;
-  std::optional<Rectangle> area;  ///< points outside are left out
+  std::optional<Rectangle> area;                      ///< points outside are left out
+  std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their own frames [m]
 };
 
 /// @throws Error (bad_file) if a matrix cannot be read

@@ -26,7 +26,8 @@ struct Scan {
   Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();  ///< a rigid motion
   std::optional<Rectangle> area;  ///< points outside, in the site frame, are left out
   std::vector<std::shared_ptr<const Cloud>> clouds = {};  ///< in the frame of the files; not null
-  /// Where the sensor stood, in the frame of the files [m]; unset: where they say so themselves.
+  /// Where the sensor stood, in the frame of the files [m]; unset: where files and clouds say
+  /// themselves, if they all say the same.
   std::optional<Eigen::Vector3d> sensor_origin = {};
 };
 
