@@ -146,9 +146,21 @@ void visit_scan(const Scan& scan, const PointVisitor& visit) {
 }
 
 std::optional<Eigen::Vector3d> sensor_of(const Scan& scan) {
-  const auto& origin = scan.sensor_origin;
-  if (!origin) return std::nullopt;
-  return Eigen::Vector3d((scan.site_from_scan * origin->homogeneous()).head<3>());
+  constexpr double one_place = 0.05;  // [m], ours
+  std::vector<std::optional<Eigen::Vector3d>> said;
+  if (scan.sensor_origin) {
+    said.push_back(scan.sensor_origin);
+  } else {
+    for (const std::string& file : scan.files) said.push_back(read_sensor_origin(file));
+    for (const auto& cloud : scan.clouds) said.push_back(cloud->sensor_origin);
+  }
+  const bool agree =
+      !said.empty() && std::all_of(said.begin(), said.end(), [&](const auto& origin) {
+        return origin && said[0] && scan.unit * (*origin - *said[0]).norm() < one_place;
+      });
+  if (!agree) return std::nullopt;
+  const Eigen::Vector3d metres = scan.unit * *said[0];
+  return Eigen::Vector3d((scan.site_from_scan * metres.homogeneous()).head<3>());
 }
 
 Cloud gathered(const Scan& scan) {
