@@ -40,6 +40,11 @@ class PointsByCell {
   Eigen::Index group_of(Eigen::Index cell) const {
     return (cell % rows_) / side_ + group_rows() * (cell / rows_ / side_);
   }
+  /// All points of a cell over those that are kept of it.
+  double per_kept(Eigen::Index cell) const {
+    const auto i = static_cast<std::size_t>(cell);
+    return static_cast<double>(counts_[i]) / static_cast<double>(kept(i));
+  }
   /// Points kept in a group.
   std::size_t in_group(Eigen::Index group) const;
 

@@ -9,6 +9,7 @@
 
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "ground/sampling_gaps.hpp"
 #include "survey/cloud_outline.hpp"
 #include "survey/point_stream.hpp"
 
@@ -47,6 +48,17 @@ Rectangle overlap(const OutlinedPair& pair) {
                      " do not overlap: " + text(a) + " and " + text(b));
   }
   return both;
+}
+
+/// Surfaces with the ground between the points.
+std::vector<Surface> filled_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
+                                     const RasterOptions& options, unsigned threads) {
+  std::vector<Surface> surfaces(scans.size());
+  parallel_for(scans.size(), threads, [&](std::size_t i) {
+    surfaces[i] = survey_surface(scans[i], extent, options);
+    fill_sampling_gaps(surfaces[i]);
+  });
+  return surfaces;
 }
 
 }  // namespace
@@ -118,7 +130,7 @@ RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool regi
     return survey_registered(pair.scans, extent, raster, pair.registration_cell(), threads);
   }
   std::vector<Surface> both =
-      survey_surfaces({pair.scans.before, pair.scans.after}, extent, raster, threads);
+      filled_surfaces({pair.scans.before, pair.scans.after}, extent, raster, threads);
   RegisteredPair result;
   result.surfaces.before = std::move(both[0]);
   result.surfaces.after = std::move(both[1]);
@@ -144,7 +156,7 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
   RegisteredPair result;
   SurfacePair& pair = result.surfaces;
   const auto survey = [&](const RasterOptions& raster) {
-    std::vector<Surface> both = survey_surfaces({scans.before, after}, extent, raster, threads);
+    std::vector<Surface> both = filled_surfaces({scans.before, after}, extent, raster, threads);
     pair.before = std::move(both[0]);
     pair.after = std::move(both[1]);
   };
@@ -155,7 +167,7 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
     if (!(largest > (is_fine ? 0.0 : 0.5 * options.cell_size))) break;
     result.correction = pair.alignment.correction() * result.correction;
     after.site_from_scan = result.correction * scans.after.site_from_scan;
-    pair.after = survey_surface(after, extent, coarse);
+    pair.after = std::move(filled_surfaces({after}, extent, coarse, threads).front());
     pair.alignment = align(pair.before, pair.after);
   }
   if (is_fine) survey(options);

@@ -102,7 +102,8 @@ struct RegisteredPair {
 /// Surveys both scans and registers the one after to the one before, by align() on cells of at
 /// least `registration_cell`: smaller ones of a sparse scan do not show slopes. A motion that moves
 /// points by more than half a cell in plan, or at all where those cells are larger than the
-/// survey's, is taken off the points, which are then surveyed again.
+/// survey's, is taken off the points, which are then surveyed again. Cells that lie between the
+/// points of a sparse scan, its rings or its lines are interpolated; they count no points.
 /// @throws Error as survey_surface() and align()
 RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
                                  const RasterOptions& options, double registration_cell,
