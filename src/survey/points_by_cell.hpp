@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -99,7 +100,19 @@ class PointsByCell {
     backwards_ = !backwards_;
   }
 
-  Place locate(const Eigen::Vector3d& point) const;
+  Place locate(const Eigen::Vector3d& point) const {
+    Place place;
+    place.column = (point.x() - origin_.x()) * per_cell_;
+    place.row = (point.y() - origin_.y()) * per_cell_;
+    const bool inside = place.column >= 0.0 && place.column < static_cast<double>(columns_) &&
+                        place.row >= 0.0 && place.row < static_cast<double>(rows_) &&
+                        std::isfinite(point.z());
+    if (inside) {
+      place.cell = static_cast<std::size_t>(place.row) +
+                   static_cast<std::size_t>(rows_) * static_cast<std::size_t>(place.column);
+    }
+    return place;
+  }
   void count();
   void choose_groups();
   void part(std::uint64_t most_points);
