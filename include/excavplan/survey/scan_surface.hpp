@@ -116,7 +116,8 @@ struct RegisteredPair {
 /// survey's, is taken off the points, which are then surveyed again. Where the motion exceeds three
 /// times the priors, or the stable ground differs by more than the scatter of its points explains,
 /// shifts to 1.2 m and turns to 6 degrees are tried as well, and kept if they leave two thirds of
-/// the difference or less.
+/// the difference or less. Cells that lie between the points of a sparse scan, its rings or its
+/// lines are interpolated; they count no points.
 /// @throws Error as survey_surface() and align()
 RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
                                  const RasterOptions& options, double registration_cell,
