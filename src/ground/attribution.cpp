@@ -24,7 +24,7 @@ namespace {
 namespace prior {
 constexpr double certain = 0.98;       // the main heap, spill beside the hole, a given area
 constexpr double main_hole = 0.9;      // the largest: another may fit the soil better
-constexpr double beside_main = 0.95;   // of the same kind as the hole or heap that it lies beside
+constexpr double beside_main = 0.96;   // of the same kind as the hole or heap that it lies beside
 constexpr double second = 0.85;        // a hole or a heap away from the largest
 constexpr double along_swing = 0.9;    // clods between hole and heap
 constexpr double low_edge = 0.9;       // ground that runs out, thinner and thinner
@@ -33,21 +33,22 @@ constexpr double shallow_fall = 0.15;  // ground that sank by far less than the 
 constexpr double no_soil = 0.03;       // ruts and their berms, things, outside a given area
 }  // namespace prior
 
-constexpr double highest_berm = 0.10;     // [m]
-constexpr double lasting_track = 0.6;     // a tail that keeps this share of its depth is one
-constexpr double berm_reach = 0.6;        // from a rut [m]
-constexpr double berm_share = 0.6;        // of its cells that lie there
-constexpr double upright = 1.3;           // slope that no loose soil has: 52 degrees
-constexpr double least_upright = 0.12;    // height of a thing [m]
-constexpr double largest_upright = 0.25;  // of the hole's volume
-constexpr double small_share = 0.03;      // of the hole's volume: a clod, a blemish
-constexpr double shallow = 0.03;          // what feet, tracks and settling do [m]
-constexpr double shallow_share = 0.2;     // of the hole's height
-constexpr double swing_bulge = 1.25;      // ellipse about hole and heap
-constexpr double swing_room = 0.5;        // [m]
-constexpr double negligible = 0.0005;     // of the hole's volume
-constexpr std::size_t most_open = 10;     // changes that are combined
-constexpr double least_stated = 0.03;     // weight of a reading
+constexpr double highest_lone_track = 0.05;  // one deeper than this is no rut [m]
+constexpr double highest_berm = 0.10;        // [m]
+constexpr double lasting_track = 0.6;        // a tail that keeps this share of its depth is one
+constexpr double berm_reach = 0.6;           // from a rut [m]
+constexpr double berm_share = 0.6;           // of its cells that lie there
+constexpr double upright = 1.3;              // slope that no loose soil has: 52 degrees
+constexpr double least_upright = 0.12;       // height of a thing [m]
+constexpr double largest_upright = 0.25;     // of the hole's volume
+constexpr double small_share = 0.03;         // of the hole's volume: a clod, a blemish
+constexpr double shallow = 0.03;             // what feet, tracks and settling do [m]
+constexpr double shallow_share = 0.2;        // of the hole's height
+constexpr double swing_bulge = 1.25;         // ellipse about hole and heap
+constexpr double swing_room = 0.5;           // [m]
+constexpr double negligible = 0.0005;        // of the hole's volume
+constexpr std::size_t most_open = 10;        // changes that are combined
+constexpr double least_stated = 0.03;        // weight of a reading
 constexpr std::size_t most_readings = 6;
 constexpr double left_out = 0.05;         // what a 95 % interval may leave out
 constexpr double inside_interval = 0.27;  // variance share that takes a change in: 1 / 1.96^2
@@ -61,7 +62,7 @@ constexpr double pressed_to_rut = 0.2;
 
 /// Likelihood of a bulking factor in any soil: even from 1.02 to 1.65 (docs/methods.md#bulking).
 double likelihood_of_bulking(double k) {
-  constexpr double least = 1.02, least_sd = 0.04, most = 1.65, most_sd = 0.15, never = 1e-3;
+  constexpr double least = 1.02, least_sd = 0.04, most = 1.65, most_sd = 0.08, never = 1e-3;
   const double off = k < least ? (least - k) / least_sd : k > most ? (k - most) / most_sd : 0.0;
   return never + (1.0 - never) * std::exp(-0.5 * off * off);
 }
@@ -161,7 +162,18 @@ class ChangeReader {
     return zones_near(areas_[p.area].ground.zone, one,
                       options_.spill_distance / areas_[p.area].grid.cell_size);
   }
-  void mark_beside() { beside_ = near(*hole_); }
+  /// Marks what lies beside the hole, and beside other falls that may be holes too.
+  void mark_beside() {
+    beside_ = near(*hole_);
+    beside_others_.assign(beside_.size(), false);
+    for (std::size_t z = 0; z < beside_.size(); ++z) {
+      if (!(-areas_[0].zones[z].volume > small_share * hole_volume())) continue;
+      const std::vector<bool> around = near({0, z});
+      for (std::size_t i = 0; i < around.size(); ++i) {
+        beside_others_[i] = beside_others_[i] || around[i];
+      }
+    }
+  }
   bool beside(Place p) const { return p.area == 0 && !beside_.empty() && beside_[p.zone]; }
 
   // ---- Tracks ---------------------------------------------------------------------------------
@@ -169,7 +181,7 @@ class ChangeReader {
   bool looks_like_track(Place p) const {
     if (is(p, hole_) || is(p, heap_) || part(p) == Part::churn) return false;
     return shape(p).is_track_wide() && looks_[p.area][p.zone].lasting > lasting_track &&
-           (shape(p).is_strip() || has_twin(p));
+           (has_twin(p) || (shape(p).is_strip() && shape(p).height < highest_lone_track));
   }
 
   bool has_twin(Place p) const {
@@ -271,6 +283,9 @@ class ChangeReader {
     if (heap_ && near(*heap_)[p.zone] && p.area == heap_->area) {
       return {"soil beside the heap", prior::beside_main, false};
     }
+    if (p.area == 0 && !beside_others_.empty() && beside_others_[p.zone]) {
+      return {"spill beside another hole", prior::beside_main, true};
+    }
     if (is_small && in_swing(p)) return {"clods along the swing", prior::along_swing, true};
     if (is_small) return {"small rises", prior::anywhere, true};
     if (areas_.size() > 1 && p.area == 0) {
@@ -312,6 +327,7 @@ class ChangeReader {
   std::optional<Change::Place> hole_;
   std::optional<Change::Place> heap_;
   std::vector<bool> beside_;
+  std::vector<bool> beside_others_;
   std::vector<std::vector<bool>> is_rut_;
   std::vector<Eigen::ArrayXXd> away_from_ruts_;  // of each area [m]
   std::vector<Change> changes_;
