@@ -44,6 +44,12 @@ struct Surfaces {
   RegisteredPair dig;
   std::optional<RegisteredPair> dump;
 
+  std::vector<HeightMap> before() const {
+    std::vector<HeightMap> maps = {dig.surfaces.before.height};
+    if (dump) maps.push_back(dump->surfaces.before.height);
+    return maps;
+  }
+
   std::vector<HeightMap> after() const {
     std::vector<HeightMap> maps = {dig.surfaces.after.height};
     if (dump) maps.push_back(dump->surfaces.after.height);
@@ -201,6 +207,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   if (options.dug_path) {
     known.fallback = fallback_of(*options.dug_path, surfaces.dig.surfaces, surface);
   }
+  known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
 
   std::vector<DensityEstimate> results;

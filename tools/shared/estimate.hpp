@@ -16,6 +16,9 @@ DensityLaw law_named(const std::string& name);
 
 Outcome estimate_outcome(const DensityEstimate& estimate);
 
+/// The figure of an estimate, as SVG.
+std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome);
+
 /// Adds the result of the other method for the same scans.
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);
 
