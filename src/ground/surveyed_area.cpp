@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -11,6 +13,10 @@
 
 #include "ground/grid_cells.hpp"
 #include "ground/relief.hpp"
+#include "ground/shadow_filling.hpp"
+#include "ground/sight_lines.hpp"
+#include "ground/sampling_gaps.hpp"
+#include "ground/stripes.hpp"
 #include "ground/zone_filling.hpp"
 
 namespace excavplan {
@@ -49,7 +55,7 @@ void sum_zones(Area& area) {
     if (area.unknown(cell.row, cell.col) != 0) zone.unknown += cell_area;
   });
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].centre /= area.zones[i].area;
+    if (area.zones[i].area > 0.0) area.zones[i].centre /= area.zones[i].area;
     area.zones[i].is_cut = ground.zone_is_cut[i];
   }
 }
@@ -68,14 +74,16 @@ void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_varian
 
 /// How regularly points lie: 0 for random points, whose counts in two cells differ by the square
 /// root of their sum; towards 1 for a lattice, as of a camera.
-double regularity_of(const Eigen::ArrayXXi& points, const Eigen::ArrayXXi& zone) {
+double regularity_of(const Surface& scan, const Eigen::ArrayXXi& zone) {
+  const Eigen::ArrayXXi& points = scan.points;
+  const Eigen::ArrayXXd& z = scan.height.z;
   double squares = 0.0;
   double sums = 0.0;
   for_each_cell(points, [&](Cell at) {
     if (at.row == 0 || zone(at.row, at.col) >= 0 || zone(at.row - 1, at.col) >= 0) return;
     const double one = points(at.row - 1, at.col);
     const double two = points(at.row, at.col);
-    if (one == 0.0 || two == 0.0) return;
+    if (std::isnan(z(at.row - 1, at.col)) || std::isnan(z(at.row, at.col))) return;
     squares += (one - two) * (one - two);
     sums += one + two;
   });
@@ -91,7 +99,7 @@ void sum_faces(Area& area, const Surface& scan) {
   std::vector<double> faces(zones, 0.0);
   std::vector<double> points(zones, 0.0);
   const Gradient gradient = gradient_of(scan.height);
-  const double regularity = regularity_of(scan.points, area.ground.zone);
+  const double regularity = regularity_of(scan, area.ground.zone);
   const double cell_size = area.grid.cell_size;
   const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell_size);
   for_each_cell(area.ground.zone, [&](Cell at) {
@@ -105,8 +113,17 @@ void sum_faces(Area& area, const Surface& scan) {
   for (std::size_t i = 0; i < zones; ++i) {
     if (faces[i] == 0.0 || points[i] == 0.0) continue;
     const double spacing = std::sqrt(area.zones[i].area / points[i]);
-    area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);
+    area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);if(getenv("DBG"))fprintf(stderr,"  faces %zu %.6f reg %.2f\n",i,std::sqrt(regularity * std::pow(face_place * spacing * faces[i], 2)),regularity);
   }
+}
+
+/// Error of each zone by what lies between the points of a sparse scan.
+void sum_between(Area& area, const Surface& scan) {
+  const std::vector<double> variance =
+      variance_between_points(scan, area.ground.zone, area.zones.size());
+  if (scan.points.size() == 0) return;
+  const double irregularity = 1.0 - regularity_of(scan, area.ground.zone);
+  for (std::size_t i = 0; i < area.zones.size(); ++i) area.zones[i].faces += irregularity * variance[i];
 }
 
 /// Error of zones that touch: a cell on their border takes in soil that was lost and soil that was
@@ -127,7 +144,7 @@ void sum_borders(Area& area) {
     });
   });
   for (std::size_t i = 0; i < hidden.size(); ++i) {
-    area.zones[i].faces += std::pow(hidden_at_border * hidden[i], 2);
+    area.zones[i].faces += std::pow(hidden_at_border * hidden[i], 2);if(getenv("DBG"))fprintf(stderr,"  border %zu %.6f vol %.5f\n",i,hidden_at_border * hidden[i],area.zones[i].volume);
   }
 }
 
@@ -155,6 +172,7 @@ void sum_beyond_edge(Area& area) {
 struct Scans {
   HeightMap before;
   HeightMap after;
+  Eigen::ArrayXXi mixed;            // 1 where returns after were mixed and dropped
   Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where unknown
   Eigen::ArrayXXd variance_after;
 
@@ -170,12 +188,16 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
     throw Error(ErrorKind::bad_input,
                 "the maps before and after must be on one grid: same origin, cell and size");
   }
-  Scans scans{pair.before.height, realigned(pair.after.height, pair.alignment), {}, {}};
-  const bool told = pair.before.variance.size() == scans.before.z.size() &&
-                    pair.after.variance.size() == scans.after.z.size();
+  Surface before = pair.before;
+  Surface after = pair.after;
+  drop_mixed_returns(before);
+  const Eigen::ArrayXXi mixed = drop_mixed_returns(after);
+  Scans scans{before.height, realigned(after.height, pair.alignment), mixed, {}, {}};
+  const bool told = before.variance.size() == scans.before.z.size() &&
+                    after.variance.size() == scans.after.z.size();
   if (told) {
-    scans.variance_before = pair.before.variance;
-    scans.variance_after = pair.after.variance;
+    scans.variance_before = before.variance;
+    scans.variance_after = after.variance;
   }
   objects = take_out_objects(scans.before.z, scans.after.z, scans.before.cell_size,
                              options.margin / scans.before.cell_size);
@@ -194,25 +216,32 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
 
 Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   Area area;
-  const Scans scans = prepared(pair, options, area.objects);
+  Scans scans = prepared(pair, options, area.objects);
   area.grid.origin = scans.before.origin;
   area.grid.cell_size = scans.before.cell_size;
   Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
   area.unknown = difference.isNaN().cast<int>();
   area.ground =
       find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell_size, options);
+  area.parts = part_zones(area.ground, area.grid.cell_size);
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
+  std::vector<double> shadows(area.zones.size(), 0.0);
+  if (pair.after.sensor) {
+    shadows = fill_shadows({scans.before, scans.after, scans.mixed, *pair.after.sensor},
+                           area.ground);
+  }
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].holes = filling.variance[i] * cell_area * cell_area;
+    area.zones[i].holes = (filling.variance[i] + shadows[i]) * cell_area * cell_area;
   }
   area.ground.difference = filling.difference;
 
   Alignment left = pair.alignment;
   const double share = take_relief_off(scans.before, area.ground, left);
+  const std::vector<double> stripes = take_stripes_off(area.ground);
   sum_zones(area);
   NoiseModel noise = find_noise(area.ground.residual, area.grid.cell_size);
   noise.white = std::max(noise.white, least_noise * least_noise);
@@ -220,6 +249,8 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   sum_beyond_edge(area);
   sum_faces(area, pair.before);
   sum_faces(area, pair.after);
+  sum_between(area, pair.before);
+  sum_between(area, pair.after);
   sum_borders(area);
   area.errors = ErrorField{scans.before,
                            area.ground.residual,
@@ -229,7 +260,9 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
                            left}
                     .predict();
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].volume -= area.errors.mean(static_cast<Eigen::Index>(i));
+    const auto at = static_cast<Eigen::Index>(i);
+    area.zones[i].volume -= area.errors.mean(at);
+    area.errors.correlated(at, at) += stripes[i] * cell_area * cell_area;
   }
   return area;
 }

@@ -11,10 +11,8 @@
 
 namespace excavplan::tools {
 
-/// The law of a file or a shipped one; "default" is that of the built-in simulator in loam.
-DensityLaw law_named(const std::string& name);
-
-Outcome estimate_outcome(const DensityEstimate& estimate);
+/// @param soil  what was known of it
+Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);
 
 /// The figure of an estimate, as SVG.
 std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome);
