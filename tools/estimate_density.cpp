@@ -124,9 +124,7 @@ Outcome work_on_scans(const Inputs& inputs) {
 
 Outcome work(const Inputs& inputs) {
   if (inputs.plan_survey) {
-    if (inputs.before || inputs.after) {
-      usage_error("--plan-survey takes no scans");
-    }
+    if (inputs.before || inputs.after) usage_error("--plan-survey takes no scans");
     return planned_survey(*inputs.plan_survey, law_named(inputs.soil.law));
   }
   if (!inputs.before || !inputs.after) {

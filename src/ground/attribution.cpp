@@ -336,14 +336,17 @@ std::vector<std::size_t> open_changes(const std::vector<Change>& changes) {
   return open;
 }
 
-double bulking_of(const std::vector<Change>& changes, const std::vector<bool>& counted) {
+/// How well the soil of some changes balances; 0 without a hole that could be the dig.
+double likelihood_of(const std::vector<Change>& changes, const std::vector<bool>& counted) {
+  constexpr double least_hole = 0.3;  // of the largest fall; ours
   double before = 0.0;
   double after = 0.0;
+  double largest = 0.0;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    if (!counted[i]) continue;
-    (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
+    largest = std::max(largest, -changes[i].volume);
+    if (counted[i]) (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
   }
-  return before > 0.0 ? after / before : 0.0;
+  return before > least_hole * largest ? likelihood_of_bulking(after / before) : 0.0;
 }
 
 /// All combinations of what is open, each as likely as its shapes, places and bulking factor.
@@ -362,9 +365,9 @@ std::vector<Combination> combinations_of(const std::vector<Change>& changes) {
       one.counted[open[bit]] = counted;
       one.weight *= counted ? p : 1.0 - p;
     }
-    one.weight *= likelihood_of_bulking(bulking_of(changes, one.counted));
+    one.weight *= likelihood_of(changes, one.counted);
     sum += one.weight;
-    all.push_back(std::move(one));
+    if (one.weight > 0.0) all.push_back(std::move(one));
   }
   for (Combination& one : all) one.weight /= sum;
   std::stable_sort(all.begin(), all.end(),
@@ -373,14 +376,12 @@ std::vector<Combination> combinations_of(const std::vector<Change>& changes) {
 }
 
 void weigh_changes(Attribution& attribution) {
-  for (std::size_t i = 0; i < attribution.changes.size(); ++i) {
-    double weight = 0.0;
+  for (const std::size_t i : open_changes(attribution.changes)) {
+    double& probability = attribution.changes[i].probability;
+    probability = 0.0;
     for (const Combination& one : attribution.combinations) {
-      weight += one.counted[i] ? one.weight : 0.0;
+      probability += one.counted[i] ? one.weight : 0.0;
     }
-    Change& change = attribution.changes[i];
-    const bool is_open = weight > 0.0 && weight < 1.0;
-    change.probability = is_open ? weight : change.prior;
   }
 }
 

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 #include <Eigen/Cholesky>
@@ -250,13 +248,6 @@ std::vector<double> variance_between_points(const Surface& surface, const Eigen:
                                     1.0, in_lines ? 2.0 : 3.0);
     variance[i] = of_scatter * (in_lines ? of_lines : 1.0) * zones[i].cells * cell_area *
                   cell_area * spacing * spacing * near * std::pow(spacing / width, power);
-    if (getenv("DBG"))
-      fprintf(
-          stderr,
-          "zone %zu cells %g spacing %.2f pts/known %.2f near %.4f far %.4f power %.2f raw %.6f\n",
-          i, zones[i].cells, spacing, zones[i].points / zones[i].known, std::sqrt(near),
-          std::sqrt(far), std::log(far / near) / std::log((2.0 * width - 1.0) / width),
-          std::sqrt(variance[i]));
   }
   return variance;
 }

@@ -35,6 +35,7 @@ constexpr double repose_scatter = 2.0 * degree;
 /// What is known of a zone from its seen cells.
 struct Shape {
   bool is_hole = false;
+  double size = 0.0;  ///< sum of the change [m]
   Angle face{};
   double floor = 0.0;     ///< [m]
   double floor_sd = 0.0;  ///< [m]
@@ -94,6 +95,11 @@ class ShadowFiller {
       Shadow shadow = shadow_of(hole);
       if (is_shadow(shadow)) shadows.push_back(std::move(shadow));
     }
+    for (std::size_t i = 0; i < shapes_.size(); ++i) {
+      if (ground_.zone_is_cut[i] && !shapes_[i].is_hole) {
+        shadows.push_back(shadow_beyond(static_cast<int>(i), holes));
+      }
+    }
     for (const Shadow& shadow : shadows) fill_one(shadow);
     return std::move(variance_);
   }
@@ -121,6 +127,7 @@ class ShadowFiller {
     double sum = 0.0;
     for (const Cell at : cells) sum += change(at);
     shape.is_hole = sum < 0.0;
+    shape.size = std::abs(sum);
     if (cells.empty()) return shape;
     shape.face = face_of(cells, shape.is_hole);
     if (shape.is_hole) find_floor(cells, shape);
@@ -152,9 +159,9 @@ class ShadowFiller {
     const Angle usual = is_hole ? usual_wall : usual_repose;
     if (!(counted > fewest) || !(middle > 0.0) || !(top > 0.0)) return usual;
     if (!is_hole) return {std::atan(median(gentle)), repose_scatter};
-    const double length = slopes / top;                    // of a contour [cell]
-    const double blurred = 2.0 * middle / length;          // width of the face [cell]
-    const double least = 0.2;                              // ours [cell]
+    const double length = slopes / top;            // of a contour [cell]
+    const double blurred = 2.0 * middle / length;  // width of the face [cell]
+    const double least = 0.2;                      // ours [cell]
     const double width = std::sqrt(std::max(blurred * blurred - 1.0 / 3.0, least * least));
     return {std::atan2(top, width * change_.cell_size), wall_scatter};
   }
@@ -211,16 +218,54 @@ class ShadowFiller {
     return shadow;
   }
 
+  double size_of(int zone) const { return shapes_[static_cast<std::size_t>(zone)].size; }
+
+  /// Of the zones of a kind that meet in a shadow the largest tells its shape.
   void note_zone(Cell at, Shadow& shadow) const {
     if (zone(at) < 0) return;
     const bool is_hole = shapes_[static_cast<std::size_t>(zone(at))].is_hole;
-    (is_hole ? shadow.hole_zone : shadow.heap_zone) = zone(at);
+    int& known = is_hole ? shadow.hole_zone : shadow.heap_zone;
+    if (known < 0 || size_of(zone(at)) > size_of(known)) known = zone(at);
+  }
+
+  /// The shadow of a heap that reaches the edge of the survey, as far as the heap may.
+  Shadow shadow_beyond(int heap, const Holes& holes) const {
+    constexpr int open = -2;
+    constexpr int taken = 0;
+    Eigen::ArrayXXi label =
+        (after_.z.isNaN() && !before_.z.isNaN() && holes.index < 0)
+            .select(Eigen::ArrayXXi::Constant(after_.z.rows(), after_.z.cols(), open), -1);
+    std::vector<Rim> rim;
+    std::vector<Cell> seeds;
+    for_each_cell(label, [&](Cell at) {
+      if (zone(at) != heap || std::isnan(change(at))) return;
+      const std::size_t known = seeds.size();
+      for_each_neighbour(label, at, [&](Cell n) {
+        if (label(n.row, n.col) == open) seeds.push_back(n);
+      });
+      if (seeds.size() > known) rim.push_back(rim_at(at));
+    });
+    const Shape& shape = shapes_[static_cast<std::size_t>(heap)];
+    const Descent descent = descent_at(shape_in(-1, true), shape, -std::sqrt(3.0));
+    const auto joins = [&](Cell at) {
+      return highest_from(rim, {static_cast<double>(at.col), static_cast<double>(at.row)},
+                          descent) > 0.0;
+    };
+    std::vector<Cell> cells;
+    for (const Cell seed : seeds) {
+      if (label(seed.row, seed.col) != open || !joins(seed)) continue;
+      const std::vector<Cell> more = mark_connected(label, seed, taken, joins);
+      cells.insert(cells.end(), more.begin(), more.end());
+    }
+    Shadow shadow = shadow_of(cells);
+    shadow.heap_zone = heap;
+    shadow.hole_zone = -1;
+    return shadow;
   }
 
   static bool is_shadow(const Shadow& shadow) {
     constexpr std::size_t fewest = 3;  // ours
-    const bool is_hidden =
-        shadow.hiding.size() >= fewest || 2 * shadow.mixed > shadow.cells.size();
+    const bool is_hidden = shadow.hiding.size() >= fewest || 2 * shadow.mixed > shadow.cells.size();
     return is_hidden && (shadow.hole_zone >= 0 || shadow.heap_zone >= 0);
   }
 
@@ -262,7 +307,7 @@ class ShadowFiller {
 
   Shape shape_in(int zone, bool is_hole) const {
     if (zone >= 0) return shapes_[static_cast<std::size_t>(zone)];
-    return {is_hole, is_hole ? usual_wall : usual_repose, 0.0, 0.0};
+    return {is_hole, 0.0, is_hole ? usual_wall : usual_repose, 0.0, 0.0};
   }
 
   /// Cells where the ground fell, by a membrane through the rim.
@@ -286,8 +331,7 @@ class ShadowFiller {
     for (std::size_t i = 0; i < shadow.cells.size(); ++i) {
       const Cell cell = shadow.cells[i];
       const double bottom = fell[i] ? floor : 0.0;
-      const double ceiling =
-          sight_.ceiling(cell) - before_.z(cell.row, cell.col) - ground_.datum;
+      const double ceiling = sight_.ceiling(cell) - before_.z(cell.row, cell.col) - ground_.datum;
       double sum = 0.0;
       for (int n = 0; n < along * along; ++n) {
         const Eigen::Vector2d point(
@@ -317,8 +361,8 @@ class ShadowFiller {
 
   Descent descent_at(const Shape& hole, const Shape& heap, double deviations) const {
     const auto rise = [&](const Angle& angle) {
-      const double turned = std::clamp(angle.mean + deviations * angle.sd, 5.0 * degree,
-                                       89.0 * degree);
+      const double turned =
+          std::clamp(angle.mean + deviations * angle.sd, 5.0 * degree, 89.0 * degree);
       return std::tan(turned) * after_.cell_size;
     };
     return {rise(heap.face), rise(hole.face)};
@@ -333,8 +377,8 @@ class ShadowFiller {
     const std::array<double, 3> weight = {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0};
     std::array<Filled, 3> tries;
     for (std::size_t i = 0; i < 3; ++i) {
-      tries[i] = descend(shadow, fell,
-                         descent_at(hole, heap, far * (static_cast<double>(i) - 1.0)), hole.floor);
+      tries[i] = descend(shadow, fell, descent_at(hole, heap, far * (static_cast<double>(i) - 1.0)),
+                         hole.floor);
     }
     std::array<Eigen::Vector2d, 3> sums;
     sums.fill(Eigen::Vector2d::Zero());
@@ -376,10 +420,12 @@ class ShadowFiller {
     }
   }
 
-  /// The rim lies anywhere in its cells, and neighbours share that where it runs along the grid.
+  /// The mean of two places of the rim, each of which is even over a cell; where the rim runs along
+  /// the grid neighbours share the error.
   static double rim_variance(const Shadow& shadow, const Shape& hole) {
     constexpr double shared = 8.0;  // ours: cells
-    return hole.floor * hole.floor / 12.0 * shared * static_cast<double>(shadow.hiding.size());
+    constexpr double of_place = 1.0 / 24.0;
+    return hole.floor * hole.floor * of_place * shared * static_cast<double>(shadow.hiding.size());
   }
 
   void enter(Cell at, double height, int zone) {

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Points that a whole cell of level ground holds. Equal angles between rays give points per area in
-/// proportion to height over range^3.
+/// Points that a whole cell of level ground holds. Equal angles between rays give points per area
+/// in proportion to height over range^3.
 class PointsOfLevelCell {
  public:
   explicit PointsOfLevelCell(const Surface& surface) : surface_(surface) {
@@ -76,8 +76,7 @@ double SightLines::ceiling(Cell at) const {
 }
 
 Eigen::Vector2d SightLines::outward(Cell at) const {
-  const Eigen::Vector2d way =
-      Eigen::Vector2d(map_.x(at.col), map_.y(at.row)) - sensor_.head<2>();
+  const Eigen::Vector2d way = Eigen::Vector2d(map_.x(at.col), map_.y(at.row)) - sensor_.head<2>();
   return way / std::max(way.norm(), 1e-9);
 }
 
@@ -131,9 +130,8 @@ bool SightLines::is_inside(Cell at) const {
 double SightLines::tangent_at(Cell at) const {
   if (!is_inside(at)) return infinity;
   const double height = map_.z(at.row, at.col);
-  const double own = std::isnan(height)
-                         ? infinity
-                         : (height - sensor_.z()) / std::max(range(at), map_.cell_size);
+  const double own =
+      std::isnan(height) ? infinity : (height - sensor_.z()) / std::max(range(at), map_.cell_size);
   return std::min(own, tangent_(at.row, at.col));
 }
 

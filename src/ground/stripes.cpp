@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include "base/angles.hpp"
@@ -152,7 +150,6 @@ std::vector<double> take_stripes_off(ChangedGround& ground) {
     if (cells.size() < fewest_cells) break;
     const std::optional<double> angle = find_stripes(cells, ground.residual);
     if (!angle) break;
-    if (getenv("DBG")) fprintf(stderr, "stripes %.3f\n", *angle);
     take_off(cells, *angle, ground, variance);
   }
   return variance;

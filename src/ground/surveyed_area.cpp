@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -113,7 +111,7 @@ void sum_faces(Area& area, const Surface& scan) {
   for (std::size_t i = 0; i < zones; ++i) {
     if (faces[i] == 0.0 || points[i] == 0.0) continue;
     const double spacing = std::sqrt(area.zones[i].area / points[i]);
-    area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);if(getenv("DBG"))fprintf(stderr,"  faces %zu %.6f reg %.2f\n",i,std::sqrt(regularity * std::pow(face_place * spacing * faces[i], 2)),regularity);
+    area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);
   }
 }
 
@@ -123,7 +121,8 @@ void sum_between(Area& area, const Surface& scan) {
       variance_between_points(scan, area.ground.zone, area.zones.size());
   if (scan.points.size() == 0) return;
   const double irregularity = 1.0 - regularity_of(scan, area.ground.zone);
-  for (std::size_t i = 0; i < area.zones.size(); ++i) area.zones[i].faces += irregularity * variance[i];
+  for (std::size_t i = 0; i < area.zones.size(); ++i)
+    area.zones[i].faces += irregularity * variance[i];
 }
 
 /// Error of zones that touch: a cell on their border takes in soil that was lost and soil that was
@@ -144,7 +143,7 @@ void sum_borders(Area& area) {
     });
   });
   for (std::size_t i = 0; i < hidden.size(); ++i) {
-    area.zones[i].faces += std::pow(hidden_at_border * hidden[i], 2);if(getenv("DBG"))fprintf(stderr,"  border %zu %.6f vol %.5f\n",i,hidden_at_border * hidden[i],area.zones[i].volume);
+    area.zones[i].faces += std::pow(hidden_at_border * hidden[i], 2);
   }
 }
 
@@ -229,8 +228,8 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
 
   std::vector<double> shadows(area.zones.size(), 0.0);
   if (pair.after.sensor) {
-    shadows = fill_shadows({scans.before, scans.after, scans.mixed, *pair.after.sensor},
-                           area.ground);
+    shadows =
+        fill_shadows({scans.before, scans.after, scans.mixed, *pair.after.sensor}, area.ground);
   }
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;

@@ -145,6 +145,7 @@ void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan) {
   const Eigen::Matrix3d rotation = site_from_scan.topLeftCorner<3, 3>();
   const Eigen::Vector3d shift = site_from_scan.topRightCorner<3, 1>();
   for (Eigen::Vector3d& point : cloud.points) point = rotation * point + shift;
+  if (cloud.sensor_origin) cloud.sensor_origin = rotation * *cloud.sensor_origin + shift;
 }
 
 CloudSummary summarise(const Cloud& cloud) {

@@ -14,7 +14,6 @@
 #include <excavplan/survey/scan_surface.hpp>
 
 #include "base/text.hpp"
-#include "ground/sampling_gaps.hpp"
 #include "survey/cloud_cell.hpp"
 #include "survey/points_by_cell.hpp"
 #include "survey/scan_reading.hpp"
@@ -196,7 +195,7 @@ Surface surface_of(const PointSource& source, const HeightMap& map, const Raster
         mean_height(in_cell, ground.band, ground.level, levels.noise, ground.slope);
     surface.height.z(cell) = points.base() + (ground.level + result.height);
     surface.variance(cell) = result.variance;
-    surface.points(cell) = result.points;
+    surface.points(cell) = static_cast<int>(std::lround(result.points * points.per_kept(cell)));
   });
   return surface;
 }
@@ -207,7 +206,6 @@ Surface survey_surface(const Scan& scan, const Rectangle& extent, const RasterOp
   const PointSource source = [&scan](const PointVisitor& visit) { visit_scan(scan, visit); };
   Surface surface = surface_of(source, empty_map(extent, options), options);
   surface.sensor = sensor_of(scan);
-  fill_sampling_gaps(surface);
   return surface;
 }
 

@@ -15,7 +15,7 @@ namespace excavplan {
 namespace {
 
 /// Points that are kept of a cell: more make its mean no better than a scan is. Ours.
-constexpr std::size_t most_kept = 512;
+constexpr std::size_t most_kept = 256;
 constexpr double enough_in_group = 12.0;  // points, for a level that outliers do not move; ours
 constexpr double largest_side = 4.0;      // ours
 
@@ -78,20 +78,6 @@ std::size_t PointsByCell::kept(std::size_t cell) const {
   return std::min<std::size_t>(counts_[cell], most_kept);
 }
 
-PointsByCell::Place PointsByCell::locate(const Eigen::Vector3d& point) const {
-  Place place;
-  place.column = (point.x() - origin_.x()) * per_cell_;
-  place.row = (point.y() - origin_.y()) * per_cell_;
-  const bool inside = place.column >= 0.0 && place.column < static_cast<double>(columns_) &&
-                      place.row >= 0.0 && place.row < static_cast<double>(rows_) &&
-                      std::isfinite(point.z());
-  if (inside) {
-    place.cell = static_cast<std::size_t>(place.row) +
-                 static_cast<std::size_t>(rows_) * static_cast<std::size_t>(place.column);
-  }
-  return place;
-}
-
 void PointsByCell::count() {
   StreamSample<double> heights(1024);
   source_([&](const std::vector<Eigen::Vector3d>& points) {
@@ -145,30 +131,39 @@ void PointsByCell::load(std::size_t band) {
   const std::size_t cells = bands_[band + 1] - first;
   begin_.assign(cells + 1, 0);
   for (std::size_t i = 0; i < cells; ++i) begin_[i + 1] = begin_[i] + kept(first + i);
-  std::vector<std::uint32_t> seen(cells, 0);
-  std::vector<std::uint32_t> placed(cells, 0);
-  std::vector<std::uint32_t> chosen(cells, 0);
+  struct Cursor {
+    std::uint32_t left;   // points of the cell that are still to come
+    std::uint32_t until;  // left when the next one to keep comes
+    std::uint64_t place;  // of that one
+  };
+  std::vector<Cursor> cursors(cells);
   const auto choose = [&](std::size_t i) {
-    const Choice choice(first + i, counts_[first + i], kept(first + i));
-    chosen[i] = static_cast<std::uint32_t>(choice(placed[i]));
+    const std::uint32_t count = counts_[first + i];
+    const Choice choice(first + i, count, kept(first + i));
+    Cursor& cursor = cursors[i];
+    cursor.until = cursor.place < begin_[i + 1]
+                       ? count - static_cast<std::uint32_t>(choice(cursor.place - begin_[i]))
+                       : 0;
   };
   for (std::size_t i = 0; i < cells; ++i) {
-    if (counts_[first + i] > 0) choose(i);
+    cursors[i] = {counts_[first + i], 0, begin_[i]};
+    choose(i);
   }
   source_([&](const std::vector<Eigen::Vector3d>& points) {
     for (const Eigen::Vector3d& point : points) {
       const Place place = locate(point);
       const std::size_t i = place.cell - first;
       if (i >= cells) continue;  // outside wraps to the largest number
-      if (seen[i] == counts_[first + i]) refuse_change();
-      if (seen[i]++ != chosen[i]) continue;
-      points_[begin_[i] + placed[i]++] = {within(place.column), within(place.row),
-                                          static_cast<float>(point.z() - base_)};
-      if (begin_[i] + placed[i] < begin_[i + 1]) choose(i);
+      Cursor& cursor = cursors[i];
+      if (cursor.left == 0) refuse_change();
+      if (cursor.left-- != cursor.until) continue;
+      points_[cursor.place++] = {within(place.column), within(place.row),
+                                 static_cast<float>(point.z() - base_)};
+      choose(i);
     }
   });
-  for (std::size_t i = 0; i < cells; ++i) {
-    if (seen[i] != counts_[first + i]) refuse_change();
+  for (const Cursor& cursor : cursors) {
+    if (cursor.left != 0) refuse_change();
   }
   loaded_ = band;
 }

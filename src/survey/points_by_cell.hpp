@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -39,6 +40,11 @@ class PointsByCell {
   Eigen::Index group_columns() const { return (columns_ + side_ - 1) / side_; }
   Eigen::Index group_of(Eigen::Index cell) const {
     return (cell % rows_) / side_ + group_rows() * (cell / rows_ / side_);
+  }
+  /// All points of a cell over those that are kept of it.
+  double per_kept(Eigen::Index cell) const {
+    const auto i = static_cast<std::size_t>(cell);
+    return static_cast<double>(counts_[i]) / static_cast<double>(kept(i));
   }
   /// Points kept in a group.
   std::size_t in_group(Eigen::Index group) const;
@@ -94,7 +100,19 @@ class PointsByCell {
     backwards_ = !backwards_;
   }
 
-  Place locate(const Eigen::Vector3d& point) const;
+  Place locate(const Eigen::Vector3d& point) const {
+    Place place;
+    place.column = (point.x() - origin_.x()) * per_cell_;
+    place.row = (point.y() - origin_.y()) * per_cell_;
+    const bool inside = place.column >= 0.0 && place.column < static_cast<double>(columns_) &&
+                        place.row >= 0.0 && place.row < static_cast<double>(rows_) &&
+                        std::isfinite(point.z());
+    if (inside) {
+      place.cell = static_cast<std::size_t>(place.row) +
+                   static_cast<std::size_t>(rows_) * static_cast<std::size_t>(place.column);
+    }
+    return place;
+  }
   void count();
   void choose_groups();
   void part(std::uint64_t most_points);

@@ -14,6 +14,7 @@
 #include "base/text.hpp"
 #include "ground/coarse_motion.hpp"
 #include "ground/robust.hpp"
+#include "ground/sampling_gaps.hpp"
 #include "survey/cloud_outline.hpp"
 #include "survey/point_stream.hpp"
 
@@ -54,6 +55,17 @@ Rectangle overlap(const OutlinedPair& pair) {
   return both;
 }
 
+/// Surfaces with the ground between the points.
+std::vector<Surface> filled_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
+                                     const RasterOptions& options, unsigned threads) {
+  std::vector<Surface> surfaces(scans.size());
+  parallel_for(scans.size(), threads, [&](std::size_t i) {
+    surfaces[i] = survey_surface(scans[i], extent, options);
+    fill_sampling_gaps(surfaces[i]);
+  });
+  return surfaces;
+}
+
 Scan corrected(const Scan& scan, const Eigen::Matrix4d& correction) {
   Scan result = scan;
   result.site_from_scan = correction * scan.site_from_scan;
@@ -66,6 +78,10 @@ struct Registering {
   const Rectangle& extent;
   RasterOptions raster;
   double small;  ///< largest shift that realigned() corrects [m]
+
+  Surface survey_filled(const Scan& scan) const {
+    return std::move(filled_surfaces({scan}, extent, raster, 1).front());
+  }
 
   /// Aligns; surveys the scan after again where it moves by more than `small`, and aligns the rest.
   void align_again(RegisteredPair& result) const {
@@ -80,7 +96,7 @@ struct Registering {
     SurfacePair& pair = result.surfaces;
     if (!(pair.alignment.largest_shift(pair.after.height) > least)) return false;
     result.correction = pair.alignment.correction() * result.correction;
-    pair.after = survey_surface(corrected(after, result.correction), extent, raster);
+    pair.after = survey_filled(corrected(after, result.correction));
     pair.alignment = align(pair.before, pair.after);
     return true;
   }
@@ -96,7 +112,7 @@ struct Registering {
       RegisteredPair other;
       other.correction = *start * result.correction;
       other.surfaces.before = pair.before;
-      other.surfaces.after = survey_surface(corrected(after, other.correction), extent, raster);
+      other.surfaces.after = survey_filled(corrected(after, other.correction));
       align_again(other);
       other.first = result.first;
       other.from_wide_start = true;
@@ -146,9 +162,21 @@ void visit_scan(const Scan& scan, const PointVisitor& visit) {
 }
 
 std::optional<Eigen::Vector3d> sensor_of(const Scan& scan) {
-  const auto& origin = scan.sensor_origin;
-  if (!origin) return std::nullopt;
-  return Eigen::Vector3d((scan.site_from_scan * origin->homogeneous()).head<3>());
+  constexpr double one_place = 0.05;  // [m], ours
+  std::vector<std::optional<Eigen::Vector3d>> said;
+  if (scan.sensor_origin) {
+    said.push_back(scan.sensor_origin);
+  } else {
+    for (const std::string& file : scan.files) said.push_back(read_sensor_origin(file));
+    for (const auto& cloud : scan.clouds) said.push_back(cloud->sensor_origin);
+  }
+  const bool agree =
+      !said.empty() && std::all_of(said.begin(), said.end(), [&](const auto& origin) {
+        return origin && said[0] && scan.unit * (*origin - *said[0]).norm() < one_place;
+      });
+  if (!agree) return std::nullopt;
+  const Eigen::Vector3d metres = scan.unit * *said[0];
+  return Eigen::Vector3d((scan.site_from_scan * metres.homogeneous()).head<3>());
 }
 
 Cloud gathered(const Scan& scan) {
@@ -215,7 +243,7 @@ RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool regi
     return survey_registered(pair.scans, extent, raster, pair.registration_cell(), threads);
   }
   std::vector<Surface> both =
-      survey_surfaces({pair.scans.before, pair.scans.after}, extent, raster, threads);
+      filled_surfaces({pair.scans.before, pair.scans.after}, extent, raster, threads);
   RegisteredPair result;
   result.surfaces.before = std::move(both[0]);
   result.surfaces.after = std::move(both[1]);
@@ -238,7 +266,7 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
   const bool is_fine = coarse.cell_size > options.cell_size;
   const double small = is_fine ? 0.0 : 0.5 * options.cell_size;
   const auto survey = [&](const RasterOptions& raster, const Eigen::Matrix4d& correction) {
-    std::vector<Surface> both = survey_surfaces({scans.before, corrected(scans.after, correction)},
+    std::vector<Surface> both = filled_surfaces({scans.before, corrected(scans.after, correction)},
                                                 extent, raster, threads);
     return SurfacePair{std::move(both[0]), std::move(both[1]), {}};
   };

@@ -136,6 +136,12 @@ void Arguments::option(const std::string& name, std::vector<CameraPlace>& value,
   entries_.back().repeated = true;
 }
 
+void Arguments::option(const std::string& name, std::optional<Eigen::Vector3d>& value,
+                       const std::string& help) {
+  add({name, "X,Y,Z", help + " [m]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_place("--" + name, text); }});
+}
+
 void Arguments::choice(const std::string& name, std::string& value,
                        const std::vector<std::string>& words, const std::string& help) {
   add({name, joined(words, "|"), help, value, false, false,

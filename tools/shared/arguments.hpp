@@ -74,6 +74,9 @@ class Arguments {
   void option(const std::string& name, Eigen::Vector2d& value, const std::string& help);
   /// Places of cameras, "x,y,z,tx,ty,tz"; may be given several times.
   void option(const std::string& name, std::vector<CameraPlace>& value, const std::string& help);
+  /// "x,y,z"
+  void option(const std::string& name, std::optional<Eigen::Vector3d>& value,
+              const std::string& help);
   /// One of `words`.
   void choice(const std::string& name, std::string& value, const std::vector<std::string>& words,
               const std::string& help);

@@ -167,6 +167,13 @@ Eigen::Vector2d parse_point(const std::string& what, const std::string& text) {
   return {point[0], point[1]};
 }
 
+Eigen::Vector3d parse_place(const std::string& what, const std::string& text) {
+  const auto parts = parts_of(what, text, 3, "a place X,Y,Z such as 5,2.5,3");
+  return {parse_quantity(what, parts[0], Quantity::length),
+          parse_quantity(what, parts[1], Quantity::length),
+          parse_quantity(what, parts[2], Quantity::length)};
+}
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char c : text) {

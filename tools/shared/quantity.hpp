@@ -56,5 +56,7 @@ Rectangle parse_rectangle(const std::string& what, const std::string& text);
 
 /// "x,y". @throws Error (bad_input)
 Eigen::Vector2d parse_point(const std::string& what, const std::string& text);
+/// "x,y,z". @throws Error (bad_input)
+Eigen::Vector3d parse_place(const std::string& what, const std::string& text);
 
 }  // namespace excavplan::tools

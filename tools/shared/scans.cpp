@@ -22,6 +22,7 @@ Scan scan_of(const std::string& file, const std::optional<std::string>& frame,
   if (frame) scan.site_from_scan = read_frame(*frame);
   scan.area = frames.area;
   scan.unit = units().at(unit.empty() ? frames.unit : unit);
+  scan.sensor_origin = frames.sensor_origin;
   return scan;
 }
 
@@ -31,6 +32,8 @@ void declare_frames(Arguments& arguments, ScanFrames& frames) {
   arguments.file("before-frame", frames.before,
                  "4 x 4 matrix that transforms the clouds before into the site frame");
   arguments.file("after-frame", frames.after, "the same for the clouds after");
+  arguments.option("sensor-origin", frames.sensor_origin,
+                   "where the sensor stood, in the frame of the scans (default: VIEWPOINT of PCD)");
 }
 
 void declare_units(Arguments& arguments, ScanFrames& frames) {

@@ -19,6 +19,7 @@ struct ScanFrames {
   std::string unit = "m";         ///< of the coordinates in all clouds
   std::string before_unit;        ///< of those before, if another
   std::string after_unit;
+  std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their frame and unit
 };
 
 /// --before-frame and --after-frame.

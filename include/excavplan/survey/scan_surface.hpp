@@ -27,7 +27,8 @@ struct Scan {
   std::optional<Rectangle> area;  ///< points outside, in the site frame, are left out
   std::vector<std::shared_ptr<const Cloud>> clouds = {};  ///< in the frame of the files; not null
   double unit = 1.0;  ///< length of a unit of their coordinates; `site_from_scan` is in metres [m]
-  /// Where the sensor stood, in the frame of the files [m]; unset: where they say so themselves.
+  /// Where the sensor stood, in the frame and unit of the files; unset: where files and clouds say
+  /// themselves, if they all say the same.
   std::optional<Eigen::Vector3d> sensor_origin = {};
 };
 
@@ -115,7 +116,8 @@ struct RegisteredPair {
 /// survey's, is taken off the points, which are then surveyed again. Where the motion exceeds three
 /// times the priors, or the stable ground differs by more than the scatter of its points explains,
 /// shifts to 1.2 m and turns to 6 degrees are tried as well, and kept if they leave two thirds of
-/// the difference or less.
+/// the difference or less. Cells that lie between the points of a sparse scan, its rings or its
+/// lines are interpolated; they count no points.
 /// @throws Error as survey_surface() and align()
 RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
                                  const RasterOptions& options, double registration_cell,
