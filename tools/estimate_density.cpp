@@ -4,7 +4,6 @@
 
 #include "base/files.hpp"
 #include "shared/estimate.hpp"
-#include "shared/figures.hpp"
 #include "shared/method_inputs.hpp"
 #include "shared/scans.hpp"
 #include "shared/soil_inputs.hpp"
@@ -118,7 +117,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   naming_options({{"path that was dug", "--dug-path"}, {"inside the area", "inside --area"}},
                  [&] { with_frame_hint(pair_frame_hint, estimate); });
   Outcome outcome = estimate_outcome(counts, options.soil);
-  if (inputs.plot) write_file(*inputs.plot, height_change_figure(counts.change, outcome.lines));
+  if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
   if (inputs.compare) add_comparison(both, counts, outcome);
   return outcome;
 }

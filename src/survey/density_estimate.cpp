@@ -52,6 +52,11 @@ struct Surfaces {
     if (dump) all.push_back(&dump->surfaces);
     return all;
   }
+  std::vector<HeightMap> before() const {
+    std::vector<HeightMap> maps;
+    for (const SurfacePair* pair : pairs()) maps.push_back(pair->before.height);
+    return maps;
+  }
   std::vector<HeightMap> after() const {
     std::vector<HeightMap> maps = {dig.surfaces.after.height};
     if (dump) maps.push_back(dump->surfaces.after.height);
@@ -203,6 +208,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   known.law = laws.law;
   known.cell_size = seen.cell_size;
   if (options.registered) keep_registration(surfaces, known);
+  known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
 
   std::vector<DensityEstimate> results;

@@ -7,6 +7,7 @@
 
 #include <excavplan/ground/bulking.hpp>
 
+#include "shared/figures.hpp"
 #include "shared/quantity.hpp"
 #include "shared/results.hpp"
 
@@ -250,6 +251,10 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
   outcome.warnings = estimate.warnings;
   outcome.trustworthy = estimate.trustworthy;
   return outcome;
+}
+
+std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome) {
+  return height_change_figure({estimate.change, estimate.before, outcome.lines, outcome.warnings});
 }
 
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome) {

@@ -14,6 +14,9 @@ namespace excavplan::tools {
 /// @param soil  what was known of it
 Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);
 
+/// The figure of an estimate, as SVG.
+std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome);
+
 /// Adds the result of the other method for the same scans.
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);
 

@@ -77,6 +77,7 @@ struct DensityEstimate {
   /// Volumes, their covariance, zones and height change. Zones and height change are those of the
   /// surface for both methods.
   VolumeChange change;
+  std::vector<HeightMap> before;                 ///< the ground before, of each area of `change`
   std::optional<Measured> bulking;               ///< k as the scans give it [-]
   std::optional<Fallback> fallback;              ///< if the path that was dug is known
   BlockReport blocks;                            ///< voids between blocks of hard soil
