@@ -140,67 +140,77 @@ class SoilReader {
   }
 
  private:
-  /// The true bulking factor: by the fallback that was measured, or as the law expects it.
-  double true_bulking(const DensityLaw& law, double law_density) const {
+  /// What the payload says.
+  struct Weighed {
+    double k_true = 0.0;        ///< by the fallback that was measured, or as the law expects it
+    double bulk_density = 0.0;  ///< in place [kg/m^3]
+    double density = 0.0;       ///< [%]
+    double per_log = 0.0;       ///< change of `density` with ln(bulk_density) [%]
+  };
+
+  Weighed weigh(const DensityLaw& law, const SoilKind& soil, double by_law) const {
     const double k = estimate_.bulking->value;
-    if (estimate_.fallback) return free_of_fallback(k, estimate_.fallback->fraction.value);
-    return bulking_of_density(law.freed_form, std::clamp(law_density, -50.0, 150.0));
+    Weighed weighed;
+    weighed.k_true = estimate_.fallback
+                         ? free_of_fallback(k, estimate_.fallback->fraction.value)
+                         : bulking_of_density(law.freed_form, std::clamp(by_law, -50.0, 150.0));
+    weighed.bulk_density =
+        weighed.k_true * options_.payload_mass->value / estimate_.change.dumped.value;
+    weighed.density = density_of_bulk_density(soil, weighed.bulk_density);
+    weighed.per_log = 100.0 * soil.specific_gravity * water_density * (1.0 + soil.water_content) /
+                      weighed.bulk_density / (soil.void_ratio_max - soil.void_ratio_min);
+    return weighed;
   }
 
-  SoilKind with_water(SoilKind soil, SoilScatter& scatter) const {
-    if (const auto& measured = options_.soil.water_content) {
-      scatter.water_content = measured->value > 0.0 ? measured->sd / measured->value : 0.0;
-      soil.water_content = measured->value;
-    }
-    return soil;
-  }
-
-  /// Joins the density by the law with that by the payload.
-  void add_payload(const DensityLaw& law, const SoilKind& kind, Answer& answer) const {
-    SoilScatter scatter = options_.soil.scatter;
-    const SoilKind soil = with_water(kind, scatter);
+  /// Covariance of the densities by law and payload from volumes, fallback and mass [points^2].
+  Eigen::Matrix2d error_given_law(const DensityLaw& law, const Weighed& weighed) const {
     const VolumeChange& change = estimate_.change;
-    const Measured& mass = *options_.payload_mass;
-    const double by_law = answer.density.raw_percent;
-    const double k_true = true_bulking(law, by_law);
-    const double bulk_density = k_true * mass.value / change.dumped.value;
-    const double by_mass = density_of_bulk_density(soil, bulk_density);
-    // d falls by (1 + e) / (e_max - e_min) with ln(1 + e).
-    const double per_log = 100.0 * soil.specific_gravity * water_density *
-                           (1.0 + soil.water_content) / bulk_density /
-                           (soil.void_ratio_max - soil.void_ratio_min);
-
     const double k = estimate_.bulking->value;
     const double slope = density_slope(law.form, k_.value);
-    const double freed_per_k = estimate_.fallback ? 1.0 - estimate_.fallback->fraction.value
-                                                  : slope / density_slope(law.freed_form, k_true);
-    const double law_per_k = estimate_.fallback ? slope * freed_per_k : slope;
+    const double freed_per_k = estimate_.fallback
+                                   ? 1.0 - estimate_.fallback->fraction.value
+                                   : slope / density_slope(law.freed_form, weighed.k_true);
     const Eigen::RowVector3d k_by_volume =
         Eigen::RowVector3d(-k, 1.0, 1.0) / change.before.value;  // of (hole, spill, heap)
     Eigen::Matrix<double, 2, 3> by_volume;
-    by_volume.row(0) = law_per_k * k_by_volume;
-    by_volume.row(1) = per_log * (freed_per_k / k_true * k_by_volume -
-                                  Eigen::RowVector3d(0.0, 0.0, 1.0 / change.dumped.value));
-    Eigen::Matrix2d given_law = by_volume * change.errors.total() * by_volume.transpose();
+    by_volume.row(0) = slope * (estimate_.fallback ? freed_per_k : 1.0) * k_by_volume;
+    by_volume.row(1) = weighed.per_log * (freed_per_k / weighed.k_true * k_by_volume -
+                                          Eigen::RowVector3d(0.0, 0.0, 1.0 / change.dumped.value));
+    Eigen::Matrix2d error = by_volume * change.errors.total() * by_volume.transpose();
     if (estimate_.fallback) {
-      const Eigen::Vector2d by_fallback =
-          (1.0 - k) * estimate_.fallback->fraction.sd * Eigen::Vector2d(slope, per_log / k_true);
-      given_law += by_fallback * by_fallback.transpose();
+      const Eigen::Vector2d by_fallback = (1.0 - k) * estimate_.fallback->fraction.sd *
+                                          Eigen::Vector2d(slope, weighed.per_log / weighed.k_true);
+      error += by_fallback * by_fallback.transpose();
     }
-    given_law(1, 1) += std::pow(per_log * mass.sd / mass.value, 2);
+    const Measured& mass = *options_.payload_mass;
+    error(1, 1) += std::pow(weighed.per_log * mass.sd / mass.value, 2);
+    return error;
+  }
 
+  /// Joins the density by the law with that by the payload.
+  void add_payload(const DensityLaw& law, SoilKind soil, Answer& answer) const {
+    SoilScatter scatter = options_.soil.scatter;
+    if (const auto& water = options_.soil.water_content) {
+      soil.water_content = water->value;
+      scatter.water_content = water->value > 0.0 ? water->sd / water->value : 0.0;
+    }
+    const double by_law = answer.density.raw_percent;
+    const Weighed weighed = weigh(law, soil, by_law);
+    const Eigen::Matrix2d given_law = error_given_law(law, weighed);
     Eigen::Matrix2d covariance =
-        given_law + density_scatter(soil, law.freed_form, 0.5 * (by_law + by_mass), scatter);
-    const double law_scatter = residual_sd_at(law.form, by_law);
-    add_path(law_scatter, covariance, per_log / k_true / density_slope(law.freed_form, k_true),
+        given_law +
+        density_scatter(soil, law.freed_form, 0.5 * (by_law + weighed.density), scatter);
+    add_path(residual_sd_at(law.form, by_law), covariance,
+             weighed.per_log / weighed.k_true / density_slope(law.freed_form, weighed.k_true),
              given_law(0, 0));
-    join({by_law, by_mass}, covariance, given_law, answer);
-    answer.evidence *= per_log;
+    join({by_law, weighed.density}, covariance, given_law, answer);
+    answer.evidence *= weighed.per_log;
+    const Measured& mass = *options_.payload_mass;
+    const double all = estimate_.change.after.value / estimate_.change.dumped.value;
     answer.payload->mass = mass;
-    answer.payload->dug_mass = {mass.value * change.after.value / change.dumped.value, 0.0};
-    answer.payload->dug_mass.sd = answer.payload->dug_mass.value * mass.sd / mass.value;
-    answer.payload->bulk_density = {bulk_density,
-                                    bulk_density * std::sqrt(given_law(1, 1)) / per_log};
+    answer.payload->dug_mass = {all * mass.value, all * mass.sd};
+    answer.payload->bulk_density = {
+        weighed.bulk_density, weighed.bulk_density * std::sqrt(given_law(1, 1)) / weighed.per_log};
   }
 
   /// Scatter of the law beyond that of the soils: of other paths, where the fallback is the law's,

@@ -43,7 +43,7 @@ struct SoilAnswer {
 /// The density by the mass of the payload.
 struct PayloadDensity {
   Measured mass;                 ///< moist, of one dump [kg]
-  Measured dug_mass;             ///< with the spill: mass after / dumped [kg]
+  Measured dug_mass;             ///< with the spill: mass after / dumped, sd of the mass [kg]
   Measured bulk_density;         ///< moist, in place [kg/m^3]
   Measured density_percent;      ///< by bulk density, water content and void ratios
   Measured law_density_percent;  ///< by the law alone
