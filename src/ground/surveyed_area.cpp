@@ -167,6 +167,22 @@ void sum_beyond_edge(Area& area) {
   for (std::size_t i = 0; i < missing.size(); ++i) area.zones[i].holes += std::pow(missing[i], 2);
 }
 
+/// Error of zones against a wall, whose face is somewhere in cells that were left out: up to half a
+/// cell of the soil along it, which is what their filling holds.
+void sum_walls(Area& area, const Eigen::ArrayXXd& before) {
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  std::vector<double> uncertain(area.zones.size(), 0.0);
+  for_each_cell(area.ground.zone, [&](Cell at) {
+    const int index = area.ground.zone(at.row, at.col);
+    if (index < 0 || !std::isnan(before(at.row, at.col)) || !is_beside_wall(before, at)) return;
+    uncertain[static_cast<std::size_t>(index)] +=
+        cell_area * std::abs(area.ground.difference(at.row, at.col));
+  });
+  for (std::size_t i = 0; i < uncertain.size(); ++i) {
+    area.zones[i].faces += std::pow(uncertain[i], 2);
+  }
+}
+
 /// One area's scans, with motion and objects taken out.
 struct Scans {
   HeightMap before;
@@ -251,6 +267,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   sum_between(area, pair.before);
   sum_between(area, pair.after);
   sum_borders(area);
+  sum_walls(area, scans.before.z);
   area.errors = ErrorField{scans.before,
                            area.ground.residual,
                            area.ground.zone,

@@ -14,6 +14,8 @@
 #include <excavplan/survey/density_estimate.hpp>
 
 #include "base/parallel.hpp"
+#include "ground/low_objects.hpp"
+#include "support/block_heap.hpp"
 #include "support/survey_scenes.hpp"
 
 namespace excavplan {
@@ -205,7 +207,8 @@ TEST(ScanChecks, GoodSurveysPass) {
     const Survey survey(seed, seed % 2 == 0, sloped ? 8.0 * degree : 0.0, sloped ? 0.02 : 0.0);
     const Answer answer = answer_to(survey.scans());
     ASSERT_TRUE(answer.estimate) << answer.error;
-    for (const char* code : {"units", "frame", "looks_swapped", "registration_beyond_prior"}) {
+    for (const char* code : {"units", "frame", "looks_swapped", "registration_beyond_prior",
+                             "grass", "flat_water", "object_on_soil"}) {
       EXPECT_EQ(answer.warning(code), nullptr) << code << ", seed " << seed;
     }
     EXPECT_EQ(answer.warning("tilted") != nullptr, sloped);
@@ -307,6 +310,88 @@ TEST(ScanChecks, SwappedScansOfTwoAreasAreRefused) {
     EXPECT_TRUE(contains(answer_to(survey.scans()).error, "probably swapped in the dump area"));
     std::swap(survey.before, survey.after);
     EXPECT_TRUE(contains(answer_to(survey.scans()).error, "BEFORE and AFTER")) << seed;
+  }
+}
+
+// ---- Whether the surface is the soil ------------------------------------------------------------
+
+/// A share of the returns from grass that the dig took away and the heap covers.
+void grow_grass(Survey& survey, double share, double height) {
+  Random random(7);
+  for (Points* points : {&survey.before, &survey.after}) {
+    for (Eigen::Vector3d& point : *points) {
+      const bool dug = points == &survey.after &&
+                       scenes::change_at(survey.dig, Part::whole, point.x(), point.y()) != 0.0;
+      if (!dug && random.uniform() < share) point.z() += random.uniform(0.0, height);
+    }
+  }
+}
+
+TEST(Cover, GrassEndsTrust) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Survey survey(seed, true);
+    const bool lawn = seed % 2 == 0;
+    grow_grass(survey, lawn ? 1.0 : 0.4, lawn ? 0.03 : 0.02);
+    const Answer answer = answer_to(survey.scans());
+    EXPECT_FALSE(answer.trusted()) << seed;
+    if (answer.estimate) {
+      EXPECT_NE(answer.warning("grass"), nullptr) << seed;
+    } else {
+      EXPECT_TRUE(contains(answer.error, "as on grass")) << answer.error;
+    }
+  }
+}
+
+/// Fills the lower fifth of the pit.
+void flood(Survey& survey) {
+  const double level = -0.8 * survey.dig.pit_depth;
+  for (Eigen::Vector3d& point : survey.after) {
+    if (survey.dig.dug(point.x(), point.y()) < 0.0) point.z() = std::max(point.z(), level);
+  }
+}
+
+TEST(Cover, WaterOnRoughGroundEndsTrust) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Survey survey(seed, true, 0.0, 0.015);
+    EXPECT_EQ(answer_to(survey.scans()).warning("flat_water"), nullptr) << seed;
+    flood(survey);
+    const Answer answer = answer_to(survey.scans());
+    ASSERT_NE(answer.warning("flat_water"), nullptr) << seed;
+    EXPECT_FALSE(answer.trusted());
+  }
+}
+
+/// A box 0.4 m wide whose top is 0.35 m above the surface in its middle.
+void set_down(Survey& survey, double x, double y, double ground) {
+  for (Eigen::Vector3d& point : survey.after) {
+    if (std::max(std::abs(point.x() - x), std::abs(point.y() - y)) > 0.2) continue;
+    point.z() = std::max(point.z(), ground + 0.35);
+  }
+}
+
+TEST(Cover, ACrateIsTakenOut) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Survey survey(seed, true);
+    const scenes::Dig& dig = survey.dig;
+    if (seed % 2 == 0) {
+      set_down(survey, dig.pit_x, dig.pit_y, -dig.pit_depth);
+    } else {
+      const double x = scenes::dump_offset + dig.heap_x + 0.3 * dig.heap_radius();
+      set_down(survey, x, dig.heap_y, dig.dumped(x - scenes::dump_offset, dig.heap_y));
+    }
+    const Answer answer = answer_to(survey.scans());
+    ASSERT_NE(answer.warning("object_on_soil"), nullptr) << seed;
+    const Measured& k = *answer.estimate->bulking;
+    EXPECT_NEAR(k.value, dig.bulking, 3.0 * k.sd) << seed;
+    EXPECT_NEAR(k.value, dig.bulking, 0.05 * dig.bulking) << seed;
+  }
+}
+
+TEST(Cover, BlocksOfSoilAreNoCrates) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const HeightMap heap = test::surveyed(test::block_heap({}, seed).fine, 0.05);
+    const Eigen::ArrayXXd level = Eigen::ArrayXXd::Zero(heap.z.rows(), heap.z.cols());
+    EXPECT_TRUE(level_tops(level, heap.z, heap.cell_size).empty()) << seed;
   }
 }
 
