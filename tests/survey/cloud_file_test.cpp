@@ -909,5 +909,26 @@ TEST(RealScans, AreReadWhole) {
       string::npos);
 }
 
+TEST(CloudFile, ViewpointOfPcdIsWhereTheSensorStood) {
+  const TempFile none(pcd_ascii);
+  EXPECT_FALSE(read_sensor_origin(none.path()));
+  EXPECT_FALSE(read_cloud(none.path()).sensor_origin);
+  const TempFile file(replaced(pcd_ascii, "0 0 0 1 0 0 0", "2.5 -1 3 1 0 0 0"));
+  ASSERT_TRUE(read_sensor_origin(file.path()));
+  EXPECT_EQ(*read_sensor_origin(file.path()), Eigen::Vector3d(2.5, -1.0, 3.0));
+  Cloud cloud = read_cloud(file.path());
+  EXPECT_EQ(cloud.sensor_origin, Eigen::Vector3d(2.5, -1.0, 3.0));
+
+  Eigen::Matrix4d shift = Eigen::Matrix4d::Identity();
+  shift(2, 3) = 1.5;
+  transform(cloud, shift);
+  for (const bool text : {true, false}) {
+    write_cloud(file.path(), cloud, CloudFormat{"pcd", text});
+    EXPECT_EQ(read_cloud(file.path()).sensor_origin, Eigen::Vector3d(2.5, -1.0, 4.5));
+  }
+  write_cloud(file.path(), cloud, CloudFormat{"ply"});
+  EXPECT_FALSE(read_sensor_origin(file.path()));
+}
+
 }  // namespace
 }  // namespace excavplan

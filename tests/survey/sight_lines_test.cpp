@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/sight_lines.hpp"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/ground/bulking.hpp>
+#include <excavplan/simulation/depth_camera.hpp>
+#include <excavplan/survey/scan_surface.hpp>
+
+#include "support/survey_scenes.hpp"
+
+namespace excavplan {
+namespace {
+
+using scenes::Dig;
+using scenes::Part;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+HeightMap blank(HeightMap map, const Rectangle& there) {
+  for_each_cell(map.z, [&](Cell at) {
+    if (there.contains(map.x(at.col), map.y(at.row))) map.z(at.row, at.col) = nan;
+  });
+  return map;
+}
+
+Cell cell_at(const HeightMap& map, double x, double y) {
+  return {static_cast<Eigen::Index>((y - map.origin.y()) / map.cell_size),
+          static_cast<Eigen::Index>((x - map.origin.x()) / map.cell_size)};
+}
+
+TEST(SightLines, TheLowestRayOverLevelGroundHitsTheNextCell) {
+  const HeightMap map = flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05);
+  const SightLines sight(map, {-2.0, 2.0, 3.0});
+  const Cell at = cell_at(map, 1.0, 2.0);
+  EXPECT_NEAR(sight.cells_to_rim(at), 1.0, 0.1);
+  EXPECT_NEAR(sight.ceiling(at), 0.05 * 3.0 / 3.0, 0.005);
+  EXPECT_FALSE(sight.faces_unseen(at));
+}
+
+TEST(SightLines, BehindARimTheCeilingFallsToWhatIsSeenNext) {
+  // A pit of 0.5 m from x = 1 on; under a sensor 3 m up its floor is seen from x = 1.5 on.
+  HeightMap map = flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05);
+  for_each_cell(map.z, [&](Cell at) {
+    if (map.x(at.col) > 1.0) map.z(at.row, at.col) = -0.5;
+  });
+  map = blank(std::move(map), {1.0, 0.0, 1.5, 4.0});
+  const SightLines sight(map, {-2.0, 2.0, 3.0});
+  for (const double x : {1.1, 1.3}) {
+    const Cell at = cell_at(map, x, 2.0);
+    EXPECT_NEAR(sight.ceiling(at), 3.0 - (map.x(at.col) + 2.0), 0.04) << x;
+  }
+  EXPECT_TRUE(sight.hides(cell_at(map, 0.98, 2.0)));
+  EXPECT_FALSE(sight.hides(cell_at(map, 0.9, 2.0)));
+}
+
+TEST(SightLines, AGapInTheScanIsNoShadow) {
+  const HeightMap map = blank(flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05), {1.0, 1.5, 1.5, 2.5});
+  const SightLines sight(map, {-2.0, 2.0, 3.0});
+  EXPECT_TRUE(sight.faces_unseen(cell_at(map, 0.98, 2.0)));
+  EXPECT_FALSE(sight.hides(cell_at(map, 0.98, 2.0)));
+}
+
+TEST(SightLines, ReturnsMixedAtARimAreDropped) {
+  Surface surface;
+  surface.height = flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05);
+  surface.sensor = Eigen::Vector3d(-2.0, 2.0, 3.0);
+  HeightMap& map = surface.height;
+  surface.points.setConstant(map.z.rows(), map.z.cols(), 20);
+  surface.variance.setConstant(map.z.rows(), map.z.cols(), 1e-5);
+  for_each_cell(map.z, [&](Cell at) {
+    if (map.x(at.col) > 1.0) map.z(at.row, at.col) = -0.5;
+  });
+  map = blank(std::move(map), {1.0, 0.0, 1.5, 4.0});
+  const Cell mixed = cell_at(map, 1.22, 2.0);
+  map.z(mixed.row, mixed.col) = 3.0 - (map.x(mixed.col) + 2.0);
+  surface.points(mixed.row, mixed.col) = 2;
+  const Eigen::ArrayXXi dropped = drop_mixed_returns(surface);
+  EXPECT_TRUE(std::isnan(map.z(mixed.row, mixed.col)));
+  EXPECT_EQ(dropped.sum(), 1);
+}
+
+// ---- One standpoint ---------------------------------------------------------------------------
+
+/// The whole scene from one place, by a lidar: walls of 80 degrees.
+class OneStandpoint : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dig.wall_angle = 80.0 * scenes::degree;
+    before = scan(false);
+    after = scan(true);
+  }
+
+  static VolumeChange measured(bool known) {
+    ScanPair scans = {before, after};
+    if (known) scans.before.sensor_origin = scans.after.sensor_origin = place;
+    RasterOptions raster;
+    raster.cell_size = 0.06;
+    return measure_change(survey_registered(scans, extent, raster, 0.06).surfaces);
+  }
+
+  static Scan scan(bool dug) {
+    HeightMap map = flat_ground(extent, 0.02);
+    for_each_cell(map.z, [&](Cell at) {
+      const double there = scenes::change_at(dig, Part::whole, map.x(at.col), map.y(at.row));
+      if (dug) map.z(at.row, at.col) = there;
+    });
+    Lidar lidar;
+    lidar.position = place;
+    lidar.azimuth = {0.45, pi - 0.45};
+    lidar.elevation = {-1.1, -0.6};
+    lidar.angle_step = {0.0065, 0.0065};
+    auto cloud = std::make_shared<Cloud>();
+    cloud->points = scan_surface(map, lidar, dug ? 2 : 1);
+    Scan scan;
+    scan.clouds = {cloud};
+    return scan;
+  }
+
+  static constexpr Rectangle extent = {-2.4, -2.0, 7.2, 2.0};
+  static inline const Eigen::Vector3d place = {2.6, -4.2, 4.5};
+  static inline Dig dig;
+  static inline Scan before;
+  static inline Scan after;
+};
+
+TEST_F(OneStandpoint, ShadowsAreFilledWithinTheirErrorWhereTheSensorIsKnown) {
+  const VolumeChange change = measured(true);
+  const auto k = bulking_factor(change);
+  ASSERT_TRUE(k);
+  EXPECT_NEAR(k->value, dig.bulking, 0.03 * dig.bulking);
+  EXPECT_NEAR(k->value, dig.bulking, 2.0 * k->sd);
+  EXPECT_LT(k->sd, 0.06 * dig.bulking);
+  EXPECT_GT(change.errors.holes(0, 0), 0.5 * change.errors.total()(0, 0));
+  EXPECT_NEAR(change.dumped.value, dig.heap_volume(), 0.03 * dig.heap_volume());
+}
+
+TEST_F(OneStandpoint, WithoutTheSensorsPlaceItsShadowsAreGapsAsOthers) {
+  const auto off = [&](bool known) {
+    return std::abs(measured(known).excavated.value - dig.pit_volume());
+  };
+  EXPECT_LT(off(true), 0.5 * off(false));
+}
+
+TEST(ScanSensor, IsThatOfAllItsCloudsInTheSiteFrame) {
+  auto cloud = std::make_shared<Cloud>();
+  cloud->points = {{0.0, 0.0, 0.0}, {1.0, 1.0, 0.0}};
+  cloud->sensor_origin = Eigen::Vector3d(1.0, 2.0, 3.0);
+  auto other = std::make_shared<Cloud>(*cloud);
+  Scan scan;
+  scan.clouds = {cloud, other};
+  scan.site_from_scan(0, 3) = 10.0;
+  const auto sensor = [&] { return survey_surface(scan, {9.0, -1.0, 12.0, 2.0}).sensor; };
+  ASSERT_TRUE(sensor());
+  EXPECT_EQ(*sensor(), Eigen::Vector3d(11.0, 2.0, 3.0));
+  other->sensor_origin = Eigen::Vector3d(5.0, 2.0, 3.0);
+  EXPECT_FALSE(sensor());
+  other->sensor_origin.reset();
+  EXPECT_FALSE(sensor());
+  scan.sensor_origin = Eigen::Vector3d(0.0, 0.0, 2.0);
+  EXPECT_EQ(*sensor(), Eigen::Vector3d(10.0, 0.0, 2.0));
+}
+
+}  // namespace
+}  // namespace excavplan
