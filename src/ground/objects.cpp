@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ground/error_field.hpp"
+#include "ground/low_objects.hpp"
 #include "ground/robust.hpp"
 
 namespace excavplan {
@@ -99,6 +100,24 @@ std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd&
   return objects;
 }
 
+/// Crates and the like in the scan after.
+std::vector<Object> lying(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& after,
+                          double cell_size, double margin) {
+  constexpr double side = 1.5;  // cells that show its sides beyond the top
+  std::vector<Object> objects;
+  for (const std::vector<Cell>& top : level_tops(before, after, cell_size)) {
+    Object object;
+    object.is_low = true;
+    object.cells = widened(top, after, margin + side);
+    for (const Cell at : top) {
+      const double change = after(at.row, at.col) - before(at.row, at.col);
+      if (!std::isnan(change)) object.volume += cell_size * cell_size * change;
+    }
+    objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
 void blank(Eigen::ArrayXXd& z, const std::vector<Object>& objects) {
   for (const Object& object : objects) {
     for (const Cell at : object.cells) {
@@ -115,6 +134,9 @@ std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& a
   std::vector<Object> gone = standing(before, after, cell_size, margin);
   blank(after, objects);
   blank(before, gone);
+  std::vector<Object> low = lying(before, after, cell_size, margin);
+  blank(after, low);
+  objects.insert(objects.end(), low.begin(), low.end());
   for (Object& object : gone) {
     object.is_before = true;
     object.volume = -object.volume;

@@ -11,6 +11,8 @@
 
 #include "ground/grid_cells.hpp"
 #include "ground/relief.hpp"
+#include "ground/shadow_filling.hpp"
+#include "ground/sight_lines.hpp"
 #include "ground/sampling_gaps.hpp"
 #include "ground/stripes.hpp"
 #include "ground/zone_filling.hpp"
@@ -51,7 +53,7 @@ void sum_zones(Area& area) {
     if (area.unknown(cell.row, cell.col) != 0) zone.unknown += cell_area;
   });
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].centre /= area.zones[i].area;
+    if (area.zones[i].area > 0.0) area.zones[i].centre /= area.zones[i].area;
     area.zones[i].is_cut = ground.zone_is_cut[i];
   }
 }
@@ -169,6 +171,7 @@ void sum_beyond_edge(Area& area) {
 struct Scans {
   HeightMap before;
   HeightMap after;
+  Eigen::ArrayXXi mixed;            // 1 where returns after were mixed and dropped
   Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where unknown
   Eigen::ArrayXXd variance_after;
 
@@ -184,12 +187,16 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
     throw Error(ErrorKind::bad_input,
                 "the maps before and after must be on one grid: same origin, cell and size");
   }
-  Scans scans{pair.before.height, realigned(pair.after.height, pair.alignment), {}, {}};
-  const bool told = pair.before.variance.size() == scans.before.z.size() &&
-                    pair.after.variance.size() == scans.after.z.size();
+  Surface before = pair.before;
+  Surface after = pair.after;
+  drop_mixed_returns(before);
+  const Eigen::ArrayXXi mixed = drop_mixed_returns(after);
+  Scans scans{before.height, realigned(after.height, pair.alignment), mixed, {}, {}};
+  const bool told = before.variance.size() == scans.before.z.size() &&
+                    after.variance.size() == scans.after.z.size();
   if (told) {
-    scans.variance_before = pair.before.variance;
-    scans.variance_after = pair.after.variance;
+    scans.variance_before = before.variance;
+    scans.variance_after = after.variance;
   }
   objects = take_out_objects(scans.before.z, scans.after.z, scans.before.cell_size,
                              options.margin / scans.before.cell_size);
@@ -208,20 +215,26 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
 
 Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   Area area;
-  const Scans scans = prepared(pair, options, area.objects);
+  Scans scans = prepared(pair, options, area.objects);
   area.grid.origin = scans.before.origin;
   area.grid.cell_size = scans.before.cell_size;
   Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
   area.unknown = difference.isNaN().cast<int>();
   area.ground =
       find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell_size, options);
+  area.parts = part_zones(area.ground, area.grid.cell_size);
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
+  std::vector<double> shadows(area.zones.size(), 0.0);
+  if (pair.after.sensor) {
+    shadows =
+        fill_shadows({scans.before, scans.after, scans.mixed, *pair.after.sensor}, area.ground);
+  }
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].holes = filling.variance[i] * cell_area * cell_area;
+    area.zones[i].holes = (filling.variance[i] + shadows[i]) * cell_area * cell_area;
   }
   area.ground.difference = filling.difference;
 

@@ -109,7 +109,16 @@ Cloud read_cloud(const std::string& path, std::uint64_t memory_limit) {
   const CloudShape shape = stream(file, collector);
   cloud.width = shape.width;
   cloud.height = shape.height;
+  cloud.sensor_origin = shape.sensor;
   return cloud;
+}
+
+std::optional<Eigen::Vector3d> read_sensor_origin(const std::string& path) {
+  FileStream file(path);
+  for (const CloudFileFormat& format : cloud_file_formats()) {
+    if (format.holds(file)) return format.sensor ? format.sensor(file) : std::nullopt;
+  }
+  return std::nullopt;
 }
 
 void stream_cloud(const std::string& path, const PointVisitor& visit) {

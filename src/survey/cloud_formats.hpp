@@ -24,6 +24,7 @@ constexpr std::size_t most_fields = 64;        ///< of a point
 struct CloudShape {
   std::uint64_t width = 0;
   std::uint64_t height = 1;
+  std::optional<Eigen::Vector3d> sensor = {};  ///< Cloud::sensor_origin
 };
 
 /// A format of cloud files.
@@ -37,6 +38,8 @@ struct CloudFileFormat {
   CloudShape (*stream)(FileStream& file, PointSink& sink);
   /// The content of a file; text with every digit or, where the format has it, binary.
   std::string (*content)(const Cloud& cloud, bool text);
+  /// Cloud::sensor_origin from the head of a file; null where the format has none.
+  std::optional<Eigen::Vector3d> (*sensor)(FileStream& file) = nullptr;
 };
 
 /// In the order in which a file's content is tried.

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
+#include "base/text.hpp"
 #include "survey/cloud_formats.hpp"
 
 // PCD as the Point Cloud Library documents it (versions 0.5 to 0.7).
@@ -30,6 +32,7 @@ struct Header {
   std::uint64_t height = 0;
   std::uint64_t points = 0;
   Encoding encoding = Encoding::ascii;
+  std::optional<Eigen::Vector3d> sensor;
   std::size_t row = 0;     ///< of one point [byte]
   std::size_t tokens = 0;  ///< of one point in ASCII
 };
@@ -109,6 +112,17 @@ void read_version(std::string_view word, const LineReader& lines) {
   lines.fail("VERSION " + quoted(word), "0.5, 0.6 or 0.7");
 }
 
+/// Place of the sensor in the frame of the points, from a translation and a quaternion. What all
+/// programs write by default says nothing.
+std::optional<Eigen::Vector3d> read_viewpoint(const Words& words, const LineReader& lines) {
+  constexpr std::array<double, 7> by_default = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  std::array<double, 7> pose{};
+  for (std::size_t i = 0; i < pose.size(); ++i) pose[i] = number_of(words[i], lines);
+  const Eigen::Vector3d place(pose[0], pose[1], pose[2]);
+  if (pose == by_default || !place.allFinite()) return std::nullopt;
+  return place;
+}
+
 void require_words(std::size_t key, const Words& words, const LineReader& lines,
                    const Header& header) {
   const std::string name(key_names[key]);
@@ -140,7 +154,7 @@ void read_entry(std::size_t key, const Words& words, const LineReader& lines, He
       header.height = count_of(words[0], lines);
       return;
     case viewpoint:
-      for (const auto word : words) number_of(word, lines);
+      header.sensor = read_viewpoint(words, lines);
       return;
     case points:
       header.points = count_of(words[0], lines);
@@ -441,16 +455,26 @@ CloudShape stream_pcd(FileStream& file, PointSink& sink) {
       stream_compressed(file, header, sink);
       break;
   }
-  return {header.width, header.height};
+  return {header.width, header.height, header.sensor};
+}
+
+std::optional<Eigen::Vector3d> sensor_of_pcd(FileStream& file) {
+  LineReader lines(file);
+  return read_header(lines).sensor;
+}
+
+std::string viewpoint_of(const Cloud& cloud) {
+  const Eigen::Vector3d place = cloud.sensor_origin.value_or(Eigen::Vector3d::Zero());
+  return number_text(place.x()) + " " + number_text(place.y()) + " " + number_text(place.z());
 }
 
 std::string header_of(const Cloud& cloud, bool is_double, const std::string& encoding) {
   const std::string size = is_double ? "8" : "4";
   return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE " + size +
          " " + size + " " + size + "\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
-         std::to_string(cloud.width) + "\nHEIGHT " + std::to_string(cloud.height) +
-         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(cloud.points.size()) + "\nDATA " +
-         encoding + "\n";
+         std::to_string(cloud.width) + "\nHEIGHT " + std::to_string(cloud.height) + "\nVIEWPOINT " +
+         viewpoint_of(cloud) + " 1 0 0 0\nPOINTS " + std::to_string(cloud.points.size()) +
+         "\nDATA " + encoding + "\n";
 }
 
 std::string pcd_content(const Cloud& cloud, bool text) {
@@ -462,7 +486,7 @@ std::string pcd_content(const Cloud& cloud, bool text) {
 }  // namespace
 
 CloudFileFormat pcd_format() {
-  return {"pcd", "PCD", {".pcd"}, holds_pcd, stream_pcd, pcd_content};
+  return {"pcd", "PCD", {".pcd"}, holds_pcd, stream_pcd, pcd_content, sensor_of_pcd};
 }
 
 }  // namespace excavplan

@@ -204,7 +204,9 @@ Surface surface_of(const PointSource& source, const HeightMap& map, const Raster
 
 Surface survey_surface(const Scan& scan, const Rectangle& extent, const RasterOptions& options) {
   const PointSource source = [&scan](const PointVisitor& visit) { visit_scan(scan, visit); };
-  return surface_of(source, empty_map(extent, options), options);
+  Surface surface = surface_of(source, empty_map(extent, options), options);
+  surface.sensor = sensor_of(scan);
+  return surface;
 }
 
 HeightMap rasterise(const Cloud& cloud, const Rectangle& extent, const RasterOptions& options) {

@@ -14,6 +14,10 @@ namespace excavplan {
 /// not finite may be among them. The same on every call. @throws Error (bad_file)
 void visit_scan(const Scan& scan, const PointVisitor& visit);
 
+/// Where the sensor of a scan stood, in the site frame; nothing where it is unknown or several
+/// stood at different places.
+std::optional<Eigen::Vector3d> sensor_of(const Scan& scan);
+
 /// All these points at once, for methods that need them.
 /// @throws Error (bad_file) as read_cloud()
 Cloud gathered(const Scan& scan);
@@ -35,6 +39,20 @@ struct OutlinedPair {
 
 /// @throws Error (bad_file) if one cannot be read or holds fewer than 100 finite points
 OutlinedPair outlined(const ScanPair& scans, unsigned threads);
+
+/// How far a correction moves the middle of the ground, and by what angle it turns it.
+struct Displacement {
+  double shift = 0.0;  ///< [m]
+  double turn = 0.0;   ///< [rad]
+
+  /// Beyond three standard deviations of the priors of align().
+  bool is_beyond_prior() const;
+};
+Displacement displacement_by(const Eigen::Matrix4d& correction, const Eigen::Vector3d& centre);
+
+/// True if the ground that did not change differs by over 10 mm, and by three times what the
+/// scatter of the points explains.
+bool leaves_difference(const SurfacePair& pair);
 
 /// Both on one grid over the ground that both see. If they are to be registered, the one after is
 /// registered to the one before on the ground that did not change, as far as the motion is

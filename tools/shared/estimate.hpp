@@ -11,10 +11,8 @@
 
 namespace excavplan::tools {
 
-/// The law of a file or a shipped one; "default" is that of the built-in simulator in loam.
-DensityLaw law_named(const std::string& name);
-
-Outcome estimate_outcome(const DensityEstimate& estimate);
+/// @param soil  what was known of it
+Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);
 
 /// Adds the result of the other method for the same scans.
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);

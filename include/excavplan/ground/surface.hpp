@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include <excavplan/ground/height_map.hpp>
@@ -15,6 +17,8 @@ struct Surface {
   /// [m^2]; NaN where unknown.
   Eigen::ArrayXXd variance;
   Eigen::ArrayXXi points;  ///< accepted in each cell
+  /// Where the sensor stood, in the frame of the heights [m]; unset where unknown or not one place.
+  std::optional<Eigen::Vector3d> sensor = {};
 };
 
 }  // namespace excavplan

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct Cloud {
   std::vector<Eigen::Vector3d> points;  ///< in the order of the file [m]
   std::size_t width = 0;                ///< of an organised cloud, else points.size()
   std::size_t height = 1;               ///< 1 unless organised
+  /// Where the sensor stood, in the frame of the points [m]; unset where unknown.
+  std::optional<Eigen::Vector3d> sensor_origin = {};
 };
 
 /// How a cloud is written.
@@ -38,6 +41,10 @@ struct CloudFormat {
 /// @throws Error (bad_file) naming file, line or byte, what was found and what was expected
 Cloud read_cloud(const std::string& path, std::uint64_t memory_limit = std::uint64_t{4} << 30);
 
+/// Cloud::sensor_origin of a file, from its head alone: the VIEWPOINT of a PCD file that is not the
+/// default 0 0 0 1 0 0 0; nothing of other formats. @throws Error (bad_file) as read_cloud()
+std::optional<Eigen::Vector3d> read_sensor_origin(const std::string& path);
+
 using PointVisitor = std::function<void(const std::vector<Eigen::Vector3d>& points)>;
 
 /// Reads what read_cloud() reads, with the same errors, but hands the points on some thousand at a
@@ -49,7 +56,7 @@ using PointVisitor = std::function<void(const std::vector<Eigen::Vector3d>& poin
 void stream_cloud(const std::string& path, const PointVisitor& visit);
 
 /// Writes a cloud; binary formats hold float64 if a coordinate needs it (float32 would move a point
-/// by more than 0.1 mm), else float32.
+/// by more than 0.1 mm), else float32. Of the formats only PCD holds where the sensor stood.
 ///
 /// The file appears whole or not at all (written beside, then renamed).
 /// @throws Error (bad_file) if the file cannot be written; (bad_input) if the cloud's width and
@@ -70,6 +77,7 @@ Eigen::Matrix4d read_frame(const std::string& path);
 /// Writes what read_frame() reads, every number with all its digits. @throws Error (bad_file)
 void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan);
 
+/// Moves the points, and the sensor's place with them.
 void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);
 
 /// What is in a cloud.

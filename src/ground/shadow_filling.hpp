@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/ground/height_map.hpp>
+
+#include "ground/change_zones.hpp"
+
+namespace excavplan {
+
+/// Two scans of one area, the one after from one known place.
+struct ShadowedScans {
+  const HeightMap& before;
+  HeightMap& after;              ///< NaN where unknown; shadows are filled
+  const Eigen::ArrayXXi& mixed;  ///< 1 where drop_mixed_returns() dropped a cell of `after`
+  Eigen::Vector3d sensor;        ///< [m]
+};
+
+/// Fills ground of the scan after that lies in the shadow of what its sensor saw.
+///
+/// From the rim of a shadow the ground is taken to fall at the slope of the faces that were seen of
+/// the same hole, or of the heaps, until it meets the floor of the hole or the ground before; it is
+/// nowhere above the lowest ray that passed. The cells of a shadow join the zones whose ground they
+/// continue.
+///
+/// @return variance of the sum of the filled heights, by zone [m^2]
+std::vector<double> fill_shadows(const ShadowedScans& scans, ChangedGround& ground);
+
+}  // namespace excavplan
