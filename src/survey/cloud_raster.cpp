@@ -73,11 +73,11 @@ struct Levels {
   double noise = 0.0;      ///< lower quartile of the cells' robust sd [m]
 };
 
-/// Medians of all groups, from 128 to 256 points where there are more, and the noise: lower
+/// Medians of all groups, from 64 to 128 points where there are more, and the noise: lower
 /// quartile of the robust standard deviation (1.4826 times the median absolute deviation) of some
 /// thousand groups spread over the map, which is that of level ground without outliers.
 Levels find_levels(PointsByCell& points) {
-  constexpr std::size_t enough_points = 256;
+  constexpr std::size_t enough_points = 128;
   constexpr std::size_t fewest_points = 5;
   constexpr std::size_t fewest_groups = 10;
   constexpr std::size_t most_samples = 4096;

@@ -55,14 +55,18 @@ Rectangle overlap(const OutlinedPair& pair) {
   return both;
 }
 
-/// Surfaces with the ground between the points.
+/// With the ground between the points.
+Surface filled_surface(const Scan& scan, const Rectangle& extent, const RasterOptions& options) {
+  Surface surface = survey_surface(scan, extent, options);
+  fill_sampling_gaps(surface);
+  return surface;
+}
+
 std::vector<Surface> filled_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
                                      const RasterOptions& options, unsigned threads) {
   std::vector<Surface> surfaces(scans.size());
-  parallel_for(scans.size(), threads, [&](std::size_t i) {
-    surfaces[i] = survey_surface(scans[i], extent, options);
-    fill_sampling_gaps(surfaces[i]);
-  });
+  parallel_for(scans.size(), threads,
+               [&](std::size_t i) { surfaces[i] = filled_surface(scans[i], extent, options); });
   return surfaces;
 }
 
@@ -79,10 +83,6 @@ struct Registering {
   RasterOptions raster;
   double small;  ///< largest shift that realigned() corrects [m]
 
-  Surface survey_filled(const Scan& scan) const {
-    return std::move(filled_surfaces({scan}, extent, raster, 1).front());
-  }
-
   /// Aligns; surveys the scan after again where it moves by more than `small`, and aligns the rest.
   void align_again(RegisteredPair& result) const {
     constexpr int most_rounds = 3;
@@ -96,7 +96,7 @@ struct Registering {
     SurfacePair& pair = result.surfaces;
     if (!(pair.alignment.largest_shift(pair.after.height) > least)) return false;
     result.correction = pair.alignment.correction() * result.correction;
-    pair.after = survey_filled(corrected(after, result.correction));
+    pair.after = filled_surface(corrected(after, result.correction), extent, raster);
     pair.alignment = align(pair.before, pair.after);
     return true;
   }
@@ -112,7 +112,7 @@ struct Registering {
       RegisteredPair other;
       other.correction = *start * result.correction;
       other.surfaces.before = pair.before;
-      other.surfaces.after = survey_filled(corrected(after, other.correction));
+      other.surfaces.after = filled_surface(corrected(after, other.correction), extent, raster);
       align_again(other);
       other.first = result.first;
       other.from_wide_start = true;
