@@ -75,6 +75,9 @@ TEST(SightLines, ReturnsMixedAtARimAreDropped) {
   surface.variance.setConstant(map.z.rows(), map.z.cols(), 1e-5);
   for_each_cell(map.z, [&](Cell at) {
     if (map.x(at.col) > 1.0) map.z(at.row, at.col) = -0.5;
+    const Eigen::Vector3d point(map.x(at.col), map.y(at.row), map.z(at.row, at.col));
+    const Eigen::Vector3d ray = *surface.sensor - point;
+    surface.points(at.row, at.col) = static_cast<int>(600.0 * ray.z() / std::pow(ray.norm(), 3));
   });
   map = blank(std::move(map), {1.0, 0.0, 1.5, 4.0});
   const Cell mixed = cell_at(map, 1.22, 2.0);
@@ -114,7 +117,7 @@ class OneStandpoint : public testing::Test {
     lidar.position = place;
     lidar.azimuth = {0.45, pi - 0.45};
     lidar.elevation = {-1.1, -0.6};
-    lidar.angle_step = {0.0065, 0.0065};
+    lidar.angle_step = {0.003, 0.003};
     auto cloud = std::make_shared<Cloud>();
     cloud->points = scan_surface(map, lidar, dug ? 2 : 1);
     Scan scan;
