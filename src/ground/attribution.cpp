@@ -572,7 +572,7 @@ void state_readings(const Attribution& attribution, VolumeChange& result) {
   const double deeper = pressed.volume.value / result.before.value;
   result.readings.push_back({"with " + pressed.what,
                              pressed.probability,
-                             {k->value + deeper, std::hypot(sd, 0.5 * deeper)}});
+                             {k->value + deeper, sd}});
   weight += pressed.probability;
   for (Reading& reading : result.readings) reading.weight /= weight;
 }
