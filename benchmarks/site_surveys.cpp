@@ -56,11 +56,14 @@ struct Record {
   double z() const { return (k - truth.bulking()) / sd; }
   bool inside() const { return std::abs(z()) <= 1.96; }
   /// Volumes in another unit are wrong even if their ratio is right.
-  bool wrong() const {
+  bool of_right_size() const {
     const double size = found.hole / truth.hole;
-    return trusted && (std::abs(z()) > 3.0 || size > 1.5 || size < 0.67);
+    return size > 0.67 && size < 1.5;
   }
-  bool held() const { return refused || !trusted || (!wrong() && (inside() || in_a_reading)); }
+  bool wrong() const { return trusted && (std::abs(z()) > 3.0 || !of_right_size()); }
+  bool held() const {
+    return refused || !trusted || (of_right_size() && (inside() || in_a_reading));
+  }
 };
 
 double percent(double found, double truth) { return 100.0 * (found / truth - 1.0); }
