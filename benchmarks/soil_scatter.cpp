@@ -63,6 +63,7 @@ int run(int digs) {
   const std::vector<SoilLaw> laws = shipped_soil_laws();
   for (const Knowledge& known : cases) {
     std::map<std::string, Coverage> rows;
+    std::uint64_t seed = 0;
     for (const SimulatorKind& simulator : simulator_kinds()) {
       test::SoilDigOptions options;
       options.simulator = simulator;
@@ -71,8 +72,7 @@ int run(int digs) {
         // Where the soil is unknown, as many as its weight says; of costly laws, a third.
         const double share = !known.soil ? kind.weight * 4.0 : known.path ? 1.0 / 3.0 : 1.0;
         for (int i = 0; i < share * digs; ++i) {
-          const auto seed = static_cast<std::uint64_t>(i);
-          const SoilDig dig = test::random_dig(machine, kind.soil, seed, options);
+          const SoilDig dig = test::random_dig(machine, kind.soil, seed++, options);
           const RelativeDensity density = found(dig, kind, known, machine, laws);
           const std::string third = dig.density_percent < 100.0 / 3.0   ? "0-33 %"
                                     : dig.density_percent < 200.0 / 3.0 ? "33-67 %"
