@@ -36,7 +36,7 @@ ZoneStyle style_of(ZoneKind kind) {
 /// A multiple of a step.
 std::string rounded(double value, double step) {
   const auto per_unit = std::round(1.0 / step);
-  return number_text(std::round(value * per_unit) / per_unit);
+  return number_text(std::round(value * per_unit) / per_unit + 0.0);  // no minus zero
 }
 
 std::string volume_text(const Measured& volume) {
@@ -159,7 +159,7 @@ Rectangle view_of(const VolumeChange& change, const AreaChange& area) {
           std::min(room.x_max, all.x_max), std::min(room.y_max, all.y_max)};
 }
 
-/// From twice the noise of a cell, at least 1 cm, up to the largest change inside the zones;
+/// From the noise of a cell, at least 1 cm, up to the largest change inside the zones;
 /// without zones up to the 99th percentile of all cells.
 std::vector<double> bands_of(const VolumeChange& change) {
   double largest = 0.0;
@@ -180,7 +180,7 @@ std::vector<double> bands_of(const VolumeChange& change) {
     std::nth_element(all.begin(), place, all.end());
     largest = *place;
   }
-  return colour_bands(std::max(0.01, 2.0 * noise), largest);
+  return colour_bands(std::max(0.01, noise), largest);
 }
 
 // ---- Sections ---------------------------------------------------------------------------------
