@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include "ground/robust.hpp"
 
 namespace excavplan {
@@ -16,6 +18,7 @@ constexpr double least_drop = 0.10;     // [m]
 constexpr double least_area = 0.03;     // [m^2]
 constexpr double largest_area = 1.0;    // [m^2]
 constexpr double level_slope = 0.3;     // of a top, between neighbouring cells [-]
+constexpr double level_tilt = 0.1;      // of a top as a whole [-]
 constexpr double most_rising = 0.15;    // of the edge
 constexpr double least_falling = 0.45;  // of the edge
 constexpr double one_sided = 0.65;      // length of the mean direction of the edges that fall
@@ -61,6 +64,9 @@ class TopFinder {
       tops.push_back(std::move(cells));
     });
     if (tops.size() > most_tops) tops.clear();
+    tops.erase(std::remove_if(tops.begin(), tops.end(),
+                              [&](const std::vector<Cell>& top) { return !is_level(top); }),
+               tops.end());
     return tops;
   }
 
@@ -96,6 +102,19 @@ class TopFinder {
       });
     }
     return cells;
+  }
+
+  /// Unlike the top of a block, which lies as it fell.
+  bool is_level(const std::vector<Cell>& cells) const {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (const Cell at : cells) {
+      const Eigen::Vector3d terms(1.0, static_cast<double>(at.col - cells.front().col),
+                                  static_cast<double>(at.row - cells.front().row));
+      normal += terms * terms.transpose();
+      right += after_(at.row, at.col) * terms;
+    }
+    return normal.ldlt().solve(right).tail<2>().norm() < level_tilt * cell_size_;
   }
 
   /// A wall, or ground that was left standing.
