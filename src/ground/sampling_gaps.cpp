@@ -228,7 +228,7 @@ std::vector<double> variance_between_points(const Surface& surface, const Eigen:
   constexpr double sparse = 0.45;     // ours [cell]: fewer than five points in a cell
   constexpr double window = 1.5;      // ours [spacing]
   constexpr double of_scatter = 9.0;  // ours, for random points
-  constexpr double of_lines = 0.25;   // ours: lines sample faces more evenly
+  constexpr double of_lines = 0.5;    // ours: lines sample faces more evenly
   std::vector<double> variance(count, 0.0);
   if (surface.points.size() == 0) return variance;
   const Mask known = surface.points > 0;

@@ -95,7 +95,7 @@ TEST(BetweenPoints, ErrorOfAFaceSomewhereBetweenLines) {
         0.0025 * (zone == 0).select(surface.height.z, 0.0).sum() + 0.3 * 2.0 * (pit.edge - 1.5);
     squares += volume * volume / 25.0;
   }
-  EXPECT_GT(variance, 0.4 * squares);  // faces along the lines are the worst case
+  EXPECT_GT(variance, 0.5 * squares);  // faces along the lines are the worst case
   EXPECT_LT(variance, 20.0 * squares);
 }
 
