@@ -84,14 +84,18 @@ struct Scatter {
 std::optional<Warning> grass(const std::vector<const SurfacePair*>& pairs,
                              const VolumeChange& change) {
   constexpr std::size_t enough = 30;      // cells, ours
-  constexpr double much_less = 0.75;      // ours: of the variance
+  constexpr double much_less = 0.75;      // ours: of the variance, in all fresh soil
+  constexpr double less = 0.9;            // ours: likewise, in the hole and on the heap
   constexpr double least_scatter = 1e-3;  // ours [m]
   Scatter scatter;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (tells_scatter(*pairs[i])) scatter.add(*pairs[i], change, change.areas[i]);
   }
   if (std::min(scatter.in_hole.size(), scatter.on_heap.size()) < enough) return std::nullopt;
-  if (std::max(median(scatter.in_hole), median(scatter.on_heap)) > much_less) return std::nullopt;
+  if (std::max(median(scatter.in_hole), median(scatter.on_heap)) > less) return std::nullopt;
+  std::vector<double> of_both = scatter.in_hole;
+  of_both.insert(of_both.end(), scatter.on_heap.begin(), scatter.on_heap.end());
+  if (median(of_both) > much_less) return std::nullopt;
   const double excess = median(scatter.stable) - median(scatter.fresh);
   if (!(excess > least_scatter * least_scatter)) return std::nullopt;
   const double cover = std::sqrt(3.0 * excess);
@@ -255,7 +259,7 @@ double hidden_volume(const LevelFloor& floor, double hole, double share) {
 
 /// The reading that a level floor on even ground is water.
 void add_water(const LevelFloor& floor, VolumeChange& change) {
-  constexpr double least_share = 0.3;  // ours: of the hole; less hides little
+  constexpr double least_share = 0.2;  // ours: of the hole; less hides little
   constexpr double weight = 0.03;      // ours
   constexpr double water = 0.15;       // ours: share of the depth of the hole
   constexpr double deepest = 0.20;     // ours, at 2 sd

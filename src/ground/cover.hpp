@@ -14,8 +14,8 @@ namespace excavplan {
 
 /// Looks for what covers the soil; both end trust.
 ///
-/// `grass`: returns scatter in height less on dug and on dumped soil than they did before there, by
-/// what the ground that did not change shows: it was covered, and by no more than sqrt(3) times the
+/// `grass`: returns scatter in height less on dug and dumped soil than they did before there: their
+/// variance is below 0.75 of that in both together, and below 0.9 in each (ours), by what the ground that did not change shows: it was covered, and by no more than sqrt(3) times the
 /// excess of the standard deviation, the mean of returns spread evenly from the ground up.
 ///
 /// `flat_water`: the lowest part of the hole is level to within the noise of its cells, where the
@@ -26,7 +26,7 @@ std::vector<Warning> check_cover(const std::vector<const SurfacePair*>& pairs,
                                  const VolumeChange& change);
 
 /// States as a reading, not counted, that a floor which is level to within the noise and takes up
-/// 30 % of the hole is water, where the ground before was as even: over 15 % of the depth of the
+/// 20 % of the hole is water, where the ground before was as even: over 15 % of the depth of the
 /// hole, 10 to 20 % within two standard deviations, with a weight of 0.03 (all ours).
 ///
 /// @param pairs  likewise

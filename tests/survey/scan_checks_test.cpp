@@ -345,9 +345,9 @@ TEST(Cover, GrassEndsTrust) {
   }
 }
 
-/// Fills the lower fifth of the pit.
-void flood(Survey& survey) {
-  const double level = -0.8 * survey.dig.pit_depth;
+/// Fills a share of the depth of the pit.
+void flood(Survey& survey, double share) {
+  const double level = -(1.0 - share) * survey.dig.pit_depth;
   for (Eigen::Vector3d& point : survey.after) {
     if (survey.dig.dug(point.x(), point.y()) < 0.0) point.z() = std::max(point.z(), level);
   }
@@ -358,13 +358,57 @@ TEST(Cover, WaterOnRoughGroundEndsTrust) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Survey survey(seed, true, 0.0, 0.015, points_on_soil);
     EXPECT_EQ(answer_to(survey.scans()).warning("flat_water"), nullptr) << seed;
-    flood(survey);
+    flood(survey, 0.2);
     const Answer answer = answer_to(survey.scans());
     if (answer.warning("flat_water") == nullptr) continue;
     EXPECT_FALSE(answer.trusted());
     ++found;
   }
   EXPECT_GE(found, 3) << "of four; the floor of one is as even by chance";
+}
+
+TEST(Cover, GrassInASmallDigEndsTrust) {
+  for (const std::uint64_t seed : {6, 15}) {
+    Survey survey(seed, true, 0.0, 0.0, points_on_soil);
+    grow_grass(survey, 0.4, 0.02);
+    EXPECT_FALSE(answer_to(survey.scans()).trusted()) << seed;
+  }
+}
+
+const Reading* reading_with_water(const VolumeChange& change) {
+  for (const Reading& reading : change.readings) {
+    if (contains(reading.what, "with water")) return &reading;
+  }
+  return nullptr;
+}
+
+TEST(Cover, WaterOnEvenGroundIsAReading) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Survey survey(seed, true, 0.0, 0.0, points_on_soil);
+    flood(survey, seed % 2 == 0 ? 0.12 : 0.18);
+    const Answer answer = answer_to(survey.scans());
+    ASSERT_TRUE(answer.estimate) << seed;
+    const VolumeChange& change = answer.estimate->change;
+    const Reading* water = reading_with_water(change);
+    ASSERT_NE(water, nullptr) << seed;
+    const Measured& k = water->bulking;
+    EXPECT_NEAR(k.value, survey.dig.bulking, 2.0 * k.sd + 0.005 * k.value) << seed;
+    EXPECT_LT(k.sd, 0.04 * k.value) << seed;
+    EXPECT_LT(water->weight, 0.05) << "the likeliest reading is a level floor";
+    double sum = 0.0;
+    for (const Reading& reading : change.readings) sum += reading.weight;
+    EXPECT_NEAR(sum, 1.0, 1e-9);
+    EXPECT_LT(answer.estimate->bulking->sd, 0.01) << "readings do not widen the deviation";
+    EXPECT_FALSE(change.attribution.back().counted);
+    EXPECT_LT(change.attribution.back().volume.value, 0.0);
+  }
+}
+
+TEST(Cover, AFloorAsRoughAsTheGroundIsNoWater) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Survey survey(seed, true, 0.0, 0.015, points_on_soil);
+    EXPECT_EQ(reading_with_water(answer_to(survey.scans()).estimate->change), nullptr) << seed;
+  }
 }
 
 /// A box 0.4 m wide whose top is 0.35 m above the surface in its middle.
@@ -391,6 +435,39 @@ TEST(Cover, ACrateIsTakenOut) {
     EXPECT_NEAR(k.value, dig.bulking, 3.0 * k.sd) << seed;
     EXPECT_NEAR(k.value, dig.bulking, 0.05 * dig.bulking) << seed;
   }
+}
+
+/// Ground that was left standing would look the same.
+TEST(Cover, ACrateAsHighAsTheGroundWasEndsTrust) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Survey survey(seed, true, 0.0, 0.0, points_on_soil);
+    set_down(survey, survey.dig.pit_x, survey.dig.pit_y, -0.35);
+    const Answer answer = answer_to(survey.scans());
+    ASSERT_NE(answer.warning("object_on_soil"), nullptr) << seed;
+    EXPECT_TRUE(contains(answer.warning("object_on_soil")->message, "left standing"));
+    EXPECT_FALSE(answer.trusted()) << seed;
+    const Measured& k = *answer.estimate->bulking;
+    EXPECT_NEAR(k.value, survey.dig.bulking, 3.0 * k.sd) << seed;
+  }
+}
+
+/// A plateau of 0.45 m in a hole 1 m wide, both with upright sides.
+Eigen::ArrayXXd plateau(double ground_before) {
+  Eigen::ArrayXXd z = Eigen::ArrayXXd::Zero(40, 40);
+  z.block(10, 10, 20, 20).setConstant(ground_before);
+  z.block(15, 15, 9, 9).setZero();
+  return z;
+}
+
+TEST(Cover, WhatStoodOutBeforeIsNoThing) {
+  constexpr double cell = 0.05;
+  const Eigen::ArrayXXd after = plateau(-0.3);
+  const Eigen::ArrayXXd level = Eigen::ArrayXXd::Zero(40, 40);
+  const std::vector<LevelTop> tops = level_tops(level, after, cell);
+  ASSERT_EQ(tops.size(), 1U);
+  EXPECT_FALSE(tops[0].is_sure);
+  EXPECT_EQ(tops[0].cells.size(), 81U);
+  EXPECT_TRUE(level_tops(plateau(-0.15), after, cell).empty());
 }
 
 TEST(Cover, BlocksOfSoilAreNoCrates) {
