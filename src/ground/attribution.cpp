@@ -29,6 +29,7 @@ constexpr double second = 0.85;        // a hole or a heap away from the largest
 constexpr double along_swing = 0.9;    // clods between hole and heap
 constexpr double low_edge = 0.9;       // ground that runs out, thinner and thinner
 constexpr double anywhere = 0.5;       // small or low and in no place that tells
+constexpr double doubtful = 0.3;       // what the error of its volume explains
 constexpr double shallow_fall = 0.15;  // ground that sank by far less than the hole is deep
 constexpr double no_soil = 0.03;       // ruts and their berms, things, outside a given area
 }  // namespace prior
@@ -245,7 +246,19 @@ class ChangeReader {
     if (!in_given(p, fell ? -1.0 : 1.0) && (fell || !beside(p))) {
       return {"ground outside the given area", prior::no_soil, true};
     }
+    if (is_within_error(p)) return {"changes within their error", prior::doubtful, true};
     return fell ? meaning_of_fall(p) : meaning_of_rise(p);
+  }
+
+  /// Not known to have changed at all: filled where it was not seen, or at a step in both scans.
+  bool is_within_error(Place p) const {
+    constexpr double established = 2.0;  // sd; ours
+    const ZoneErrors& errors = areas_[p.area].errors;
+    const auto i = static_cast<Eigen::Index>(p.zone);
+    const double variance = zone(p).noise + zone(p).holes + zone(p).faces +
+                            errors.correlated(i, i) + errors.datum(i, i);
+    return !is(p, hole_) && !is(p, heap_) &&
+           std::abs(zone(p).volume) < established * std::sqrt(variance);
   }
 
   /// Of a tail that is no track: soil thins out, something else beside it does not.
@@ -570,9 +583,7 @@ void state_readings(const Attribution& attribution, VolumeChange& result) {
     weight += one.weight;
   }
   const double deeper = pressed.volume.value / result.before.value;
-  result.readings.push_back({"with " + pressed.what,
-                             pressed.probability,
-                             {k->value + deeper, sd}});
+  result.readings.push_back({"with " + pressed.what, pressed.probability, {k->value + deeper, sd}});
   weight += pressed.probability;
   for (Reading& reading : result.readings) reading.weight /= weight;
 }

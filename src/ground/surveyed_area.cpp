@@ -11,9 +11,9 @@
 
 #include "ground/grid_cells.hpp"
 #include "ground/relief.hpp"
+#include "ground/sampling_gaps.hpp"
 #include "ground/shadow_filling.hpp"
 #include "ground/sight_lines.hpp"
-#include "ground/sampling_gaps.hpp"
 #include "ground/stripes.hpp"
 #include "ground/zone_filling.hpp"
 
