@@ -22,16 +22,17 @@ namespace {
 
 /// Probability that a change belongs to the dig, by what it looks like.
 namespace prior {
-constexpr double certain = 0.98;       // the main heap, spill beside the hole, a given area
-constexpr double main_hole = 0.9;      // the largest: another may fit the soil better
-constexpr double beside_main = 0.96;   // of the same kind as the hole or heap that it lies beside
-constexpr double second = 0.85;        // a hole or a heap away from the largest
-constexpr double along_swing = 0.9;    // clods between hole and heap
-constexpr double low_edge = 0.9;       // ground that runs out, thinner and thinner
-constexpr double anywhere = 0.5;       // small or low and in no place that tells
-constexpr double doubtful = 0.3;       // what the error of its volume explains
-constexpr double shallow_fall = 0.15;  // ground that sank by far less than the hole is deep
-constexpr double no_soil = 0.03;       // ruts and their berms, things, outside a given area
+constexpr double certain = 0.98;        // the main heap, spill beside the hole, a given area
+constexpr double main_hole = 0.9;       // the largest: another may fit the soil better
+constexpr double beside_main = 0.96;    // of the same kind as the hole or heap that it lies beside
+constexpr double second = 0.85;         // a hole or a heap away from the largest
+constexpr double along_swing = 0.9;     // clods between hole and heap
+constexpr double low_edge = 0.9;        // ground that runs out, thinner and thinner
+constexpr double steep_in_swing = 0.7;  // small, and steeper than loose soil
+constexpr double anywhere = 0.5;        // small or low and in no place that tells
+constexpr double doubtful = 0.3;        // what the error of its volume explains
+constexpr double shallow_fall = 0.15;   // ground that sank by far less than the hole is deep
+constexpr double no_soil = 0.03;        // ruts and their berms, things, outside a given area
 }  // namespace prior
 
 constexpr double highest_lone_track = 0.05;  // one deeper than this is no rut [m]
@@ -289,7 +290,7 @@ class ChangeReader {
     const bool is_small = zone(p).volume < small_share * hole_volume();
     const bool is_thing = shape(p).steepest > upright && shape(p).height > least_upright &&
                           zone(p).volume < largest_upright * hole_volume();
-    if (is_thing && !beside(p)) return {"a thing that is no soil", prior::no_soil, false};
+    if (is_thing && !beside(p)) return meaning_of_thing(p);
     if (beside(p)) return {"spill beside the hole", prior::certain, true};
     if (part(p) == Part::tail) return {"the low edge of a heap", edge_prior(p), false};
     if (given(1.0)) return {"a heap in the given area", prior::certain, false};
@@ -305,6 +306,13 @@ class ChangeReader {
       return {"a rise in the dig area", prior::anywhere, false};
     }
     return {"a second heap", prior::second, false};
+  }
+
+  /// A few clods that fell together are as steep as a thing.
+  Meaning meaning_of_thing(Place p) const {
+    const bool could_be_clods = zone(p).volume < 2.0 * small_share * hole_volume() && in_swing(p);
+    if (could_be_clods) return {"clods together, or a thing,", prior::steep_in_swing, false};
+    return {"a thing that is no soil", prior::no_soil, false};
   }
 
   /// Between the hole and the heap, as the bucket goes.
