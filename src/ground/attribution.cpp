@@ -380,9 +380,10 @@ double likelihood_of(const std::vector<Change>& changes, const std::vector<bool>
   double after = 0.0;
   double largest = 0.0;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    largest = std::max(largest, -changes[i].volume);
+    if (changes[i].prior >= 0.5) largest = std::max(largest, -changes[i].volume);
     if (counted[i]) (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
   }
+  if (largest == 0.0) return 1.0;
   return before > least_hole * largest ? likelihood_of_bulking(after / before) : 0.0;
 }
 
@@ -405,6 +406,10 @@ std::vector<Combination> combinations_of(const std::vector<Change>& changes) {
     one.weight *= likelihood_of(changes, one.counted);
     sum += one.weight;
     if (one.weight > 0.0) all.push_back(std::move(one));
+  }
+  if (all.empty()) {
+    base.weight = sum = 1.0;
+    all.push_back(base);
   }
   for (Combination& one : all) one.weight /= sum;
   std::stable_sort(all.begin(), all.end(),
