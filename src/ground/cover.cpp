@@ -9,6 +9,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <excavplan/ground/bulking.hpp>
+
 #include "base/text.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
@@ -147,8 +149,26 @@ double roughness(const HeightMap& map, const std::vector<Cell>& cells) {
   return std::sqrt(std::max(0.0, squares - right.dot(normal.ldlt().solve(right))) / count);
 }
 
-/// The inner cells of a level patch that is the lowest part of the hole.
-std::vector<Cell> level_patch(const HeightMap& after, const std::vector<Cell>& hole, double reach) {
+/// The lowest part of a hole, where that is as level and smooth as water.
+struct LevelFloor {
+  std::vector<Cell> inner;  ///< cells with all their neighbours in it
+  double area = 0.0;        ///< of all its cells, and of half a cell of wall around them [m^2]
+  double share = 0.0;       ///< of the cells of the hole
+  double depth = 0.0;       ///< mean fall of the ground there [m]
+  double seen = 0.0;        ///< roughness after [m]
+  double before = 0.0;      ///< roughness of the ground before [m]
+  double sd = 0.0;          ///< of the height of a cell [m]
+  double inner_area = 0.0;  ///< [m^2]
+
+  bool was_rough() const {
+    constexpr double rougher = 3.0;  // ours
+    return before >= rougher * std::max(seen, sd);
+  }
+};
+
+/// The level patch that is the lowest part of the hole.
+std::optional<LevelFloor> level_patch(const HeightMap& after, const std::vector<Cell>& hole,
+                                      double reach) {
   constexpr double least_share = 0.15;  // ours, of the hole
   constexpr double most_below = 0.02;   // ours, likewise
   constexpr double least_inner = 0.5;   // ours, of the patch
@@ -156,31 +176,35 @@ std::vector<Cell> level_patch(const HeightMap& after, const std::vector<Cell>& h
   for (const Cell at : hole) heights.push_back(after.z(at.row, at.col));
   const double level = commonest(heights, reach);
   const auto in_patch = [&](Cell at) { return std::abs(after.z(at.row, at.col) - level) < reach; };
-  std::vector<Cell> inner;
-  double patch = 0.0;
+  LevelFloor patch;
+  double patch_cells = 0.0;
   double below = 0.0;
   for (const Cell at : hole) {
     below += after.z(at.row, at.col) < level - 2.0 * reach ? 1.0 : 0.0;
     if (!in_patch(at)) continue;
-    patch += 1.0;
+    patch_cells += 1.0;
     bool is_inner = true;
     for_each_neighbour(after.z, at, [&](Cell n) { is_inner = is_inner && in_patch(n); });
-    if (is_inner) inner.push_back(at);
+    if (is_inner) patch.inner.push_back(at);
   }
   const auto cells = static_cast<double>(hole.size());
-  const bool found =
-      patch > least_share * cells &&
-      below<most_below * cells&& static_cast<double>(inner.size())> least_inner * patch;
-  return found ? inner : std::vector<Cell>{};
+  const auto inner = static_cast<double>(patch.inner.size());
+  const double cell_area = after.cell_size * after.cell_size;
+  patch.share = patch_cells / cells;
+  patch.inner_area = inner * cell_area;
+  patch.area = (patch_cells + 0.5 * (patch_cells - inner)) * cell_area;
+  if (patch.share <= least_share || below >= most_below * cells) return std::nullopt;
+  if (inner <= least_inner * patch_cells) return std::nullopt;
+  return patch;
 }
 
-std::optional<Warning> flat_water(const SurfacePair& pair, const VolumeChange& change,
-                                  const AreaChange& area) {
+std::optional<LevelFloor> level_floor(const SurfacePair& pair, const VolumeChange& change,
+                                      const AreaChange& area) {
   constexpr double reach_in_sd = 3.0;
   constexpr double least_sd = 0.001;     // ours: mapping and waves [m]
-  constexpr double rougher = 3.0;        // ours
   constexpr double largest_noise = 2.0;  // ours, in sd
   constexpr double least_area = 0.05;    // ours [m^2]
+  if (!tells_scatter(pair)) return std::nullopt;
   const HeightMap& after = pair.after.height;
   std::vector<Cell> hole;
   std::vector<double> variances;
@@ -194,19 +218,61 @@ std::optional<Warning> flat_water(const SurfacePair& pair, const VolumeChange& c
   });
   if (hole.empty()) return std::nullopt;
   const double sd = std::max(std::sqrt(median(variances)), least_sd);
-  const std::vector<Cell> patch = level_patch(after, hole, reach_in_sd * sd);
-  const double size = static_cast<double>(patch.size()) * after.cell_size * after.cell_size;
-  if (size < least_area) return std::nullopt;
-  const double seen = roughness(after, patch);
-  const double before = roughness(pair.before.height, patch);
-  if (seen > largest_noise * sd || before < rougher * std::max(seen, sd)) return std::nullopt;
-  return Warning{"flat_water",
-                 "the lowest part of the hole, " + readable(size, 2) + " m^2, is level to " +
-                     readable(1000.0 * seen, 2) + " mm where the ground before was uneven by " +
-                     readable(1000.0 * before, 2) +
-                     " mm, as water is: each centimetre of its depth hides " +
-                     readable(0.01 * size, 2) + " m^3 of the hole; scan the hole without water",
-                 true};
+  std::optional<LevelFloor> floor = level_patch(after, hole, reach_in_sd * sd);
+  if (!floor || floor->inner_area < least_area) return std::nullopt;
+  floor->sd = sd;
+  floor->seen = roughness(after, floor->inner);
+  floor->before = roughness(pair.before.height, floor->inner);
+  std::vector<double> falls;
+  for (const Cell at : floor->inner) {
+    const double change_there = area.difference.z(at.row, at.col);
+    if (!std::isnan(change_there)) falls.push_back(-change_there);
+  }
+  if (falls.empty() || floor->seen > largest_noise * sd) return std::nullopt;
+  floor->depth = median(falls);
+  return floor;
+}
+
+Warning flat_water(const LevelFloor& floor) {
+  return {"flat_water",
+          "the lowest part of the hole, " + readable(floor.inner_area, 2) + " m^2, is level to " +
+              readable(1000.0 * floor.seen, 2) + " mm where the ground before was uneven by " +
+              readable(1000.0 * floor.before, 2) +
+              " mm, as water is: each centimetre of its depth hides " +
+              readable(0.01 * floor.inner_area, 2) +
+              " m^3 of the hole; scan the hole without water",
+          true};
+}
+
+/// Volume of the hole below a level floor, if water hides this share of its depth: the area of the
+/// hole goes on shrinking with depth as above the floor.
+double hidden_volume(const LevelFloor& floor, double hole, double share) {
+  const double deeper = floor.depth * share / (1.0 - share);
+  const double flare =
+      2.0 * std::max(0.0, hole - floor.area * floor.depth) / std::pow(floor.depth, 2);
+  return std::max(0.0, floor.area * deeper - 0.5 * flare * deeper * deeper);
+}
+
+/// The reading that a level floor on even ground is water.
+void add_water(const LevelFloor& floor, VolumeChange& change) {
+  constexpr double least_share = 0.3;  // ours: of the hole; less hides little
+  constexpr double weight = 0.03;      // ours
+  constexpr double water = 0.15;       // ours: share of the depth of the hole
+  constexpr double deepest = 0.20;     // ours, at 2 sd
+  const auto k = bulking_factor(change);
+  if (!k || change.readings.empty() || floor.share < least_share || !(floor.depth > 0.0)) return;
+  const double hole = change.before.value;
+  const double hidden = hidden_volume(floor, hole, water);
+  const double sd = 0.5 * (hidden_volume(floor, hole, deepest) - hidden);
+  const double factor = k->value * hole / (hole + hidden);
+  const std::string what =
+      "water over the lowest 10 to 20 % of the hole, as level as its floor: no scan tells";
+  change.attribution.push_back({what, {-hidden, sd}, false, weight});
+  for (Reading& reading : change.readings) reading.weight *= 1.0 - weight;
+  change.readings.push_back(
+      {"with " + what,
+       weight,
+       {factor, std::hypot(bulking_errors(change).scans, factor * sd / (hole + hidden))}});
 }
 
 }  // namespace
@@ -216,12 +282,17 @@ std::vector<Warning> check_cover(const std::vector<const SurfacePair*>& pairs,
   std::vector<Warning> found;
   if (auto warning = grass(pairs, change)) found.push_back(std::move(*warning));
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!tells_scatter(*pairs[i])) continue;
-    if (auto warning = flat_water(*pairs[i], change, change.areas[i])) {
-      found.push_back(std::move(*warning));
-    }
+    const auto floor = level_floor(*pairs[i], change, change.areas[i]);
+    if (floor && floor->was_rough()) found.push_back(flat_water(*floor));
   }
   return found;
+}
+
+void state_water(const std::vector<const SurfacePair*>& pairs, VolumeChange& change) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto floor = level_floor(*pairs[i], change, change.areas[i]);
+    if (floor && !floor->was_rough()) add_water(*floor, change);
+  }
 }
 
 }  // namespace excavplan

@@ -13,17 +13,23 @@
 namespace excavplan {
 namespace {
 
-constexpr double steep = 1.2;           // 50 degrees
-constexpr double least_drop = 0.10;     // [m]
-constexpr double least_area = 0.03;     // [m^2]
-constexpr double largest_area = 1.0;    // [m^2]
-constexpr double level_slope = 0.3;     // of a top, between neighbouring cells [-]
-constexpr double level_tilt = 0.1;      // of a top as a whole [-]
-constexpr double most_rising = 0.15;    // of the edge
-constexpr double least_falling = 0.45;  // of the edge
-constexpr double one_sided = 0.65;      // length of the mean direction of the edges that fall
-constexpr double least_change = 0.03;   // of the ground around [m]
-constexpr double own_change = 0.015;    // of the top, at least [m]
+constexpr double steep = 1.2;         // 50 degrees
+constexpr double least_drop = 0.10;   // [m]
+constexpr double least_area = 0.03;   // [m^2]
+constexpr double largest_area = 1.0;  // [m^2]
+constexpr double level_slope = 0.3;   // of a top, between neighbouring cells [-]
+constexpr double level_tilt = 0.1;    // of a top as a whole [-]
+
+/// What the edge of a thing is like.
+struct EdgeLimits {
+  double least_falling;  ///< share
+  double most_rising;    ///< share
+  double one_sided;      ///< length of the mean direction of what falls
+};
+constexpr EdgeLimits sure = {0.45, 0.15, 0.65};
+constexpr EdgeLimits suspected = {0.3, 0.2, 0.5};
+constexpr double least_change = 0.03;  // of the ground around [m]
+constexpr double own_change = 0.015;   // of the top, at least [m]
 constexpr std::size_t most_tops = 2;
 
 /// The edge of a patch of cells: what lies two cells beyond it.
@@ -34,9 +40,10 @@ struct Edge {
   Eigen::Vector2i direction = Eigen::Vector2i::Zero();  ///< sum of those that fall
   std::vector<double> changes;                          ///< of the ground beyond [m]
 
-  bool is_of_object() const {
-    if (count == 0 || falling < least_falling * count || rising > most_rising * count) return false;
-    return direction.cast<double>().norm() < one_sided * falling;
+  bool is_within(const EdgeLimits& limits) const {
+    if (count == 0 || falling < limits.least_falling * count) return false;
+    if (rising > limits.most_rising * count) return false;
+    return direction.cast<double>().norm() < limits.one_sided * falling;
   }
 };
 
@@ -49,24 +56,28 @@ class TopFinder {
         drop_(std::max(least_drop, steep * 2.0 * cell_size)),
         label_(Eigen::ArrayXXi::Constant(after.rows(), after.cols(), free)) {}
 
-  std::vector<std::vector<Cell>> find() {
-    std::vector<std::vector<Cell>> tops;
+  std::vector<LevelTop> find() {
+    std::vector<LevelTop> tops;
     int mark = 0;
     for_each_cell(after_, [&](Cell seed) {
       if (label_(seed.row, seed.col) != free || std::isnan(after_(seed.row, seed.col))) return;
-      if (!falls_beside(seed)) return;
-      std::vector<Cell> cells = patch_around(seed, mark);
-      const double area = static_cast<double>(cells.size()) * cell_size_ * cell_size_;
+      if (!falls_beside(after_, seed)) return;
+      LevelTop top;
+      top.cells = patch_around(seed, mark);
+      const double area = static_cast<double>(top.cells.size()) * cell_size_ * cell_size_;
       if (area < least_area || area > largest_area) return;
-      Edge edge = edge_of(cells, mark++);
-      if (!edge.is_of_object() || median(edge.changes) < least_change) return;
-      if (stood_before(cells)) return;
-      tops.push_back(std::move(cells));
+      Edge edge = edge_of(top.cells, mark++);
+      top.is_sure = edge.is_within(sure);
+      if (!top.is_sure && !edge.is_within(suspected)) return;
+      if (median(edge.changes) < least_change) return;
+      if (is_unchanged(top.cells)) {
+        if (stood_out_before(top.cells)) return;
+        top.is_sure = false;
+      }
+      tops.push_back(std::move(top));
     });
-    if (tops.size() > most_tops) tops.clear();
-    tops.erase(std::remove_if(tops.begin(), tops.end(),
-                              [&](const std::vector<Cell>& top) { return !is_level(top); }),
-               tops.end());
+    drop_blocks(tops);
+    drop_if(tops, [&](const LevelTop& top) { return !is_level(top.cells); });
     return tops;
   }
 
@@ -75,16 +86,26 @@ class TopFinder {
   static constexpr std::array<std::array<int, 2>, 4> directions = {
       {{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
-  double height(Cell at) const {
-    const bool inside =
-        at.row >= 0 && at.col >= 0 && at.row < after_.rows() && at.col < after_.cols();
-    return inside ? after_(at.row, at.col) : std::nan("");
+  template <typename Test>
+  static void drop_if(std::vector<LevelTop>& tops, const Test& test) {
+    tops.erase(std::remove_if(tops.begin(), tops.end(), test), tops.end());
   }
 
-  bool falls_beside(Cell at) const {
-    const double here = height(at);
+  static void drop_blocks(std::vector<LevelTop>& tops) {
+    const auto is_unsure = [](const LevelTop& top) { return !top.is_sure; };
+    if (tops.size() > most_tops) drop_if(tops, is_unsure);
+    if (tops.size() > most_tops) tops.clear();
+  }
+
+  static double height(const Eigen::ArrayXXd& z, Cell at) {
+    const bool inside = at.row >= 0 && at.col >= 0 && at.row < z.rows() && at.col < z.cols();
+    return inside ? z(at.row, at.col) : std::nan("");
+  }
+
+  bool falls_beside(const Eigen::ArrayXXd& z, Cell at) const {
+    const double here = height(z, at);
     return std::any_of(directions.begin(), directions.end(), [&](const auto& d) {
-      return here - height({at.row + 2 * d[0], at.col + 2 * d[1]}) > drop_;
+      return here - height(z, {at.row + 2 * d[0], at.col + 2 * d[1]}) > drop_;
     });
   }
 
@@ -117,8 +138,8 @@ class TopFinder {
     return normal.ldlt().solve(right).tail<2>().norm() < level_tilt * cell_size_;
   }
 
-  /// A wall, or ground that was left standing.
-  bool stood_before(const std::vector<Cell>& cells) const {
+  /// As high as before: a wall, ground that was left standing, or a thing of just this height.
+  bool is_unchanged(const std::vector<Cell>& cells) const {
     std::vector<double> changes;
     for (const Cell at : cells) {
       const double change = std::abs(after_(at.row, at.col) - before_(at.row, at.col));
@@ -127,17 +148,23 @@ class TopFinder {
     return !changes.empty() && median(changes) < own_change;
   }
 
+  /// As a wall does.
+  bool stood_out_before(const std::vector<Cell>& cells) const {
+    return std::any_of(cells.begin(), cells.end(),
+                       [&](Cell at) { return falls_beside(before_, at); });
+  }
+
   Edge edge_of(const std::vector<Cell>& cells, int mark) const {
     Edge edge;
     for (const Cell at : cells) {
       for (const auto& d : directions) {
         const Cell beside = {at.row + d[0], at.col + d[1]};
         const Cell beyond = {at.row + 2 * d[0], at.col + 2 * d[1]};
-        if (std::isnan(height(beyond)) || label_(beside.row, beside.col) == mark) continue;
-        const double fall = height(at) - height(beyond);
+        if (std::isnan(height(after_, beyond)) || label_(beside.row, beside.col) == mark) continue;
+        const double fall = height(after_, at) - height(after_, beyond);
         ++edge.count;
         edge.rising += fall < -drop_ ? 1 : 0;
-        const double change = height(beyond) - before_(beyond.row, beyond.col);
+        const double change = height(after_, beyond) - before_(beyond.row, beyond.col);
         edge.changes.push_back(std::isnan(change) ? 0.0 : std::abs(change));
         if (!(fall > drop_)) continue;
         ++edge.falling;
@@ -156,8 +183,8 @@ class TopFinder {
 
 }  // namespace
 
-std::vector<std::vector<Cell>> level_tops(const Eigen::ArrayXXd& before,
-                                          const Eigen::ArrayXXd& after, double cell_size) {
+std::vector<LevelTop> level_tops(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& after,
+                                 double cell_size) {
   return TopFinder(before, after, cell_size).find();
 }
 

@@ -106,11 +106,12 @@ std::vector<Object> lying(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& 
                           double cell_size, double margin) {
   constexpr double side = 1.5;  // cells that show its sides beyond the top
   std::vector<Object> objects;
-  for (const std::vector<Cell>& top : level_tops(before, after, cell_size)) {
+  for (const LevelTop& top : level_tops(before, after, cell_size)) {
     Object object;
     object.is_low = true;
-    object.cells = widened(top, after, margin + side);
-    for (const Cell at : top) {
+    object.is_sure = top.is_sure;
+    object.cells = widened(top.cells, after, margin + side);
+    for (const Cell at : top.cells) {
       const double change = after(at.row, at.col) - before(at.row, at.col);
       if (!std::isnan(change)) object.volume += cell_size * cell_size * change;
     }

@@ -16,6 +16,7 @@ struct Object {
   bool is_blunder = false;  ///< only a few cells with outliers
   bool is_before = false;   ///< in the scan before, else after
   bool is_low = false;      ///< lies on dug ground, as a crate does: level_tops()
+  bool is_sure = true;      ///< false: it may be soil
   double volume = 0.0;      ///< of the change it causes, < 0 if it was removed [m^3]
 };
 

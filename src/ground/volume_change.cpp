@@ -258,17 +258,20 @@ double total_of(const VolumeChange& change, ZoneKind kind) {
 }
 
 /// The warning of the largest of some objects.
-Warning object_warning(const ChangeZone& zone, bool is_before, bool is_low, std::size_t count) {
+Warning object_warning(const ChangeZone& zone, const Object& object, std::size_t count) {
   const Eigen::Vector2d centre(0.5 * (zone.extent.x_min + zone.extent.x_max),
                                0.5 * (zone.extent.y_min + zone.extent.y_max));
-  std::string message = std::string(is_low ? "a thing with a level top and steep sides lies on dug "
-                                             "ground in the scan "
-                                           : "an object too steep for soil is in the scan ") +
-                        (is_before ? "before" : "after") + " around (" + hundredths(centre.x()) +
-                        ", " + hundredths(centre.y()) + ") m, over " + hundredths(zone.area) +
-                        " m^2: it was removed, and the ground under it counts as unseen";
+  std::string message =
+      std::string(object.is_low ? "a thing with a level top and steep sides lies on dug "
+                                  "ground in the scan "
+                                : "an object too steep for soil is in the scan ") +
+      (object.is_before ? "before" : "after") + " around (" + hundredths(centre.x()) + ", " +
+      hundredths(centre.y()) + ") m, over " + hundredths(zone.area) +
+      " m^2: it was removed, and the ground under it counts as unseen";
   if (count > 1) message += "; so were " + std::to_string(count - 1) + " smaller ones";
-  return {is_low ? "object_on_soil" : "object_taken_out", std::move(message)};
+  if (!object.is_sure) message += "; if it is soil that was left standing, the hole is smaller";
+  return {object.is_low ? "object_on_soil" : "object_taken_out", std::move(message),
+          !object.is_sure};
 }
 
 /// Objects, low or high ones, are reported as zones of kind `other`.
@@ -276,7 +279,8 @@ void report_objects(const Area& area, bool are_low, VolumeChange& change, AreaCh
   const double half = 0.5 * area.grid.cell_size;
   std::size_t count = 0;
   std::optional<ChangeZone> largest;
-  bool largest_is_before = false;
+  bool are_sure = true;
+  Object of_largest;
   for (const Object& object : area.objects) {
     if (object.is_blunder || object.is_low != are_low) continue;
     ChangeZone zone;
@@ -293,13 +297,15 @@ void report_objects(const Area& area, bool are_low, VolumeChange& change, AreaCh
                    box.max().y() + half};
     if (!largest || zone.area > largest->area) {
       largest = zone;
-      largest_is_before = object.is_before;
+      of_largest = object;
     }
+    are_sure = are_sure && object.is_sure;
     change.zones.push_back(zone);
     ++count;
   }
   if (!largest) return;
-  change.warnings.push_back(object_warning(*largest, largest_is_before, are_low, count));
+  of_largest.is_sure = are_sure;
+  change.warnings.push_back(object_warning(*largest, of_largest, count));
 }
 
 /// Enters the zones of one area into the result.

@@ -94,6 +94,7 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
   });
   with_doubts(check_cover(surfaces.pairs(), change),
               [&] { refuse_swapped(change, seen.dig.names()); });
+  state_water(surfaces.pairs(), change);
   return change;
 }
 
