@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/ground/bulking.hpp>
 #include <excavplan/simulation/depth_camera.hpp>
 #include <excavplan/survey/density_estimate.hpp>
 
@@ -156,19 +157,19 @@ std::string record_of(const Survey& survey, const DensityEstimate& found) {
   char line[1024];
   std::snprintf(line, sizeof line,
                 "%s,%s,%llu,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.3f,%.3f,"
-                "%.3f,%.3f,%d\n",
+                "%.3f,%.3f,%d,%.6f\n",
                 survey.kind.name.c_str(), survey.layout(),
                 static_cast<unsigned long long>(survey.seed), dig.pit_volume(), dig.ridge_volume(),
                 dig.heap_volume(), dig.bulking, k_free, change.excavated.value,
                 change.spilled.value, change.dumped.value, k.value, k.sd, free.value, free.sd,
                 survey.density, found.density ? d.raw_percent : std::nan(""), d.interval_percent[0],
-                d.interval_percent[1], found.trustworthy ? 1 : 0);
+                d.interval_percent[1], found.trustworthy ? 1 : 0, bulking_errors(change).scans);
   return line;
 }
 
 constexpr const char* header =
     "kind,layout,seed,hole_true,spill_true,heap_true,k_true,k_free_true,hole,spill,heap,k,k_sd,"
-    "k_free,k_free_sd,d_true,d,d_low,d_high,trusted\n";
+    "k_free,k_free_sd,d_true,d,d_low,d_high,trusted,k_sd_scans\n";
 
 /// From nothing to a line, over files in the folder.
 std::string measured(const std::string& folder, const Survey& survey) {

@@ -29,7 +29,8 @@ struct Inputs {
   std::string machine = "zx120";
   std::string simulator = default_simulator().word;
   std::string densities = "0:5:100";
-  DigParameters path = paper_fixed_path();
+  std::optional<DigParameters> path;
+  int draws = CalibrationOptions{}.draws;
   double cell_size = 0.05;
   std::optional<std::string> out;
 };
@@ -42,7 +43,11 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.simulator(inputs.simulator);
   arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                  "relative densities of the simulated digs [%], or a list a,b,c");
-  arguments.option("path", inputs.path, "dig path");
+  arguments.option("path", inputs.path,
+                   "dig path that the law is for (default: the paper's, with the scatter of digs "
+                   "along others)");
+  arguments.option("draws", inputs.draws,
+                   "digs in drawn soils, for the scatter of the law; 0: none");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   arguments.output("out", inputs.out, "law file to write, for estimate-density --law");
 }
@@ -64,7 +69,9 @@ DensityCalibration from_simulator(const Inputs& inputs) {
   CalibrationOptions options;
   options.densities_percent = parse_densities("--densities", inputs.densities);
   options.cell_size = inputs.cell_size;
-  options.path = inputs.path;
+  options.path = inputs.path.value_or(options.path);
+  options.any_path = !inputs.path;
+  options.draws = inputs.draws;
   options.simulator = simulator_of_word(inputs.simulator);
   return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);
 }

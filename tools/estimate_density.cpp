@@ -4,8 +4,9 @@
 
 #include "base/files.hpp"
 #include "shared/estimate.hpp"
-#include "shared/figures.hpp"
+#include "shared/method_inputs.hpp"
 #include "shared/scans.hpp"
+#include "shared/soil_inputs.hpp"
 #include "shared/survey_planning.hpp"
 #include "shared/tool.hpp"
 
@@ -34,14 +35,14 @@ struct Inputs {
   std::optional<std::string> dump_after;
   ScanFrames frames;
   DensityOptions options;
-  std::string method = "surface";
+  MethodInputs method;
   bool compare = false;
   bool still = false;
   std::optional<std::string> plan_survey;
   std::optional<DigParameters> dug_path;
   std::optional<double> dug_start;
   std::string machine = "zx120";
-  std::string law = "default";
+  SoilInputs soil;
   std::optional<std::string> plot;
 };
 
@@ -57,27 +58,21 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "area of the hole (default: detected)");
   arguments.option("dump-area", inputs.options.change.dump_area,
                    "area of the heap (default: detected)");
-  arguments.file("before-frame", inputs.frames.before,
-                 "4 x 4 matrix that transforms the clouds before into the site frame");
-  arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
-  arguments.option("sensor-origin", inputs.frames.sensor_origin,
-                   "where the sensor stood, in the frame of the scans (default: VIEWPOINT of PCD)");
-  arguments.choice("method", inputs.method, {"surface", "paper"},
-                   "surface: signed change of one height map; paper: the pipeline as published");
+  declare_frames(arguments, inputs.frames);
+  declare_units(arguments, inputs.frames);
+  declare_method(arguments, inputs.method);
   arguments.flag("no-register", inputs.still,
                  "do not register the scans: the sensor did not move between them");
   arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
   arguments.option("cell", inputs.options.cell_size, Quantity::length,
                    "cell size of the height map, voxel size of --method paper (default: from the "
                    "point density, at least 0.05)");
-  arguments.text("law", "NAME|FILE", inputs.law,
-                 "density law: default (built-in simulator, ZX120 in loam), paper, or a law file");
-  arguments.option(
-      "dug-path", inputs.dug_path,
-      "the path that was dug: estimates the soil that fell back into the cut and corrects the "
-      "bulking factor for it; needs scans in the site frame");
+  declare_soil(arguments, inputs.soil);
+  arguments.option("dug-path", inputs.dug_path,
+                   "the path that was dug: takes a law of digs along it");
   arguments.option("dug-start", inputs.dug_start, Quantity::length,
-                   "x at which that path enters the ground");
+                   "x at which that path enters the ground: measures the soil that fell back into "
+                   "the cut; needs scans in the site frame");
   arguments.machine(inputs.machine);
   arguments.plot(inputs.plot, "the height change and its zones");
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
@@ -95,9 +90,9 @@ DigScans scans_of(const Inputs& inputs) {
 DensityOptions options_of(const Inputs& inputs) {
   DensityOptions options = inputs.options;
   options.registered = !inputs.still;
-  if (inputs.method == "paper") options.method = VolumeMethod::paper;
+  apply_method(inputs.method, options);
   if (inputs.dug_path) {
-    options.dug_path = DugPath{machine_named(inputs.machine), *inputs.dug_path, *inputs.dug_start};
+    options.dug_path = DugPath{machine_named(inputs.machine), *inputs.dug_path, inputs.dug_start};
   }
   return options;
 }
@@ -106,12 +101,10 @@ Outcome work_on_scans(const Inputs& inputs) {
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
     usage_error("--dump-before and --dump-after must be given together");
   }
-  if (inputs.dug_path.has_value() != inputs.dug_start.has_value()) {
-    usage_error("--dug-path and --dug-start must be given together");
-  }
-  const DensityLaw law = law_named(inputs.law);
+  if (inputs.dug_start && !inputs.dug_path) usage_error("--dug-start needs --dug-path");
   const DigScans scans = scans_of(inputs);
-  const DensityOptions options = options_of(inputs);
+  DensityOptions options = options_of(inputs);
+  const DensityLaw law = law_of(inputs.soil, inputs.machine, options);
   BothEstimates both;
   DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   const auto estimate = [&] {
@@ -123,8 +116,8 @@ Outcome work_on_scans(const Inputs& inputs) {
   };
   naming_options({{"path that was dug", "--dug-path"}, {"inside the area", "inside --area"}},
                  [&] { with_frame_hint(pair_frame_hint, estimate); });
-  Outcome outcome = estimate_outcome(counts);
-  if (inputs.plot) write_file(*inputs.plot, height_change_figure(counts.change, outcome.lines));
+  Outcome outcome = estimate_outcome(counts, options.soil);
+  if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
   if (inputs.compare) add_comparison(both, counts, outcome);
   return outcome;
 }
@@ -132,7 +125,7 @@ Outcome work_on_scans(const Inputs& inputs) {
 Outcome work(const Inputs& inputs) {
   if (inputs.plan_survey) {
     if (inputs.before || inputs.after) usage_error("--plan-survey takes no scans");
-    return planned_survey(*inputs.plan_survey, law_named(inputs.law));
+    return planned_survey(*inputs.plan_survey, law_named(inputs.soil.law));
   }
   if (!inputs.before || !inputs.after) {
     usage_error(std::string(inputs.before ? "AFTER" : "BEFORE") +

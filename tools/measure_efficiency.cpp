@@ -38,9 +38,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("SECOND.csv", inputs.second.log, "log of a second dig to compare");
   inputs.first.declare(arguments, "", "");
   inputs.second.declare(arguments, "second-", ", second dig");
-  arguments.file("before-frame", inputs.frames.before,
-                 "4 x 4 matrix that transforms the clouds before into the site frame");
-  arguments.file("after-frame", inputs.frames.after, "the same for the clouds after");
+  declare_frames(arguments, inputs.frames);
   arguments.option("cell", inputs.cell_size, Quantity::length,
                    "cell size of the height maps (default: from the point density, at least 0.05)");
 }

@@ -112,7 +112,8 @@ Outcome work(const Inputs& inputs, Console& console) {
                         : inputs.terrain.cloud ? SearchUse::start_only
                                                : SearchUse::none;
   for (const auto& warnings :
-       {site.warnings, warnings_of(inputs.dig_search, use), plan_warnings(plan, inputs.density)}) {
+       {site.warnings, warnings_of(inputs.dig_search, use),
+        plan_warnings(plan, inputs.density, inputs.terrain.cloud.has_value())}) {
     outcome.warnings.insert(outcome.warnings.end(), warnings.begin(), warnings.end());
   }
   outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);

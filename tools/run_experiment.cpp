@@ -4,6 +4,7 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/experiment/experiment.hpp>
+#include <excavplan/simulation/calibration.hpp>
 
 #include "shared/experiment_results.hpp"
 #include "shared/goal_inputs.hpp"
@@ -44,7 +45,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "path library (default: the shipped one of machine, soil and goal)");
   arguments.text(
       "law", "NAME|FILE", inputs.law,
-      "density law: default (the shipped one of the machine and the soil), paper, or a law file");
+      "density law: default (that of machine, soil and fixed path), paper, or a law file");
   arguments.flag("search", inputs.search, "search for each path instead of looking it up");
   declare_goal(arguments, inputs.goal);
   arguments.option("path", inputs.path, "fixed path");
@@ -89,12 +90,20 @@ ExperimentOptions options_of(const Inputs& inputs, const Machine& machine, const
   return options;
 }
 
+/// The default is the shipped one on the paper's path, on another one of digs along that.
+DensityLaw law_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {
+  const bool own = inputs.law == "default";
+  if (own && to_vector(inputs.path) != to_vector(paper_fixed_path())) {
+    return law_of(calibrate_path(machine, soil, inputs.path));
+  }
+  const std::string name = own ? machine.name + "-" + soil.name : inputs.law;
+  return load_density_law(shipped_or_file("laws", name));
+}
+
 Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  const bool own = inputs.law == "default";
-  const std::string law_name = own ? machine.name + "-" + soil.name : inputs.law;
-  const DensityLaw law = load_density_law(shipped_or_file("laws", law_name));
+  const DensityLaw law = law_of(inputs, machine, soil);
   const ExperimentOptions options = options_of(inputs, machine, soil);
   const std::vector<Condition> conditions = conditions_of(inputs);
   Outcome outcome;

@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <tuple>
-#include <utility>
 
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/scene.hpp>
-#include <excavplan/survey/cloud.hpp>
 
 #include "base/files.hpp"
 #include "machine/dig_path_text.hpp"
 #include "shared/figures.hpp"
 #include "shared/joint_loads.hpp"
 #include "shared/results.hpp"
+#include "shared/scene_scans.hpp"
 #include "shared/site.hpp"
 #include "shared/tool.hpp"
 
@@ -36,8 +35,10 @@ struct Inputs {
   std::string soil = "loam", machine = "zx120", simulator = default_simulator().word;
   double cell_size = 0.05;
   std::uint64_t seed = 1;
-  DepthCamera camera;
-  std::optional<std::string> before, after, history, plot, report;
+  SceneScanInputs scans;
+  bool broken = false;
+  BlockSettings blocks;
+  std::optional<std::string> history, plot, report;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -59,12 +60,14 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "4 x 4 matrix that transforms the terrain cloud into the site frame");
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
-  arguments.output("before", inputs.before,
-                   "write a depth-camera scan of the ground before the dig");
-  arguments.output("after", inputs.after, "write a depth-camera scan after the dig");
-  arguments.option("seed", inputs.seed, "seed of the scans' noise");
-  arguments.option("noise", inputs.camera.noise, Quantity::length,
-                   "depth noise of the scans at 1 m; grows with range squared");
+  declare_scans(arguments, inputs.scans);
+  arguments.flag(
+      "blocks", inputs.broken,
+      "ground of 80 % relative density and more falls as blocks with voids between them");
+  arguments.option("block-size", inputs.blocks.size, Quantity::length, "mean edge of the blocks");
+  arguments.option("block-swell", inputs.blocks.swell, Quantity::ratio,
+                   "0: the blocks are undisturbed soil, 1: soil as loose as other dumped soil");
+  arguments.option("seed", inputs.seed, "seed of the scans' noise and of the blocks");
   arguments.output("history", inputs.history, "write the loads of each step, CSV");
   arguments.plot(inputs.plot, "the section of the dig");
   arguments.output("report", inputs.report, "write an HTML report");
@@ -75,6 +78,10 @@ SceneOptions options_of(const Inputs& inputs) {
   options.path = inputs.path.value_or(options.path);
   options.simulator = simulator_of_word(inputs.simulator);
   options.history = true;
+  if (inputs.broken) {
+    options.blocks = inputs.blocks;
+    options.blocks->seed = inputs.seed;
+  }
   if (!inputs.path_from) return options;
   if (inputs.path || options.start_x) usage_error("--path-from excludes --path and --start");
   std::tie(options.path, options.start_x) = read_planned_path(*inputs.path_from);
@@ -82,31 +89,9 @@ SceneOptions options_of(const Inputs& inputs) {
   return options;
 }
 
-/// Reports bad names before the dig.
-void check_outputs(const Inputs& inputs) {
-  for (const auto& file : {inputs.before, inputs.after}) {
-    if (file) cloud_format_of_name(*file);
-  }
-  if (inputs.before && inputs.before == inputs.after) {
-    usage_error("--before and --after name the same file, " + *inputs.before);
-  }
-}
-
-void write_scan(const std::optional<std::string>& file, std::vector<Eigen::Vector3d> points) {
-  if (!file) return;
-  Cloud cloud;
-  cloud.points = std::move(points);
-  cloud.width = cloud.points.size();
-  write_cloud(*file, cloud, cloud_format_of_name(*file));
-}
-
 void write_files(const Inputs& inputs, const Machine& machine, const DigScene& scene,
                  const Outcome& outcome) {
-  if (inputs.before || inputs.after) {
-    SceneScans scans = scan_scene(scene, inputs.camera, inputs.seed);
-    write_scan(inputs.before, std::move(scans.before));
-    write_scan(inputs.after, std::move(scans.after));
-  }
+  write_scans(inputs.scans, scene, inputs.seed);
   if (inputs.history) write_file(*inputs.history, to_csv(machine, scene.dig.history));
   if (!inputs.plot && !inputs.report) return;
   const std::string title =
@@ -121,7 +106,7 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
 
 Outcome work(const Inputs& inputs) {
   const SceneOptions options = options_of(inputs);
-  check_outputs(inputs);
+  check_scans(inputs.scans);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   Site site = make_site(inputs.terrain, scene_extent(machine, options.dump_at), inputs.cell_size);

@@ -14,6 +14,7 @@
 #include "base/angles.hpp"
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 
 namespace excavplan {
@@ -249,11 +250,41 @@ std::optional<double> size_of_blocks(const std::vector<Patch>& heap) {
          (static_cast<double>(peak - bend_per_lag.begin()) + 1.0 + shift);
 }
 
-/// Masks of what rose and what fell in one area.
+/// Masks of what rose in one area, and of the floor of what fell.
 struct AreaMasks {
   Mask risen;
   Mask fallen;
 };
+
+/// Cells of a pit without its walls. Walls are as wide, from the rim inwards, as half of the cells
+/// are less deep than most of the floor.
+Mask floor_of(const Mask& pit, const Eigen::ArrayXXd& difference) {
+  constexpr double deepest = 0.1;      // quantile of the heights; ours
+  constexpr double floor_share = 0.7;  // of that depth; ours
+  const Eigen::ArrayXXd from_rim =
+      slope_limited(pit.select(std::numeric_limits<double>::infinity(),
+                               Eigen::ArrayXXd::Zero(pit.rows(), pit.cols())),
+                    1.0);
+  std::vector<double> heights;
+  std::vector<std::vector<double>> layers;
+  for_each_cell(pit, [&](Cell cell) {
+    const double height = difference(cell.row, cell.col);
+    const double away = from_rim(cell.row, cell.col);
+    if (!pit(cell.row, cell.col) || std::isnan(height) || !std::isfinite(away)) return;
+    heights.push_back(height);
+    const auto layer = static_cast<std::size_t>(away);
+    if (layers.size() <= layer) layers.resize(layer + 1);
+    layers[layer].push_back(height);
+  });
+  if (heights.empty()) return pit;
+  const double floor_height = floor_share * quantile(std::move(heights), deepest);
+  std::size_t first = 1;
+  while (first < layers.size() &&
+         (layers[first].empty() || quantile(layers[first], 0.5) > floor_height)) {
+    ++first;
+  }
+  return pit && from_rim > static_cast<double>(first) + 1.0;
+}
 
 AreaMasks masks_of(const AreaChange& area, const std::vector<ChangeZone>& zones) {
   AreaMasks masks{Mask::Constant(area.zone.rows(), area.zone.cols(), false), {}};
@@ -265,6 +296,7 @@ AreaMasks masks_of(const AreaChange& area, const std::vector<ChangeZone>& zones)
     masks.risen(cell.row, cell.col) = kind == ZoneKind::spill || kind == ZoneKind::dump;
     masks.fallen(cell.row, cell.col) = kind == ZoneKind::dig;
   });
+  masks.fallen = floor_of(masks.fallen, area.difference.z);
   return masks;
 }
 

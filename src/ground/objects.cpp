@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "ground/error_field.hpp"
+#include "ground/low_objects.hpp"
 #include "ground/robust.hpp"
 
 namespace excavplan {
@@ -99,6 +101,24 @@ std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd&
   return objects;
 }
 
+/// Crates and the like in the scan after.
+std::vector<Object> lying(const Eigen::ArrayXXd& before, const Eigen::ArrayXXd& after,
+                          double cell_size, double margin) {
+  constexpr double side = 1.5;  // cells that show its sides beyond the top
+  std::vector<Object> objects;
+  for (const std::vector<Cell>& top : level_tops(before, after, cell_size)) {
+    Object object;
+    object.is_low = true;
+    object.cells = widened(top, after, margin + side);
+    for (const Cell at : top) {
+      const double change = after(at.row, at.col) - before(at.row, at.col);
+      if (!std::isnan(change)) object.volume += cell_size * cell_size * change;
+    }
+    objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
 void blank(Eigen::ArrayXXd& z, const std::vector<Object>& objects) {
   for (const Object& object : objects) {
     for (const Cell at : object.cells) {
@@ -107,7 +127,43 @@ void blank(Eigen::ArrayXXd& z, const std::vector<Object>& objects) {
   }
 }
 
+/// The heights of two opposite neighbours, if they differ by more than a wall's height.
+struct Step {
+  double low;
+  double high;
+};
+std::optional<Step> wall_across(const Eigen::ArrayXXd& z, Cell at) {
+  constexpr double wall = 0.5;  // ours [m]
+  for (const Cell d : {Cell{1, 0}, Cell{0, 1}}) {
+    const Cell one = {at.row - d.row, at.col - d.col};
+    const Cell two = {at.row + d.row, at.col + d.col};
+    if (one.row < 0 || one.col < 0 || two.row >= z.rows() || two.col >= z.cols()) continue;
+    const double a = z(one.row, one.col);
+    const double b = z(two.row, two.col);
+    if (std::abs(b - a) > wall) return Step{std::min(a, b), std::max(a, b)};
+  }
+  return std::nullopt;
+}
+
+/// Faces of walls that stand in both scans: how high a cell of them is depends on how many points
+/// of the face it holds, which soil against the wall hides.
+void blank_faces(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after) {
+  constexpr double between = 0.05;  // ours, of the step
+  std::vector<Cell> faces;
+  for_each_cell(before, [&](Cell at) {
+    const auto step = wall_across(before, at);
+    if (!step) return;
+    const double share = (before(at.row, at.col) - step->low) / (step->high - step->low);
+    if (share > between && share < 1.0 - between) faces.push_back(at);
+  });
+  for (const Cell at : faces) {
+    before(at.row, at.col) = after(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 }  // namespace
+
+bool is_beside_wall(const Eigen::ArrayXXd& z, Cell at) { return wall_across(z, at).has_value(); }
 
 std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after,
                                      double cell_size, double margin) {
@@ -115,6 +171,10 @@ std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& a
   std::vector<Object> gone = standing(before, after, cell_size, margin);
   blank(after, objects);
   blank(before, gone);
+  blank_faces(before, after);
+  std::vector<Object> low = lying(before, after, cell_size, margin);
+  blank(after, low);
+  objects.insert(objects.end(), low.begin(), low.end());
   for (Object& object : gone) {
     object.is_before = true;
     object.volume = -object.volume;

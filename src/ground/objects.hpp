@@ -15,6 +15,7 @@ struct Object {
   std::vector<Cell> cells;  ///< that it covers, with a margin
   bool is_blunder = false;  ///< only a few cells with outliers
   bool is_before = false;   ///< in the scan before, else after
+  bool is_low = false;      ///< lies on dug ground, as a crate does: level_tops()
   double volume = 0.0;      ///< of the change it causes, < 0 if it was removed [m^3]
 };
 
@@ -22,11 +23,17 @@ struct Object {
 ///
 /// An object is higher above its surroundings than soil can be: by more than 0.5 m above a surface
 /// of slope 60 degrees through them, in its own scan and in the change, where the ground itself
-/// rose by less than a fifth of that. Freshly dug soil stands at 28 to 45 degrees; heaps of blocks
-/// are as rough as the blocks are large.
+/// rose by less than a fifth of that; or it has a level top and steep sides on dug ground. Freshly
+/// dug soil stands at 28 to 45 degrees; heaps of blocks are as rough as the blocks are large.
+///
+/// Cells on the face of a wall that stands in both scans become unknown in both: their height is
+/// that of a mixture of wall, face and ground, which soil against the wall changes.
 ///
 /// @param margin by which objects are widened, at least 1.5 (ours); 0: not at all [cell]
 std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after,
                                      double cell_size, double margin);
+
+/// True if two opposite neighbours of the cell differ by more than 0.5 m (ours).
+bool is_beside_wall(const Eigen::ArrayXXd& z, Cell at);
 
 }  // namespace excavplan

@@ -13,6 +13,8 @@
 #include "ground/relief.hpp"
 #include "ground/shadow_filling.hpp"
 #include "ground/sight_lines.hpp"
+#include "ground/sampling_gaps.hpp"
+#include "ground/stripes.hpp"
 #include "ground/zone_filling.hpp"
 
 namespace excavplan {
@@ -51,7 +53,7 @@ void sum_zones(Area& area) {
     if (area.unknown(cell.row, cell.col) != 0) zone.unknown += cell_area;
   });
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].centre /= area.zones[i].area;
+    if (area.zones[i].area > 0.0) area.zones[i].centre /= area.zones[i].area;
     area.zones[i].is_cut = ground.zone_is_cut[i];
   }
 }
@@ -70,14 +72,16 @@ void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_varian
 
 /// How regularly points lie: 0 for random points, whose counts in two cells differ by the square
 /// root of their sum; towards 1 for a lattice, as of a camera.
-double regularity_of(const Eigen::ArrayXXi& points, const Eigen::ArrayXXi& zone) {
+double regularity_of(const Surface& scan, const Eigen::ArrayXXi& zone) {
+  const Eigen::ArrayXXi& points = scan.points;
+  const Eigen::ArrayXXd& z = scan.height.z;
   double squares = 0.0;
   double sums = 0.0;
   for_each_cell(points, [&](Cell at) {
     if (at.row == 0 || zone(at.row, at.col) >= 0 || zone(at.row - 1, at.col) >= 0) return;
     const double one = points(at.row - 1, at.col);
     const double two = points(at.row, at.col);
-    if (one == 0.0 || two == 0.0) return;
+    if (std::isnan(z(at.row - 1, at.col)) || std::isnan(z(at.row, at.col))) return;
     squares += (one - two) * (one - two);
     sums += one + two;
   });
@@ -93,7 +97,7 @@ void sum_faces(Area& area, const Surface& scan) {
   std::vector<double> faces(zones, 0.0);
   std::vector<double> points(zones, 0.0);
   const Gradient gradient = gradient_of(scan.height);
-  const double regularity = regularity_of(scan.points, area.ground.zone);
+  const double regularity = regularity_of(scan, area.ground.zone);
   const double cell_size = area.grid.cell_size;
   const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell_size);
   for_each_cell(area.ground.zone, [&](Cell at) {
@@ -109,6 +113,16 @@ void sum_faces(Area& area, const Surface& scan) {
     const double spacing = std::sqrt(area.zones[i].area / points[i]);
     area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);
   }
+}
+
+/// Error of each zone by what lies between the points of a sparse scan.
+void sum_between(Area& area, const Surface& scan) {
+  const std::vector<double> variance =
+      variance_between_points(scan, area.ground.zone, area.zones.size());
+  if (scan.points.size() == 0) return;
+  const double irregularity = 1.0 - regularity_of(scan, area.ground.zone);
+  for (std::size_t i = 0; i < area.zones.size(); ++i)
+    area.zones[i].faces += irregularity * variance[i];
 }
 
 /// Error of zones that touch: a cell on their border takes in soil that was lost and soil that was
@@ -151,6 +165,22 @@ void sum_beyond_edge(Area& area) {
     missing[static_cast<std::size_t>(index)] += cell_size * 0.5 * height * height / gentle;
   });
   for (std::size_t i = 0; i < missing.size(); ++i) area.zones[i].holes += std::pow(missing[i], 2);
+}
+
+/// Error of zones against a wall, whose face is somewhere in cells that were left out: up to half a
+/// cell of the soil along it, which is what their filling holds.
+void sum_walls(Area& area, const Eigen::ArrayXXd& before) {
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  std::vector<double> uncertain(area.zones.size(), 0.0);
+  for_each_cell(area.ground.zone, [&](Cell at) {
+    const int index = area.ground.zone(at.row, at.col);
+    if (index < 0 || !std::isnan(before(at.row, at.col)) || !is_beside_wall(before, at)) return;
+    uncertain[static_cast<std::size_t>(index)] +=
+        cell_area * std::abs(area.ground.difference(at.row, at.col));
+  });
+  for (std::size_t i = 0; i < uncertain.size(); ++i) {
+    area.zones[i].faces += std::pow(uncertain[i], 2);
+  }
 }
 
 /// One area's scans, with motion and objects taken out.
@@ -208,6 +238,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.unknown = difference.isNaN().cast<int>();
   area.ground =
       find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell_size, options);
+  area.parts = part_zones(area.ground, area.grid.cell_size);
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
@@ -225,6 +256,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
 
   Alignment left = pair.alignment;
   const double share = take_relief_off(scans.before, area.ground, left);
+  const std::vector<double> stripes = take_stripes_off(area.ground);
   sum_zones(area);
   NoiseModel noise = find_noise(area.ground.residual, area.grid.cell_size);
   noise.white = std::max(noise.white, least_noise * least_noise);
@@ -232,7 +264,10 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   sum_beyond_edge(area);
   sum_faces(area, pair.before);
   sum_faces(area, pair.after);
+  sum_between(area, pair.before);
+  sum_between(area, pair.after);
   sum_borders(area);
+  sum_walls(area, scans.before.z);
   area.errors = ErrorField{scans.before,
                            area.ground.residual,
                            area.ground.zone,
@@ -241,7 +276,9 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
                            left}
                     .predict();
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    area.zones[i].volume -= area.errors.mean(static_cast<Eigen::Index>(i));
+    const auto at = static_cast<Eigen::Index>(i);
+    area.zones[i].volume -= area.errors.mean(at);
+    area.errors.correlated(at, at) += stripes[i] * cell_area * cell_area;
   }
   return area;
 }

@@ -11,6 +11,7 @@
 #include "ground/change_zones.hpp"
 #include "ground/error_field.hpp"
 #include "ground/objects.hpp"
+#include "ground/zone_parts.hpp"
 
 namespace excavplan {
 
@@ -31,6 +32,7 @@ struct ZoneSum {
 struct Area {
   HeightMap grid;  // without heights
   ChangedGround ground;
+  ZoneParts parts;
   Eigen::ArrayXXi unknown;  // 1 where a scan saw nothing
   std::vector<ZoneSum> zones;
   std::vector<ZoneKind> kinds;

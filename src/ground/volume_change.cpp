@@ -12,8 +12,8 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "ground/attribution.hpp"
 #include "ground/surveyed_area.hpp"
-#include "ground/zone_kinds.hpp"
 
 namespace excavplan {
 namespace {
@@ -72,13 +72,21 @@ void sum_volumes(const std::vector<Area>& areas, VolumeChange& change) {
     change.errors.correlated += part * area.errors.correlated * part.transpose();
     change.errors.datum += part * area.errors.datum * part.transpose();
   }
+  change.excavated.value = volume(0);
+  change.spilled.value = volume(1);
+  change.dumped.value = volume(2);
+  change.before.value = volume(0);
+  change.after.value = volume(1) + volume(2);
+}
+
+/// Deviations of the volumes from the covariance by all sources.
+void set_deviations(VolumeChange& change) {
   const Eigen::Matrix3d covariance = change.errors.total();
   const Eigen::Vector3d after(0.0, 1.0, 1.0);
-  change.excavated = {volume(0), std::sqrt(covariance(0, 0))};
-  change.spilled = {volume(1), std::sqrt(covariance(1, 1))};
-  change.dumped = {volume(2), std::sqrt(covariance(2, 2))};
-  change.before = change.excavated;
-  change.after = {volume(1) + volume(2), std::sqrt(after.dot(covariance * after))};
+  change.excavated.sd = change.before.sd = std::sqrt(covariance(0, 0));
+  change.spilled.sd = std::sqrt(covariance(1, 1));
+  change.dumped.sd = std::sqrt(covariance(2, 2));
+  change.after.sd = std::sqrt(after.dot(covariance * after));
   change.covariance_before_after = covariance.row(0).dot(after);
 }
 
@@ -114,7 +122,9 @@ void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
   }
   if (!(sum > least_warned_share * change.excavated.value)) return;
   std::string message =
-      text_of(*largest) + " is neither hole, spill nor heap: excluded from all volumes";
+      text_of(*largest) +
+      " is neither hole, spill nor heap: excluded from all volumes; --dig-area and --dump-area "
+      "take it in, if it belongs to them";
   if (count > 1) {
     message += "; with " + std::to_string(count - 1) + " more such zones " + litres_as_m3(sum) +
                " in total";
@@ -128,7 +138,7 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
   if (zone.is_cut) {
     warnings.push_back({"zone_at_border",
                         what + " reaches the edge of the surveyed ground: its "
-                               "volume may be incomplete",
+                               "volume may be incomplete; scan farther around it, or widen --area",
                         true});
   }
   const double share = zone.unknown / zone.area;
@@ -138,12 +148,13 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
                                            " % of its cells, more than " +
                                            hundredths(100.0 * options.refused_unknown_share) +
                                            " %: its volume is not trustworthy, so the bulking "
-                                           "factor is unknown"});
+                                           "factor is unknown; scan it from a second standpoint"});
   } else if (share > options.max_unknown_share) {
     warnings.push_back({"zone_partly_unseen",
                         what + " was seen by no scan in " + hundredths(100.0 * share) +
                             " % of its cells, which were interpolated; the limit is " +
-                            hundredths(100.0 * options.max_unknown_share) + " %",
+                            hundredths(100.0 * options.max_unknown_share) +
+                            " %: scan it from a second standpoint",
                         true});
   }
 }
@@ -155,13 +166,17 @@ void warn_of_ground(const ChangedGround& ground, std::vector<Warning>& warnings)
                                      " % of the surveyed ground did not change, less than " +
                                      hundredths(100.0 * least_stable_share) +
                                      " %: an area that rose or fell evenly could be "
-                                     "mistaken for stable ground"});
+                                     "mistaken for stable ground; scan more of the ground around "
+                                     "hole and heap"});
   }
   if (ground.noise_sd > largest_noise) {
     warnings.push_back({"scans_do_not_fit",
                         "ground that did not change differs by " + hundredths(ground.noise_sd) +
                             " m between the scans (one standard deviation), more than " +
-                            hundredths(largest_noise) + " m: are both scans in one frame?"});
+                            hundredths(largest_noise) +
+                            " m: bring both scans into one frame by --before-frame and "
+                            "--after-frame, or leave out by --area what moved between them",
+                        true});
   }
 }
 
@@ -171,7 +186,7 @@ void warn_of_balance(VolumeChange& change) {
   if (!(before > 0.0)) {
     change.warnings.push_back({"no_hole_found",
                                "no ground fell by more than the noise of the scans: no hole was "
-                               "found, its volumes are 0"});
+                               "found, its volumes are 0; check that AFTER shows the dig"});
     return;
   }
   const double dumped = change.dumped.value;
@@ -181,7 +196,8 @@ void warn_of_balance(VolumeChange& change) {
                                litres_as_m3(dumped) + " rose away from it and " +
                                litres_as_m3(after - dumped) +
                                " beside it: the dumped soil is not in the scans, so the bulking "
-                               "factor is unknown"});
+                               "factor is unknown; give scans that show it, or those of the dump "
+                               "area by --dump-before and --dump-after"});
     return;
   }
   const double error =
@@ -195,7 +211,9 @@ void warn_of_balance(VolumeChange& change) {
                               " were dug, " + litres_as_m3(after) +
                               " were deposited, a factor of " + hundredths(ratio) +
                               "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
-                              hundredths(largest_bulking) + " times that of the hole"});
+                              hundredths(largest_bulking) +
+                              " times that of the hole; exchange BEFORE and AFTER, or if z points "
+                              "down, give frames with z up by --before-frame and --after-frame"});
   }
 }
 
@@ -204,9 +222,9 @@ void warn_of_loss_beside_heap(const std::vector<Area>& areas, const ChangeOption
                               VolumeChange& change) {
   double lost = 0.0;
   for (const Area& area : areas) {
-    Chosen heap(area.zones.size());
+    std::vector<bool> heap(area.zones.size());
     for (std::size_t i = 0; i < heap.size(); ++i) heap[i] = area.kinds[i] == ZoneKind::dump;
-    const Chosen beside =
+    const std::vector<bool> beside =
         zones_near(area.ground.zone, heap, options.spill_distance / area.grid.cell_size);
     for (std::size_t i = 0; i < heap.size(); ++i) {
       if (area.kinds[i] == ZoneKind::other && beside[i]) lost -= area.zones[i].volume;
@@ -219,7 +237,9 @@ void warn_of_loss_beside_heap(const std::vector<Area>& areas, const ChangeOption
   change.warnings.push_back(
       {"looks_swapped", "before and after are probably swapped: the ground fell by " +
                             litres_as_m3(lost) + " beside what would be the heap, and by " +
-                            litres_as_m3(change.before.value) + " where the hole would be"});
+                            litres_as_m3(change.before.value) +
+                            " where the hole would be; exchange BEFORE and AFTER, or if z points "
+                            "down, give frames with z up by --before-frame and --after-frame"});
 }
 
 /// Volume of all zones of a kind; infinite for the kind `other`.
@@ -238,25 +258,27 @@ double total_of(const VolumeChange& change, ZoneKind kind) {
 }
 
 /// The warning of the largest of some objects.
-Warning object_warning(const ChangeZone& zone, bool is_before, std::size_t count) {
+Warning object_warning(const ChangeZone& zone, bool is_before, bool is_low, std::size_t count) {
   const Eigen::Vector2d centre(0.5 * (zone.extent.x_min + zone.extent.x_max),
                                0.5 * (zone.extent.y_min + zone.extent.y_max));
-  std::string message = std::string("an object too steep for soil is in the scan ") +
+  std::string message = std::string(is_low ? "a thing with a level top and steep sides lies on dug "
+                                             "ground in the scan "
+                                           : "an object too steep for soil is in the scan ") +
                         (is_before ? "before" : "after") + " around (" + hundredths(centre.x()) +
                         ", " + hundredths(centre.y()) + ") m, over " + hundredths(zone.area) +
                         " m^2: it was removed, and the ground under it counts as unseen";
   if (count > 1) message += "; so were " + std::to_string(count - 1) + " smaller ones";
-  return {"object_taken_out", std::move(message)};
+  return {is_low ? "object_on_soil" : "object_taken_out", std::move(message)};
 }
 
-/// Objects are reported as zones of kind `other`.
-void report_objects(const Area& area, VolumeChange& change, AreaChange& result) {
+/// Objects, low or high ones, are reported as zones of kind `other`.
+void report_objects(const Area& area, bool are_low, VolumeChange& change, AreaChange& result) {
   const double half = 0.5 * area.grid.cell_size;
   std::size_t count = 0;
   std::optional<ChangeZone> largest;
   bool largest_is_before = false;
   for (const Object& object : area.objects) {
-    if (object.is_blunder) continue;
+    if (object.is_blunder || object.is_low != are_low) continue;
     ChangeZone zone;
     zone.volume.value = object.volume;
     zone.area =
@@ -276,7 +298,8 @@ void report_objects(const Area& area, VolumeChange& change, AreaChange& result) 
     change.zones.push_back(zone);
     ++count;
   }
-  if (largest) change.warnings.push_back(object_warning(*largest, largest_is_before, count));
+  if (!largest) return;
+  change.warnings.push_back(object_warning(*largest, largest_is_before, are_low, count));
 }
 
 /// Enters the zones of one area into the result.
@@ -306,17 +329,21 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
   result.difference.z =
       (area.unknown != 0).select(std::numeric_limits<double>::quiet_NaN(), area.ground.difference);
   result.zone = (area.ground.zone >= 0).select(area.ground.zone + first, -1);
-  report_objects(area, change, result);
+  for (const bool low : {false, true}) report_objects(area, low, change, result);
   result.noise_sd = area.ground.noise_sd;
   result.datum = area.ground.datum;
   change.areas.push_back(std::move(result));
 }
 
 VolumeChange result_of(std::vector<Area> areas, const ChangeOptions& options) {
+  const Attribution attribution = attribute(areas, options);
   VolumeChange change;
   sum_volumes(areas, change);
+  set_deviations(change);
   warn_of_balance(change);
   warn_of_loss_beside_heap(areas, options, change);
+  state_open_changes(areas, attribution, change);
+  set_deviations(change);
   warn_of_others(areas, change);
   for (Area& area : areas) report(area, options, change);
   return change;
@@ -342,7 +369,6 @@ VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& optio
   check(options);
   std::vector<Area> areas(1);
   areas[0] = survey(scene, options);
-  classify_scene(areas[0], options);
   return result_of(std::move(areas), options);
 }
 
@@ -352,8 +378,6 @@ VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
   std::vector<Area> areas(2);
   areas[0] = survey(dig, options);
   areas[1] = survey(dump, options);
-  classify_hole(areas[0], options);
-  classify_heap(areas[1], options);
   return result_of(std::move(areas), options);
 }
 

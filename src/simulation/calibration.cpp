@@ -12,6 +12,10 @@
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/scene.hpp>
 
+#include "base/check.hpp"
+#include "base/parallel.hpp"
+#include "base/random.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -24,6 +28,7 @@ Machine that_never_stalls(Machine machine) {
   return machine;
 }
 
+/// @param machine  that never stalls
 DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
                                    const CalibrationOptions& options) {
   SceneOptions dig;
@@ -31,7 +36,7 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
   dig.simulator = options.simulator;
   const Terrain ground =
       undisturbed(flat_ground(scene_extent(machine, dig.dump_at), options.cell_size));
-  const DigScene scene = run_scene(that_never_stalls(machine), soil, density, ground, dig);
+  const DigScene scene = run_scene(machine, soil, density, ground, dig);
 
   DensityCalibration::Sample sample;
   sample.density_percent = density;
@@ -43,6 +48,29 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
   return sample;
 }
 
+DigParameters drawn_path(Random& random) {
+  return {random.uniform(0.5, 1.1), random.uniform(0.2, 0.6), random.uniform(0.8, 2.5)};
+}
+
+/// A dig of a density even over the range, in drawn soil and along a drawn path.
+DensityCalibration::Sample measure_draw(const Machine& machine, const SoilKind& soil,
+                                        std::size_t draw, CalibrationOptions options) {
+  constexpr int most_paths = 100;
+  Random random(draw, 1);
+  const double share = (static_cast<double>(draw) + 0.5) / options.draws;
+  const SoilKind drawn = drawn_soil(soil, options.scatter, random.bits());
+  options.cell_size = CalibrationOptions{}.cell_size;
+  for (int i = 0; options.any_path && i < most_paths; ++i) {
+    options.path = drawn_path(random);
+    try {
+      return measure(machine, drawn, 100.0 * share, options);
+    } catch (const Error&) {
+      // This path cannot be driven.
+    }
+  }
+  return measure(machine, drawn, 100.0 * share, options);
+}
+
 std::vector<BulkingSample> pairs(const std::vector<DensityCalibration::Sample>& samples,
                                  double DensityCalibration::Sample::*factor) {
   std::vector<BulkingSample> pairs;
@@ -51,30 +79,67 @@ std::vector<BulkingSample> pairs(const std::vector<DensityCalibration::Sample>& 
   return pairs;
 }
 
-}  // namespace
-
-DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
-                                     const CalibrationOptions& options) {
+/// All but forms and samples.
+DensityCalibration origin_of(const Machine& machine, const SoilKind& soil,
+                             const CalibrationOptions& options) {
   DensityCalibration calibration;
-  std::vector<double> densities = options.densities_percent;
-  if (densities.empty()) {
-    for (int i = 0; i <= 20; ++i) densities.push_back(5.0 * i);
-  }
-  for (const double density : densities) {
-    calibration.samples.push_back(measure(machine, soil, density, options));
-  }
-  using Sample = DensityCalibration::Sample;
-  const auto freed = pairs(calibration.samples, &Sample::bulking_factor);
-  const auto measured = pairs(calibration.samples, &Sample::bulking_factor_measured);
   calibration.name = machine.name + "-" + soil.name;
   calibration.source =
       "digs of the simulator " + options.simulator.name + ", " + machine.name + " in " + soil.name;
   calibration.soil = soil.name;
+  calibration.machine = machine.name;
+  calibration.simulator = options.simulator.name;
+  const DigParameters& path = options.path;
+  calibration.path = {path.penetration_angle, path.penetration_length, path.drag_length};
+  calibration.any_path = options.any_path && options.draws > 0;
+  calibration.scatter = {options.draws, options.scatter};
   calibration.use = std::string("closed_form") + as_measured;
-  calibration.forms = fit_density_forms(freed);
-  for (DensityFit& fit : fit_density_forms(measured, as_measured)) {
-    calibration.forms.push_back(std::move(fit));
+  return calibration;
+}
+
+}  // namespace
+
+DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
+                                     const CalibrationOptions& options) {
+  require(options.draws >= 0, "the number of draws", options.draws, "at least 0");
+  std::vector<double> densities = options.densities_percent;
+  if (densities.empty()) {
+    for (int i = 0; i <= 20; ++i) densities.push_back(5.0 * i);
   }
+  const Machine digger = that_never_stalls(machine);
+  DensityCalibration calibration = origin_of(machine, soil, options);
+  calibration.samples.resize(densities.size());
+  std::vector<DensityCalibration::Sample> draws(static_cast<std::size_t>(options.draws));
+  parallel_for(densities.size() + draws.size(), options.threads, [&](std::size_t i) {
+    if (i < densities.size()) {
+      calibration.samples[i] = measure(digger, soil, densities[i], options);
+    } else {
+      const std::size_t draw = i - densities.size();
+      draws[draw] = measure_draw(digger, soil, draw, options);
+    }
+  });
+  using Sample = DensityCalibration::Sample;
+  const auto add_forms = [&](double Sample::*factor, const std::string& ending) {
+    for (DensityFit& fit : fit_density_forms(pairs(calibration.samples, factor), ending)) {
+      if (!draws.empty()) set_scatter(fit.form, pairs(draws, factor));
+      calibration.forms.push_back(std::move(fit));
+    }
+  };
+  add_forms(&Sample::bulking_factor, "");
+  add_forms(&Sample::bulking_factor_measured, as_measured);
+  return calibration;
+}
+
+DensityCalibration calibrate_path(const Machine& machine, const SoilKind& soil,
+                                  const DigParameters& path, unsigned threads) {
+  CalibrationOptions options;
+  for (int i = 0; i <= 10; ++i) options.densities_percent.push_back(10.0 * i);
+  options.path = path;
+  options.any_path = false;
+  options.draws = 30;
+  options.threads = threads;
+  DensityCalibration calibration = calibrate_density(machine, soil, options);
+  calibration.name += "-path";
   return calibration;
 }
 

@@ -13,7 +13,9 @@
 #include "base/random.hpp"
 
 #include "base/angles.hpp"
+#include "base/check.hpp"
 #include "base/text.hpp"
+#include "simulation/block_heap.hpp"
 
 namespace excavplan {
 namespace {
@@ -69,6 +71,42 @@ Eigen::Vector2d dig_centre(const DigPath& path) {
   return {path.start_x - 0.5 * (path.parameters.drag_length + 0.8), 0.0};
 }
 
+/// One camera over the dig and one over the heap.
+std::vector<CameraPlace> places_above(const DigScene& scene, const HeightMap& surface) {
+  std::vector<CameraPlace> places;
+  for (const Eigen::Vector2d& at : {dig_centre(scene.path), scene.dump_at}) {
+    const DepthCamera above = camera_above(at, height_at(surface, at.x(), at.y()));
+    places.push_back({above.position, above.target});
+  }
+  return places;
+}
+
+/// A surface on cells fine enough for blocks.
+HeightMap refined(const HeightMap& map) {
+  constexpr double finest = 0.02;  // ours [m]
+  const double parts = std::max(1.0, std::ceil(map.cell_size / finest));
+  return resampled(map, map.extent(), map.cell_size / parts, 0.0);
+}
+
+/// The dug soil as blocks where the ground is hard.
+void break_up(const BlockSettings& blocks, const SoilKind& soil, DigScene& scene) {
+  require(blocks.swell >= 0.0 && blocks.swell <= 1.0, "blocks: swell", blocks.swell, "in 0 .. 1");
+  if (scene.density_percent < blocks.least_density) {
+    scene.warnings.push_back(
+        {"no_blocks", "ground of " + readable(scene.density_percent) +
+                          " % relative density crumbles; it breaks into blocks from " +
+                          readable(blocks.least_density) + " % on"});
+    return;
+  }
+  const double bulking = bulking_of_density(soil, scene.density_percent);
+  const double swollen = (1.0 + blocks.swell * (bulking - 1.0)) / bulking;
+  const double loose = scene.volumes.spilled + scene.volumes.dumped;
+  scene.blocks = blocks_of_rise(refined(scene.before.surface()), refined(scene.after.surface()),
+                                swollen * loose, blocks);
+  scene.volumes = height_map_volumes(undisturbed(scene.blocks->before),
+                                     undisturbed(scene.blocks->after), scene.dump_at);
+}
+
 }  // namespace
 
 DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
@@ -87,27 +125,29 @@ DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_
   scene.dig = options.simulator.make(machine, soil, density_percent)->dig(ground, scene.path, dig);
   scene.after = scene.dig.after(ground);
   scene.volumes = height_map_volumes(ground, scene.after, scene.dump_at);
+  if (options.blocks) break_up(*options.blocks, soil, scene);
   scene.bulking_factor_true = bulking_of_density(soil, density_percent);
   scene.duration = time_dig_path(machine, scene.path, {}, scene.dig.torques).dig_duration();
   return scene;
 }
 
-SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed) {
-  const auto scan = [&](const Terrain& terrain, std::uint64_t epoch) {
-    const HeightMap surface = terrain.surface();
+SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed,
+                      const std::vector<CameraPlace>& places) {
+  const auto scan = [&](const HeightMap& surface, std::uint64_t epoch) {
     std::vector<Eigen::Vector3d> points;
     std::uint64_t index = 0;
-    for (const Eigen::Vector2d& place : {dig_centre(scene.path), scene.dump_at}) {
-      const DepthCamera above = camera_above(place, height_at(surface, place.x(), place.y()));
+    for (const CameraPlace& place : places.empty() ? places_above(scene, surface) : places) {
       DepthCamera placed = camera;
-      placed.position = above.position;
-      placed.target = above.target;
+      placed.position = place.position;
+      placed.target = place.target;
       const auto seen = scan_surface(surface, placed, Random(seed, epoch, index++).bits());
       points.insert(points.end(), seen.begin(), seen.end());
     }
     return points;
   };
-  return {scan(scene.before, 0), scan(scene.after, 1)};
+  const bool blocks = scene.blocks.has_value();
+  return {scan(blocks ? scene.blocks->before : scene.before.surface(), 0),
+          scan(blocks ? scene.blocks->after : scene.after.surface(), 1)};
 }
 
 }  // namespace excavplan

@@ -232,6 +232,7 @@ DensityForm read_density_form(const std::string& key, JsonObject object) {
     }
     form.r2 = object.number("r2", 0.0, 1.0);
     form.residual_sd = object.number("residual_sd_percent", 0.0, 1e3);
+    form.residual_growth = object.number_or("residual_growth", 0.0, -1.0, 1.0);
     read = form;
   });
   object.done();
@@ -245,6 +246,7 @@ nlohmann::ordered_json density_form_json(const DensityForm& form) {
         for (const auto& p : RowOf<decltype(f)>::parameters) object[p.key] = f.*p.value;
         object["r2"] = f.r2;
         object["residual_sd_percent"] = f.residual_sd;
+        if (f.residual_growth != 0.0) object["residual_growth"] = f.residual_growth;
         return object;
       },
       form);
@@ -263,6 +265,12 @@ double bulking_of_density(const DensityForm& form, double density_percent) {
 double density_slope(const DensityForm& form, double bulking_factor) {
   return std::visit([&](const auto& f) { return RowOf<decltype(f)>::slope(f, bulking_factor); },
                     form);
+}
+
+double residual_sd_at(const DensityForm& form, double density_percent) {
+  const double from_middle = std::clamp(density_percent, 0.0, 100.0) / 50.0 - 1.0;
+  return std::visit(
+      [&](const auto& f) { return f.residual_sd * (1.0 + f.residual_growth * from_middle); }, form);
 }
 
 std::string formula(const DensityForm& form) {

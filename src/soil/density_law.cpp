@@ -27,6 +27,13 @@ nlohmann::ordered_json to_object(const DensityCalibration::Sample& sample) {
   return object;
 }
 
+nlohmann::ordered_json to_object(const ScatterDigs& digs) {
+  return {{"draws", digs.draws},
+          {"water_content_share", digs.scatter.water_content},
+          {"limit_density_share", digs.scatter.limit_density},
+          {"loose_density_share", digs.scatter.loose_density}};
+}
+
 /// One decimal, for messages.
 std::string tenths(double value) { return number_text(std::round(value * 10.0) / 10.0); }
 
@@ -56,10 +63,18 @@ DensityLaw load_density_law(const std::string& path) {
   JsonObject file = JsonObject::open(path, file_format);
   file.ignore("sources");
   file.ignore("samples");
+  file.ignore("scatter");
   DensityLaw law;
   law.name = file.text("name");
   law.source = file.text("source");
   law.soil = file.text_or("soil", "");
+  law.machine = file.text_or("machine", "");
+  law.simulator = file.text_or("simulator", "");
+  if (file.has("path")) {
+    const std::vector<double> numbers = file.numbers("path", 3);
+    law.path = {numbers[0], numbers[1], numbers[2]};
+  }
+  law.any_path = file.has("any_path") && file.flag("any_path");
   const std::string use = file.text("use");
   std::map<std::string, DensityForm> forms;
   std::string found;
@@ -95,6 +110,15 @@ DensityLaw density_law_of(const SoilKind& soil) {
   return law;
 }
 
+void set_error(RelativeDensity& estimate, double sd_percent) {
+  const double excess = estimate.raw_percent - estimate.percent;
+  estimate.trustworthy = std::abs(excess) <= two_sided_95_percent * sd_percent;
+  estimate.sd_percent = std::hypot(sd_percent, excess);
+  const double margin = two_sided_95_percent * estimate.sd_percent;
+  estimate.interval_percent = {std::clamp(estimate.percent - margin, 0.0, 100.0),
+                               std::clamp(estimate.percent + margin, 0.0, 100.0)};
+}
+
 RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_factor) {
   const double k = bulking_factor.value;
   if (!(k > 0.0 && std::isfinite(k)) ||
@@ -104,16 +128,12 @@ RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_
                     number_text(bulking_factor.sd) +
                     "; the factor must be finite and positive, its deviation finite and >= 0");
   }
-  const double residual_sd =
-      std::visit([](const auto& form) { return form.residual_sd; }, law.form);
   RelativeDensity estimate;
   estimate.raw_percent = density_of_bulking(law.form, k);
   estimate.percent = std::clamp(estimate.raw_percent, 0.0, 100.0);
-  estimate.sd_percent = std::hypot(density_slope(law.form, k) * bulking_factor.sd, residual_sd);
-  const double margin = two_sided_95_percent * estimate.sd_percent;
-  estimate.interval_percent = {std::clamp(estimate.raw_percent - margin, 0.0, 100.0),
-                               std::clamp(estimate.raw_percent + margin, 0.0, 100.0)};
-  estimate.trustworthy = std::abs(estimate.raw_percent - estimate.percent) <= margin;
+  estimate.sd_given_law_percent = density_slope(law.form, k) * bulking_factor.sd;
+  set_error(estimate,
+            std::hypot(estimate.sd_given_law_percent, residual_sd_at(law.form, estimate.percent)));
   warn_of_range(law, k, estimate);
   return estimate;
 }
@@ -125,12 +145,56 @@ const DensityForm& DensityCalibration::form(const std::string& key) const {
   throw Error(ErrorKind::bad_input, "the calibration has no form '" + key + "'");
 }
 
+DensityLaw law_of(const DensityCalibration& calibration) {
+  DensityLaw law;
+  law.name = calibration.name;
+  law.source = calibration.source;
+  law.form = calibration.form(calibration.use);
+  law.freed_form = calibration.form(calibration.use.substr(0, calibration.use.find(as_measured)));
+  law.soil = calibration.soil;
+  law.machine = calibration.machine;
+  law.simulator = calibration.simulator;
+  law.path = calibration.path;
+  law.any_path = calibration.any_path;
+  return law;
+}
+
+void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
+  constexpr double steepest = 0.5;             // of the growth: at 0 % there is scatter too; ours
+  std::array<double, 2> squares = {0.0, 0.0};  // of loose and of dense soil
+  std::array<int, 2> counts = {0, 0};
+  for (const BulkingSample& dig : digs) {
+    const std::size_t half = dig.density_percent < 50.0 ? 0 : 1;
+    squares[half] +=
+        std::pow(density_of_bulking(form, dig.bulking_factor) - dig.density_percent, 2);
+    ++counts[half];
+  }
+  const double rms = std::sqrt((squares[0] + squares[1]) / static_cast<double>(digs.size()));
+  double growth = 0.0;
+  if (counts[0] > 0 && counts[1] > 0 && rms > 0.0) {
+    const double loose = std::sqrt(squares[0] / counts[0]);
+    const double dense = std::sqrt(squares[1] / counts[1]);
+    growth = std::clamp(2.0 * (dense - loose) / (dense + loose), -steepest, steepest);
+  }
+  std::visit(
+      [&](auto& f) {
+        f.residual_growth = growth;
+        f.residual_sd = rms / std::sqrt(1.0 + growth * growth / 3.0);  // rms over 0 .. 100 %
+      },
+      form);
+}
+
 std::string to_json(const DensityCalibration& calibration) {
   nlohmann::ordered_json file = {{"format", file_format},
                                  {"version", 1},
                                  {"name", calibration.name},
                                  {"source", calibration.source}};
   if (!calibration.soil.empty()) file["soil"] = calibration.soil;
+  if (!calibration.machine.empty()) file["machine"] = calibration.machine;
+  if (!calibration.simulator.empty()) file["simulator"] = calibration.simulator;
+  if (calibration.path) file["path"] = *calibration.path;
+  if (calibration.path) file["any_path"] = calibration.any_path;
+  if (calibration.scatter.draws > 0) file["scatter"] = to_object(calibration.scatter);
   file["use"] = calibration.use;
   for (const DensityFit& fit : calibration.forms) file[fit.key] = density_form_json(fit.form);
   file["samples"] = nlohmann::ordered_json::array();

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Eigenvalues>
+
 #include <excavplan/error.hpp>
 
 #include "survey/cloud_outline.hpp"
@@ -14,6 +16,7 @@ namespace excavplan {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double left_out = 0.001;  // of the points, on either side of an extent
 
 using Values = std::vector<double>;
 
@@ -88,16 +91,45 @@ double commonest_height(const Cloud& cloud) {
   return layer * static_cast<double>(fullest - farthest);
 }
 
+/// Of the points within 60 degrees of the z axis, ahead, from `nearest` to `farthest` along it:
+/// wider than depth cameras see.
+std::size_t seen_along_z(const Cloud& cloud, double nearest, double farthest) {
+  constexpr double tan_view = 1.7320508;
+  return static_cast<std::size_t>(
+      std::count_if(cloud.points.begin(), cloud.points.end(), [&](const Eigen::Vector3d& point) {
+        return point.z() > nearest && point.z() < farthest &&
+               point.head<2>().norm() < tan_view * point.z();
+      }));
+}
+
+/// Without the farthest 0.1 % on either side.
+double height_span(const Cloud& cloud) {
+  Values values = finite_values(cloud, 2);
+  const auto beyond = static_cast<std::size_t>(left_out * static_cast<double>(values.size()));
+  const double lowest = nth(values, beyond);
+  return nth(values, values.size() - 1 - beyond) - lowest;
+}
+
+/// Direction of least scatter of finite points, z >= 0.
+Eigen::Vector3d normal_of(const Cloud& cloud) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : cloud.points) sum += point;
+  const Eigen::Vector3d mean = sum / static_cast<double>(cloud.points.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : cloud.points) {
+    scatter += (point - mean) * (point - mean).transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
+  const Eigen::Vector3d normal = axes.eigenvectors().col(0);
+  return normal.z() < 0.0 ? Eigen::Vector3d(-normal) : normal;
+}
+
 std::string guess_frame(const Cloud& cloud, const CloudSummary& summary) {
   constexpr double map_distance = 1e4;
-  constexpr double tan_view = 1.7320508;  // 60 degrees off the axis: wider than depth cameras see
   constexpr double ground_height = 0.5;
   if (summary.finite_points == 0) return "unknown";
   if (summary.centroid.head<2>().norm() > map_distance) return "map (large coordinates)";
-  const auto ahead = static_cast<std::size_t>(
-      std::count_if(cloud.points.begin(), cloud.points.end(), [](const Eigen::Vector3d& point) {
-        return point.z() > 0.0 && point.head<2>().norm() < tan_view * point.z();
-      }));
+  const std::size_t ahead = seen_along_z(cloud, 0.0, std::numeric_limits<double>::infinity());
   if (ahead * 100 >= summary.finite_points * 99) return "camera (z forward)";
   const Eigen::Vector3d size = summary.max - summary.min;
   const bool is_wide = std::max(size.x(), size.y()) > size.z();
@@ -151,6 +183,8 @@ void CloudOutline::add(const std::vector<Eigen::Vector3d>& points) {
 }
 
 ScanOutline CloudOutline::result() const {
+  constexpr double nearest_seen = 0.1;    // ours, of a depth camera [m]
+  constexpr double farthest_seen = 20.0;  // likewise
   ScanOutline outline = outline_;
   outline.density = unknown;
   Cloud cloud;
@@ -162,11 +196,16 @@ ScanOutline CloudOutline::result() const {
   const auto sampled = static_cast<double>(cloud.points.size());
   outline.density = points_per_area(cloud, cloud.points.size()) *
                     (static_cast<double>(outline.finite_points) / sampled);
+  outline.height = height_span(cloud);
+  outline.seen_along_z =
+      static_cast<double>(seen_along_z(cloud, nearest_seen, farthest_seen)) / sampled;
+  outline.normal = normal_of(cloud);
   return outline;
 }
 
-double cell_for(const std::vector<ScanOutline>& outlines) {
-  constexpr double points_per_cell = 12.0;
+namespace {
+
+double cell_of_points(const std::vector<ScanOutline>& outlines, double points) {
   constexpr double widest_fine = 0.05;  // [m]
   constexpr double fewest_cells_along = 100.0;
   double least = widest_fine;
@@ -177,11 +216,18 @@ double cell_for(const std::vector<ScanOutline>& outlines) {
     least = std::min(least, std::min(r.x_max - r.x_min, r.y_max - r.y_min) / fewest_cells_along);
     if (outline.density < density) density = outline.density;
   }
-  return std::max(least, std::sqrt(points_per_cell / density));
+  return std::max(least, std::sqrt(points / density));
+}
+
+}  // namespace
+
+double cell_for(const std::vector<ScanOutline>& outlines) { return cell_of_points(outlines, 12.0); }
+
+double survey_cell(const std::vector<ScanOutline>& outlines) {
+  return cell_of_points(outlines, 2.0);
 }
 
 Rectangle plan_extent(const Cloud& cloud) {
-  constexpr double left_out = 0.001;
   Rectangle extent;
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
     Values values = finite_values(cloud, axis);

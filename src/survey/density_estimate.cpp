@@ -13,7 +13,10 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/text.hpp"
+#include "ground/cover.hpp"
+#include "survey/density_of_volumes.hpp"
 #include "survey/paper_change.hpp"
+#include "survey/scan_checks.hpp"
 #include "survey/scan_reading.hpp"
 
 namespace excavplan {
@@ -44,6 +47,16 @@ struct Surfaces {
   RegisteredPair dig;
   std::optional<RegisteredPair> dump;
 
+  std::vector<const SurfacePair*> pairs() const {
+    std::vector<const SurfacePair*> all = {&dig.surfaces};
+    if (dump) all.push_back(&dump->surfaces);
+    return all;
+  }
+  std::vector<HeightMap> before() const {
+    std::vector<HeightMap> maps;
+    for (const SurfacePair* pair : pairs()) maps.push_back(pair->before.height);
+    return maps;
+  }
   std::vector<HeightMap> after() const {
     std::vector<HeightMap> maps = {dig.surfaces.after.height};
     if (dump) maps.push_back(dump->surfaces.after.height);
@@ -79,18 +92,47 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  for (const Warning& warning : change.warnings) {
-    if (warning.code == "looks_swapped") {
-      throw Error(ErrorKind::bad_file, seen.dig.names() + ": " + warning.message);
-    }
-  }
+  with_doubts(check_cover(surfaces.pairs(), change),
+              [&] { refuse_swapped(change, seen.dig.names()); });
   return change;
 }
 
 VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& surface,
-                              const ChangeOptions& options) {
+                              const DensityOptions& options) {
   const PaperScans scans = {seen.dig.scans, seen.dump ? &seen.dump->scans : nullptr};
-  return about(seen, [&] { return paper_change(scans, surface, options, seen.cell_size); });
+  const PaperSettings settings = {options.change, seen.cell_size, options.paper};
+  return about(seen, [&] { return paper_change(scans, surface, settings); });
+}
+
+// ---- Whether the scans can be what they are taken for ------------------------------------------
+
+void append(std::vector<Warning> more, std::vector<Warning>& warnings) {
+  for (Warning& warning : more) {
+    const auto same = [&](const Warning& w) { return w.message == warning.message; };
+    if (std::none_of(warnings.begin(), warnings.end(), same)) {
+      warnings.push_back(std::move(warning));
+    }
+  }
+}
+
+std::vector<Warning> doubts_about(const OutlinedScans& seen) {
+  std::vector<Warning> doubts = check_outlines(seen.dig);
+  if (seen.dump) append(check_outlines(*seen.dump), doubts);
+  return doubts;
+}
+
+std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
+                                  const VolumeChange& change) {
+  std::vector<Warning> doubts = check_volumes(change);
+  const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
+                         const AreaChange& area) {
+    append(check_registration(pair), doubts);
+    append(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
+  };
+  check(seen.dig, surfaces.dig, change.areas.front());
+  if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());
+  append(check_cover(surfaces.pairs(), change), doubts);
+  return doubts;
 }
 
 // ---- What is known beside the volumes ---------------------------------------------------------
@@ -100,7 +142,7 @@ Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const Volu
   const HeightMap& before = surfaces.before.height;
   HeightMap after = realigned(surfaces.after.height, surfaces.alignment);
   after.z -= change.areas.front().datum;
-  const auto path = make_dig_path(dug.machine, dug.parameters, dug.start_x,
+  const auto path = make_dig_path(dug.machine, dug.parameters, *dug.start_x,
                                   profile_under_bucket(before, dug.machine));
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
     throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
@@ -108,51 +150,11 @@ Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const Volu
   return measure_fallback(dug.machine, std::get<DigPath>(path), before, after);
 }
 
-// ---- Volumes to density -----------------------------------------------------------------------
-
-/// Volume after without the voids between blocks, over the volume before.
-Measured without_voids(const VolumeChange& change, const Measured& bulking, const Measured& voids) {
-  const double before = change.before.value;
-  return {bulking.value - voids.value / before, std::hypot(bulking.sd, voids.sd / before)};
-}
-
-/// k = f + (1 - f) k_measured with the errors of both.
-Measured freed_of(const Measured& bulking, const Measured& fallback) {
-  return {free_of_fallback(bulking.value, fallback.value),
-          std::hypot((1.0 - fallback.value) * bulking.sd, (1.0 - bulking.value) * fallback.sd)};
-}
-
-/// The bulking factor for the law, if it differs from that of the scans.
-std::optional<Measured> corrected(const DensityEstimate& estimate) {
-  if (!estimate.blocks.voids && !estimate.fallback) return std::nullopt;
-  Measured k = *estimate.bulking;
-  if (estimate.blocks.voids) k = without_voids(estimate.change, k, *estimate.blocks.voids);
-  if (estimate.fallback) k = freed_of(k, estimate.fallback->fraction);
-  return k;
-}
-
-/// The density by the law, for a known bulking factor.
-void apply_law(DensityEstimate& estimate) {
-  DensityLaw law = estimate.law;
-  estimate.density_without_fallback = density_of_bulking(law.freed_form, estimate.bulking->value);
-  estimate.corrected = corrected(estimate);
-  if (estimate.fallback) law.form = law.freed_form;
-  Measured k = estimate.corrected.value_or(*estimate.bulking);
-  const bool known_error = !std::isnan(k.sd);
-  if (!known_error) {
-    k.sd = 0.0;
-    estimate.warnings.push_back(
-        {"volume_error_unknown",
-         "this method gives no error of its volumes: the density interval contains only the "
-         "scatter of the law"});
-  }
-  estimate.density = relative_density(law, k);
-  estimate.trustworthy = known_error && estimate.density->trustworthy;
-  for (const Warning& warning : estimate.density->warnings) estimate.warnings.push_back(warning);
-  for (const Reading& reading : estimate.change.readings) {
-    const double shift = reading.bulking.value - estimate.bulking->value;
-    estimate.readings.push_back({reading, density_of_bulking(law.form, k.value + shift)});
-  }
+/// Nothing where the start of the dug path is not known.
+std::optional<Fallback> fallback_of(const DensityOptions& options, const Surfaces& surfaces,
+                                    const VolumeChange& change) {
+  if (!options.dug_path || !options.dug_path->start_x) return std::nullopt;
+  return fallback_of(*options.dug_path, surfaces.dig.surfaces, change);
 }
 
 Warning warning_of(const BlockReport& report) {
@@ -172,7 +174,9 @@ void judge_scans(DensityEstimate& estimate) {
     estimate.warnings.push_back(warning_of(estimate.blocks));
     estimate.trustworthy = false;
   }
-  for (const Warning& warning : estimate.change.warnings) {
+  for (Warning& warning : estimate.warnings) {
+    const bool is_leant_on = warning.code == "little_stable_ground" && estimate.registration;
+    if (is_leant_on) warning.ends_trust = true;
     if (warning.ends_trust) estimate.trustworthy = false;
   }
 }
@@ -190,16 +194,21 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
                                        const DensityOptions& options,
                                        std::initializer_list<VolumeMethod> methods) {
   const OutlinedScans seen = outline_scans(scans, options);  // extent, density of points, cell
-  const Surfaces surfaces = survey(seen, options);           // height maps on each other
-  const VolumeChange surface = surface_volumes_of(seen, surfaces, options.change);
+  std::vector<Warning> doubts = doubts_about(seen);
+  Surfaces surfaces;
+  const VolumeChange surface = with_doubts(doubts, [&] {
+    surfaces = survey(seen, options);  // height maps on each other
+    return surface_volumes_of(seen, surfaces, options.change);
+  });
+  append(doubts_about(seen, surfaces, surface), doubts);
 
   DensityEstimate known;  // whatever the method
-  known.law = law;
+  known.fallback = fallback_of(options, surfaces, surface);
+  const LawsForDig laws = laws_for_dig(law, options, known.fallback);
+  known.law = laws.law;
   known.cell_size = seen.cell_size;
   if (options.registered) keep_registration(surfaces, known);
-  if (options.dug_path) {
-    known.fallback = fallback_of(*options.dug_path, surfaces.dig.surfaces, surface);
-  }
+  known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
 
   std::vector<DensityEstimate> results;
@@ -208,11 +217,12 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     const bool by_paper = method == VolumeMethod::paper;
     estimate.method = method;
     // eqs. 3 and 4: volumes before and after
-    estimate.change = by_paper ? paper_volumes_of(seen, surface, options.change) : surface;
+    estimate.change = by_paper ? paper_volumes_of(seen, surface, options) : surface;
     estimate.warnings = estimate.change.warnings;
+    append(doubts, estimate.warnings);
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
-    if (estimate.bulking) apply_law(estimate);  // corrected for fallback and voids, then to density
+    if (estimate.bulking) set_density(estimate, laws, options);
     judge_scans(estimate);
   }
   return results;
@@ -235,7 +245,9 @@ DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
 
 DensityEstimate estimate_density(const DigScans& scans, const SoilKind& soil,
                                  const DensityOptions& options) {
-  return estimate_density(scans, density_law_of(soil), options);
+  DensityOptions in_soil = options;
+  in_soil.soil.kind = soil;
+  return estimate_density(scans, density_law_of(soil), in_soil);
 }
 
 BothEstimates estimate_by_both(const DigScans& scans, const DensityLaw& law,

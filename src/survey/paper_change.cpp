@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <vector>
@@ -32,17 +33,6 @@ std::optional<Rectangle> extent_of(const VolumeChange& change,
                    extent->y_max + room};
 }
 
-/// Points inside, with the ground's median height at z = 0 as the method expects it.
-Cloud levelled(const Cloud& cloud, const std::optional<Rectangle>& area, double ground) {
-  Cloud result;
-  for (const Eigen::Vector3d& p : cloud.points) {
-    if (!p.allFinite() || (area && !area->contains(p.x(), p.y()))) continue;
-    result.points.emplace_back(p.x(), p.y(), p.z() - ground);
-  }
-  result.width = result.points.size();
-  return result;
-}
-
 double median_height(const Cloud& cloud) {
   std::vector<double> z;
   for (const Eigen::Vector3d& p : cloud.points) {
@@ -51,6 +41,27 @@ double median_height(const Cloud& cloud) {
   const auto middle = z.begin() + static_cast<std::ptrdiff_t>(z.size() / 2);
   std::nth_element(z.begin(), middle, z.end());
   return *middle;
+}
+
+/// Whether a point belongs to an area.
+using Inside = std::function<bool(const Eigen::Vector3d&)>;
+
+/// Points inside, with the ground's median height at z = 0 as the method expects it.
+Cloud levelled(const Cloud& cloud, const Inside& inside, double ground) {
+  Cloud result;
+  for (const Eigen::Vector3d& p : cloud.points) {
+    if (!p.allFinite() || !inside(p)) continue;
+    result.points.emplace_back(p.x(), p.y(), p.z() - ground);
+  }
+  result.width = result.points.size();
+  return result;
+}
+
+/// Both clouds of a pair, above the ground of the first.
+CloudPair levelled(const ScanPair& scans, const Inside& inside) {
+  const Cloud before = gathered(scans.before);
+  const double ground = median_height(before);
+  return {levelled(before, inside, ground), levelled(gathered(scans.after), inside, ground)};
 }
 
 /// Where hole and heap are searched; nothing: everywhere.
@@ -67,30 +78,48 @@ Areas areas_of(const VolumeChange& surface, const ChangeOptions& given, bool who
   return areas;
 }
 
+/// The zone that a point lies in; null on stable ground and off the map.
+const ChangeZone* zone_at(const VolumeChange& surface, const Eigen::Vector3d& point) {
+  const AreaChange& area = surface.areas.front();
+  const Eigen::Vector2d cell =
+      (point.head<2>() - area.difference.origin) / area.difference.cell_size;
+  const auto col = static_cast<Eigen::Index>(std::floor(cell.x()));
+  const auto row = static_cast<Eigen::Index>(std::floor(cell.y()));
+  if (row < 0 || col < 0 || row >= area.zone.rows() || col >= area.zone.cols()) return nullptr;
+  const int zone = area.zone(row, col);
+  return zone < 0 ? nullptr : &surface.zones[static_cast<std::size_t>(zone)];
+}
+
+Inside inside_of(const std::optional<Rectangle>& area) {
+  return [area](const Eigen::Vector3d& p) { return !area || area->contains(p.x(), p.y()); };
+}
+
+/// Points of an area of the whole scene that lie in no zone of the other one.
+Inside inside_but(const std::optional<Rectangle>& area, const VolumeChange& surface, bool heap) {
+  return [=, &surface](const Eigen::Vector3d& p) {
+    if (area && !area->contains(p.x(), p.y())) return false;
+    const ChangeZone* zone = zone_at(surface, p);
+    if (!zone || zone->kind == ZoneKind::other) return true;
+    return (zone->kind == ZoneKind::dump) == heap;
+  };
+}
+
 }  // namespace
 
 VolumeChange paper_change(const PaperScans& scans, const VolumeChange& surface,
-                          const ChangeOptions& given, double leaf) {
-  PaperMethodOptions options;
-  options.leaf = leaf;
-  const Areas areas = areas_of(surface, given, !scans.dump);
-  const Cloud before = gathered(scans.dig.before);
-  const Cloud after = gathered(scans.dig.after);
-  const double ground = median_height(before);
-  const Cloud still = levelled(before, areas.dig, ground);  // nothing rises in it
-  const Cloud dug = levelled(after, areas.dig, ground);
-  Cloud dump_before = still;
-  Cloud dump_after = still;
+                          const PaperSettings& settings) {
+  const Areas areas = areas_of(surface, settings.change, !scans.dump);
+  CloudPair dig;
+  CloudPair dump;
   if (scans.dump) {
-    const Cloud empty = gathered(scans.dump->before);
-    const double dump_ground = median_height(empty);
-    dump_before = levelled(empty, areas.dump, dump_ground);
-    dump_after = levelled(gathered(scans.dump->after), areas.dump, dump_ground);
-  } else if (areas.dump) {
-    dump_before = levelled(before, areas.dump, ground);
-    dump_after = levelled(after, areas.dump, ground);
+    dig = levelled(scans.dig, inside_of(areas.dig));
+    dump = levelled(*scans.dump, inside_of(areas.dump));
+  } else {
+    dig = levelled(scans.dig, inside_but(areas.dig, surface, false));
+    dump = areas.dump ? levelled(scans.dig, inside_but(areas.dump, surface, true))
+                      : CloudPair{dig.before, dig.before};  // nothing rises in it
   }
-  VolumeChange change = paper_volumes(still, dug, dump_before, dump_after, options);
+  VolumeChange change = paper_volumes(dig, dump, settings.leaf, settings.paper);
   change.zones = surface.zones;
   change.areas = surface.areas;
   change.warnings = surface.warnings;

@@ -59,11 +59,12 @@ void require_points(const Cloud& cloud, const std::string& name) {
 }
 
 /// Beyond 2^31 voxels PCL's VoxelGrid returns its input unfiltered.
-void require_countable(const Box& box, double leaf) {
+void require_countable(const Box& box, double leaf, PaperVoxels voxels) {
   constexpr double most_voxels = 2147483647.0;
   if (box.is_empty()) return;
-  const Eigen::Array3d voxels = ((box.max - box.min) / leaf).array() + 2.0;
-  if (voxels.prod() <= most_voxels) return;
+  Eigen::Array3d count = ((box.max - box.min) / leaf).array() + 2.0;
+  if (voxels == PaperVoxels::columns) count.z() = 1.0;
+  if (count.prod() <= most_voxels) return;
   const Eigen::Vector3d size = box.max - box.min;
   refuse("an extent of " + number_text(size.x()) + " x " + number_text(size.y()) + " x " +
          number_text(size.z()) + " m holds more than 2^31 voxels of " + number_text(leaf) + " m");
@@ -100,8 +101,8 @@ PclCloud::Ptr changed_points(const PclCloud::Ptr& before, const PclCloud::Ptr& a
   return pcl::make_shared<PclCloud>(*after, indices);
 }
 
-PclCloud::Ptr without_outliers(const PclCloud::Ptr& cloud, const PaperMethodOptions& options) {
-  if (cloud->size() < 2) return cloud;
+PclCloud::Ptr without_outliers(const PclCloud::Ptr& cloud, const PaperOptions& options) {
+  if (cloud->size() < 2 || options.outlier_neighbours == 0) return cloud;
   pcl::StatisticalOutlierRemoval<pcl::PointXYZ> filter;
   filter.setInputCloud(cloud);
   // PCL reads past the neighbours it found if there are fewer than asked for
@@ -112,18 +113,29 @@ PclCloud::Ptr without_outliers(const PclCloud::Ptr& cloud, const PaperMethodOpti
   return kept;
 }
 
-PclCloud::Ptr one_point_per_voxel(const PclCloud::Ptr& cloud, double leaf) {
+PclCloud::Ptr one_point_per_voxel(const PclCloud::Ptr& cloud, double leaf, PaperVoxels voxels) {
   if (cloud->empty()) return cloud;
+  Eigen::Vector4f size = Eigen::Vector4f::Constant(static_cast<float>(leaf));
+  pcl::PointXYZ lift(0.0F, 0.0F, 0.0F);
+  if (voxels == PaperVoxels::columns) {  // one layer of voxels over the lowest point
+    const auto [low, high] = std::minmax_element(
+        cloud->begin(), cloud->end(), [](const auto& a, const auto& b) { return a.z < b.z; });
+    lift.z = -low->z;
+    size.z() = 2.0F * (high->z - low->z) + 1.0F;
+  }
+  PclCloud::Ptr lifted(new PclCloud(*cloud));
+  for (pcl::PointXYZ& point : *lifted) point.z += lift.z;
   pcl::VoxelGrid<pcl::PointXYZ> filter;
-  filter.setInputCloud(cloud);
-  filter.setLeafSize(Eigen::Vector4f::Constant(static_cast<float>(leaf)));
+  filter.setInputCloud(lifted);
+  filter.setLeafSize(size);
   PclCloud::Ptr centroids(new PclCloud);
   filter.filter(*centroids);
+  for (pcl::PointXYZ& point : *centroids) point.z -= lift.z;
   return centroids;
 }
 
 /// The paper's V(region, s) = sum (s z)^+ l^2.
-double sum_of_columns(const PclCloud& centroids, double sign, double leaf) {
+double clipped_sum(const PclCloud& centroids, double sign, double leaf) {
   double sum = 0.0;
   for (const pcl::PointXYZ& point : centroids) {
     sum += std::max(0.0, sign * static_cast<double>(point.z));
@@ -132,47 +144,51 @@ double sum_of_columns(const PclCloud& centroids, double sign, double leaf) {
 }
 
 /// One point per voxel of the soil that changed in one area.
-PclCloud::Ptr changed_soil(const Cloud& before, const Cloud& after,
-                           const PaperMethodOptions& options) {
+PclCloud::Ptr changed_soil(const CloudPair& area, double leaf, const PaperOptions& options) {
   Box box;
-  box.add(before);
-  box.add(after);
-  require_countable(box, options.leaf);
-  const Eigen::Vector3d shift = shift_of(box, options.leaf);
-  const auto changed = changed_points(to_pcl(before, shift), to_pcl(after, shift), options.leaf);
-  return one_point_per_voxel(without_outliers(changed, options), options.leaf);
+  box.add(area.before);
+  box.add(area.after);
+  require_countable(box, leaf, options.voxels);
+  const Eigen::Vector3d shift = shift_of(box, leaf);
+  const auto changed = changed_points(to_pcl(area.before, shift), to_pcl(area.after, shift), leaf);
+  return one_point_per_voxel(without_outliers(changed, options), leaf, options.voxels);
 }
 
-}  // namespace
-
-double paper_volume(const Cloud& cloud, double sign, double leaf) {
-  require_leaf(leaf);
-  Box box;
-  box.add(cloud);
-  require_countable(box, leaf);
-  return sum_of_columns(*one_point_per_voxel(to_pcl(cloud, shift_of(box, leaf)), leaf), sign, leaf);
-}
-
-VolumeChange paper_volumes(const Cloud& dig_before, const Cloud& dig_after,
-                           const Cloud& dump_before, const Cloud& dump_after,
-                           const PaperMethodOptions& options) {
-  require_leaf(options.leaf);
-  if (options.outlier_neighbours < 1) {
-    refuse("outlier_neighbours is " + std::to_string(options.outlier_neighbours) + ", must be > 0");
+void require_options(const PaperOptions& options) {
+  if (options.outlier_neighbours < 0) {
+    refuse("outlier_neighbours is " + std::to_string(options.outlier_neighbours) +
+           ", must be >= 0");
   }
   if (!(options.outlier_deviations > 0.0)) {
     refuse("outlier_deviations is " + number_text(options.outlier_deviations) + ", must be > 0");
   }
-  require_points(dig_before, "dig_before");
-  require_points(dig_after, "dig_after");
-  require_points(dump_before, "dump_before");
-  require_points(dump_after, "dump_after");
-  const auto dig = changed_soil(dig_before, dig_after, options);
-  const auto dump = changed_soil(dump_before, dump_after, options);
+}
+
+}  // namespace
+
+double paper_volume(const Cloud& cloud, double sign, double leaf, PaperVoxels voxels) {
+  require_leaf(leaf);
+  Box box;
+  box.add(cloud);
+  require_countable(box, leaf, voxels);
+  const auto points = to_pcl(cloud, shift_of(box, leaf));
+  return clipped_sum(*one_point_per_voxel(points, leaf, voxels), sign, leaf);
+}
+
+VolumeChange paper_volumes(const CloudPair& dig, const CloudPair& dump, double leaf,
+                           const PaperOptions& options) {
+  require_leaf(leaf);
+  require_options(options);
+  require_points(dig.before, "dig.before");
+  require_points(dig.after, "dig.after");
+  require_points(dump.before, "dump.before");
+  require_points(dump.after, "dump.after");
+  const auto dug = changed_soil(dig, leaf, options);
+  const auto heap = changed_soil(dump, leaf, options);
   VolumeChange change;
-  change.excavated = {sum_of_columns(*dig, -1.0, options.leaf), unknown};
-  change.spilled = {sum_of_columns(*dig, +1.0, options.leaf), unknown};
-  change.dumped = {sum_of_columns(*dump, +1.0, options.leaf), unknown};
+  change.excavated = {clipped_sum(*dug, -1.0, leaf), unknown};
+  change.spilled = {clipped_sum(*dug, +1.0, leaf), unknown};
+  change.dumped = {clipped_sum(*heap, +1.0, leaf), unknown};
   change.before = change.excavated;
   change.after = {change.spilled.value + change.dumped.value, unknown};
   change.covariance_before_after = unknown;

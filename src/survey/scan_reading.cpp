@@ -3,6 +3,7 @@
 #include "survey/scan_reading.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -11,6 +12,9 @@
 
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "ground/coarse_motion.hpp"
+#include "ground/robust.hpp"
+#include "ground/sampling_gaps.hpp"
 #include "survey/cloud_outline.hpp"
 #include "survey/point_stream.hpp"
 
@@ -51,11 +55,88 @@ Rectangle overlap(const OutlinedPair& pair) {
   return both;
 }
 
+/// With the ground between the points.
+Surface filled_surface(const Scan& scan, const Rectangle& extent, const RasterOptions& options) {
+  Surface surface = survey_surface(scan, extent, options);
+  fill_sampling_gaps(surface);
+  return surface;
+}
+
+std::vector<Surface> filled_surfaces(const std::vector<Scan>& scans, const Rectangle& extent,
+                                     const RasterOptions& options, unsigned threads) {
+  std::vector<Surface> surfaces(scans.size());
+  parallel_for(scans.size(), threads,
+               [&](std::size_t i) { surfaces[i] = filled_surface(scans[i], extent, options); });
+  return surfaces;
+}
+
+Scan corrected(const Scan& scan, const Eigen::Matrix4d& correction) {
+  Scan result = scan;
+  result.site_from_scan = correction * scan.site_from_scan;
+  return result;
+}
+
+/// Surveys one pair again and again as its scan after is brought back.
+struct Registering {
+  const Scan& after;
+  const Rectangle& extent;
+  RasterOptions raster;
+  double small;  ///< largest shift that realigned() corrects [m]
+
+  /// Aligns; surveys the scan after again where it moves by more than `small`, and aligns the rest.
+  void align_again(RegisteredPair& result) const {
+    constexpr int most_rounds = 3;
+    result.surfaces.alignment = result.first = align(result.surfaces.before, result.surfaces.after);
+    for (int round = 1; round < most_rounds && improve(small, result); ++round) {
+    }
+  }
+
+  /// Takes the motion off the points if it is larger than `least`.
+  bool improve(double least, RegisteredPair& result) const {
+    SurfacePair& pair = result.surfaces;
+    if (!(pair.alignment.largest_shift(pair.after.height) > least)) return false;
+    result.correction = pair.alignment.correction() * result.correction;
+    pair.after = filled_surface(corrected(after, result.correction), extent, raster);
+    pair.alignment = align(pair.before, pair.after);
+    return true;
+  }
+
+  /// Takes a start beyond the priors if the ground fits much better from there, and follows a large
+  /// motion closely.
+  void look_farther(RegisteredPair& result) const {
+    constexpr double much_better = 2.0 / 3.0;  // ours
+    constexpr double closely = 0.2;            // ours
+    constexpr int most_rounds = 6;
+    const SurfacePair& pair = result.surfaces;
+    if (const auto start = coarse_correction(pair.before, pair.after)) {
+      RegisteredPair other;
+      other.correction = *start * result.correction;
+      other.surfaces.before = pair.before;
+      other.surfaces.after = filled_surface(corrected(after, other.correction), extent, raster);
+      align_again(other);
+      other.first = result.first;
+      other.from_wide_start = true;
+      if (other.surfaces.alignment.residual_sd < much_better * pair.alignment.residual_sd) {
+        result = std::move(other);
+      }
+    }
+    for (int round = 0; round < most_rounds && improve(closely * small, result); ++round) {
+    }
+  }
+};
+
+/// True if the start of align() may have been too far from the truth.
+bool could_be_elsewhere(const RegisteredPair& pair) {
+  const Alignment& found = pair.surfaces.alignment;
+  return displacement_by(found.correction() * pair.correction, found.centre).is_beyond_prior() ||
+         leaves_difference(pair.surfaces);
+}
+
 }  // namespace
 
 void visit_scan(const Scan& scan, const PointVisitor& visit) {
-  const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity();
-  const Eigen::Matrix3d rotation = scan.site_from_scan.topLeftCorner<3, 3>();
+  const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity() || scan.unit != 1.0;
+  const Eigen::Matrix3d rotation = scan.unit * scan.site_from_scan.topLeftCorner<3, 3>();
   const Eigen::Vector3d shift = scan.site_from_scan.topRightCorner<3, 1>();
   std::vector<Eigen::Vector3d> kept;
   const PointVisitor bring_in = [&](const std::vector<Eigen::Vector3d>& points) {
@@ -91,10 +172,11 @@ std::optional<Eigen::Vector3d> sensor_of(const Scan& scan) {
   }
   const bool agree =
       !said.empty() && std::all_of(said.begin(), said.end(), [&](const auto& origin) {
-        return origin && said[0] && (*origin - *said[0]).norm() < one_place;
+        return origin && said[0] && scan.unit * (*origin - *said[0]).norm() < one_place;
       });
   if (!agree) return std::nullopt;
-  return Eigen::Vector3d((scan.site_from_scan * said[0]->homogeneous()).head<3>());
+  const Eigen::Vector3d metres = scan.unit * *said[0];
+  return Eigen::Vector3d((scan.site_from_scan * metres.homogeneous()).head<3>());
 }
 
 Cloud gathered(const Scan& scan) {
@@ -127,16 +209,41 @@ OutlinedPair outlined(const ScanPair& scans, unsigned threads) {
   return {scans, seen[0], seen[1]};
 }
 
+Displacement displacement_by(const Eigen::Matrix4d& correction, const Eigen::Vector3d& centre) {
+  const Eigen::Vector3d moved = (correction * centre.homogeneous()).head<3>();
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(correction.topLeftCorner<3, 3>()));
+  return {(moved - centre).norm(), std::abs(turn.angle())};
+}
+
+bool Displacement::is_beyond_prior() const {
+  constexpr double most = 3.0;  // standard deviations
+  const AlignmentOptions priors;
+  return shift > most * priors.shift_prior || turn > most * priors.turn_prior;
+}
+
+bool leaves_difference(const SurfacePair& pair) {
+  constexpr double least = 0.010;    // ours: below it the volumes hardly suffer [m]
+  constexpr double explained = 3.0;  // ours: neighbouring points err alike, which no scatter shows
+  const Eigen::ArrayXXd variance = pair.before.variance + pair.after.variance;
+  std::vector<double> known;
+  for (const double value : variance.reshaped()) {
+    if (!std::isnan(value)) known.push_back(value);
+  }
+  const double expected = known.empty() ? 0.0 : std::sqrt(median(known));
+  return pair.alignment.residual_sd > std::max(least, explained * expected);
+}
+
 RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,
                            unsigned threads) {
   RasterOptions raster;
   raster.cell_size = cell_size;
   const Rectangle extent = overlap(pair);
+  raster.node = {extent.x_min, extent.y_min};  // cells move with the scans
   if (registered) {
-    return survey_registered(pair.scans, extent, raster, pair.cell_size(), threads);
+    return survey_registered(pair.scans, extent, raster, pair.registration_cell(), threads);
   }
   std::vector<Surface> both =
-      survey_surfaces({pair.scans.before, pair.scans.after}, extent, raster, threads);
+      filled_surfaces({pair.scans.before, pair.scans.after}, extent, raster, threads);
   RegisteredPair result;
   result.surfaces.before = std::move(both[0]);
   result.surfaces.after = std::move(both[1]);
@@ -154,30 +261,26 @@ std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Recta
 RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
                                  const RasterOptions& options, double registration_cell,
                                  unsigned threads) {
-  constexpr int most_rounds = 3;
   RasterOptions coarse = options;
   coarse.cell_size = std::max(options.cell_size, registration_cell);
   const bool is_fine = coarse.cell_size > options.cell_size;
-  Scan after = scans.after;
-  RegisteredPair result;
-  SurfacePair& pair = result.surfaces;
-  const auto survey = [&](const RasterOptions& raster) {
-    std::vector<Surface> both = survey_surfaces({scans.before, after}, extent, raster, threads);
-    pair.before = std::move(both[0]);
-    pair.after = std::move(both[1]);
+  const double small = is_fine ? 0.0 : 0.5 * options.cell_size;
+  const auto survey = [&](const RasterOptions& raster, const Eigen::Matrix4d& correction) {
+    std::vector<Surface> both = filled_surfaces({scans.before, corrected(scans.after, correction)},
+                                                extent, raster, threads);
+    return SurfacePair{std::move(both[0]), std::move(both[1]), {}};
   };
-  survey(coarse);
-  pair.alignment = result.first = align(pair.before, pair.after);
-  for (int round = 1; round < most_rounds; ++round) {
-    const double largest = pair.alignment.largest_shift(pair.after.height);
-    if (!(largest > (is_fine ? 0.0 : 0.5 * options.cell_size))) break;
-    result.correction = pair.alignment.correction() * result.correction;
-    after.site_from_scan = result.correction * scans.after.site_from_scan;
-    pair.after = survey_surface(after, extent, coarse);
-    pair.alignment = align(pair.before, pair.after);
+  RegisteredPair result;
+  result.surfaces = survey(coarse, result.correction);
+  const Registering registering = {scans.after, extent, coarse, small};
+  registering.align_again(result);
+  if (could_be_elsewhere(result)) registering.look_farther(result);
+  if (is_fine) {
+    const Alignment found = result.surfaces.alignment;
+    result.surfaces = survey(options, result.correction);
+    result.surfaces.alignment = found;
   }
-  if (is_fine) survey(options);
-  result.correction = pair.alignment.correction() * result.correction;
+  result.correction = result.surfaces.alignment.correction() * result.correction;
   return result;
 }
 

@@ -497,7 +497,7 @@ TEST(VolumeChange, GivenAreasDecideWhatIsHoleAndHeap) {
   const HeightMap before = flat_ground(scene, 0.05);
   const HeightMap after = map_of(two_digs);
   const VolumeChange free = measure_change(before, after);
-  EXPECT_NEAR(free.excavated.value, 1.5 * heap_volume, 0.003) << "the largest hole";
+  EXPECT_NEAR(free.excavated.value, pit_volume, 0.002) << "the hole that the soil fits";
   ChangeOptions options;
   options.dig_area = Rectangle{1.0, 1.0, 5.0, 4.0};
   options.dump_area = Rectangle{7.0, 1.0, 10.0, 4.0};
@@ -517,9 +517,11 @@ TEST(VolumeChange, UnrelatedChangesAreLeftOutWithAWarning) {
   EXPECT_NEAR(change.after.value, ridge_volume + heap_volume, 0.002);
   ASSERT_EQ(change.warnings.size(), 1u);
   EXPECT_EQ(change.warnings[0].code, "other_change");
-  EXPECT_EQ(change.warnings[0].message,
-            "ground that rose by 0.06 m^3 over 0.34 m^2 around (10.15, 4.25) m is neither hole, "
-            "spill nor heap: excluded from all volumes");
+  EXPECT_EQ(
+      change.warnings[0].message,
+      "ground that rose by 0.06 m^3 over 0.34 m^2 around (10.15, 4.25) m is neither hole, "
+      "spill nor heap: excluded from all volumes; --dig-area and --dump-area take it in, if it "
+      "belongs to them");
 }
 
 TEST(VolumeChange, HeapRightBesideTheHoleIsStillTheHeap) {
@@ -535,9 +537,11 @@ TEST(VolumeChange, DumpedSoilOutsideTheScansIsSaid) {
   EXPECT_NEAR(change.excavated.value, pit_volume, 0.002);
   EXPECT_NEAR(change.spilled.value, ridge_volume, 0.001);
   EXPECT_EQ(change.dumped.value, 0.0);
-  EXPECT_EQ(message_of(change, "no_dumped_soil"),
-            "the hole is 0.56 m^3, but only 0 m^3 rose away from it and 0.078 m^3 beside it: the "
-            "dumped soil is not in the scans, so the bulking factor is unknown");
+  EXPECT_EQ(
+      message_of(change, "no_dumped_soil"),
+      "the hole is 0.56 m^3, but only 0 m^3 rose away from it and 0.078 m^3 beside it: the "
+      "dumped soil is not in the scans, so the bulking factor is unknown; give scans that show "
+      "it, or those of the dump area by --dump-before and --dump-after");
   EXPECT_FALSE(bulking_factor(change));
 }
 

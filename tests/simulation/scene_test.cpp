@@ -102,6 +102,97 @@ TEST_F(SceneTest, ScansAreThoseOfTheirSeed) {
   EXPECT_NE(scan_scene(dug, DepthCamera{}, 2).after, one.after);
 }
 
+TEST_F(SceneTest, IsScannedFromTheCamerasGiven) {
+  DepthCamera camera;
+  camera.noise = 0.0;
+  camera.dropouts = 0.0;
+  const CameraPlace over_heap = {{5.5, 3.0, 2.5}, {5.5, 4.0, 0.0}};
+  const SceneScans one = scan_scene(scene(), camera, 1, {over_heap});
+  EXPECT_EQ(one.before.size(), 256U * 144);
+  for (const Eigen::Vector3d& point : one.after) ASSERT_GT(point.y(), 1.0);
+  const SceneScans two = scan_scene(scene(), camera, 1, {over_heap, {{4.0, 1, 2.5}, {5, 0, 0}}});
+  EXPECT_GT(two.before.size(), one.before.size() + 20000U);
+}
+
+class HardSoil : public SceneTest {
+ protected:
+  HardSoil() { held_down_.body.reset(); }
+
+  /// @param blocks size, swell, fines
+  DigScene broken(const BlockSettings& blocks, double density_percent = 90.0) const {
+    SceneOptions options;
+    options.blocks = blocks;
+    const Terrain ground = undisturbed(flat_ground(scene_extent(machine_, options.dump_at), 0.05));
+    return run_scene(held_down_, soil_, density_percent, ground, options);
+  }
+  static double loose_soil(const DigScene& scene) {
+    const HeightMapVolumes volumes = height_map_volumes(scene.before, scene.after, scene.dump_at);
+    return volumes.spilled + volumes.dumped;
+  }
+
+  Machine held_down_ = machine_;  // dense soil would lift the machine
+};
+
+TEST_F(HardSoil, FallsAsBlocksWithVoidsThatKeepItsVolume) {
+  const DigScene scene = broken({});
+  ASSERT_TRUE(scene.blocks);
+  const BlockLayer& layer = *scene.blocks;
+  EXPECT_NEAR(layer.soil, loose_soil(scene), 1e-9);
+  const double seen = scene.volumes.spilled + scene.volumes.dumped;
+  EXPECT_NEAR(seen, layer.soil + layer.voids, 1e-9);
+  EXPECT_GT(layer.voids, 0.15 * seen);  // angular blocks with their fines: 0.35 .. 0.50 deep inside
+  EXPECT_LT(layer.voids, 0.50 * seen);
+  const double mean_edge = std::cbrt(layer.soil / layer.count);
+  EXPECT_NEAR(mean_edge, 0.17, 0.04);
+  EXPECT_GT(scene.volumes.bulking_factor, 1.2 * scene.bulking_factor_true);
+}
+
+TEST_F(HardSoil, KeepsItsHoleClearOfBlocks) {
+  const DigScene scene = broken({});
+  const HeightMapVolumes whole = height_map_volumes(scene.before, scene.after, scene.dump_at);
+  EXPECT_NEAR(scene.volumes.excavated, whole.excavated, 0.02 * whole.excavated);
+}
+
+TEST_F(HardSoil, UndisturbedBlocksDoNotSwell) {
+  BlockSettings undisturbed;
+  undisturbed.swell = 0.0;
+  const DigScene scene = broken(undisturbed);
+  EXPECT_NEAR(scene.blocks->soil, loose_soil(scene) / scene.bulking_factor_true, 1e-9);
+}
+
+TEST_F(HardSoil, BlocksAreThoseOfTheirSizeAndSeed) {
+  BlockSettings settings;
+  const DigScene first = broken(settings);
+  EXPECT_TRUE((broken(settings).blocks->after.z == first.blocks->after.z).all());
+  settings.seed = 2;
+  EXPECT_FALSE((broken(settings).blocks->after.z == first.blocks->after.z).all());
+  settings.size = 0.3;
+  EXPECT_LT(broken(settings).blocks->count, first.blocks->count / 3);
+  settings = {};
+  settings.fines = 0.0;
+  EXPECT_GT(broken(settings).blocks->voids, 1.2 * first.blocks->voids);
+}
+
+TEST_F(HardSoil, SofterGroundCrumbles) {
+  const DigScene scene = broken({}, 79.0);
+  EXPECT_FALSE(scene.blocks);
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_EQ(scene.warnings[0].code, "no_blocks");
+}
+
+TEST_F(HardSoil, BlocksThatMakeNoSenseAreRefused) {
+  const auto error = [&](double size, double swell, double fines) {
+    BlockSettings settings;
+    settings.size = size;
+    settings.swell = swell;
+    settings.fines = fines;
+    return test::error_of([&] { broken(settings); });
+  };
+  EXPECT_EQ(error(0.01, 1.0, 0.3).rfind("blocks: size is 0.01, must be at least 0.0", 0), 0U);
+  EXPECT_EQ(error(0.15, 1.5, 0.3), "blocks: swell is 1.5, must be in 0 .. 1");
+  EXPECT_EQ(error(0.15, 1.0, 1.0), "blocks: fines is 1, must be in 0 .. 1");
+}
+
 TEST_F(SceneTest, CalibrationDigsInTheSimulatorGiven) {
   CalibrationOptions options;
   options.densities_percent = {0.0, 30.0, 60.0, 90.0};

@@ -180,10 +180,10 @@ TEST(RelativeDensity, ErrorOfTheFactorBecomesTheKnownErrorOfDensity) {
   for (const FivePointRow& row : five_points) {
     SCOPED_TRACE(row.d);
     const Measured for_line{row.k, row.k * row.line_error_percent / 100.0};
-    EXPECT_NEAR(relative_density(law_of(paper_line()), for_line).sd_percent, 5.0, 0.03);
+    EXPECT_NEAR(relative_density(law_of(paper_line()), for_line).sd_given_law_percent, 5.0, 0.03);
     const Measured for_closed{row.k, row.k * row.closed_error_percent / 100.0};
     const RelativeDensity closed = relative_density(law_of(paper_closed_form()), for_closed);
-    EXPECT_NEAR(closed.sd_percent, 5.0, 0.03);
+    EXPECT_NEAR(closed.sd_given_law_percent, 5.0, 0.03);
     EXPECT_NEAR(closed.raw_percent, row.d, 0.15);
   }
 }
@@ -206,8 +206,10 @@ TEST(RelativeDensity, AboveTheRangeIsClampedAndWarned) {
   const RelativeDensity estimate = relative_density(law_of(paper_line()), {1.75, 0.01});
   EXPECT_EQ(estimate.percent, 100.0);
   EXPECT_NEAR(estimate.raw_percent, 129.8775, 1e-9);
+  // One-sided, and as wide as the law is off.
   EXPECT_EQ(estimate.interval_percent[1], 100.0);
-  EXPECT_EQ(estimate.interval_percent[0], 100.0);
+  EXPECT_NEAR(estimate.sd_percent, std::hypot(29.8775, 1.6157), 1e-9);
+  EXPECT_NEAR(estimate.interval_percent[0], 100.0 - 1.96 * estimate.sd_percent, 1e-9);
   EXPECT_FALSE(estimate.trustworthy);
   ASSERT_EQ(estimate.warnings.size(), 1u);
   EXPECT_EQ(estimate.warnings[0].code, "density_above_range");
@@ -316,6 +318,43 @@ TEST_F(LawFile, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(std::get<DensityClosedForm>(load(to_json(made)).form).A, 1.0 / 3.0);
   made.use = "line";
   EXPECT_EQ(std::get<DensityLine>(load(to_json(made)).form).a, 160.0);
+}
+
+TEST_F(LawFile, WhatItWasMeasuredOnIsReadBack) {
+  DensityCalibration made = calibration();
+  EXPECT_FALSE(load(to_json(made)).path);  // files without these keys are read too
+  made.soil = "loam";
+  made.machine = "zx120";
+  made.simulator = "height-map 2";
+  made.path = {1.0, 0.5, 2.5};
+  made.any_path = true;
+  std::get<DensityClosedForm>(made.forms[2].form).residual_growth = 0.5;
+  for (const DensityLaw& law : {load(to_json(made)), excavplan::law_of(made)}) {
+    EXPECT_EQ(law.soil, "loam");
+    EXPECT_EQ(law.machine, "zx120");
+    EXPECT_EQ(law.simulator, "height-map 2");
+    EXPECT_EQ(law.path, made.path);
+    EXPECT_TRUE(law.any_path);
+    EXPECT_NEAR(residual_sd_at(law.form, 50.0), 0.75, 1e-12);
+    EXPECT_NEAR(residual_sd_at(law.form, 0.0), 0.375, 1e-12);
+    EXPECT_NEAR(residual_sd_at(law.form, 130.0), 1.125, 1e-12);
+  }
+}
+
+TEST(DensityFit, ScatterIsThatOfTheDigsAndGrowsWithThem) {
+  const DensityClosedForm exact = paper_closed_form();
+  Random random(5);
+  std::vector<BulkingSample> digs;
+  for (int i = 0; i < 4000; ++i) {
+    const double d = random.uniform(5.0, 95.0);
+    const double error = (3.0 + 3.0 * d / 100.0) * random.normal();
+    digs.push_back({bulking_of_density(exact, d + error), d});
+  }
+  DensityForm form = exact;
+  set_scatter(form, digs);
+  EXPECT_NEAR(residual_sd_at(form, 50.0), 4.5, 0.2);
+  EXPECT_NEAR(residual_sd_at(form, 0.0), 3.0, 0.4);
+  EXPECT_NEAR(residual_sd_at(form, 100.0), 6.0, 0.4);
 }
 
 TEST_F(LawFile, EveryFormIsFittedWrittenAndReadUnderItsKey) {

@@ -3,14 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
-
-#include <Eigen/Geometry>
-
 #include <excavplan/ground/height_map.hpp>
+
 #include "base/random.hpp"
+#include "simulation/block_heap.hpp"
 
 /// @file
 /// Heaps for tests whose solids are known: blocks dropped one by one, which roll down to where they
@@ -28,64 +25,6 @@ struct Heap {
   double voids() const { return envelope() - solids; }
 };
 
-/// A box in some attitude as a field of lower and upper surfaces about its centre.
-class Block {
- public:
-  Block(const Eigen::Vector3d& half_edges, const Eigen::Quaterniond& attitude) {
-    const Eigen::Matrix3d turn = attitude.toRotationMatrix().transpose();
-    const auto reach = static_cast<int>(half_edges.norm() / fine_cell);
-    for (int col = -reach; col <= reach; ++col) {
-      for (int row = -reach; row <= reach; ++row) {
-        const Eigen::Vector3d start = turn * Eigen::Vector3d(col * fine_cell, row * fine_cell, 0.0);
-        const Eigen::Vector3d way = turn.col(2);
-        double low = -1e9;
-        double high = 1e9;
-        for (int axis = 0; axis < 3; ++axis) {
-          const double a = (-half_edges(axis) - start(axis)) / way(axis);
-          const double b = (half_edges(axis) - start(axis)) / way(axis);
-          low = std::max(low, std::min(a, b));
-          high = std::min(high, std::max(a, b));
-        }
-        if (low < high) columns_.push_back({row, col, low, high});
-      }
-    }
-  }
-
-  /// Height of its centre where it comes to rest above a cell; infinite over the border.
-  double rest(const Eigen::ArrayXXd& top, Eigen::Index row, Eigen::Index col) const {
-    double height = -1e9;
-    for (const Column& c : columns_) {
-      const Eigen::Index r = row + c.row;
-      const Eigen::Index q = col + c.col;
-      if (r < 0 || q < 0 || r >= top.rows() || q >= top.cols()) return 1e9;
-      height = std::max(height, top(r, q) - c.low);
-    }
-    return height;
-  }
-  void place(Eigen::ArrayXXd& top, Eigen::Index row, Eigen::Index col) const {
-    const double height = rest(top, row, col);
-    for (const Column& c : columns_) {
-      double& cell = top(row + c.row, col + c.col);
-      cell = std::max(cell, height + c.high);
-    }
-  }
-
- private:
-  struct Column {
-    int row;
-    int col;
-    double low;
-    double high;
-  };
-  std::vector<Column> columns_;
-};
-
-inline Eigen::Quaterniond random_attitude(Random& random) {
-  Eigen::Quaterniond attitude(random.normal(), random.normal(), random.normal(), random.normal());
-  attitude.normalize();
-  return attitude;
-}
-
 struct BlockHeapOptions {
   double size = 0.20;    ///< mean edge of a block [m]
   double spread = 0.25;  ///< of the logarithm of the edges [-]
@@ -95,36 +34,6 @@ struct BlockHeapOptions {
   double crumbs = 0.0;   ///< share of the voids between blocks that fine soil fills [-]
   double cover = 0.0;    ///< fine soil evens out what is narrower than this [m]
 };
-
-/// A place where a block rests.
-struct Rest {
-  Eigen::Index row = 0;
-  Eigen::Index col = 0;
-  double height = 1e9;
-};
-
-/// Rolls down in steps of half a block for as long as that is steeper than the repose.
-inline Rest rolled_down(const Eigen::ArrayXXd& top, const Block& block, Rest at,
-                        const BlockHeapOptions& options) {
-  const auto step = static_cast<Eigen::Index>(std::max(1.0, 0.5 * options.size / fine_cell));
-  for (int rolls = 0; rolls < 100; ++rolls) {
-    Rest best = at;
-    double steepest = options.repose;
-    for (const auto& [r, c] :
-         {std::array{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
-      Rest next{at.row + r * step, at.col + c * step, 0.0};
-      next.height = block.rest(top, next.row, next.col);
-      const double away = static_cast<double>(step) * fine_cell * std::hypot(r, c);
-      if ((at.height - next.height) / away > steepest) {
-        steepest = (at.height - next.height) / away;
-        best = next;
-      }
-    }
-    if (best.height == at.height) return at;
-    at = best;
-  }
-  return at;
-}
 
 /// Fine soil in what lies lower than the mean of its surroundings.
 inline void cover(Heap& heap, double width) {
@@ -146,35 +55,14 @@ inline Heap block_heap(const BlockHeapOptions& options, std::uint64_t seed) {
   Random random(seed, 77);
   Heap heap;
   heap.fine = flat_ground(heap_ground, fine_cell);
-  Eigen::ArrayXXd& top = heap.fine.z;
-  const double drop_radius = 0.5 * std::cbrt(options.solids);
+  const double centre = 0.5 * static_cast<double>(heap.fine.z.rows());
+  const double scatter = 0.5 * std::cbrt(options.solids) / fine_cell;
+  const BlockDrop drop = {options.size, options.spread, options.repose, options.tries};
   while (heap.solids < options.solids) {
-    const double size = options.size * std::exp(options.spread * random.normal());
-    Eigen::Vector3d half;
-    for (int axis = 0; axis < 3; ++axis) half(axis) = 0.5 * size * random.uniform(0.7, 1.3);
-    const double centre = 0.5 * static_cast<double>(top.rows());
-    const double scatter = drop_radius / fine_cell;
-    Rest at{static_cast<Eigen::Index>(centre + scatter * random.normal()),
-            static_cast<Eigen::Index>(centre + scatter * random.normal()), 1e9};
-    Block block(half, random_attitude(random));
-    at.height = block.rest(top, at.row, at.col);
-    if (at.height > 1e8) continue;
-    at = rolled_down(top, block, at, options);
-    Rest best = at;
-    Block resting = block;
-    for (int attempt = 0; attempt < options.tries; ++attempt) {
-      const double jitter = 1.2 * size / fine_cell;
-      const Block other(half, random_attitude(random));
-      Rest next{at.row + static_cast<Eigen::Index>(jitter * random.uniform(-1.0, 1.0)),
-                at.col + static_cast<Eigen::Index>(jitter * random.uniform(-1.0, 1.0)), 0.0};
-      next.height = other.rest(top, next.row, next.col);
-      if (next.height < best.height) {
-        best = next;
-        resting = other;
-      }
-    }
-    resting.place(top, best.row, best.col);
-    heap.solids += 8.0 * half.prod();
+    const BlockShape shape = drawn_block(drop, random);
+    const double row = centre + scatter * random.normal();
+    const double col = centre + scatter * random.normal();
+    if (drop_block(heap.fine, shape, {row, col}, drop, random)) heap.solids += shape.volume();
   }
   heap.solids += options.crumbs * heap.voids();
   if (options.cover > 0.0) cover(heap, options.cover);

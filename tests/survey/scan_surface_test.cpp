@@ -115,6 +115,48 @@ TEST(ScanSurface, IsThatOfTheWholeCloudToTheByteHoweverItIsRead) {
   }
 }
 
+TEST(ScanSurface, KeepsAnEvenChoiceOfManyPointsOfACell) {
+  const Rectangle patch{0.0, 0.0, 0.3, 0.2};
+  Points points = sampled(level, patch, 60000, 0.005, 3);
+  for (std::size_t i = 0; i < points.size(); ++i) {  // a drift along the file
+    points[i].z() += 0.01 * static_cast<double>(i) / 60000.0;
+  }
+  const Folder folder;
+  folder.write("all.ply", points, CloudFormat{"ply", true});
+  folder.write("a.ply", {points.begin(), points.begin() + 777}, CloudFormat{"ply", true});
+  folder.write("b.ply", {points.begin() + 777, points.end()}, CloudFormat{"ply", true});
+  const Surface whole = survey_surface(scan_of({folder.file("all.ply")}), patch);
+  EXPECT_TRUE(same_surface(
+      whole, survey_surface(scan_of({folder.file("a.ply"), folder.file("b.ply")}), patch)));
+  RasterOptions options;
+  options.memory = 10000;
+  EXPECT_TRUE(
+      same_surface(whole, survey_surface(scan_of({folder.file("all.ply")}), patch, options)));
+  EXPECT_NEAR(whole.points.sum(), 60000, 300);  // all but outliers count
+  for (Eigen::Index i = 0; i < whole.height.z.size(); ++i) {
+    EXPECT_NEAR(whole.height.z(i), 0.005, 4.0 * std::sqrt(whole.variance(i)));
+  }
+}
+
+TEST(ScanSurface, GridStartsAtTheNode) {
+  RasterOptions options;
+  options.cell_size = 0.1;
+  options.node = {0.03, -0.04};
+  const Folder folder;
+  const Scan scan = scan_of({folder.write("a.pcd", sampled(level, field, 20000, 0.0, 1))});
+  const Surface surface = survey_surface(scan, {0.03, 0.06, 1.0, 1.0}, options);
+  EXPECT_NEAR(surface.height.origin.x(), 0.03, 1e-12);
+  EXPECT_NEAR(surface.height.origin.y(), 0.06, 1e-12);
+  EXPECT_EQ(surface.height.z.cols(), 10);
+}
+
+TEST(ScanSurface, OutliersAreFoundWhereCellsHoldTwoPoints) {
+  Points points = sampled(level, field, 1200, 0.005, 5);
+  for (std::size_t i = 0; i < points.size(); i += 60) points[i].z() += 0.5;
+  const Surface surface = surface_of(points, field, 0.1);
+  EXPECT_LT(surface.height.z.isNaN().select(0.0, surface.height.z).abs().maxCoeff(), 0.05);
+}
+
 TEST(ScanSurface, DoesNotDependOnTheNumberOfThreads) {
   const Folder folder;
   std::vector<Scan> scans;
@@ -414,6 +456,15 @@ TEST(ScanOutline, OfNothingIsUnknown) {
   EXPECT_EQ(seen.finite_points, 0u);
   EXPECT_FALSE(seen.extent);
   EXPECT_TRUE(std::isnan(seen.density));
+}
+
+TEST(SurveyCell, HoldsTwoPointsOfTheSparsestScan) {
+  ScanOutline sparse;
+  sparse.extent = Rectangle{0.0, 0.0, 10.0, 6.0};
+  sparse.density = 200.0;
+  EXPECT_DOUBLE_EQ(survey_cell({sparse}), 0.1);
+  sparse.density = 1e5;
+  EXPECT_DOUBLE_EQ(survey_cell({sparse}), 0.05);
 }
 
 TEST(CellFor, HoldsTwelvePointsOfTheSparsestScan) {

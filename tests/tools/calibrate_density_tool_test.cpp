@@ -62,6 +62,24 @@ TEST_F(Tools, CalibrateDensityNamesTheSimulatorItDug) {
   EXPECT_NE(number(section, "/line/a"), number(usual, "/line/a"));
 }
 
+TEST_F(Tools, CalibrateDensitySaysOnWhichDigsTheLawIs) {
+  const json any = answer("calibrate-density", {"--densities", "0:25:100"});
+  EXPECT_EQ(any["soil"], "loam");
+  EXPECT_EQ(any["machine"], "zx120");
+  EXPECT_TRUE(contains(any["simulator"], "height-map"));
+  EXPECT_EQ(any["any_path"], true);
+  EXPECT_EQ(any["scatter"]["draws"], 100);
+  const json one = answer("calibrate-density", {"--densities", "0:25:100", "--path",
+                                                "45deg,0.35m,1.5m", "--draws", "40"});
+  EXPECT_EQ(one["path"], any["path"]);
+  EXPECT_EQ(one["any_path"], false);
+  EXPECT_LT(number(one, "/closed_form_as_measured/residual_sd_percent"),
+            0.8 * number(any, "/closed_form_as_measured/residual_sd_percent"));
+  EXPECT_EQ(one["closed_form_as_measured"]["A"], any["closed_form_as_measured"]["A"]);
+  const json none = answer("calibrate-density", {"--densities", "0:25:100", "--draws", "0"});
+  EXPECT_LT(number(none, "/closed_form_as_measured/residual_sd_percent"), 0.1);
+}
+
 TEST_F(BadInput, TablesThatHoldNoSamplesAreRefused) {
   refused(3, "letter.txt: ", "calibrate-density", {"--samples", letter});
   const std::string one = folder.write("one.csv", "bulking_factor,density_percent\n1.1,20\n");

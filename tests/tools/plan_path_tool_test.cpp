@@ -353,11 +353,47 @@ TEST_F(Tools, ADensityByTheLawOfAnotherSoilIsWarnedOf) {
 
 TEST_F(Tools, PlanTakesTheResultOfAnEstimate) {
   const ProgramResult estimate =
-      run_program("estimate-density", quickstart(folder) + Words{"--json"});
+      run_program("estimate-density", quickstart(folder) + Words{"--json", "--soil", "loam"});
   const std::string file = folder.write("result.json", estimate.out);
   const json plan = answer("plan-path", {"--density-from", file, "--strict"});
   EXPECT_EQ(plan.at("density_percent"), json::parse(estimate.out).at("density_percent"));
   EXPECT_EQ(plan.at("warnings"), json::array());
+}
+
+TEST_F(Tools, ADensityMeasuredElsewhereIsWarnedOf) {
+  const auto result = [&](const std::string& extent) {
+    return folder.write("result.json", R"({"density_percent": 40, "zones": [
+        {"kind": "dump", "extent_m": [5, 3, 6, 4]}, {"kind": "dig", "extent_m": )" +
+                                           extent + "}]}");
+  };
+  const Words ground = {"--terrain", shipped("quickstart/before.pcd")};
+  const auto plan = [&](const std::string& file, const Words& more) {
+    return answer("plan-path", Words{"--density-from", file} + more);
+  };
+  const std::string near = result("[4.5, -0.5, 6.1, 0.5]");
+  EXPECT_FALSE(warns(plan(near, ground), "density_from_elsewhere"));
+  const std::string far = result("[4.5, 19.5, 6.1, 20.5]");
+  EXPECT_TRUE(warns(plan(far, ground), "density_from_elsewhere"));
+  EXPECT_FALSE(warns(plan(far, {}), "density_from_elsewhere"));  // whose ground is not known
+  for (const char* odd : {"[1, 2]", "\"here\"", "[1, 2, 3, null]", "null"}) {
+    EXPECT_FALSE(warns(plan(result(odd), ground), "density_from_elsewhere")) << odd;
+  }
+}
+
+TEST_F(Tools, ADensityAboveTheRangeIsPlannedWithAllItMayBe) {
+  const std::string law = folder.file("stiff.json");
+  const std::string digs = folder.write(
+      "stiff.csv", "bulking_factor,density_percent\n1.00,40\n1.08,60\n1.14,80\n1.20,100\n");
+  answer("calibrate-density", {"--samples", digs, "--out", law});
+  const json estimate = answer("estimate-density", quickstart(folder) + Words{"--law", law});
+  EXPECT_EQ(number(estimate, "/density_percent"), 100.0);
+  const double excess = number(estimate, "/density_raw_percent") - 100.0;
+  EXPECT_GT(excess, 3.0);
+  EXPECT_GE(number(estimate, "/density_sd_percent"), excess);
+  EXPECT_LT(number(estimate, "/density_interval_percent/0"), 100.0 - excess);
+  const json plan =
+      answer("plan-path", {"--density-from", folder.write("hard.json", estimate.dump())});
+  EXPECT_EQ(plan["density_sd_percent"], estimate["density_sd_percent"]);
 }
 
 TEST_F(Tools, PlanWarnsOfAnEstimateThatShouldNotBeTrusted) {

@@ -27,12 +27,23 @@ TEST(Colours, RedFallsBlueRisesWhiteStays) {
   EXPECT_EQ(diverging_colour(-9.0), diverging_colour(-1.0));
 }
 
-TEST(RoundUp, FindsTheNextRoundNumber) {
-  EXPECT_DOUBLE_EQ(round_up(0.41), 0.5);
-  EXPECT_DOUBLE_EQ(round_up(0.5), 0.5);
-  EXPECT_DOUBLE_EQ(round_up(81.0), 100.0);
-  EXPECT_EQ(round_up(0.0), 1.0);
-  EXPECT_EQ(round_up(std::numeric_limits<double>::quiet_NaN()), 1.0);
+TEST(ColourBands, StepByOneTwoFiveUpToTheLargest) {
+  const std::vector<double> bands = colour_bands(0.01, 0.41);
+  const std::vector<double> expected = {0.01, 0.02, 0.05, 0.1, 0.2};
+  ASSERT_EQ(bands.size(), expected.size());
+  for (std::size_t i = 0; i < bands.size(); ++i) EXPECT_NEAR(bands[i], expected[i], 1e-12);
+  EXPECT_NEAR(colour_bands(0.013, 10.0).front(), 0.02, 1e-12);
+  EXPECT_EQ(colour_bands(0.01, 0.0).size(), 1U);
+  EXPECT_EQ(colour_bands(0.01, std::numeric_limits<double>::quiet_NaN()).empty(), false);
+}
+
+TEST(ColourBands, ShowCentimetresBesideDecimetres) {
+  const std::vector<double> bands = colour_bands(0.01, 0.41);
+  EXPECT_EQ(band_colour(0.009, bands), diverging_colour(0.0));
+  EXPECT_EQ(band_colour(-0.03, bands), diverging_colour(-0.4));
+  EXPECT_EQ(band_colour(-0.06, bands), diverging_colour(-0.6));
+  EXPECT_EQ(band_colour(0.4, bands), diverging_colour(1.0));
+  EXPECT_EQ(band_colour(9.0, bands), diverging_colour(1.0));
 }
 
 // 100 m in x over 720 px is the widest that fits: 7.2 px a metre, and 10 m in y make 90 px (the
@@ -86,8 +97,8 @@ TEST(HeatMap, DrawsRunsOfCellsAndLeavesUnknownOnesOut) {
   HeightMap map = flat_ground({0.0, 0.0, 0.4, 0.1}, 0.1);
   map.z << 0.5, 0.5, std::numeric_limits<double>::quiet_NaN(), -0.5;
   Panel panel("", "x", "y");
-  panel.heat_map(map, 0.5);
-  const std::string svg = to_svg({"", {panel}, ColourBar{0.5, "change [m]"}, {}});
+  panel.heat_map(map, {0.5});
+  const std::string svg = to_svg({"", {panel}, ColourBar{{0.5}, "change [m]"}, {}});
   EXPECT_NE(svg.find("<path fill=\"#053061\" d=\"M0 0h2v1h-2z\"/>"), std::string::npos);
   EXPECT_NE(svg.find("<path fill=\"#67001f\" d=\"M3 0h1v1h-1z\"/>"), std::string::npos);
   EXPECT_EQ(count(svg, "v1h-"), 2U);
@@ -98,29 +109,121 @@ TEST(HeatMap, LargeMapsStaySmallFiles) {
   HeightMap map = flat_ground({0.0, 0.0, 200.0, 150.0}, 0.1);
   for (Eigen::Index i = 0; i < map.z.size(); ++i) map.z(i) = std::sin(static_cast<double>(i));
   Panel panel("", "x", "y");
-  panel.heat_map(map, 1.0);
+  panel.heat_map(map, colour_bands(0.1, 1.0));
   EXPECT_LT(to_svg({"", {panel}, {}, {}}).size(), 4000000U);
 }
 
+/// Level ground of 6 x 4 m with a hole, a spill beside it, a heap and a rut that was left out.
+struct Survey {
+  ChangeSheet sheet;
+
+  Survey() {
+    AreaChange area;
+    area.difference = flat_ground({0.0, 0.0, 6.0, 4.0}, 0.1);
+    area.zone = Eigen::ArrayXXi::Constant(40, 60, -1);
+    area.noise_sd = 0.01;
+    sheet.change.areas = {area};
+    add(ZoneKind::dig, {2.0, 1.0, 3.0, 1.6}, -0.3);
+    add(ZoneKind::spill, {2.0, 0.8, 3.0, 1.0}, 0.05);
+    add(ZoneKind::dump, {2.2, 2.6, 3.0, 3.4}, 0.4);
+    add(ZoneKind::other, {5.6, 0.2, 5.9, 3.8}, -0.03);
+    sheet.before = {flat_ground({0.0, 0.0, 6.0, 4.0}, 0.1, 10.0)};
+  }
+
+  void add(ZoneKind kind, const Rectangle& where, double height) {
+    AreaChange& area = sheet.change.areas[0];
+    ChangeZone zone;
+    zone.kind = kind;
+    zone.extent = where;
+    for (Eigen::Index col = 0; col < 60; ++col) {
+      for (Eigen::Index row = 0; row < 40; ++row) {
+        if (!where.contains(area.difference.x(col), area.difference.y(row))) continue;
+        area.difference.z(row, col) = height;
+        area.zone(row, col) = static_cast<int>(sheet.change.zones.size());
+        zone.volume.value += 0.01 * height;
+      }
+    }
+    sheet.change.zones.push_back(zone);
+  }
+};
+
+/// The place of a text on the page [px].
+Eigen::Vector2d place_of(const std::string& svg, const std::string& text) {
+  const auto at = svg.rfind("<text", svg.find(">" + text));
+  if (at == std::string::npos) return {-1.0, -1.0};
+  const auto number = [&](const char* name) {
+    return std::stod(svg.substr(svg.find(name, at) + std::string(name).size()));
+  };
+  return {number("x=\""), number("y=\"")};
+}
+
 TEST(HeightChangeFigure, NamesEachZoneWithItsVolume) {
-  VolumeChange change;
-  AreaChange area;
-  area.difference = flat_ground({0.0, 0.0, 1.0, 1.0}, 0.1);
-  area.zone = Eigen::ArrayXXi::Constant(10, 10, -1);
-  area.difference.z.block(2, 2, 3, 3) = -0.3;
-  area.zone.block(2, 2, 3, 3) = 0;
-  area.difference.z.block(7, 7, 2, 2) = 0.4;
-  area.zone.block(7, 7, 2, 2) = 1;
-  change.areas = {area};
-  change.zones.resize(2);
-  change.zones[0].kind = ZoneKind::dig;
-  change.zones[0].volume.value = -0.027;
-  change.zones[1].kind = ZoneKind::dump;
-  change.zones[1].volume.value = 0.016;
-  const std::string svg = height_change_figure(change, {"bulking factor 0.59"});
-  EXPECT_NE(svg.find(">hole 0.0270 m³</text>"), std::string::npos);
-  EXPECT_NE(svg.find(">heap 0.0160 m³</text>"), std::string::npos);
+  Survey survey;
+  survey.sheet.lines = {"bulking factor 0.59"};
+  const std::string svg = height_change_figure(survey.sheet);
+  EXPECT_NE(svg.find(">hole 0.180 m³</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">heap 0.256 m³</text>"), std::string::npos);
   EXPECT_NE(svg.find(">bulking factor 0.59</text>"), std::string::npos);
+  EXPECT_EQ(svg, height_change_figure(survey.sheet));
+}
+
+TEST(HeightChangeFigure, LabelOfSpillDoesNotLieOnTheHole) {
+  const std::string svg = height_change_figure(Survey().sheet);
+  EXPECT_GT(place_of(svg, "spill 0.0100 m³").y(), place_of(svg, "hole 0.180 m³").y() + 30.0);
+}
+
+TEST(HeightChangeFigure, ShowsSectionsThroughHoleAndHeap) {
+  const Survey survey;
+  const std::string svg = height_change_figure(survey.sheet);
+  EXPECT_NE(svg.find(">section through the hole, y = 1.25 m</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">section through the heap, "), std::string::npos);
+  for (const char* legend : {"ground before", "ground after", "95 % band of a cell", "section"}) {
+    EXPECT_EQ(count(svg, ">" + std::string(legend) + "</text>"), 1U) << legend;
+  }
+  ChangeSheet without = survey.sheet;
+  without.before.clear();
+  EXPECT_EQ(height_change_figure(without).find("section"), std::string::npos);
+  EXPECT_NE(svg.find(">noise of a cell 10.0 mm</text>"), std::string::npos);
+}
+
+TEST(HeightChangeFigure, BandIsThatOfTheNoise) {
+  Survey survey;
+  const auto width = [&] {
+    const std::string svg = height_change_figure(survey.sheet);
+    const auto end = svg.find("Z\" stroke-linejoin=\"round\" fill=\"#d55e00\"");
+    const auto start = svg.rfind("M", end);
+    const std::string path = svg.substr(start + 1, end - start - 1);
+    const auto y = [&](std::size_t at) { return std::stod(path.substr(path.find(' ', at) + 1)); };
+    return y(path.rfind('L')) - y(0);  // from the first point below to the first one above
+  };
+  const double narrow = width();
+  survey.sheet.change.areas[0].noise_sd = 0.02;
+  EXPECT_GT(narrow, 5.0);
+  EXPECT_NEAR(width(), 2.0 * narrow, 0.3 * narrow);  // the axis holds the wider band too
+}
+
+TEST(HeightChangeFigure, ZoomsToWhatWasCounted) {
+  const std::string svg = height_change_figure(Survey().sheet);
+  EXPECT_EQ(svg.find("text-anchor=\"middle\">0.5</text>"), std::string::npos);  // x of the map
+  EXPECT_NE(svg.find("−0.0324 m³ around x 5.8, y 2 m"), std::string::npos);
+}
+
+TEST(HeightChangeFigure, ListsWarningsOpenChangesAndErrors) {
+  Survey survey;
+  VolumeChange& change = survey.sheet.change;
+  change.before = change.excavated = {0.18, 0.002};
+  change.dumped = {0.256, 0.003};
+  change.after = {0.266, 0.003};
+  change.spilled = {0.01, 0.001};
+  change.errors.noise = Eigen::Vector3d(4e-6, 1e-6, 9e-6).asDiagonal();
+  change.attribution = {{"a second heap 2 m off", {0.031, 0.001}, false, 0.35}};
+  survey.sheet.warnings = {{"other_change", std::string(200, 'x') + " left out"}};
+  const std::string svg = height_change_figure(survey.sheet);
+  EXPECT_NE(svg.find(">other_change:</text>"), std::string::npos);
+  EXPECT_NE(svg.find("left out, open"), std::string::npos);
+  EXPECT_NE(svg.find("a second heap 2 m off (ours: 35 %)"), std::string::npos);
+  EXPECT_NE(svg.find("noise of the cells"), std::string::npos);
+  EXPECT_EQ(svg.find("steep faces"), std::string::npos);  // there are none
 }
 
 TEST(DigFigure, ShowsEveryPhaseAndTheStart) {

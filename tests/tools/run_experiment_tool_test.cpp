@@ -82,5 +82,14 @@ TEST_F(Tools, RunExperimentDigsInTheSimulatorAsked) {
   EXPECT_GT(number(section, "/gain_percent"), 0.0);
 }
 
+TEST_F(Tools, ExperimentAlongThePathOfTheFieldTestHasALawForIt) {
+  const json result =
+      answer("run-experiment", {"--path", "1.023,0.496,2.487", "--densities", "10,40,80"});
+  for (const json& condition : result["conditions"]) {
+    EXPECT_NEAR(number(condition, "/density_estimated_percent"),
+                number(condition, "/density_percent"), 0.2);
+  }
+}
+
 }  // namespace
 }  // namespace excavplan::test

@@ -286,5 +286,38 @@ TEST_F(BadInput, DumpPointsOnOrTooNearTheDigAreRefused) {
   refused(2, "--dump-at: '5' is not a point X,Y", "simulate-dig", dig("5"));
 }
 
+TEST_F(Tools, BlocksAreStatedAndOffByDefault) {
+  auto held_down = json::parse(content_of(shipped("machines/zx120.json")));
+  held_down.erase("body");  // dense soil would lift the machine
+  const Words dig = {"--density", "85", "--machine", folder.write("zx120.json", held_down.dump())};
+  EXPECT_TRUE(answer("simulate-dig", dig)["blocks"].is_null());
+  const json broken = answer("simulate-dig", dig + Words{"--blocks", "--block-size", "12cm"});
+  EXPECT_GT(number(broken, "/blocks/count"), 50.0);
+  expect_keys(broken, "number", {"blocks/soil_m3", "blocks/voids_m3", "blocks/count"});
+  EXPECT_NEAR(number(broken, "/volume/after_m3"),
+              number(broken, "/blocks/soil_m3") + number(broken, "/blocks/voids_m3"), 1e-9);
+  EXPECT_NEAR(number(broken, "/solids_after_kg"), number(broken, "/solids_before_kg"), 1e-6);
+  const json soft = answer("simulate-dig", {"--density", "40", "--blocks"});
+  EXPECT_TRUE(soft["blocks"].is_null());
+  EXPECT_TRUE(warns(soft, "no_blocks"));
+}
+
+TEST_F(Tools, CamerasStandWhereTheyAreTold) {
+  const std::string one = folder.file("one.pcd");
+  const std::string two = folder.file("two.pcd");
+  const Words over_heap = {"--camera", "5.5,3,2.5,5.5,4,0"};
+  answer("simulate-dig", Words{"--density", "40", "--after", one} + over_heap);
+  answer("simulate-dig", Words{"--density", "40", "--after", two} + over_heap +
+                             Words{"--camera=4.5,-1,2.5,4.9,0,0"});
+  EXPECT_GT(fs::file_size(two), 1.7 * static_cast<double>(fs::file_size(one)));
+}
+
+TEST_F(BadInput, CamerasThatMakeNoSense) {
+  refused(2, "is not a place and a target X,Y,Z,TX,TY,TZ", "simulate-dig",
+          {"--density", "40", "--camera", "5,3,2.5"});
+  refused(2, "distance from position to target", "simulate-dig",
+          {"--density", "40", "--before", folder.file("b.pcd"), "--camera", "5,3,2,5,3,2"});
+}
+
 }  // namespace
 }  // namespace excavplan::test

@@ -126,6 +126,16 @@ void Arguments::option(const std::string& name, Eigen::Vector2d& value, const st
        false, [&value, name](const std::string& text) { value = parse_point("--" + name, text); }});
 }
 
+void Arguments::option(const std::string& name, std::vector<CameraPlace>& value,
+                       const std::string& help) {
+  add({name, "X,Y,Z,TX,TY,TZ", help + " [m]", "", false, false,
+       [&value, name](const std::string& text) {
+         const auto at = parse_lengths("--" + name, text, 6, "a place and a target X,Y,Z,TX,TY,TZ");
+         value.push_back({{at[0], at[1], at[2]}, {at[3], at[4], at[5]}});
+       }});
+  entries_.back().repeated = true;
+}
+
 void Arguments::option(const std::string& name, std::optional<Eigen::Vector3d>& value,
                        const std::string& help) {
   add({name, "X,Y,Z", help + " [m]", "", false, false,

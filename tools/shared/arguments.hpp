@@ -12,6 +12,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_parameters.hpp>
+#include <excavplan/simulation/scene.hpp>
 
 #include "shared/quantity.hpp"
 
@@ -49,7 +50,8 @@ class Arguments {
     bool positional = false;
     bool required = false;
     Assign assign;
-    bool output = false;  ///< a file to write
+    bool output = false;    ///< a file to write
+    bool repeated = false;  ///< may be given several times, `assign` is called for each
   };
 
   void positional(const std::string& name, std::string& value, const std::string& help);
@@ -70,6 +72,8 @@ class Arguments {
   void option(const std::string& name, DigParameters& value, const std::string& help);
   /// "x,y"
   void option(const std::string& name, Eigen::Vector2d& value, const std::string& help);
+  /// Places of cameras, "x,y,z,tx,ty,tz"; may be given several times.
+  void option(const std::string& name, std::vector<CameraPlace>& value, const std::string& help);
   /// "x,y,z"
   void option(const std::string& name, std::optional<Eigen::Vector3d>& value,
               const std::string& help);

@@ -7,6 +7,7 @@
 
 #include <excavplan/ground/bulking.hpp>
 
+#include "shared/figures.hpp"
 #include "shared/quantity.hpp"
 #include "shared/results.hpp"
 
@@ -96,6 +97,35 @@ const char* name(VolumeMethod method) {
   return method == VolumeMethod::paper ? "paper" : "surface";
 }
 
+nlohmann::ordered_json density_json(const RelativeDensity& density) {
+  return {{"density_percent", density.percent},
+          {"density_sd_percent", density.sd_percent},
+          {"density_interval_percent", density.interval_percent}};
+}
+
+nlohmann::ordered_json soils_json(const std::vector<SoilAnswer>& soils) {
+  auto list = nlohmann::ordered_json::array();
+  for (const SoilAnswer& soil : soils) {
+    nlohmann::ordered_json json = {{"name", soil.name}, {"weight", soil.weight}};
+    json.update(density_json(soil.density));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+nlohmann::ordered_json payload_json(const PayloadDensity& payload) {
+  return {{"mass_kg", payload.mass.value},
+          {"mass_sd_kg", payload.mass.sd},
+          {"dug_mass_kg", payload.dug_mass.value},
+          {"bulk_density_kg_m3", payload.bulk_density.value},
+          {"bulk_density_sd_kg_m3", payload.bulk_density.sd},
+          {"density_percent", payload.density_percent.value},
+          {"density_sd_percent", payload.density_percent.sd},
+          {"law_density_percent", payload.law_density_percent.value},
+          {"law_density_sd_percent", payload.law_density_percent.sd},
+          {"disagreement_sds", payload.disagreement}};
+}
+
 nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
   nlohmann::ordered_json json;
   json["volume"] = volumes_json(estimate.change);
@@ -104,16 +134,16 @@ nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
   json["bulking_factor_sd_scans"] = nullptr;
   json["density_percent"] = nullptr;
   json["density_raw_percent"] = nullptr;
+  json["density_sd_given_law_percent"] = nullptr;
   json["density_sd_percent"] = nullptr;
   json["density_interval_percent"] = nullptr;
   if (estimate.bulking) {
     json["bulking_factor"] = estimate.bulking->value;
     json["bulking_factor_sd"] = estimate.bulking->sd;
     json["bulking_factor_sd_scans"] = bulking_errors(estimate.change).scans;
-    json["density_percent"] = estimate.density->percent;
     json["density_raw_percent"] = estimate.density->raw_percent;
-    json["density_sd_percent"] = estimate.density->sd_percent;
-    json["density_interval_percent"] = estimate.density->interval_percent;
+    json["density_sd_given_law_percent"] = estimate.density->sd_given_law_percent;
+    json.update(density_json(*estimate.density));
     json["density_without_fallback_percent"] = estimate.density_without_fallback;
   }
   json["bulking_factor_corrected"] = nullptr;
@@ -122,6 +152,11 @@ nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
     json["bulking_factor_corrected"] = estimate.corrected->value;
     json["bulking_factor_corrected_sd"] = estimate.corrected->sd;
   }
+  json["soils"] = soils_json(estimate.soils);
+  json["any_soil"] = nullptr;
+  if (estimate.any_soil) json["any_soil"] = density_json(*estimate.any_soil);
+  json["payload"] = nullptr;
+  if (estimate.payload) json["payload"] = payload_json(*estimate.payload);
   json["fallback"] = estimate.fallback ? fallback_json(*estimate.fallback) : nullptr;
   json["blocks"] = blocks_json(estimate.blocks);
   json["law"] = estimate.law.name;
@@ -142,6 +177,17 @@ nlohmann::ordered_json survey_json(const DensityEstimate& estimate) {
   json["attribution"] = attribution_json(estimate.change);
   json["readings"] = readings_json(estimate);
   return json;
+}
+
+/// "loam 41.0 ± 4.1, sand 69.1 ± 7.0; any of them 52.3 ± 17.4 %"
+std::string soils_text(const DensityEstimate& estimate) {
+  std::string text;
+  for (const SoilAnswer& soil : estimate.soils) {
+    text += (text.empty() ? "" : ", ") + soil.name + " " +
+            readable(soil.density.percent, soil.density.sd_percent);
+  }
+  const RelativeDensity& any = *estimate.any_soil;
+  return text + "; any of them " + readable(any.percent, any.sd_percent) + " %";
 }
 
 std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
@@ -168,35 +214,47 @@ std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
     lines.push_back("corrected  " + readable(estimate.corrected->value, estimate.corrected->sd) +
                     ", bulking factor corrected for this");
   }
+  if (const auto& payload = estimate.payload) {
+    lines.push_back(
+        "payload    " + readable(payload->bulk_density.value, payload->bulk_density.sd) +
+        " kg/m3 in place, density " +
+        readable(payload->density_percent.value, payload->density_percent.sd) + " %; by the law " +
+        readable(payload->law_density_percent.value, payload->law_density_percent.sd) + " %");
+  }
   lines.push_back("density    " + readable(d.percent, d.sd_percent) + " %, 95 % interval " +
                   readable(d.interval_percent[0]) + " .. " + readable(d.interval_percent[1]) +
                   " %");
   lines.push_back("law        " + estimate.law.name +
                   (estimate.trustworthy ? "" : " (NOT TRUSTWORTHY)"));
+  if (estimate.any_soil) lines.push_back("in soils   " + soils_text(estimate));
+  lines.emplace_back("holds for  ground near this hole that is of the same soil");
   const double bias = estimate.density_without_fallback - d.raw_percent;
   if (!estimate.fallback && std::abs(bias) > 0.05) {
     lines.push_back(
         "           assumes as much fallback as in the calibration of the law; without fallback, " +
         readable(std::clamp(estimate.density_without_fallback, 0.0, 100.0)) +
-        " % (--dug-path measures it)");
+        " % (--dug-path with --dug-start measures it)");
   }
   return lines;
 }
 
 }  // namespace
 
-DensityLaw law_named(const std::string& name) {
-  return load_density_law(shipped_or_file("laws", name == "default" ? "zx120-loam" : name));
-}
-
-Outcome estimate_outcome(const DensityEstimate& estimate) {
+Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil) {
   Outcome outcome;
   outcome.json = estimate_json(estimate);
+  outcome.json["soil"] = nullptr;
+  if (soil.kind && !soil.unknown) outcome.json["soil"] = soil.kind->name;
+  outcome.json["soil_assumed"] = soil.assumed;
   outcome.json.update(survey_json(estimate));
   outcome.lines = estimate_lines(estimate);
   outcome.warnings = estimate.warnings;
   outcome.trustworthy = estimate.trustworthy;
   return outcome;
+}
+
+std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome) {
+  return height_change_figure({estimate.change, estimate.before, outcome.lines, outcome.warnings});
 }
 
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome) {

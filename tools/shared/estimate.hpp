@@ -11,10 +11,11 @@
 
 namespace excavplan::tools {
 
-/// The law of a file or a shipped one; "default" is that of the built-in simulator in loam.
-DensityLaw law_named(const std::string& name);
+/// @param soil  what was known of it
+Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);
 
-Outcome estimate_outcome(const DensityEstimate& estimate);
+/// The figure of an estimate, as SVG.
+std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome);
 
 /// Adds the result of the other method for the same scans.
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);

@@ -28,94 +28,6 @@ const char* colour(DigPhase phase) {
   return "#000000";
 }
 
-struct ZoneStyle {
-  const char* name;
-  Style outline;
-};
-
-ZoneStyle style_of(ZoneKind kind) {
-  switch (kind) {
-    case ZoneKind::dig:
-      return {"hole", {"#000000", 2.0}};
-    case ZoneKind::spill:
-      return {"spill", {"#009e73", 2.0}};
-    case ZoneKind::dump:
-      return {"heap", {"#e69f00", 2.0}};
-    case ZoneKind::other:
-      break;
-  }
-  return {"other change, excluded", {"#777777", 1.0}};
-}
-
-/// Borders between the cells of one zone and all others, as strokes.
-Points outline(const AreaChange& area, int zone) {
-  const Eigen::Index rows = area.zone.rows();
-  const Eigen::Index cols = area.zone.cols();
-  const auto inside = [&](Eigen::Index row, Eigen::Index col) {
-    return row >= 0 && row < rows && col >= 0 && col < cols && area.zone(row, col) == zone;
-  };
-  const auto corner = [&](Eigen::Index row, Eigen::Index col) -> Eigen::Vector2d {
-    return area.difference.origin +
-           area.difference.cell_size *
-               Eigen::Vector2d(static_cast<double>(col), static_cast<double>(row));
-  };
-  Points strokes;
-  for (Eigen::Index row = 0; row <= rows; ++row) {
-    for (Eigen::Index col = 0; col <= cols; ++col) {
-      const bool here = inside(row, col);
-      if (here != inside(row - 1, col)) {
-        strokes.insert(strokes.end(), {corner(row, col), corner(row, col + 1)});
-      }
-      if (here != inside(row, col - 1)) {
-        strokes.insert(strokes.end(), {corner(row, col), corner(row + 1, col)});
-      }
-    }
-  }
-  return strokes;
-}
-
-/// The largest change inside the zones; without zones the 99th percentile of all cells.
-double colour_limit(const VolumeChange& change) {
-  double largest = 0.0;
-  std::vector<double> all;
-  for (const AreaChange& area : change.areas) {
-    for (Eigen::Index i = 0; i < area.difference.z.size(); ++i) {
-      const double value = std::abs(area.difference.z(i));
-      if (!std::isfinite(value)) continue;
-      all.push_back(value);
-      if (area.zone(i) >= 0) largest = std::max(largest, value);
-    }
-  }
-  if (largest == 0.0 && !all.empty()) {
-    const auto place =
-        all.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(all.size() - 1));
-    std::nth_element(all.begin(), place, all.end());
-    largest = *place;
-  }
-  return round_up(largest);
-}
-
-void draw_zones(Panel& panel, const VolumeChange& change, const AreaChange& area) {
-  for (std::size_t i = 0; i < change.zones.size(); ++i) {
-    const ChangeZone& zone = change.zones[i];
-    const int index = static_cast<int>(i);
-    if (!(area.zone == index).any()) continue;
-    const ZoneStyle style = style_of(zone.kind);
-    panel.strokes(outline(area, index), style.outline, style.name);
-    const bool largest_of_kind =
-        std::none_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& other) {
-          return other.kind == zone.kind &&
-                 std::abs(other.volume.value) > std::abs(zone.volume.value);
-        });
-    if (zone.kind == ZoneKind::other || (zone.kind == ZoneKind::spill && !largest_of_kind))
-      continue;
-    const Eigen::Vector2d middle((zone.extent.x_min + zone.extent.x_max) / 2.0,
-                                 (zone.extent.y_min + zone.extent.y_max) / 2.0);
-    panel.label(middle,
-                std::string(style.name) + ' ' + readable(std::abs(zone.volume.value)) + " m³");
-  }
-}
-
 Points bucket_outline(const Machine& machine, const DigPose& pose) {
   const LinkPositions links = link_positions(machine, pose.joints);
   Points outline;
@@ -193,25 +105,6 @@ void draw_tip_path(Panel& panel, const DigPath& path) {
 }
 
 }  // namespace
-
-std::string height_change_figure(const VolumeChange& change,
-                                 const std::vector<std::string>& notes) {
-  Figure figure;
-  figure.title = "Height change of the ground";
-  figure.notes = notes;
-  const double limit = colour_limit(change);
-  figure.colour_bar = ColourBar{limit, "height after − before [m]"};
-  for (std::size_t i = 0; i < change.areas.size(); ++i) {
-    const AreaChange& area = change.areas[i];
-    const std::string title =
-        change.areas.size() == 1 ? "whole scene" : (i == 0 ? "dig area" : "dump area");
-    Panel panel(title + ", seen from above", "x [m]", "y [m]");
-    panel.heat_map(area.difference, limit);
-    draw_zones(panel, change, area);
-    figure.panels.push_back(panel);
-  }
-  return to_svg(figure);
-}
 
 std::string dig_figure(const Machine& machine, const DigPath& path, const DigSection& ground,
                        const std::string& title, const std::vector<std::string>& notes) {

@@ -14,8 +14,18 @@
 
 namespace excavplan::tools {
 
-/// Height change of each surveyed area with the outline of its zones; `notes` stand beside it.
-std::string height_change_figure(const VolumeChange& change, const std::vector<std::string>& notes);
+/// What the figure of a survey shows.
+struct ChangeSheet {
+  VolumeChange change;
+  std::vector<HeightMap> before;   ///< of each area, on its grid; empty: no sections
+  std::vector<std::string> lines;  ///< of the result
+  std::vector<Warning> warnings;
+};
+
+/// Height change of each surveyed area where its zones are, sections through hole and heap with the
+/// band of a cell's noise; beside them the result, what is open, what was left out, warnings, and
+/// the standard deviation of the bulking factor by source.
+std::string height_change_figure(const ChangeSheet& sheet);
 
 /// Ground in the boom plane, as boom_plane_profile() gives it.
 struct DigSection {

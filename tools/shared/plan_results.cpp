@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/plan_results.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <excavplan/error.hpp>
 
 #include "base/files.hpp"
@@ -12,6 +16,8 @@
 
 namespace excavplan::tools {
 namespace {
+
+constexpr double near_the_hole = 5.0;  // ours [m]
 
 /// @return 0 if the estimate states none
 double sd_in(const nlohmann::json& result, const std::string& file) {
@@ -106,6 +112,23 @@ std::string source_line(const DigPlan& plan) {
   return "source       " + std::string(name(plan.method)) + digs + "; start: " + plan.start_rule;
 }
 
+/// From (x, 0) to the nearest hole of an estimate [m]; 0 if it states none.
+double distance_to_hole(double x, const std::string& file) {
+  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& zone : json.value("zones", nlohmann::json())) {
+    if (!zone.is_object() || zone.value("kind", nlohmann::json()) != "dig") continue;
+    const nlohmann::json extent = zone.value("extent_m", nlohmann::json());
+    const bool numbers = std::all_of(extent.begin(), extent.end(),
+                                     [](const nlohmann::json& edge) { return edge.is_number(); });
+    if (extent.size() != 4 || !numbers) continue;
+    const double y = std::max({extent[1].get<double>(), -extent[3].get<double>(), 0.0});
+    const double beyond = std::max({extent[0].get<double>() - x, x - extent[2].get<double>(), 0.0});
+    least = std::min(least, std::hypot(beyond, y));
+  }
+  return std::isfinite(least) ? least : 0.0;
+}
+
 GroundDensity read_density(const std::string& file) {
   const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
   const auto field = json.is_object() ? json.find("density_percent") : json.end();
@@ -144,8 +167,18 @@ GroundDensity density_of(const DensityInput& input) {
   return density;
 }
 
-std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input) {
+std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input,
+                                   bool scanned_ground) {
   std::vector<Warning> warnings = plan.warnings;
+  const double away = scanned_ground && plan.dig && input.file
+                          ? distance_to_hole(plan.dig->start_x, *input.file)
+                          : 0.0;
+  if (away > near_the_hole) {
+    warnings.push_back({"density_from_elsewhere",
+                        *input.file + ": the density was measured " + readable(away) +
+                            " m from where this dig begins; it holds for ground near its hole that "
+                            "is of the same soil"});
+  }
   if (!plan.reason.empty()) warnings.push_back({"no_dig", reason_of(plan)});
   for (Warning& warning : warnings) {
     const bool of_density =

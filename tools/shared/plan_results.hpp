@@ -27,8 +27,11 @@ void check(const DensityInput& input);
 /// @throws Error (bad_file) naming file, key, value and rule
 GroundDensity density_of(const DensityInput& input);
 
-/// Those of the plan; where they are about a density from a file they name it.
-std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input);
+/// Those of the plan; where they are about a density from a file they name it. On scanned ground
+/// also density_from_elsewhere: the dig begins more than 5 m (ours) from the hole that the density
+/// was measured in.
+std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input,
+                                   bool scanned_ground);
 
 /// All keys of plan-path but the time it took; "path" is null if there is no dig.
 /// @param objective  that the dig was searched for

@@ -16,7 +16,6 @@ constexpr double font = 13.0;         // [px]
 constexpr double line_height = 18.0;  // [px]
 constexpr double character = 0.58;    // mean width of a character over the font size
 const char* const unknown_colour = "#c8c8c8";
-constexpr int colour_levels = 100;        // of a heat map, on each side of zero
 constexpr Eigen::Index most_cells = 400;  // of a heat map, a side; larger maps are averaged
 
 std::string fixed(double value, int decimals) {
@@ -96,14 +95,23 @@ HeightMap thinned(const HeightMap& map) {
   return thin;
 }
 
-/// One path per colour, in units of cells: runs of equal colour along a row.
-std::map<int, std::string> colour_runs(const HeightMap& map, double limit) {
+/// The band of a value, counted from 0 in the middle, with its sign.
+int band_of(double value, const std::vector<double>& bands) {
+  const auto beyond = std::upper_bound(bands.begin(), bands.end(), std::abs(value)) - bands.begin();
+  return static_cast<int>(value < 0.0 ? -beyond : beyond);
+}
+
+std::string colour_of_band(int band, std::size_t count) {
+  return diverging_colour(static_cast<double>(band) / static_cast<double>(count));
+}
+
+/// One path per band, in units of cells: runs of equal colour along a row.
+std::map<int, std::string> colour_runs(const HeightMap& map, const std::vector<double>& bands) {
   std::map<int, std::string> paths;
   constexpr int unknown = std::numeric_limits<int>::min();
   const auto level = [&](Eigen::Index row, Eigen::Index col) {
-    const double share = std::clamp(map.z(row, col) / limit, -1.0, 1.0);
-    return std::isfinite(map.z(row, col)) ? static_cast<int>(std::lround(share * colour_levels))
-                                          : unknown;
+    const double value = map.z(row, col);
+    return std::isfinite(value) ? band_of(value, bands) : unknown;
   };
   for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
     for (Eigen::Index col = 0; col < map.z.cols();) {
@@ -170,14 +178,14 @@ void Panel::label(const Eigen::Vector2d& at, const std::string& text) {
   shapes_.push_back({Kind::label, {at}, {}, text});
 }
 
-void Panel::heat_map(const HeightMap& map, double limit) {
+void Panel::heat_map(const HeightMap& map, const std::vector<double>& bands) {
   const Rectangle all = map.extent();
   shapes_.push_back({Kind::heat_map,
                      {{all.x_min, all.y_min}, {all.x_max, all.y_max}},
                      {"#888888", 1.0, unknown_colour},
                      map.z.isFinite().all() ? "" : "not seen",
                      thinned(map),
-                     limit});
+                     bands});
 }
 
 /// The view, or the bounds of all shapes with a small margin; never empty, never thinner than 1
@@ -220,18 +228,18 @@ class SvgWriter {
 
   std::string write() {
     const double top = figure_.title.empty() ? 14.0 : 46.0;
-    double x = 14.0;
-    double bottom = top;
-    for (const Panel& panel : figure_.panels) {
-      const Eigen::Vector2d corner = panel_at(panel, {x, top});
-      x = corner.x();
-      bottom = std::max(bottom, corner.y());
+    Eigen::Vector2d end = row_at(figure_.panels, {14.0, top}, 440.0);
+    if (figure_.colour_bar) end.x() = colour_bar({end.x() + 12.0, top + 26.0}, end.y() - 48.0);
+    for (const Panel& panel : figure_.lower) {
+      for (const Panel::Shape& shape : panel.shapes_) add_to_legend(shape);
     }
-    if (figure_.colour_bar) x = colour_bar({x + 12.0, top + 26.0}, bottom - 48.0);
-    const Eigen::Vector2d corner = column({x + 18.0, top + 34.0});
+    Eigen::Vector2d corner = column({end.x() + 18.0, top + 34.0}).cwiseMax(end);
+    if (!figure_.lower.empty()) {
+      corner = corner.cwiseMax(row_at(figure_.lower, {14.0, corner.y() + 14.0}, 190.0));
+    }
     const double title_width = 1.25 * text_width(figure_.title) + 28.0;
     const double width = std::ceil(std::max(corner.x(), title_width) + 14.0);
-    const double height = std::ceil(std::max(bottom, corner.y()) + 12.0);
+    const double height = std::ceil(corner.y() + 12.0);
     std::string head = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) +
                        "\" height=\"" + px(height) + "\" viewBox=\"0 0 " + px(width) + ' ' +
                        px(height) +
@@ -269,14 +277,27 @@ class SvgWriter {
             "</text>\n";
   }
 
-  Frame frame_of(const Panel& panel, const Eigen::Vector2d& corner) const {
-    const auto count = static_cast<double>(figure_.panels.size());
+  /// Panels side by side, each of at most this height [px]. @return the lower right corner
+  Eigen::Vector2d row_at(const std::vector<Panel>& panels, const Eigen::Vector2d& corner,
+                         double height) {
+    const auto count = static_cast<double>(panels.size());
+    const Eigen::Vector2d most(count > 1.0 ? 900.0 / count : 720.0, height);
+    Eigen::Vector2d end = corner;
+    for (const Panel& panel : panels) {
+      const Eigen::Vector2d drawn = panel_at(panel, {end.x(), corner.y()}, most);
+      end = {drawn.x(), std::max(end.y(), drawn.y())};
+    }
+    return end;
+  }
+
+  static Frame frame_of(const Panel& panel, const Eigen::Vector2d& corner,
+                        const Eigen::Vector2d& most) {
     Frame frame;
     frame.data = panel.shown();
     frame.left = corner.x() + 62.0;
     frame.top = corner.y() + 26.0;
-    frame.width = count > 1.0 ? 900.0 / count : 720.0;
-    frame.height = 440.0;
+    frame.width = most.x();
+    frame.height = most.y();
     if (panel.equal_aspect_) {
       const double data_width = frame.data.x_max - frame.data.x_min;
       const double data_height = frame.data.y_max - frame.data.y_min;
@@ -288,8 +309,9 @@ class SvgWriter {
   }
 
   /// @return the lower right corner of what was drawn
-  Eigen::Vector2d panel_at(const Panel& panel, const Eigen::Vector2d& corner) {
-    const Frame frame = frame_of(panel, corner);
+  Eigen::Vector2d panel_at(const Panel& panel, const Eigen::Vector2d& corner,
+                           const Eigen::Vector2d& most) {
+    const Frame frame = frame_of(panel, corner, most);
     const std::string box = "<rect x=\"" + px(frame.left) + "\" y=\"" + px(frame.top) +
                             "\" width=\"" + px(frame.width) + "\" height=\"" + px(frame.height) +
                             '"';
@@ -374,9 +396,9 @@ class SvgWriter {
     const double scale_y = map.cell_size * frame.height / (frame.data.y_max - frame.data.y_min);
     svg_ += "<g shape-rendering=\"crispEdges\" transform=\"translate(" + frame.point(map.origin) +
             ") scale(" + fixed(scale_x, 6) + ' ' + fixed(-scale_y, 6) + ")\">\n";
-    for (const auto& [level, runs] : colour_runs(map, shape.limit)) {
-      svg_ += "<path fill=\"" + diverging_colour(static_cast<double>(level) / colour_levels) +
-              "\" d=\"" + runs + "\"/>\n";
+    for (const auto& [band, runs] : colour_runs(map, shape.bands)) {
+      svg_ +=
+          "<path fill=\"" + colour_of_band(band, shape.bands.size()) + "\" d=\"" + runs + "\"/>\n";
     }
     svg_ += "</g>\n";
   }
@@ -409,41 +431,38 @@ class SvgWriter {
   }
 
   void add_to_legend(const Panel::Shape& shape) {
-    if (shape.text.empty()) return;
+    if (shape.text.empty() || shape.kind == Panel::Kind::label) return;
     const auto same = [&](const Panel::Shape* entry) { return entry->text == shape.text; };
     if (std::none_of(legend_.begin(), legend_.end(), same)) legend_.push_back(&shape);
   }
 
-  /// @return its right border
+  /// Bands of equal height with their bounds. @return its right border
   double colour_bar(const Eigen::Vector2d& corner, double bottom) {
     const ColourBar& bar = *figure_.colour_bar;
     const double height = std::clamp(bottom - corner.y(), 120.0, 300.0);
-    const int steps = 100;
-    for (int i = 0; i < steps; ++i) {
-      const double share = 1.0 - 2.0 * (i + 0.5) / steps;
-      svg_ += "<rect x=\"" + px(corner.x()) + "\" y=\"" + px(corner.y() + height * i / steps) +
-              "\" width=\"16\" height=\"" + px(height / steps + 0.5) + "\" fill=\"" +
-              diverging_colour(share) + "\"/>\n";
+    const auto count = static_cast<int>(bar.bands.size());
+    const double step = height / (2 * count + 1);
+    double width = 0.0;
+    for (int band = count; band >= -count; --band) {
+      const double y = corner.y() + step * (count - band);
+      svg_ += "<rect x=\"" + px(corner.x()) + "\" y=\"" + px(y) + "\" width=\"16\" height=\"" +
+              px(step + 0.5) + "\" fill=\"" + colour_of_band(band, bar.bands.size()) + "\"/>\n";
+      if (band == -count) break;
+      const std::size_t bound = static_cast<std::size_t>(band > 0 ? band - 1 : -band);
+      const std::string number = (band > 0 ? "+" : "−") + px(bar.bands[bound] / bar.unit);
+      text(corner.x() + 24.0, y + step + 4.5, number);
+      width = std::max(width, text_width(number));
     }
     svg_ += "<rect x=\"" + px(corner.x()) + "\" y=\"" + px(corner.y()) +
             "\" width=\"16\" height=\"" + px(height) + "\" fill=\"none\" stroke=\"#444444\"/>\n";
-    const Ticks ticks = nice_ticks(-bar.limit, bar.limit, 6.0);
-    double width = 0.0;
-    for (const double value : ticks.values) {
-      const double y = corner.y() + height * (bar.limit - value) / (2.0 * bar.limit);
-      const std::string number = (value > 0.0 ? "+" : "") + fixed(value, ticks.decimals);
-      svg_ += "<path d=\"M" + px(corner.x() + 16.0) + ' ' + px(y) + "h5\" stroke=\"#444444\"/>\n";
-      text(corner.x() + 24.0, y + 4.5, number);
-      width = std::max(width, text_width(number));
-    }
-    const double x = corner.x() + 24.0 + width + 16.0;
+    const double x = corner.x() + 24.0 + width + 26.0;
     const double y = corner.y() + height / 2.0;
     text(x, y, bar.label,
          " text-anchor=\"middle\" transform=\"rotate(-90 " + px(x) + ' ' + px(y) + ")\"");
     return x + 6.0;
   }
 
-  /// Legend and notes. @return the lower right corner
+  /// Legend, notes and bars. @return the lower right corner
   Eigen::Vector2d column(const Eigen::Vector2d& corner) {
     double y = corner.y();
     double width = 0.0;
@@ -458,6 +477,17 @@ class SvgWriter {
       if (!note.empty()) text(corner.x(), y, note);
       width = std::max(width, text_width(note));
       y += note.empty() ? 0.5 * line_height : line_height;
+    }
+    double largest = 0.0;
+    for (const Bar& bar : figure_.bars) largest = std::max(largest, bar.value);
+    for (const Bar& bar : figure_.bars) {
+      constexpr double longest = 90.0;  // [px]
+      const double length = largest > 0.0 ? longest * bar.value / largest : 0.0;
+      svg_ += "<rect x=\"" + px(corner.x()) + "\" y=\"" + px(y - 10.0) + "\" width=\"" +
+              px(length) + "\" height=\"11\" fill=\"#0072b2\"/>\n";
+      text(corner.x() + longest + 8.0, y, bar.text);
+      width = std::max(width, longest + 8.0 + text_width(bar.text));
+      y += line_height;
     }
     return {corner.x() + width, y - line_height};
   }
@@ -507,13 +537,21 @@ std::string diverging_colour(double value) {
   return colour;
 }
 
-double round_up(double value) {
-  if (!(value > 0.0) || !std::isfinite(value)) return 1.0;
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double factor : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0}) {
-    if (factor * power >= value * (1.0 - 1e-12)) return factor * power;
+std::vector<double> colour_bands(double least, double largest) {
+  std::vector<double> bands;
+  for (double decade = 1e-3; decade < 1e3; decade *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double bound = factor * decade;
+      if (bound < least * (1.0 - 1e-9)) continue;
+      if (bound >= largest && !bands.empty()) return bands;
+      bands.push_back(bound);
+    }
   }
-  return 10.0 * power;
+  return bands;
+}
+
+std::string band_colour(double value, const std::vector<double>& bands) {
+  return colour_of_band(band_of(value, bands), bands.size());
 }
 
 }  // namespace excavplan::tools

@@ -11,7 +11,8 @@
 #include <excavplan/ground/height_map.hpp>
 
 /// @file
-/// Plots as SVG text: panels with axes in a row, then a colour bar, a legend and lines of text.
+/// Plots as SVG text: panels with axes in one row or two, then a colour bar, a legend, lines of
+/// text and bars.
 
 namespace excavplan::tools {
 
@@ -39,8 +40,8 @@ class Panel {
   void marker(const Eigen::Vector2d& at, const std::string& colour, const std::string& legend = "");
   /// Text centred at a point; moved up or down where it would cover another label.
   void label(const Eigen::Vector2d& at, const std::string& text);
-  /// Cells coloured from -limit to limit; unknown cells stay grey, "not seen".
-  void heat_map(const HeightMap& map, double limit);
+  /// Cells coloured by band_colour(); unknown cells stay grey, "not seen".
+  void heat_map(const HeightMap& map, const std::vector<double>& bands);
 
   /// What the axes show; else all that is drawn.
   void view(const Rectangle& view) { view_ = view; }
@@ -56,7 +57,7 @@ class Panel {
     Style style;
     std::string text;  ///< of the legend, or the label
     HeightMap map = {};
-    double limit = 0.0;
+    std::vector<double> bands = {};
   };
   Rectangle shown() const;
 
@@ -70,8 +71,15 @@ class Panel {
 
 /// The colour scale of heat_map().
 struct ColourBar {
-  double limit = 1.0;
+  std::vector<double> bands;
   std::string label;
+  double unit = 1.0;  ///< the numbers on it are values over this
+};
+
+/// A bar with its text.
+struct Bar {
+  std::string text;
+  double value = 0.0;  ///< >= 0, drawn relative to the largest
 };
 
 struct Figure {
@@ -79,6 +87,8 @@ struct Figure {
   std::vector<Panel> panels;
   std::optional<ColourBar> colour_bar;
   std::vector<std::string> notes;  ///< an empty line is a gap
+  std::vector<Panel> lower = {};   ///< a second row of panels, of half the height
+  std::vector<Bar> bars = {};      ///< below the notes
 };
 
 /// The whole file. Equal figures give equal bytes.
@@ -91,7 +101,12 @@ std::string xml_escaped(const std::string& text);
 /// (ColorBrewer's RdBu, C. Brewer).
 std::string diverging_colour(double value);
 
-/// The smallest of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below the value.
-double round_up(double value);
+/// Upper bounds of bands in steps of 1, 2, 5, 10, ... from `least` on, as many as lie below
+/// `largest`, but one at least.
+std::vector<double> colour_bands(double least, double largest);
+
+/// Colour of a value: white below the first bound, then one of diverging_colour() for each band, so
+/// that centimetres show beside decimetres.
+std::string band_colour(double value, const std::vector<double>& bands);
 
 }  // namespace excavplan::tools

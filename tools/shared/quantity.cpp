@@ -144,10 +144,17 @@ DigParameters parse_dig_path(const std::string& what, const std::string& text) {
   return parameters;
 }
 
+std::vector<double> parse_lengths(const std::string& what, const std::string& text,
+                                  std::size_t count, const std::string& form) {
+  std::vector<double> lengths;
+  for (const std::string& part : parts_of(what, text, count, form)) {
+    lengths.push_back(parse_quantity(what, part, Quantity::length));
+  }
+  return lengths;
+}
+
 Rectangle parse_rectangle(const std::string& what, const std::string& text) {
-  const auto parts = parts_of(what, text, 4, "an area XMIN,YMIN,XMAX,YMAX such as 4,-1,7,1");
-  std::array<double, 4> corner{};
-  for (std::size_t i = 0; i < 4; ++i) corner[i] = parse_quantity(what, parts[i], Quantity::length);
+  const auto corner = parse_lengths(what, text, 4, "an area XMIN,YMIN,XMAX,YMAX such as 4,-1,7,1");
   if (corner[0] >= corner[2] || corner[1] >= corner[3]) {
     throw Error(ErrorKind::bad_input,
                 what + ": '" + text + "' is empty: XMIN must be below XMAX, YMIN below YMAX");
@@ -156,9 +163,8 @@ Rectangle parse_rectangle(const std::string& what, const std::string& text) {
 }
 
 Eigen::Vector2d parse_point(const std::string& what, const std::string& text) {
-  const auto parts = parts_of(what, text, 2, "a point X,Y such as 5,2.5");
-  return {parse_quantity(what, parts[0], Quantity::length),
-          parse_quantity(what, parts[1], Quantity::length)};
+  const auto point = parse_lengths(what, text, 2, "a point X,Y such as 5,2.5");
+  return {point[0], point[1]};
 }
 
 Eigen::Vector3d parse_place(const std::string& what, const std::string& text) {

@@ -47,6 +47,10 @@ std::string dig_path_argument(const DigParameters& parameters);
 /// The inverse. @throws Error (bad_input)
 DigParameters parse_dig_path(const std::string& what, const std::string& text);
 
+/// `count` lengths between commas; messages call them `form`. @throws Error (bad_input)
+std::vector<double> parse_lengths(const std::string& what, const std::string& text,
+                                  std::size_t count, const std::string& form);
+
 /// "xmin,ymin,xmax,ymax". @throws Error (bad_input)
 Rectangle parse_rectangle(const std::string& what, const std::string& text);
 

@@ -131,7 +131,12 @@ nlohmann::ordered_json scene_json(const Machine& machine, const DigScene& scene)
                {"energy", energy_json(dig.energy)},
                {"joints", to_json(machine, joint_loads(machine, dig.history))},
                {"soil_ledger", soil_json(dig.soil)},
-               {"dump_at_m", {scene.dump_at.x(), scene.dump_at.y()}}});
+               {"dump_at_m", {scene.dump_at.x(), scene.dump_at.y()}},
+               {"blocks", nullptr}});
+  if (const auto& blocks = scene.blocks) {
+    json["blocks"] = {
+        {"count", blocks->count}, {"soil_m3", blocks->soil}, {"voids_m3", blocks->voids}};
+  }
   return json;
 }
 
@@ -153,6 +158,10 @@ std::vector<std::string> scene_lines(const Machine& machine, const DigScene& sce
   lines.push_back("bulking      " + readable(volumes.bulking_factor, 4) +
                   " from the height maps, " + readable(scene.bulking_factor_true, 4) +
                   " by dry mass, fallback " + readable(100.0 * dig.soil.fallback_fraction) + " %");
+  if (const auto& blocks = scene.blocks) {
+    lines.push_back("blocks       " + std::to_string(blocks->count) + ", with fines " +
+                    readable(blocks->soil) + " m3, voids " + readable(blocks->voids) + " m3");
+  }
   return lines;
 }
 

@@ -7,15 +7,25 @@
 
 #include <excavplan/survey/scan_surface.hpp>
 
+#include "shared/arguments.hpp"
+
 namespace excavplan::tools {
 
 /// What brings scans into the site frame and what part of them counts.
 struct ScanFrames {
   std::optional<std::string> before;  ///< file with the matrix of the scans before
   std::optional<std::string> after;
-  std::optional<Rectangle> area;                      ///< points outside are left out
-  std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their own frames [m]
+  std::optional<Rectangle> area;  ///< points outside are left out
+  std::string unit = "m";         ///< of the coordinates in all clouds
+  std::string before_unit;        ///< of those before, if another
+  std::string after_unit;
+  std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their frame and unit
 };
+
+/// --before-frame and --after-frame.
+void declare_frames(Arguments& arguments, ScanFrames& frames);
+/// --unit, --before-unit and --after-unit.
+void declare_units(Arguments& arguments, ScanFrames& frames);
 
 /// @throws Error (bad_file) if a matrix cannot be read
 ScanPair scan_pair(const std::string& before, const std::string& after, const ScanFrames& frames);

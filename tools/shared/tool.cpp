@@ -149,8 +149,8 @@ void declare_common(Arguments& arguments, const About& about, Common& common) {
 /// Words of the command line by the entry they belong to.
 struct ParsedWords {
   struct Given {
-    std::size_t times = 0;
-    std::string text;
+    std::string text;  ///< the last one
+    std::vector<std::string> texts;
   };
   std::vector<Given> of_entry;
   std::vector<std::string> left_over;
@@ -182,7 +182,7 @@ ParsedWords sort_words(int argc, const char* const* argv,
   } catch (const CLI::ParseError& error) {
     usage_error(error.what());
   }
-  for (std::size_t i = 0; i < entries.size(); ++i) words.of_entry[i].times = options[i]->count();
+  for (std::size_t i = 0; i < entries.size(); ++i) words.of_entry[i].texts = options[i]->results();
   words.left_over = app.remaining();
   return words;
 }
@@ -208,28 +208,32 @@ std::string shown_name(const Arguments::Entry& entry) {
 }
 
 void assign(const Arguments::Entry& entry, const ParsedWords::Given& given) {
-  const auto& [times, text] = given;
   const std::string name = shown_name(entry);
-  if (times == 0) return;
-  if (!entry.placeholder.empty()) {
-    if (times > 1) usage_error(name + " is given more than once");
+  if (given.texts.empty()) return;
+  if (entry.placeholder.empty()) {
+    entry.assign("");
+    return;
+  }
+  if (given.texts.size() > 1 && !entry.repeated) usage_error(name + " is given more than once");
+  for (const std::string& text : given.texts) {
     if (text.empty()) usage_error(name + " is empty");
     if (!entry.positional && text.rfind("--", 0) == 0) {
       usage_error(name + " needs a value, got " + text);
     }
+    entry.assign(text);
   }
-  entry.assign(text);
 }
 
 void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words) {
   for (std::size_t i = 0; i < entries.size(); ++i) assign(entries[i], words.of_entry[i]);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (entries[i].required && words.of_entry[i].times == 0) {
+    if (entries[i].required && words.of_entry[i].texts.empty()) {
       usage_error(shown_name(entries[i]) + " is missing: " + entries[i].help);
     }
   }
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (entries[i].output && words.of_entry[i].times > 0) require_writable(words.of_entry[i].text);
+    if (entries[i].output && !words.of_entry[i].texts.empty())
+      require_writable(words.of_entry[i].text);
   }
 }
 
@@ -278,7 +282,7 @@ int run(int argc, const char* const* argv, const About& about,
     const auto& entries = arguments.entries();
     const auto at = std::find_if(entries.begin(), entries.end(),
                                  [&](const auto& entry) { return entry.name == name; });
-    return words.of_entry[static_cast<std::size_t>(at - entries.begin())].times > 0;
+    return !words.of_entry[static_cast<std::size_t>(at - entries.begin())].texts.empty();
   };
   if (given("help")) {
     std::cout << help_text(about, arguments.entries());

@@ -110,15 +110,15 @@ struct SurfacePair {
 /// thin plate, in the scan that misses them or in the difference, whichever errs less where it is
 /// tried on known cells.
 ///
-/// Without a dig area the hole is the zone that lost most, with the zones that fell within the
-/// spill distance of it. Without a dump area the heap is the zone that rose most away from the
-/// hole, with the zones that rose within the spill distance of that; if none rose there, it is the
-/// largest rise beside the hole that holds at least half of the dug volume. The centre of a zone
-/// decides whether it belongs to a given area.
+/// Each zone is a change that belongs to the dig or not: by its shape, its place and the balance of
+/// the soil the likeliest combination is counted, and what is open is listed
+/// (`docs/methods.md#attribution`). What rose within the spill distance of the hole is spill, what
+/// rose elsewhere the heap; if nothing did, that is the largest rise beside the hole that holds at
+/// least half of the dug volume. The centre of a zone decides whether it lies in a given area.
 ///
 /// Warnings: no_hole_found; no_dumped_soil (less than half of the dug volume rose, or less than a
 /// fifth of it away from the hole); looks_swapped (after / before below 0.97 beyond its error, or
-/// above 3); other_change; object_taken_out; zone_at_border; zone_partly_unseen; zone_unseen
+/// above 3); attribution_open; stirred_ground; other_change; object_taken_out; zone_at_border; zone_partly_unseen; zone_unseen
 /// (refused: no bulking factor); little_stable_ground (under 40 %); scans_do_not_fit (noise above
 /// 0.1 m).
 ///

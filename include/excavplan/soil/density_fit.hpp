@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <excavplan/soil/density_law.hpp>
+#include <excavplan/soil/soil_scatter.hpp>
 
 /// @file
 /// Fitting density laws to digs of known density, and writing law files.
@@ -41,12 +44,23 @@ struct DensityFit {
 std::vector<DensityFit> fit_density_forms(const std::vector<BulkingSample>& samples,
                                           const std::string& key_ending = "");
 
+/// Digs in drawn soils, from which the scatter of the forms is.
+struct ScatterDigs {
+  int draws = 0;        ///< number of digs; 0: the scatter is that of the samples
+  SoilScatter scatter;  ///< of the soils
+};
+
 /// What a law file holds: the forms with the samples they were fitted to.
 struct DensityCalibration {
-  std::string name;    ///< of the law
-  std::string source;  ///< text: origin of the samples
-  std::string soil;    ///< name of the soil; empty: not known
-  std::string use;     ///< key of the form to use
+  std::string name;                                ///< of the law
+  std::string source;                              ///< text: origin of the samples
+  std::string soil;                                ///< name of the soil; empty: not known
+  std::string use;                                 ///< key of the form to use
+  std::string machine = {};                        ///< as in DensityLaw
+  std::string simulator = {};                      ///< likewise
+  std::optional<std::array<double, 3>> path = {};  ///< likewise
+  bool any_path = false;                           ///< likewise
+  ScatterDigs scatter = {};                        ///< behind the residual_sd of the forms
   /// Fitted to k corrected for fallback where that is known; the keys of those fitted to k as
   /// height maps give it end in `as_measured`.
   std::vector<DensityFit> forms;
@@ -63,6 +77,13 @@ struct DensityCalibration {
   /// The form of this key. @throws Error (bad_input) if there is none
   const DensityForm& form(const std::string& key) const;
 };
+
+/// The law that a calibration gives.
+DensityLaw law_of(const DensityCalibration& calibration);
+
+/// Sets the scatter of a form to the rms error of the densities that it gives for these digs,
+/// growing with the density as that of the digs below and above 50 %. @param digs  at least one
+void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs);
 
 /// The text of a law file. @throws nothing
 std::string to_json(const DensityCalibration& calibration);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -24,19 +25,21 @@ namespace excavplan {
 
 /// d = a k + b.
 struct DensityLine {
-  double a = 0.0;            ///< [%]
-  double b = 0.0;            ///< [%]
-  double r2 = 0.0;           ///< coefficient of determination of d [-]
-  double residual_sd = 0.0;  ///< scatter of d about the law [%]
+  double a = 0.0;                ///< [%]
+  double b = 0.0;                ///< [%]
+  double r2 = 0.0;               ///< coefficient of determination of d [-]
+  double residual_sd = 0.0;      ///< scatter of d about the law, at 50 % [%]
+  double residual_growth = 0.0;  ///< its relative change from there to 100 %, as residual_sd_at()
 };
 
 /// k = B + A / (1 - r d / 100), d = 100 / r (1 - A / (k - B)).
 struct DensityClosedForm {
-  double A = 0.0;            ///< [-], > 0
-  double B = 0.0;            ///< [-]
-  double r = 0.0;            ///< [-], in (0, 1)
-  double r2 = 0.0;           ///< coefficient of determination of d [-]
-  double residual_sd = 0.0;  ///< scatter of d about the law [%]
+  double A = 0.0;                ///< [-], > 0
+  double B = 0.0;                ///< [-]
+  double r = 0.0;                ///< [-], in (0, 1)
+  double r2 = 0.0;               ///< coefficient of determination of d [-]
+  double residual_sd = 0.0;      ///< scatter of d about the law, at 50 % [%]
+  double residual_growth = 0.0;  ///< its relative change from there to 100 %, as residual_sd_at()
 };
 
 /// The forms a law can have. Law files and fits go by this list.
@@ -50,7 +53,12 @@ struct DensityLaw {
   /// For k corrected by free_of_fallback(): the counterpart of an "..._as_measured" form if the
   /// file has one, else `form` itself.
   DensityForm freed_form{};
-  std::string soil = {};  ///< name of the soil it is for; empty: not known
+  std::string soil = {};       ///< name of the soil it is for; empty: not known
+  std::string machine = {};    ///< that dug; empty: not known
+  std::string simulator = {};  ///< that dug, with its version; empty: real digs, or not known
+  /// Of the digs: penetration angle [rad], penetration length [m], drag length [m].
+  std::optional<std::array<double, 3>> path = {};
+  bool any_path = false;  ///< its scatter is that of digs along other paths too
 };
 
 /// Reads a law file (docs/formats.md). Its key "use" names the form that is used.
@@ -72,18 +80,28 @@ double bulking_of_density(const DensityForm& form, double density_percent);
 
 double density_slope(const DensityForm& form, double bulking_factor);  ///< dd/dk [%]
 
+/// Scatter of d about the law at a density [%]: residual_sd (1 + residual_growth (d / 50 - 1)),
+/// with d in 0 .. 100.
+double residual_sd_at(const DensityForm& form, double density_percent);
+
 /// The formula of a form in the letters of its parameters: "d = a k + b".
 std::string formula(const DensityForm& form);
 
 /// Relative density [%] with what is known about its error.
 struct RelativeDensity {
-  double percent = 0.0;      ///< inside 0 .. 100
-  double raw_percent = 0.0;  ///< as the law gives it
-  double sd_percent = 0.0;   ///< delta method: (dd/dk sd_k)^2 + residual_sd^2
+  double percent = 0.0;               ///< inside 0 .. 100
+  double raw_percent = 0.0;           ///< as the law gives it
+  double sd_given_law_percent = 0.0;  ///< of the bulking factor alone, dd/dk sd_k
+  /// Delta method: sd_given_law^2 + residual_sd^2, and where the law gives a density outside 0 ..
+  /// 100 % the excess in square: it is an error whose cause is not known.
+  double sd_percent = 0.0;
   std::array<double, 2> interval_percent = {0.0, 100.0};  ///< 95 %, inside 0 .. 100
   bool trustworthy = true;        ///< false: outside 0 .. 100 % by more than the error explains
   std::vector<Warning> warnings;  ///< density_above_range, density_below_range
 };
+
+/// Sets sd, interval and trust from the error of `raw_percent`; it must be set, and `percent`.
+void set_error(RelativeDensity& estimate, double sd_percent);
 
 /// Estimates the density by a law alone. Outside 0 .. 100 % there is a warning; further outside
 /// than the error explains (1.96 sd) the estimate is not trustworthy.

@@ -106,10 +106,11 @@ struct RasterOptions {
                                   ///< their cell are left out [-], > 0
   std::uint64_t memory = std::uint64_t{256} << 20;  ///< for points held at a time [byte]; where
                                                     ///< it does not do, scans are read again
+  Eigen::Vector2d node = {0.0, 0.0};  ///< where corners of cells meet [m]
 };
 
 /// One height per cell of the grid that covers `extent`, its lower corner snapped down to a
-/// multiple of the cell, so that clouds rasterised with one extent share one grid.
+/// multiple of the cell from `node`, so that clouds rasterised with one extent share one grid.
 ///
 /// The height is the mean of the cell's points that are no outliers, moved to the cell's centre by
 /// the local slope; NaN without points. Outliers lie outside the band [low - g, high + g], low and

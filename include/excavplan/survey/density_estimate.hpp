@@ -13,7 +13,9 @@
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/fallback.hpp>
 #include <excavplan/soil/density_law.hpp>
+#include <excavplan/survey/paper_options.hpp>
 #include <excavplan/survey/scan_surface.hpp>
+#include <excavplan/survey/soil_answers.hpp>
 
 /// @file
 /// From the scans of one dig to the relative density of the ground and its error
@@ -34,12 +36,12 @@ enum class VolumeMethod {
   paper,    ///< paper_volumes(), as published, in the areas that the first finds
 };
 
-/// The dig as driven, to estimate the soil that fell back into the cut. Scans must be in the site
-/// frame.
+/// The dig as driven, for a law of digs along this path. With its start, which needs scans in the
+/// site frame, the soil that fell back into the cut is measured too.
 struct DugPath {
-  Machine machine;           ///< that drove it
-  DigParameters parameters;  ///< of the path
-  double start_x = 0.0;      ///< where the path enters the ground [m]
+  Machine machine;                ///< that drove it
+  DigParameters parameters;       ///< of the path
+  std::optional<double> start_x;  ///< where the path enters the ground [m]
 };
 
 /// Settings of estimate_density().
@@ -49,8 +51,11 @@ struct DensityOptions {
                                     ///< else cell_for() the sparsest scan
   bool registered = true;           ///< false: the sensor did not move, scans are not registered
   ChangeOptions change;             ///< dig area, dump area and more
+  PaperOptions paper;               ///< of VolumeMethod::paper
   std::optional<DugPath> dug_path;  ///< if it is known
-  unsigned threads = 0;             ///< 0: one per core; the result is the same for any number
+  SoilKnowledge soil;               ///< its kind, or the kinds that it may be
+  std::optional<Measured> payload_mass;  ///< moist soil that was dumped, if it was weighed [kg]
+  unsigned threads = 0;                  ///< 0: one per core; the result is the same for any number
 };
 
 /// Registration of the scan after to the scan before.
@@ -72,14 +77,18 @@ struct DensityEstimate {
   /// Volumes, their covariance, zones and height change. Zones and height change are those of the
   /// surface for both methods.
   VolumeChange change;
+  std::vector<HeightMap> before;                 ///< the ground before, of each area of `change`
   std::optional<Measured> bulking;               ///< k as the scans give it [-]
   std::optional<Fallback> fallback;              ///< if the path that was dug is known
   BlockReport blocks;                            ///< voids between blocks of hard soil
   std::optional<Measured> corrected;             ///< k corrected for fallback and voids, if any [-]
   std::optional<RelativeDensity> density;        ///< percent, raw, sd, 95 % interval
+  std::vector<SoilAnswer> soils;                 ///< in each of SoilKnowledge::possible
+  std::optional<RelativeDensity> any_soil;       ///< in any of them: their mixture
+  std::optional<PayloadDensity> payload;         ///< if the payload was weighed, in a kind of soil
   std::vector<DensityReading> readings;          ///< as VolumeChange::readings
   double density_without_fallback = 0.0;         ///< assuming no fallback, where k is known [%]
-  DensityLaw law;                                ///< that was used
+  DensityLaw law;                                ///< that was used, or fitted for the dug path
   bool trustworthy = true;                       ///< false: see the warnings
   std::vector<Warning> warnings;                 ///< of volumes, density and blocks, each once
   double cell_size = 0.0;                        ///< [m]
@@ -95,8 +104,12 @@ struct DensityEstimate {
 /// Scans become height maps, registered on the ground that did not change. Their change gives the
 /// volumes (the paper's eqs. 3, 4) and the bulking factor (eq. 1), corrected for the soil that fell
 /// back and for the voids between blocks as far as these are known, each with its error; the law
-/// gives the density. It is not trustworthy if a zone was cut off or partly unseen, if the soil
-/// lies in blocks, if the error of the volumes is not known, or if the density is further outside 0
+/// gives the density. Where the path that was dug and the kind of soil are known and the law is of
+/// the built-in simulator, it is one fitted for that path. Warnings beside those of the volumes:
+/// soil_assumed, law_of_other_path, dug_path_doubtful (ends trust), payload_disagrees (ends trust),
+/// density_above_range, density_below_range, volume_error_unknown, blocks. It is not trustworthy if
+/// a zone was cut off or partly unseen, if the soil lies in blocks, if the error of the volumes is
+/// not known, or if the density is further outside 0
 /// .. 100 % than the error explains.
 ///
 /// @throws Error (bad_file) naming the scans if one cannot be read, holds fewer than 100 finite

@@ -26,7 +26,8 @@ struct Scan {
   Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();  ///< a rigid motion
   std::optional<Rectangle> area;  ///< points outside, in the site frame, are left out
   std::vector<std::shared_ptr<const Cloud>> clouds = {};  ///< in the frame of the files; not null
-  /// Where the sensor stood, in the frame of the files [m]; unset: where files and clouds say
+  double unit = 1.0;  ///< length of a unit of their coordinates; `site_from_scan` is in metres [m]
+  /// Where the sensor stood, in the frame and unit of the files; unset: where files and clouds say
   /// themselves, if they all say the same.
   std::optional<Eigen::Vector3d> sensor_origin = {};
 };
@@ -45,6 +46,12 @@ struct ScanOutline {
   std::uint64_t finite_points = 0;  ///< inside the area
   std::optional<Rectangle> extent;  ///< as plan_extent(); none without finite points
   double density = 0.0;             ///< points per m^2 of occupied ground; NaN if they have no area
+  double height = 0.0;  ///< from the lowest to the highest point but 0.1 % on either side [m]
+  /// Share of the points that lie as a depth camera sees them from the origin: within 60 degrees of
+  /// the z axis, at 0.1 to 20 m along it [-].
+  double seen_along_z = 0.0;
+  /// Direction in which the points scatter least, z >= 0: the normal of the ground.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
 };
 
 /// Reads a scan once. Extent and density come from all points of a small scan, and of a large one
@@ -60,6 +67,11 @@ std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threa
 /// as large as 5 cm or a hundredth of the shorter side of the smallest scan; smaller ones show no
 /// more of what a bucket does (docs/methods.md#volumes).
 double cell_for(const std::vector<ScanOutline>& outlines);
+
+/// Cell for volumes from such scans [m]: as cell_for() but for two points, so that cells of sparse
+/// scans are not coarser than the dig. Points are then tested for outliers in groups of cells
+/// (survey_surface()).
+double survey_cell(const std::vector<ScanOutline>& outlines);
 
 /// The surface of a scan on the grid of rasterise(), which documents the outlier test.
 ///
@@ -94,13 +106,18 @@ struct RegisteredPair {
   /// Transforms points of the scan after into the frame of the scan before, by the ground that did
   /// not change; the identity where the motion is not significant.
   Eigen::Matrix4d correction = Eigen::Matrix4d::Identity();
-  Alignment first;  ///< what align() found before anything was corrected
+  Alignment first;               ///< what align() found before anything was corrected
+  bool from_wide_start = false;  ///< a search beyond the priors of align() came first
 };
 
 /// Surveys both scans and registers the one after to the one before, by align() on cells of at
 /// least `registration_cell`: smaller ones of a sparse scan do not show slopes. A motion that moves
 /// points by more than half a cell in plan, or at all where those cells are larger than the
-/// survey's, is taken off the points, which are then surveyed again.
+/// survey's, is taken off the points, which are then surveyed again. Where the motion exceeds three
+/// times the priors, or the stable ground differs by more than the scatter of its points explains,
+/// shifts to 1.2 m and turns to 6 degrees are tried as well, and kept if they leave two thirds of
+/// the difference or less. Cells that lie between the points of a sparse scan, its rings or its
+/// lines are interpolated; they count no points.
 /// @throws Error as survey_surface() and align()
 RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
                                  const RasterOptions& options, double registration_cell,

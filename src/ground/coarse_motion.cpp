@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/coarse_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include "base/angles.hpp"
+#include "ground/grid_cells.hpp"
+#include "ground/robust.hpp"
+
+namespace excavplan {
+namespace {
+
+// Ours: a sensor that was set up again by hand stands within these.
+constexpr double farthest = 1.2;             // [m]
+constexpr double widest = 6.0 * pi / 180.0;  // [rad]
+constexpr double first_step = 0.1;           // [m]; half the shortest relief that is told apart
+constexpr double first_turn = pi / 180.0;
+constexpr int refinements = 3;  // each halves both steps
+constexpr std::size_t most_samples = 1500;
+constexpr double least_overlap = 0.5;  // of the samples
+
+/// Height of a map about its plane, known cells alone.
+class Relief {
+ public:
+  explicit Relief(const HeightMap& map) : map_(map), relief_(map.z) {
+    for (int round = 0; round < 4; ++round) fit();
+  }
+
+  Eigen::Vector3d plane() const { return plane_; }  ///< height, slope along x, along y
+  double plane_at(const Eigen::Vector2d& p) const { return plane_.dot(terms(p)); }
+  const Eigen::ArrayXXd& cells() const { return relief_; }
+
+  /// NaN outside the map.
+  double nearest(const Eigen::Vector2d& p) const {
+    const Eigen::Vector2d place = (p - map_.origin) / map_.cell_size;
+    const auto col = static_cast<Eigen::Index>(std::floor(place.x()));
+    const auto row = static_cast<Eigen::Index>(std::floor(place.y()));
+    const bool inside = row >= 0 && col >= 0 && row < relief_.rows() && col < relief_.cols();
+    return inside ? relief_(row, col) : std::nan("");
+  }
+
+ private:
+  Eigen::Vector3d terms(const Eigen::Vector2d& p) const {
+    const Eigen::Vector2d from = p - map_.origin;
+    return {1.0, from.x(), from.y()};
+  }
+
+  /// Least squares of the cells that are near the last plane.
+  void fit() {
+    constexpr double clip = 2.5;  // robust standard deviations
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for_each_cell(relief_, [&](Cell at) {
+      if (!(std::abs(relief_(at.row, at.col)) <= clip * scale_)) return;
+      const Eigen::Vector3d t = terms({map_.x(at.col), map_.y(at.row)});
+      normal += t * t.transpose();
+      right += map_.z(at.row, at.col) * t;
+    });
+    plane_ = normal.ldlt().solve(right);
+    std::vector<double> away;
+    for_each_cell(relief_, [&](Cell at) {
+      const double off = map_.z(at.row, at.col) - plane_at({map_.x(at.col), map_.y(at.row)});
+      relief_(at.row, at.col) = off;
+      if (!std::isnan(off)) away.push_back(std::abs(off));
+    });
+    scale_ = 1.4826 * median(away);
+  }
+
+  const HeightMap& map_;
+  Eigen::ArrayXXd relief_;
+  Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
+  double scale_ = std::numeric_limits<double>::infinity();
+};
+
+/// A motion in plan: a point p of the ground is in the scan after at c + R (p - c) + shift.
+struct PlanMotion {
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+  double turn = 0.0;
+};
+
+class Matcher {
+ public:
+  Matcher(const HeightMap& before, const HeightMap& after) : one_(before), two_(after) {
+    const Eigen::ArrayXXd& relief = one_.cells();
+    const Eigen::Index known = relief.size() - relief.isNaN().count();
+    const Eigen::Index stride = known / static_cast<Eigen::Index>(most_samples) + 1;
+    Eigen::Index count = 0;
+    for_each_cell(relief, [&](Cell at) {
+      if (std::isnan(relief(at.row, at.col)) || count++ % stride != 0) return;
+      samples_.push_back({{before.x(at.col), before.y(at.row)}, relief(at.row, at.col)});
+      centre_ += samples_.back().place;
+    });
+    centre_ /= static_cast<double>(samples_.size());
+  }
+
+  std::optional<Eigen::Matrix4d> find() {
+    PlanMotion best;
+    double least = std::numeric_limits<double>::infinity();
+    search({}, farthest, widest, first_step, first_turn, best, least);
+    double step = first_step;
+    double turn = first_turn;
+    for (int i = 0; i < refinements; ++i) {
+      step *= 0.5;
+      turn *= 0.5;
+      search(best, step, turn, step, turn, best, least);
+    }
+    if (!std::isfinite(least)) return std::nullopt;
+    return correction(best);
+  }
+
+ private:
+  struct Sample {
+    Eigen::Vector2d place;
+    double relief;
+  };
+
+  /// All motions within `reach` and `turns` of `about`.
+  void search(PlanMotion about, double reach, double turns, double step, double turn,
+              PlanMotion& best, double& least) {
+    const int across = static_cast<int>(std::lround(reach / step));
+    const int around = static_cast<int>(std::lround(turns / turn));
+    for (int k = -around; k <= around; ++k) {
+      for (int i = -across; i <= across; ++i) {
+        for (int j = -across; j <= across; ++j) {
+          const PlanMotion tried = {about.shift + step * Eigen::Vector2d(i, j),
+                                    about.turn + turn * k};
+          const double left = difference(tried);
+          if (left >= least) continue;
+          least = left;
+          best = tried;
+        }
+      }
+    }
+  }
+
+  /// Lower quartile of the differences from their median [m].
+  double difference(const PlanMotion& motion) {
+    const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(motion.turn).toRotationMatrix();
+    differences_.clear();
+    for (const Sample& sample : samples_) {
+      const double relief =
+          two_.nearest(centre_ + rotation * (sample.place - centre_) + motion.shift);
+      if (!std::isnan(relief)) differences_.push_back(relief - sample.relief);
+    }
+    if (static_cast<double>(differences_.size()) <
+        least_overlap * static_cast<double>(samples_.size())) {
+      return std::numeric_limits<double>::infinity();
+    }
+    const double middle = median(differences_);
+    for (double& value : differences_) value = std::abs(value - middle);
+    const auto quarter =
+        differences_.begin() + static_cast<std::ptrdiff_t>(differences_.size() / 4);
+    std::nth_element(differences_.begin(), quarter, differences_.end());
+    return *quarter;
+  }
+
+  static Eigen::Vector3d normal_of(const Relief& relief) {
+    return Eigen::Vector3d(-relief.plane().y(), -relief.plane().z(), 1.0).normalized();
+  }
+
+  /// Turns the ground after back in plan and onto the plane of the ground before.
+  Eigen::Matrix4d correction(const PlanMotion& motion) const {
+    const Eigen::Matrix3d back =
+        Eigen::AngleAxisd(-motion.turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Vector3d turned = back * normal_of(two_);
+    const Eigen::Vector2d moved = centre_ + motion.shift;
+    const Eigen::Vector3d from(moved.x(), moved.y(), two_.plane_at(moved));
+    const Eigen::Vector3d to(centre_.x(), centre_.y(), one_.plane_at(centre_));
+    Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+    result.translate(to);
+    result.rotate(Eigen::Quaterniond::FromTwoVectors(turned, normal_of(one_)));
+    result.rotate(back);
+    result.translate(-from);
+    return result.matrix();
+  }
+
+  Relief one_;
+  Relief two_;
+  std::vector<Sample> samples_;
+  Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();
+  std::vector<double> differences_;
+};
+
+}  // namespace
+
+std::optional<Eigen::Matrix4d> coarse_correction(const Surface& before, const Surface& after) {
+  if (before.height.z.isNaN().all() || after.height.z.isNaN().all()) return std::nullopt;
+  return Matcher(before.height, after.height).find();
+}
+
+}  // namespace excavplan

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/soil/soil_scatter.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/random.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double least_void_ratio_range = 0.05;  // between the limits of a drawn soil; ours
+
+}  // namespace
+
+SoilKind drawn_soil(const SoilKind& soil, const SoilScatter& scatter, std::uint64_t seed) {
+  Random random(seed);
+  // Dry density is G_s rho_w / (1 + e).
+  const auto scaled = [](double void_ratio, double density) {
+    return (1.0 + void_ratio) / density - 1.0;
+  };
+  const double loosest = 1.0 + scatter.limit_density * random.normal();
+  const double densest = 1.0 + scatter.limit_density * random.normal();
+  const double loose = 1.0 + scatter.loose_density * random.normal();
+  const double water = 1.0 + scatter.water_content * random.normal();
+  SoilKind drawn = soil;
+  drawn.void_ratio_max = scaled(soil.void_ratio_max, loosest);
+  drawn.void_ratio_min = std::clamp(scaled(soil.void_ratio_min, densest), 0.01,
+                                    drawn.void_ratio_max - least_void_ratio_range);
+  drawn.void_ratio_loose = std::clamp(scaled(soil.void_ratio_loose, loosest * loose),
+                                      drawn.void_ratio_min, drawn.void_ratio_max);
+  const double full = drawn.void_ratio_min / drawn.specific_gravity;  // of the densest state
+  drawn.water_content = std::clamp(soil.water_content * water, 0.0, full);
+  return drawn;
+}
+
+double density_of_bulk_density(const SoilKind& soil, double bulk_density) {
+  const double void_ratio =
+      soil.specific_gravity * water_density * (1.0 + soil.water_content) / bulk_density - 1.0;
+  return 100.0 * (soil.void_ratio_max - void_ratio) / (soil.void_ratio_max - soil.void_ratio_min);
+}
+
+Eigen::Matrix2d density_scatter(const SoilKind& soil, const DensityForm& freed_form,
+                                double density_percent, const SoilScatter& scatter) {
+  constexpr int draws = 400;
+  const double d = std::clamp(density_percent, 0.0, 100.0);
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (std::uint64_t i = 0; i < draws; ++i) {
+    const SoilKind drawn = drawn_soil(soil, scatter, i);
+    const Eigen::Vector2d off(density_of_bulking(freed_form, bulking_of_density(drawn, d)) - d,
+                              density_of_bulk_density(soil, bank_state(drawn, d).bulk_density) - d);
+    sum += off * off.transpose();
+  }
+  return sum / draws;
+}
+
+std::vector<SoilLaw> shipped_soil_laws(const std::string& data_folder) {
+  constexpr std::pair<const char*, double> kinds[] = {
+      {"loam", 0.4}, {"sand", 0.2}, {"clay", 0.2}, {"gravel", 0.2}};
+  std::vector<SoilLaw> laws;
+  for (const auto& [name, weight] : kinds) {
+    const std::string file = std::string(name) + ".json";
+    laws.push_back({load_soil(find_data_file("soils/" + file, data_folder)),
+                    load_density_law(find_data_file("laws/zx120-" + file, data_folder)), weight});
+  }
+  return laws;
+}
+
+}  // namespace excavplan

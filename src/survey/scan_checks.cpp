@@ -1,0 +1,330 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "survey/scan_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Cholesky>
+
+#include "base/angles.hpp"
+#include "base/text.hpp"
+#include "ground/error_field.hpp"
+#include "ground/grid_cells.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double degree = pi / 180.0;
+constexpr const char* give_frames =
+    "give the transform into a frame with z up by --before-frame and --after-frame";
+
+std::string degrees(double angle) { return readable(angle / degree, 2) + " degrees"; }
+
+std::string size_of(const Rectangle& r) {
+  return readable(r.x_max - r.x_min) + " x " + readable(r.y_max - r.y_min);
+}
+
+/// The value that a share of all is not above; 0 for none.
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+// ---- Units --------------------------------------------------------------------------------------
+
+std::optional<Warning> too_small(const OutlinedPair& pair) {
+  constexpr double least = 0.3;  // ours: narrower than any bucket [m]
+  for (const ScanOutline* seen : {&pair.before, &pair.after}) {
+    const Rectangle& r = *seen->extent;
+    if (std::max(r.x_max - r.x_min, r.y_max - r.y_min) > least) continue;
+    return Warning{"units",
+                   "a scan shows no more than " + size_of(r) +
+                       " m of ground: is --unit that of its coordinates?",
+                   true};
+  }
+  return std::nullopt;
+}
+
+/// Twice as large and more in both directions, and by the same factor to a tenth.
+std::optional<Warning> other_units(const OutlinedPair& pair) {
+  constexpr double least_factor = 2.0;  // ours
+  constexpr double alike = 0.1;         // ours, of the logarithm of the factor
+  const Rectangle& a = *pair.before.extent;
+  const Rectangle& b = *pair.after.extent;
+  const double x = std::log((b.x_max - b.x_min) / (a.x_max - a.x_min));
+  const double y = std::log((b.y_max - b.y_min) / (a.y_max - a.y_min));
+  const double points = std::log(static_cast<double>(pair.after.finite_points) /
+                                 static_cast<double>(pair.before.finite_points));
+  const double factor = 0.5 * (x + y);
+  if (std::abs(factor) < std::log(least_factor) || std::abs(x - y) > alike * std::abs(factor)) {
+    return std::nullopt;
+  }
+  if (std::abs(points) > std::abs(factor)) return std::nullopt;  // it shows more ground
+  return Warning{"units",
+                 "the scans show " + size_of(a) + " m before and " + size_of(b) +
+                     " m after, in both directions a factor of " +
+                     readable(std::exp(std::abs(factor))) +
+                     ": one of them is in other units: give --before-unit or --after-unit",
+                 true};
+}
+
+/// The unit that makes a bucket's volume of it; none for a volume that one digs.
+std::optional<Warning> no_dig_of_metres(double hole) {
+  constexpr double most = 1000.0;  // [m^3]; ours: five times the largest dragline's bucket, 168 m^3
+  constexpr double usual = 1.0;    // [m^3], ours
+  if (!(hole > most)) return std::nullopt;
+  struct Unit {
+    const char* word;
+    double length;
+  };
+  Unit likely = {"mm", 1e-3};
+  for (const Unit unit : {Unit{"cm", 1e-2}, Unit{"in", 0.0254}}) {
+    const auto miss = [&](Unit u) {
+      return std::abs(std::log(hole * std::pow(u.length, 3) / usual));
+    };
+    if (miss(unit) < miss(likely)) likely = unit;
+  }
+  return Warning{"units",
+                 "a hole of " + readable(hole) + " m^3 is none that a bucket digs; in " +
+                     likely.word + " it would be " + readable(hole * std::pow(likely.length, 3)) +
+                     " m^3: give the unit of the clouds by --unit, probably --unit " + likely.word,
+                 true};
+}
+
+// ---- Frame --------------------------------------------------------------------------------------
+
+std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
+  constexpr double nearly_all = 0.99;
+  constexpr double steepest = 45.0 * degree;  // ours: no ground to dig in
+  const double off = std::acos(std::min(seen.normal.z(), 1.0));
+  if (off > steepest) {
+    return Warning{"frame",
+                   name_of(scan) + ": the ground lies at " + degrees(off) +
+                       " to level, so z is not up: " + give_frames,
+                   true};
+  }
+  if (scan.site_from_scan != Eigen::Matrix4d::Identity()) return std::nullopt;
+  if (!(seen.seen_along_z >= nearly_all)) return std::nullopt;
+  return Warning{"frame",
+                 name_of(scan) +
+                     ": all points lie ahead of the origin along z, as in the frame of a camera, "
+                     "where hole and heap are exchanged: " +
+                     give_frames + "; if z is up, let it put the ground near z = 0",
+                 true};
+}
+
+struct Plane {
+  double slope_x = 0.0;
+  double slope_y = 0.0;
+  double tilt() const { return std::atan(std::hypot(slope_x, slope_y)); }
+};
+
+Plane plane_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for_each_cell(zone, [&](Cell at) {
+    const double z = ground.z(at.row, at.col);
+    if (zone(at.row, at.col) >= 0 || std::isnan(z)) return;
+    const Eigen::Vector3d terms(1.0, ground.x(at.col) - ground.origin.x(),
+                                ground.y(at.row) - ground.origin.y());
+    normal += terms * terms.transpose();
+    right += z * terms;
+  });
+  const Eigen::Vector3d plane = normal.ldlt().solve(right);
+  return {plane.y(), plane.z()};
+}
+
+/// Slope of the walls of the hole between neighbouring cells, and whether they are so wide that the
+/// cells tell it.
+struct Walls {
+  double angle = 0.0;
+  bool resolved = true;
+};
+
+Walls walls_of(const VolumeChange& change, const AreaChange& area, const HeightMap& after) {
+  constexpr double wall = 1.0;         // ours: steeper than loose soil stands [-]
+  constexpr double in_one_step = 0.6;  // ours, of the depth
+  std::vector<double> steps;
+  std::vector<double> depths;
+  const auto in_hole = [&](Cell at) {
+    const int zone = area.zone(at.row, at.col);
+    return zone >= 0 && change.zones[static_cast<std::size_t>(zone)].kind == ZoneKind::dig;
+  };
+  for_each_cell(area.zone, [&](Cell at) {
+    if (!in_hole(at)) return;
+    depths.push_back(-area.difference.z(at.row, at.col));
+    if (std::isnan(depths.back())) depths.pop_back();
+    double step = 0.0;
+    for_each_neighbour(area.zone, at, [&](Cell n) {
+      const double down = std::abs(after.z(at.row, at.col) - after.z(n.row, n.col));
+      if (in_hole(n) && down > step) step = down;
+    });
+    if (step > wall * after.cell_size) steps.push_back(step);
+  });
+  const double step = quantile(steps, 0.9);
+  return {std::atan(step / after.cell_size), step < in_one_step * quantile(depths, 0.95)};
+}
+
+// ---- Order --------------------------------------------------------------------------------------
+
+/// Volumes that fell and rose in the zones of an area [m^3].
+struct Balance {
+  double fell = 0.0;
+  double rose = 0.0;
+};
+
+Balance balance_of(const AreaChange& area) {
+  Balance sum;
+  const double cell_area = area.difference.cell_size * area.difference.cell_size;
+  for_each_cell(area.zone, [&](Cell at) {
+    const double change = area.difference.z(at.row, at.col);
+    if (area.zone(at.row, at.col) < 0 || std::isnan(change)) return;
+    (change < 0.0 ? sum.fell : sum.rose) += cell_area * std::abs(change);
+  });
+  return sum;
+}
+
+/// Slope of the steepest tenth of a kind of zones [-].
+double steepness(const VolumeChange& change, ZoneKind kind) {
+  std::vector<double> slopes;
+  for (const AreaChange& area : change.areas) {
+    const Gradient gradient = gradient_of(area.difference);
+    for_each_cell(area.zone, [&](Cell at) {
+      const int zone = area.zone(at.row, at.col);
+      if (zone < 0 || change.zones[static_cast<std::size_t>(zone)].kind != kind) return;
+      const double slope = std::hypot(gradient.x(at.row, at.col), gradient.y(at.row, at.col));
+      if (!std::isnan(slope)) slopes.push_back(slope);
+    });
+  }
+  return quantile(slopes, 0.9);
+}
+
+double gap_between(const Rectangle& a, const Rectangle& b) {
+  const double x = std::max(a.x_min, b.x_min) - std::min(a.x_max, b.x_max);
+  const double y = std::max(a.y_min, b.y_min) - std::min(a.y_max, b.y_max);
+  return std::hypot(std::max(x, 0.0), std::max(y, 0.0));
+}
+
+/// Volume of other ground that fell beside the heap, as the spill does where scans are swapped.
+double lost_beside_heap(const VolumeChange& change) {
+  const double beside = ChangeOptions{}.spill_distance;
+  double lost = 0.0;
+  for (const ChangeZone& zone : change.zones) {
+    if (zone.kind != ZoneKind::other || !(zone.volume.value < 0.0)) continue;
+    if (std::any_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& heap) {
+          return heap.kind == ZoneKind::dump && gap_between(heap.extent, zone.extent) < beside;
+        })) {
+      lost -= zone.volume.value;
+    }
+  }
+  return lost;
+}
+
+std::optional<Warning> exchanged(const VolumeChange& change) {
+  constexpr double loose = 1.19;       // ours: tan 50 degrees; loose soil stands at 28 to 45
+  constexpr double gentle = 1.0;       // ours: tan 45 degrees
+  constexpr double steeper = 1.1;      // ours
+  constexpr double least_lost = 0.03;  // ours, of the hole
+  const double heap = steepness(change, ZoneKind::dump);
+  const double hole = steepness(change, ZoneKind::dig);
+  const bool lost = lost_beside_heap(change) > least_lost * change.excavated.value;
+  if (!(heap > loose && hole < gentle) && !(lost && heap > steeper * hole)) return std::nullopt;
+  return Warning{
+      "looks_swapped",
+      "the heap is as steep as " + degrees(std::atan(heap)) + ", the hole " +
+          degrees(std::atan(hole)) + (lost ? ", and ground beside the heap fell" : "") +
+          ", as if hole and heap were exchanged: check the order of BEFORE and AFTER, and if z "
+          "points down, " +
+          give_frames,
+      true};
+}
+
+}  // namespace
+
+std::vector<Warning> check_outlines(const OutlinedPair& pair) {
+  std::vector<Warning> found;
+  const auto add = [&found](std::optional<Warning> warning) {
+    if (warning) found.push_back(std::move(*warning));
+  };
+  add(too_small(pair));
+  add(other_units(pair));
+  const auto before = not_up(pair.before, pair.scans.before);
+  add(before ? before : not_up(pair.after, pair.scans.after));
+  return found;
+}
+
+std::vector<Warning> check_registration(const RegisteredPair& pair) {
+  const Alignment& found = pair.surfaces.alignment;
+  const Displacement moved = displacement_by(pair.correction, found.centre);
+  if (!moved.is_beyond_prior()) return {};
+  std::string message = "the scan after was moved against the scan before by " +
+                        readable(moved.shift, 2) + " m and " + degrees(moved.turn) +
+                        ", more than one standpoint explains";
+  if (!leaves_difference(pair.surfaces)) {
+    return {{"registration_beyond_prior",
+             message +
+                 "; it was brought back by the ground that did not change, which then fits to " +
+                 readable(1000.0 * found.residual_sd, 2) + " mm"}};
+  }
+  return {{"registration_beyond_prior",
+           message + ", and the ground that did not change still differs by " +
+               readable(1000.0 * found.residual_sd, 2) +
+               " mm: give the transform of the scan after by --after-frame",
+           true}};
+}
+
+std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfaces,
+                                const VolumeChange& change, const AreaChange& area) {
+  constexpr double noted = 5.0 * degree;      // ours
+  constexpr double doubtful = 12.0 * degree;  // ours: walls that overhang by less cost under 0.4 %
+  constexpr double largest = 17.0 * degree;   // ours: slopes of 15 degrees are dug
+  constexpr double upright = 93.0 * degree;   // ours: from pits that were tilted by a known angle
+  if (scans.before.site_from_scan != Eigen::Matrix4d::Identity()) return {};
+  const double tilt = plane_of_stable(surfaces.before.height, area.zone).tilt();
+  if (!(tilt > noted)) return {};
+  const Walls walls = walls_of(change, area, surfaces.after.height);
+  const bool may_overhang = walls.angle + tilt > upright || (tilt > doubtful && !walls.resolved);
+  const bool ends = tilt > largest || may_overhang;
+  return {{"tilted",
+           "the ground lies at " + degrees(tilt) + " to the plane z = 0" +
+               (ends ? ", and walls of " + degrees(walls.angle) +
+                           " may overhang there, which hides soil"
+                     : ", of which the volumes are free") +
+               ": if the scanner was not level, " + give_frames,
+           ends}};
+}
+
+std::vector<Warning> check_volumes(const VolumeChange& change) {
+  std::vector<Warning> found;
+  if (auto warning = no_dig_of_metres(change.excavated.value)) found.push_back(std::move(*warning));
+  if (auto warning = exchanged(change)) found.push_back(std::move(*warning));
+  return found;
+}
+
+void refuse_swapped(const VolumeChange& change, const std::string& names) {
+  const auto refuse = [&](const std::string& message) {
+    const auto units = no_dig_of_metres(change.excavated.value);
+    throw Error(ErrorKind::bad_file,
+                names + ": " + message + (units ? "; " + units->message : std::string()));
+  };
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == "looks_swapped") refuse(warning.message);
+  }
+  constexpr double least = 0.2;  // ours, of what moved at the dig
+  if (change.areas.size() != 2) return;
+  const Balance dig = balance_of(change.areas[0]);
+  const Balance dump = balance_of(change.areas[1]);
+  if (!(dump.fell > dump.rose) || dump.fell < least * std::max(dig.fell, dig.rose)) return;
+  const bool both = dig.rose > dig.fell;
+  refuse("before and after are probably swapped" + std::string(both ? "" : " in the dump area") +
+         ": there the ground fell by " + readable(dump.fell) + " m^3 and rose by " +
+         readable(dump.rose) + " m^3; exchange --dump-before and --dump-after" +
+         (both ? ", BEFORE and AFTER; or if z points down, " + std::string(give_frames) : ""));
+}
+
+}  // namespace excavplan

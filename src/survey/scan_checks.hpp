@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/error.hpp>
+
+#include "survey/scan_reading.hpp"
+
+/// @file
+/// Whether scans can be what they are taken for: units, frame, motion between them, order
+/// (docs/methods.md#checks-of-the-scans). Private to the library.
+
+namespace excavplan {
+
+/// Codes `units` (too small, or one scan in other units than the other) and `frame` (a camera's,
+/// or z is not up), all of which end trust.
+std::vector<Warning> check_outlines(const OutlinedPair& pair);
+
+/// Code `registration_beyond_prior`: the scan after has moved by more than three standard
+/// deviations of the priors. Ends trust where the ground still differs.
+std::vector<Warning> check_registration(const RegisteredPair& pair);
+
+/// Code `tilted`: ground of more than 5 degrees without a frame. Ends trust where walls may
+/// overhang.
+///
+/// @param area of the change that was found in `surfaces`
+std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfaces,
+                                const VolumeChange& change, const AreaChange& area);
+
+/// Code `units`: a hole that no bucket digs. Code `looks_swapped`: a heap steeper than loose soil
+/// stands and a gentle hole, or a heap steeper than the hole and a loss beside it. Both end trust.
+std::vector<Warning> check_volumes(const VolumeChange& change);
+
+/// @throws Error (bad_file) naming the scans if they look swapped, or those of the dump area do,
+///         alone or with those of the dig area
+void refuse_swapped(const VolumeChange& change, const std::string& names);
+
+/// Runs `work`; an error in it is told together with the doubts about the scans, which explain it.
+template <typename Work>
+auto with_doubts(const std::vector<Warning>& doubts, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    if (doubts.empty()) throw;
+    throw Error(error.kind(), error.what() + ("; " + doubts.front().message));
+  }
+}
+
+}  // namespace excavplan

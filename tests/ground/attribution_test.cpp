@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include <excavplan/ground/bulking.hpp>
+#include <excavplan/ground/volume_change.hpp>
+
+#include "base/random.hpp"
+#include "support/survey_scenes.hpp"
+
+namespace excavplan {
+namespace {
+
+using scenes::Dig;
+using Shape = std::function<double(double x, double y)>;
+
+constexpr Rectangle extent = scenes::whole_extent;
+
+double dug(double x, double y) { return scenes::change_at(Dig{}, scenes::Part::whole, x, y); }
+
+double box(double x, double y, const Rectangle& r, double height) {
+  return r.contains(x, y) ? height : 0.0;
+}
+
+/// A cone of 35 degrees.
+double cone(double x, double y, const Eigen::Vector2d& centre, double radius) {
+  const double away = std::hypot(x - centre.x(), y - centre.y());
+  return std::max(0.0, (radius - away) * std::tan(35.0 * scenes::degree));
+}
+double cone_volume(double radius) {
+  return pi / 3.0 * std::pow(radius, 3) * std::tan(35.0 * scenes::degree);
+}
+
+/// Mean heights of 5 cm cells with 2 mm of noise.
+HeightMap scanned(const Shape& shape, std::uint64_t scan) {
+  constexpr int fine = 4;
+  Random random(5, scan);
+  HeightMap map = flat_ground(extent, 0.05);
+  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+      double sum = 0.0;
+      for (int i = 0; i < fine * fine; ++i) {
+        sum += shape(map.x(col) + 0.05 * ((i % fine + 0.5) / fine - 0.5),
+                     map.y(row) + 0.05 * ((i / fine + 0.5) / fine - 0.5));
+      }
+      map.z(row, col) = sum / (fine * fine) + 0.002 * random.normal();
+    }
+  }
+  return map;
+}
+
+VolumeChange change_of(const Shape& after, const ChangeOptions& options = {}) {
+  static const HeightMap before = scanned([](double, double) { return 0.0; }, 1);
+  return measure_change(before, scanned(after, 2), options);
+}
+
+bool warns(const VolumeChange& change, const std::string& code, bool ends_trust) {
+  return std::any_of(change.warnings.begin(), change.warnings.end(), [&](const Warning& w) {
+    return w.code == code && w.ends_trust == ends_trust;
+  });
+}
+
+/// The open change whose text begins so; fails the test without one.
+AttributedChange open_change(const VolumeChange& change, const std::string& what) {
+  for (const AttributedChange& open : change.attribution) {
+    if (open.what.rfind(what, 0) == 0) return open;
+  }
+  ADD_FAILURE() << "no open change " << what;
+  return {};
+}
+
+bool reads(const VolumeChange& change, double bulking) {
+  return std::any_of(change.readings.begin(), change.readings.end(), [&](const Reading& r) {
+    return std::abs(r.bulking.value - bulking) < 0.01 * bulking;
+  });
+}
+
+const double hole = Dig{}.pit_volume();
+
+TEST(Attribution, SceneWithoutDoubtHasTheDeviationOfItsScans) {
+  const VolumeChange change = change_of(dug);
+  EXPECT_NEAR(bulking_factor(change)->value, 1.25, 0.005);
+  EXPECT_LE(bulking_factor(change)->sd, 1.5 * bulking_errors(change).scans);
+  ASSERT_EQ(change.attribution.size(), 1u) << "the ground under the heap";
+  EXPECT_FALSE(change.attribution[0].counted);
+}
+
+TEST(Attribution, GroundThatGaveWayUnderTheHeapIsOneOfTheReadings) {
+  const auto pressed = [](double x, double y) {
+    const double heap = Dig{}.dumped(x - scenes::dump_offset, y);
+    return dug(x, y) - (heap > 0.0 ? std::min(0.01, heap) : 0.0);
+  };
+  const VolumeChange change = change_of(pressed);
+  EXPECT_LT(bulking_factor(change)->value, 1.22);
+  EXPECT_TRUE(reads(change, 1.25));
+}
+
+TEST(Attribution, SecondHeapIsCountedAndTheOtherReadingStated) {
+  const double extra = cone_volume(0.4);
+  const auto two = [](double x, double y) { return dug(x, y) + cone(x, y, {3.2, -1.8}, 0.4); };
+  const VolumeChange change = change_of(two);
+  const double with_it = 1.25 + extra / hole;
+  EXPECT_NEAR(bulking_factor(change)->value, with_it, 0.005);
+  EXPECT_TRUE(open_change(change, "a second heap").counted);
+  EXPECT_TRUE(reads(change, 1.25));
+  EXPECT_LT(std::abs(with_it - 1.25), 1.96 * bulking_factor(change)->sd)
+      << "a reading of more than 5 % lies in the interval";
+  double weights = 0.0;
+  for (const Reading& reading : change.readings) weights += reading.weight;
+  EXPECT_NEAR(weights, 1.0, 1e-9);
+}
+
+TEST(Attribution, TwoHeapsAlikeAreSummed) {
+  const double radius = std::cbrt(0.5) * Dig{}.heap_radius();
+  const auto two = [&](double x, double y) {
+    return scenes::change_at(Dig{}, scenes::Part::dig, x, y) + cone(x, y, {4.5, 1.2}, radius) +
+           cone(x, y, {6.5, -1.2}, radius);
+  };
+  const VolumeChange change = change_of(two);
+  EXPECT_NEAR(bulking_factor(change)->value, 1.25, 0.005);
+  EXPECT_FALSE(warns(change, "attribution_open", true));
+}
+
+TEST(Attribution, SecondHoleIsCountedWhereTheSoilNeedsIt) {
+  const Rectangle second = {2.2, -2.2, 3.2, -0.9};
+  const double fallen = 0.15 * 1.3;
+  Dig dig;
+  dig.bulking = 1.25 * (hole + fallen) / hole;  // its soil lies in the heap
+  const auto two = [&](double x, double y) {
+    return scenes::change_at(dig, scenes::Part::whole, x, y) + box(x, y, second, -0.15);
+  };
+  const VolumeChange change = change_of(two);
+  EXPECT_NEAR(change.before.value, hole + fallen, 0.005);
+  EXPECT_NEAR(bulking_factor(change)->value, 1.25, 0.01);
+  EXPECT_TRUE(open_change(change, "a second hole").counted);
+}
+
+TEST(Attribution, RutsThatJoinTheHoleAreCutOff) {
+  for (const double depth : {0.01, 0.03}) {
+    const auto with_ruts = [&](double x, double y) {
+      const double scene = dug(x, y);
+      const double ruts = box(x, y, {-2.6, -2.4, -0.2, 2.2}, 0.0) +
+                          box(x, y, {-0.9, 0.0, -0.4, 2.45}, -depth) +
+                          box(x, y, {0.6, 0.0, 1.1, 2.45}, -depth);
+      return scene < 0.0 ? std::min(scene, ruts) : scene > 0.0 ? scene : ruts;
+    };
+    const VolumeChange change = change_of(with_ruts);
+    EXPECT_NEAR(change.before.value, hole, 0.015 * hole) << depth;
+    EXPECT_FALSE(open_change(change, "ruts").counted) << depth;
+  }
+}
+
+TEST(Attribution, UprightThingsAndClodsAreToldApart) {
+  const auto with_both = [](double x, double y) {
+    double z = dug(x, y) + box(x, y, {3.0, -2.2, 3.4, -1.8}, 0.3);
+    for (const double at : {2.0, 2.5, 3.0, 3.5}) z += cone(x, y, {at, 0.3}, 0.17);
+    return z;
+  };
+  const VolumeChange change = change_of(with_both);
+  EXPECT_FALSE(open_change(change, "a thing that is no soil").counted);
+  const AttributedChange clods = open_change(change, "clods along the swing");
+  EXPECT_TRUE(clods.counted);
+  EXPECT_NEAR(clods.volume.value, 4.0 * cone_volume(0.17), 0.002);
+}
+
+TEST(Attribution, StirredGroundIsNoiseOfWhatLiesInIt) {
+  const scenes::SmoothError churn(extent, 0.15, Random(8, 1));
+  const auto stirred = [&](double x, double y) {
+    return dug(x, y) + (x > 1.0 ? 0.015 * churn(x, y) : 0.0);
+  };
+  const VolumeChange change = change_of(stirred);
+  EXPECT_TRUE(warns(change, "stirred_ground", false) || warns(change, "stirred_ground", true));
+  EXPECT_LE(std::abs(bulking_factor(change)->value - 1.25), 1.96 * bulking_factor(change)->sd);
+  EXPECT_GT(bulking_factor(change)->sd, 3.0 * bulking_errors(change).scans);
+}
+
+TEST(Attribution, GivenAreasLeaveNothingOpenOutside) {
+  const auto two = [](double x, double y) { return dug(x, y) + cone(x, y, {3.2, -1.8}, 0.4); };
+  ChangeOptions options;
+  options.dump_area = Rectangle{4.3, -1.2, 8.0, 2.4};
+  const VolumeChange change = change_of(two, options);
+  EXPECT_NEAR(bulking_factor(change)->value, 1.25, 0.005);
+  EXPECT_FALSE(open_change(change, "ground outside the given area").counted);
+  EXPECT_FALSE(warns(change, "attribution_open", false));
+}
+
+}  // namespace
+}  // namespace excavplan

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <excavplan/error.hpp>
+#include <excavplan/ground/bulking.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/scene.hpp>
+#include <excavplan/soil/soil_scatter.hpp>
+
+#include "base/random.hpp"
+#include "survey/density_of_volumes.hpp"
+
+/// @file
+/// Simulated digs in random soil along random paths, and the density found from their volumes.
+
+namespace excavplan::test {
+
+/// What a survey of a dig and the machine's scale would say, with their errors.
+struct SoilDig {
+  SoilKind soil;  ///< that was dug
+  double density_percent = 0.0;
+  DigParameters path;
+  VolumeChange change;
+  Measured payload_mass;
+};
+
+struct SoilDigOptions {
+  SimulatorKind simulator = default_simulator();
+  SoilScatter scatter;                         ///< of the soil about its kind
+  double volume_error = 0.005;                 ///< of each volume, as a share
+  double mass_error = 0.01;                    ///< likewise
+  std::optional<DigParameters> path = {};      ///< else random
+  std::optional<double> density_percent = {};  ///< else random
+};
+
+inline Machine tireless(Machine machine) {
+  machine.body.reset();
+  for (JointLimits& joint : machine.limits) joint.torque = std::numeric_limits<double>::infinity();
+  return machine;
+}
+
+/// A volume change with independent errors, of which it states the deviations.
+inline VolumeChange measured(const HeightMapVolumes& truth, double error, Random& random) {
+  VolumeChange change;
+  int i = 0;
+  const auto measure = [&](double volume) {
+    const double sd = error * volume;
+    change.errors.noise(i, i) = sd * sd;
+    ++i;
+    return Measured{volume + sd * random.normal(), sd};
+  };
+  change.excavated = change.before = measure(truth.excavated);
+  change.spilled = measure(truth.spilled);
+  change.dumped = measure(truth.dumped);
+  change.after = {change.spilled.value + change.dumped.value,
+                  std::hypot(change.spilled.sd, change.dumped.sd)};
+  return change;
+}
+
+/// Paths that cannot be driven are drawn again.
+inline SoilDig random_dig(const Machine& machine, const SoilKind& kind, std::uint64_t seed,
+                          const SoilDigOptions& options = {}) {
+  Random random(seed, 77);
+  SoilDig dig;
+  dig.soil = drawn_soil(kind, options.scatter, random.bits());
+  dig.density_percent = options.density_percent.value_or(random.uniform(0.0, 100.0));
+  const Eigen::Vector2d dump_at = default_dump_point();
+  const Terrain ground = undisturbed(flat_ground(scene_extent(machine, dump_at), 0.05));
+  while (true) {
+    dig.path = options.path.value_or(DigParameters{
+        random.uniform(0.5, 1.1), random.uniform(0.2, 0.6), random.uniform(0.8, 2.5)});
+    SceneOptions scene;
+    scene.simulator = options.simulator;
+    scene.path = dig.path;
+    try {
+      const DigScene dug =
+          run_scene(tireless(machine), dig.soil, dig.density_percent, ground, scene);
+      dig.change = measured(dug.volumes, options.volume_error, random);
+      const double sd = options.mass_error * dug.dig.payload_mass;
+      dig.payload_mass = {dug.dig.payload_mass + sd * random.normal(), sd};
+      return dig;
+    } catch (const Error&) {
+      if (options.path) throw;
+    }
+  }
+}
+
+inline DensityEstimate estimate_of(const VolumeChange& change, const DensityLaw& law,
+                                   const DensityOptions& options) {
+  DensityEstimate estimate;
+  estimate.change = change;
+  estimate.bulking = bulking_factor(change);
+  const LawsForDig laws = laws_for_dig(law, options, estimate.fallback);
+  set_density(estimate, laws, options);
+  return estimate;
+}
+
+/// How often an interval held the truth, and how far the estimate was from it.
+struct Coverage {
+  int digs = 0;
+  int inside = 0;
+  double squares = 0.0;
+  double sd = 0.0;  ///< sum of those stated
+
+  void add(const RelativeDensity& density, double truth) {
+    ++digs;
+    inside += density.interval_percent[0] <= truth && truth <= density.interval_percent[1];
+    squares += std::pow(density.percent - truth, 2);
+    sd += density.sd_percent;
+  }
+  double share() const { return inside / static_cast<double>(digs); }
+  double rms() const { return std::sqrt(squares / digs); }
+  double mean_sd() const { return sd / digs; }
+};
+
+}  // namespace excavplan::test

@@ -1,0 +1,405 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/survey/density_estimate.hpp>
+
+#include "base/parallel.hpp"
+#include "ground/low_objects.hpp"
+#include "support/block_heap.hpp"
+#include "support/survey_scenes.hpp"
+
+namespace excavplan {
+namespace {
+
+using scenes::degree;
+using scenes::Part;
+using scenes::Points;
+using Affine = Eigen::Affine3d;
+
+constexpr std::size_t points_of_a_scan = 40000;
+
+/// A dig and its scans: of the whole scene, or of dig and dump area.
+struct Survey {
+  scenes::Dig dig;
+  scenes::ScanErrors errors;
+  bool whole = true;
+  Points before, after, dump_before, dump_after;
+
+  Survey(std::uint64_t seed, bool is_whole, double slope = 0.0, double roughness = 0.0,
+         std::size_t points = points_of_a_scan)
+      : dig(scenes::random_dig(seed)), whole(is_whole) {
+    errors.noise = 0.005;
+    errors.slope = slope;
+    errors.roughness = roughness;
+    const auto scan = [&](Part part, bool is_after) {
+      return scenes::scan(dig, part, errors, points, seed, is_after);
+    };
+    before = scan(whole ? Part::whole : Part::dig, false);
+    after = scan(whole ? Part::whole : Part::dig, true);
+    if (whole) return;
+    dump_before = scan(Part::dump, false);
+    dump_after = scan(Part::dump, true);
+  }
+
+  static void move(Points& points, const Affine& motion) {
+    for (Eigen::Vector3d& point : points) point = motion * point;
+  }
+  void move_all(const Affine& motion) {
+    for (Points* points : {&before, &after, &dump_before, &dump_after}) move(*points, motion);
+  }
+
+  DigScans scans() const {
+    const auto scan_of = [](const Points& points) {
+      auto cloud = std::make_shared<Cloud>();
+      cloud->points = points;
+      cloud->width = points.size();
+      Scan scan;
+      scan.clouds = {cloud};
+      return scan;
+    };
+    DigScans all{scan_of(before), scan_of(after)};
+    if (!whole) all.dump = ScanPair{scan_of(dump_before), scan_of(dump_after)};
+    return all;
+  }
+};
+
+const DensityLaw& law() {
+  static const DensityLaw paper = load_density_law(find_data_file("laws/paper.json"));
+  return paper;
+}
+
+/// The estimate, or the text of the error.
+struct Answer {
+  std::optional<DensityEstimate> estimate;
+  std::string error;
+
+  bool trusted() const { return estimate && estimate->trustworthy; }
+  const Warning* warning(const std::string& code) const {
+    if (!estimate) return nullptr;
+    for (const Warning& each : estimate->warnings) {
+      if (each.code == code) return &each;
+    }
+    return nullptr;
+  }
+};
+
+Answer answer_to(const DigScans& scans) {
+  DensityOptions options;
+  options.threads = 1;
+  try {
+    return {estimate_density(scans, law(), options), ""};
+  } catch (const Error& error) {
+    return {std::nullopt, error.what()};
+  }
+}
+
+/// Trusted, and off by more than three standard deviations in k, or four in the hole.
+bool is_trusted_and_wrong(const Answer& answer, const scenes::Dig& dig) {
+  if (!answer.trusted()) return false;
+  const Measured& k = *answer.estimate->bulking;
+  const Measured& hole = answer.estimate->change.excavated;
+  return std::abs(k.value - dig.bulking) > 3.0 * k.sd ||
+         std::abs(hole.value - dig.pit_volume()) > 4.0 * hole.sd;
+}
+
+Affine turned(double angle, const Eigen::Vector3d& axis) {
+  return Affine(Eigen::AngleAxisd(angle, axis.normalized()));
+}
+
+Eigen::Vector3d level_axis(Random& random) {
+  const double heading = random.uniform(0.0, 2.0 * pi);
+  return {std::cos(heading), std::sin(heading), 0.0};
+}
+
+/// Into the frame of a camera that looks at the middle of the scene: x right, y down, z forward.
+Affine camera(double pitch, double height) {
+  const Eigen::Vector3d forward(0.0, std::cos(pitch), -std::sin(pitch));
+  const Eigen::Vector3d right = Eigen::Vector3d::UnitX();
+  Affine motion = Affine::Identity();
+  motion.linear().row(0) = right.transpose();
+  motion.linear().row(1) = forward.cross(right).transpose();
+  motion.linear().row(2) = forward.transpose();
+  const Eigen::Vector3d eye = Eigen::Vector3d(2.5, 0.0, 0.0) - height / std::sin(pitch) * forward;
+  return motion * Eigen::Translation3d(-eye);
+}
+
+struct Fault {
+  std::string name;
+  std::function<void(Survey&, Random&)> spoil;
+  double slope = 0.0;
+  double roughness = 0.0;
+  bool never_trusted = true;
+};
+
+std::vector<Fault> faults() {
+  const auto scaled = [](double factor) {
+    return [factor](Survey& s, Random&) { s.move_all(Affine(Eigen::Scaling(factor))); };
+  };
+  const auto moved = [](Survey& s, Random& random) {
+    const double turn = random.uniform(0.0, 5.0) * degree;
+    Survey::move(s.after, scenes::random_motion(random.uniform(0.05, 1.0), turn, random));
+  };
+  return {
+      {"millimetres", scaled(1000.0)},
+      {"centimetres", scaled(100.0)},
+      {"one scan in millimetres",
+       [](Survey& s, Random&) { Survey::move(s.after, Affine(Eigen::Scaling(1000.0))); }},
+      {"camera",
+       [](Survey& s, Random& random) {
+         s.move_all(camera(random.uniform(30.0, 89.0) * degree, random.uniform(3.0, 9.0)));
+       }},
+      {"z down",
+       [](Survey& s, Random& random) {
+         s.move_all(Eigen::Translation3d(0.0, 0.0, random.uniform(-3.0, 3.0)) *
+                    turned(pi, Eigen::Vector3d::UnitX()));
+       }},
+      {"y up", [](Survey& s, Random&) { s.move_all(turned(-0.5 * pi, Eigen::Vector3d::UnitX())); }},
+      {"tilted by 18 .. 45 degrees",
+       [](Survey& s, Random& random) {
+         s.move_all(turned(random.uniform(18.0, 45.0) * degree, level_axis(random)));
+       }},
+      {"tilted by 5 .. 18 degrees",
+       [](Survey& s, Random& random) {
+         s.move_all(turned(random.uniform(5.0, 18.0) * degree, level_axis(random)));
+       },
+       0.0, 0.0, false},
+      {"moved on level ground", moved, 0.0, 0.0, false},
+      {"moved on rough ground", moved, 8.0 * degree, 0.02, false},
+      {"swapped", [](Survey& s, Random&) { std::swap(s.before, s.after); }},
+  };
+}
+
+TEST(ScanChecks, NoBadSurveyIsTrustedAndWrong) {
+  constexpr std::size_t surveys = 20;
+  for (const Fault& fault : faults()) {
+    std::vector<int> trusted(surveys);
+    std::vector<int> wrong(surveys);
+    parallel_for(surveys, 0, [&](std::size_t i) {
+      const std::uint64_t seed = 501 + i;
+      Random random(seed, 99);
+      Survey survey(seed, true, fault.slope, fault.roughness);
+      fault.spoil(survey, random);
+      const Answer answer = answer_to(survey.scans());
+      trusted[i] = answer.trusted() ? 1 : 0;
+      wrong[i] = is_trusted_and_wrong(answer, survey.dig) ? 1 : 0;
+    });
+    for (std::size_t i = 0; i < surveys; ++i) {
+      EXPECT_EQ(wrong[i], 0) << fault.name << ", seed " << 501 + i;
+      if (fault.never_trusted) {
+        EXPECT_EQ(trusted[i], 0) << fault.name << ", seed " << 501 + i;
+      }
+    }
+  }
+}
+
+TEST(ScanChecks, GoodSurveysPass) {
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const bool sloped = seed % 3 == 0;
+    const Survey survey(seed, seed % 2 == 0, sloped ? 8.0 * degree : 0.0, sloped ? 0.02 : 0.0);
+    const Answer answer = answer_to(survey.scans());
+    ASSERT_TRUE(answer.estimate) << answer.error;
+    for (const char* code : {"units", "frame", "looks_swapped", "registration_beyond_prior",
+                             "grass", "flat_water", "object_on_soil"}) {
+      EXPECT_EQ(answer.warning(code), nullptr) << code << ", seed " << seed;
+    }
+    EXPECT_EQ(answer.warning("tilted") != nullptr, sloped);
+    for (const Warning& warning : answer.estimate->warnings) {
+      EXPECT_FALSE(warning.ends_trust) << warning.message;
+    }
+  }
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(ScanChecks, AHoleNoBucketDigsNamesTheUnit) {
+  for (const auto& [word, factor] : {std::pair("mm", 1000.0), std::pair("cm", 100.0)}) {
+    Survey survey(2, true);
+    survey.move_all(Affine(Eigen::Scaling(factor)));
+    DigScans scans = survey.scans();
+    const Answer answer = answer_to(scans);
+    const Warning* units = answer.warning("units");
+    ASSERT_NE(units, nullptr) << word;
+    EXPECT_TRUE(contains(units->message, std::string("--unit ") + word)) << units->message;
+    scans.before.unit = scans.after.unit = 1.0 / factor;
+    const Answer mended = answer_to(scans);
+    EXPECT_TRUE(mended.trusted());
+    EXPECT_EQ(mended.warning("units"), nullptr);
+    EXPECT_FALSE(is_trusted_and_wrong(mended, survey.dig));
+  }
+}
+
+TEST(ScanChecks, OneScanInOtherUnitsIsNamed) {
+  Survey survey(3, true);
+  Survey::move(survey.after, Affine(Eigen::Scaling(1000.0)));
+  DigScans scans = survey.scans();
+  EXPECT_TRUE(contains(answer_to(scans).error, "--after-unit"));
+  scans.after.unit = 0.001;
+  EXPECT_TRUE(answer_to(scans).trusted());
+}
+
+TEST(ScanChecks, ACameraFrameNamesTheOption) {
+  Survey survey(4, true);
+  survey.move_all(camera(80.0 * degree, 6.0));
+  const Answer answer = answer_to(survey.scans());
+  const std::string text = answer.estimate ? answer.warning("frame")->message : answer.error;
+  EXPECT_TRUE(contains(text, "as in the frame of a camera")) << text;
+  EXPECT_TRUE(contains(text, "--before-frame")) << text;
+}
+
+TEST(ScanChecks, GroundUprightInTheFrameIsNoGround) {
+  Survey survey(4, true);
+  survey.move_all(turned(-0.5 * pi, Eigen::Vector3d::UnitX()));
+  const std::string error = answer_to(survey.scans()).error;
+  EXPECT_TRUE(contains(error, "z is not up")) << error;
+}
+
+TEST(ScanChecks, AFrameThatIsGivenMayTilt) {
+  Survey survey(6, true);
+  survey.move_all(turned(25.0 * degree, Eigen::Vector3d::UnitX()));
+  DigScans scans = survey.scans();
+  const Answer answer = answer_to(scans);
+  ASSERT_NE(answer.warning("tilted"), nullptr);
+  EXPECT_TRUE(answer.warning("tilted")->ends_trust);
+  const Eigen::Matrix4d back = turned(-25.0 * degree, Eigen::Vector3d::UnitX()).matrix();
+  scans.before.site_from_scan = scans.after.site_from_scan = back;
+  const Answer mended = answer_to(scans);
+  EXPECT_EQ(mended.warning("tilted"), nullptr);
+  EXPECT_TRUE(mended.trusted());
+}
+
+TEST(ScanChecks, AScanThatMovedFarIsBroughtBack) {
+  Survey survey(6, true, 8.0 * degree, 0.02);
+  const Affine motion =
+      Eigen::Translation3d(0.5, -0.4, 0.2) * turned(3.0 * degree, Eigen::Vector3d(0.3, 0.2, 1.0));
+  Survey::move(survey.after, motion);
+  const Answer answer = answer_to(survey.scans());
+  const Warning* moved = answer.warning("registration_beyond_prior");
+  ASSERT_NE(moved, nullptr);
+  EXPECT_FALSE(moved->ends_trust) << moved->message;
+  EXPECT_FALSE(is_trusted_and_wrong(answer, survey.dig));
+  const Eigen::Matrix4d rest = answer.estimate->registration->correction * motion.matrix();
+  const Eigen::Vector4d middle(2.5, 0.0, 0.3, 1.0);
+  EXPECT_LT((rest * middle - middle).norm(), 0.02);
+}
+
+TEST(ScanChecks, AScanThatMovedTooFarEndsTrust) {
+  Survey survey(6, true, 8.0 * degree, 0.05);
+  Survey::move(survey.after, Affine(Eigen::Translation3d(1.5, 1.5, 0.3)));
+  const Answer answer = answer_to(survey.scans());
+  EXPECT_FALSE(answer.trusted());
+  if (const Warning* moved = answer.warning("registration_beyond_prior")) {
+    EXPECT_TRUE(contains(moved->message, "--after-frame")) << moved->message;
+  }
+}
+
+TEST(ScanChecks, SwappedScansOfTwoAreasAreRefused) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Survey survey(seed, false);
+    std::swap(survey.dump_before, survey.dump_after);
+    EXPECT_TRUE(contains(answer_to(survey.scans()).error, "probably swapped in the dump area"));
+    std::swap(survey.before, survey.after);
+    EXPECT_TRUE(contains(answer_to(survey.scans()).error, "BEFORE and AFTER")) << seed;
+  }
+}
+
+// ---- Whether the surface is the soil ------------------------------------------------------------
+
+constexpr std::size_t points_on_soil = 150000;
+
+/// A share of the returns from grass that the dig took away and the heap covers.
+void grow_grass(Survey& survey, double share, double height) {
+  Random random(7);
+  for (Points* points : {&survey.before, &survey.after}) {
+    for (Eigen::Vector3d& point : *points) {
+      const bool dug = points == &survey.after &&
+                       scenes::change_at(survey.dig, Part::whole, point.x(), point.y()) != 0.0;
+      if (!dug && random.uniform() < share) point.z() += random.uniform(0.0, height);
+    }
+  }
+}
+
+TEST(Cover, GrassEndsTrust) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Survey survey(seed, true, 0.0, 0.0, points_on_soil);
+    const bool lawn = seed % 2 == 0;
+    grow_grass(survey, lawn ? 1.0 : 0.4, lawn ? 0.03 : 0.02);
+    const Answer answer = answer_to(survey.scans());
+    EXPECT_FALSE(answer.trusted()) << seed;
+    if (answer.estimate) {
+      EXPECT_NE(answer.warning("grass"), nullptr) << seed;
+    } else {
+      EXPECT_TRUE(contains(answer.error, "as on grass")) << answer.error;
+    }
+  }
+}
+
+/// Fills the lower fifth of the pit.
+void flood(Survey& survey) {
+  const double level = -0.8 * survey.dig.pit_depth;
+  for (Eigen::Vector3d& point : survey.after) {
+    if (survey.dig.dug(point.x(), point.y()) < 0.0) point.z() = std::max(point.z(), level);
+  }
+}
+
+TEST(Cover, WaterOnRoughGroundEndsTrust) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Survey survey(seed, true, 0.0, 0.015, points_on_soil);
+    EXPECT_EQ(answer_to(survey.scans()).warning("flat_water"), nullptr) << seed;
+    flood(survey);
+    const Answer answer = answer_to(survey.scans());
+    if (answer.warning("flat_water") == nullptr) continue;
+    EXPECT_FALSE(answer.trusted());
+    ++found;
+  }
+  EXPECT_GE(found, 3) << "of four; the floor of one is as even by chance";
+}
+
+/// A box 0.4 m wide whose top is 0.35 m above the surface in its middle.
+void set_down(Survey& survey, double x, double y, double ground) {
+  for (Eigen::Vector3d& point : survey.after) {
+    if (std::max(std::abs(point.x() - x), std::abs(point.y() - y)) > 0.2) continue;
+    point.z() = std::max(point.z(), ground + 0.35);
+  }
+}
+
+TEST(Cover, ACrateIsTakenOut) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Survey survey(seed, true, 0.0, 0.0, points_on_soil);
+    const scenes::Dig& dig = survey.dig;
+    if (seed % 2 == 0) {
+      set_down(survey, dig.pit_x, dig.pit_y, -dig.pit_depth);
+    } else {
+      const double x = scenes::dump_offset + dig.heap_x + 0.3 * dig.heap_radius();
+      set_down(survey, x, dig.heap_y, dig.dumped(x - scenes::dump_offset, dig.heap_y));
+    }
+    const Answer answer = answer_to(survey.scans());
+    ASSERT_NE(answer.warning("object_on_soil"), nullptr) << seed;
+    const Measured& k = *answer.estimate->bulking;
+    EXPECT_NEAR(k.value, dig.bulking, 3.0 * k.sd) << seed;
+    EXPECT_NEAR(k.value, dig.bulking, 0.05 * dig.bulking) << seed;
+  }
+}
+
+TEST(Cover, BlocksOfSoilAreNoCrates) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const HeightMap heap = test::surveyed(test::block_heap({}, seed).fine, 0.05);
+    const Eigen::ArrayXXd level = Eigen::ArrayXXd::Zero(heap.z.rows(), heap.z.cols());
+    EXPECT_TRUE(level_tops(level, heap.z, heap.cell_size).empty()) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace excavplan

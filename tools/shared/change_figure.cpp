@@ -1,0 +1,414 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <excavplan/ground/bulking.hpp>
+
+#include "shared/figures.hpp"
+#include "shared/plot.hpp"
+#include "shared/quantity.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+struct ZoneStyle {
+  const char* name;
+  Style outline;
+};
+
+// Okabe and Ito's colours, distinct for colour-blind readers too.
+ZoneStyle style_of(ZoneKind kind) {
+  switch (kind) {
+    case ZoneKind::dig:
+      return {"hole", {"#000000", 2.0}};
+    case ZoneKind::spill:
+      return {"spill", {"#009e73", 2.0}};
+    case ZoneKind::dump:
+      return {"heap", {"#e69f00", 2.0}};
+    case ZoneKind::other:
+      break;
+  }
+  return {"left out", {"#cc79a7", 2.0}};
+}
+
+/// A multiple of a step.
+std::string rounded(double value, double step) {
+  const auto per_unit = std::round(1.0 / step);
+  return number_text(std::round(value * per_unit) / per_unit + 0.0);  // no minus zero
+}
+
+std::string volume_text(const Measured& volume) {
+  const double sd = std::isfinite(volume.sd) ? volume.sd : 0.0;
+  return readable(std::abs(volume.value), sd) + " m³";
+}
+
+// ---- The map ----------------------------------------------------------------------------------
+
+/// Whether a cell is on the map and in a zone.
+bool in_zone(const AreaChange& area, int zone, Eigen::Index row, Eigen::Index col) {
+  return row >= 0 && row < area.zone.rows() && col >= 0 && col < area.zone.cols() &&
+         area.zone(row, col) == zone;
+}
+
+/// Borders between the cells of one zone and all others, as strokes.
+Points outline(const AreaChange& area, int zone) {
+  const auto corner = [&](Eigen::Index row, Eigen::Index col) -> Eigen::Vector2d {
+    return area.difference.origin +
+           area.difference.cell_size *
+               Eigen::Vector2d(static_cast<double>(col), static_cast<double>(row));
+  };
+  Points strokes;
+  for (Eigen::Index row = 0; row <= area.zone.rows(); ++row) {
+    for (Eigen::Index col = 0; col <= area.zone.cols(); ++col) {
+      const bool here = in_zone(area, zone, row, col);
+      if (here != in_zone(area, zone, row - 1, col)) {
+        strokes.insert(strokes.end(), {corner(row, col), corner(row, col + 1)});
+      }
+      if (here != in_zone(area, zone, row, col - 1)) {
+        strokes.insert(strokes.end(), {corner(row, col), corner(row + 1, col)});
+      }
+    }
+  }
+  return strokes;
+}
+
+/// The middle of a zone: its mean weighted by the change, or the cell of it that is nearest to
+/// that.
+Eigen::Vector2d middle_of(const AreaChange& area, int zone) {
+  const HeightMap& map = area.difference;
+  Eigen::Vector3d sum(0.0, 0.0, 1e-12);
+  std::vector<Eigen::Vector2d> cells;
+  for (Eigen::Index col = 0; col < area.zone.cols(); ++col) {
+    for (Eigen::Index row = 0; row < area.zone.rows(); ++row) {
+      if (area.zone(row, col) != zone) continue;
+      const double z = map.z(row, col);
+      cells.emplace_back(map.x(col), map.y(row));
+      if (std::isfinite(z)) {
+        sum += std::abs(z) * Eigen::Vector3d(cells.back().x(), cells.back().y(), 1.0);
+      }
+    }
+  }
+  const Eigen::Vector2d mean = sum.head<2>() / sum.z();
+  return *std::min_element(cells.begin(), cells.end(), [&](const auto& a, const auto& b) {
+    return (a - mean).squaredNorm() < (b - mean).squaredNorm();
+  });
+}
+
+bool is_largest_of_its_kind(const ChangeZone& zone, const VolumeChange& change) {
+  return std::none_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& other) {
+    return other.kind == zone.kind && std::abs(other.volume.value) > std::abs(zone.volume.value);
+  });
+}
+
+/// Whether the middle of a zone lies beyond that of the hole, in y.
+bool is_beyond_hole(const Eigen::Vector2d& middle, const VolumeChange& change) {
+  const auto hole =
+      std::find_if(change.zones.begin(), change.zones.end(), [&](const ChangeZone& zone) {
+        return zone.kind == ZoneKind::dig && is_largest_of_its_kind(zone, change);
+      });
+  return hole == change.zones.end() ||
+         middle.y() >= 0.5 * (hole->extent.y_min + hole->extent.y_max);
+}
+
+/// Names the zone with its volume: hole and heap in their middle, spill outside of its zone on the
+/// side away from the hole.
+void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area, int index) {
+  const ChangeZone& zone = change.zones[static_cast<std::size_t>(index)];
+  Eigen::Vector2d at = middle_of(area, index);
+  if (zone.kind == ZoneKind::spill) {
+    if (!is_largest_of_its_kind(zone, change)) return;
+    const double room = 2.5 * area.difference.cell_size;
+    at.y() = is_beyond_hole(at, change) ? zone.extent.y_max + room : zone.extent.y_min - room;
+  }
+  panel.label(at, std::string(style_of(zone.kind).name) + ' ' +
+                      readable(std::abs(zone.volume.value)) + " m³");
+}
+
+Rectangle joined(const Rectangle& a, const Rectangle& b) {
+  return {std::min(a.x_min, b.x_min), std::min(a.y_min, b.y_min), std::max(a.x_max, b.x_max),
+          std::max(a.y_max, b.y_max)};
+}
+
+Rectangle grown(const Rectangle& r, double by) {
+  return {r.x_min - by, r.y_min - by, r.x_max + by, r.y_max + by};
+}
+
+/// The part of an area that its zones take up, with room around it. What was left out is in view
+/// if it lies near what was counted; everything is where nothing was counted.
+Rectangle view_of(const VolumeChange& change, const AreaChange& area) {
+  std::optional<Rectangle> view;
+  const auto in_area = [&](std::size_t i) { return (area.zone == static_cast<int>(i)).any(); };
+  for (std::size_t i = 0; i < change.zones.size(); ++i) {
+    const ChangeZone& zone = change.zones[i];
+    if (zone.kind == ZoneKind::other || !in_area(i)) continue;
+    view = view ? joined(*view, zone.extent) : zone.extent;
+  }
+  const Rectangle all = area.difference.extent();
+  if (!view) return all;
+  const double size = std::max(view->x_max - view->x_min, view->y_max - view->y_min);
+  const Rectangle near = grown(*view, 0.25 * size);
+  for (std::size_t i = 0; i < change.zones.size(); ++i) {
+    const Rectangle& r = change.zones[i].extent;
+    const Eigen::Vector2d middle((r.x_min + r.x_max) / 2.0, (r.y_min + r.y_max) / 2.0);
+    if (in_area(i) && near.contains(middle.x(), middle.y())) view = joined(*view, r);
+  }
+  const Rectangle room = grown(*view, std::max(0.15, 0.08 * size));
+  return {std::max(room.x_min, all.x_min), std::max(room.y_min, all.y_min),
+          std::min(room.x_max, all.x_max), std::min(room.y_max, all.y_max)};
+}
+
+/// From the noise of a cell, at least 1 cm, up to the largest change inside the zones;
+/// without zones up to the 99th percentile of all cells.
+std::vector<double> bands_of(const VolumeChange& change) {
+  double largest = 0.0;
+  double noise = 0.0;
+  std::vector<double> all;
+  for (const AreaChange& area : change.areas) {
+    noise = std::max(noise, area.noise_sd);
+    for (Eigen::Index i = 0; i < area.difference.z.size(); ++i) {
+      const double value = std::abs(area.difference.z(i));
+      if (!std::isfinite(value)) continue;
+      all.push_back(value);
+      if (area.zone(i) >= 0) largest = std::max(largest, value);
+    }
+  }
+  if (largest == 0.0 && !all.empty()) {
+    const auto place =
+        all.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(all.size() - 1));
+    std::nth_element(all.begin(), place, all.end());
+    largest = *place;
+  }
+  return colour_bands(std::max(0.01, noise), largest);
+}
+
+// ---- Sections ---------------------------------------------------------------------------------
+
+/// A row or a column of cells through a zone.
+struct Section {
+  bool along_x = true;
+  Eigen::Index line = 0;             ///< the row or column
+  Eigen::Index first = 0, last = 0;  ///< its cells, last included
+  std::string name;                  ///< "hole"
+};
+
+/// Through the middle of a zone along its longer side, with a quarter of it on both sides.
+Section section_of(const AreaChange& area, const ChangeZone& zone, int index) {
+  const HeightMap& map = area.difference;
+  const Eigen::Vector2d cell = (middle_of(area, index) - map.origin) / map.cell_size;
+  const Rectangle& r = zone.extent;
+  const bool along_x = r.x_max - r.x_min >= r.y_max - r.y_min;
+  const double low = (along_x ? r.x_min - map.origin.x() : r.y_min - map.origin.y());
+  const double high = (along_x ? r.x_max - map.origin.x() : r.y_max - map.origin.y());
+  const double room = std::max(0.3, 0.25 * (high - low));
+  const Eigen::Index cells = along_x ? map.z.cols() : map.z.rows();
+  const auto at = [&](double place) {
+    const auto i = static_cast<Eigen::Index>(std::floor(place / map.cell_size));
+    return std::clamp<Eigen::Index>(i, 0, cells - 1);
+  };
+  return {along_x, static_cast<Eigen::Index>(along_x ? cell.y() : cell.x()), at(low - room),
+          at(high + room), style_of(zone.kind).name};
+}
+
+/// Ground before and after along a section: points (place, before), (place, after).
+struct Profiles {
+  Points before;
+  Points after;
+};
+
+Profiles profiles_of(const Section& section, const HeightMap& before, const HeightMap& difference) {
+  Profiles profiles;
+  for (Eigen::Index i = section.first; i <= section.last; ++i) {
+    const Eigen::Index row = section.along_x ? section.line : i;
+    const Eigen::Index col = section.along_x ? i : section.line;
+    const double place = section.along_x ? before.x(i) : before.y(i);
+    profiles.before.emplace_back(place, before.z(row, col));
+    profiles.after.emplace_back(place, before.z(row, col) + difference.z(row, col));
+  }
+  return profiles;
+}
+
+/// Soil between two profiles within a factor of the band's half-width, one polygon for each stretch
+/// that was seen.
+void draw_band(Panel& panel, const Points& line, double half_width) {
+  Points above;
+  Points below;
+  const auto close = [&] {
+    above.insert(above.end(), below.rbegin(), below.rend());
+    if (above.size() > 2) {
+      panel.polygon(above, {"none", 0.0, "#d55e00", 0.3}, "95 % band of a cell");
+    }
+    above.clear();
+    below.clear();
+  };
+  for (const Eigen::Vector2d& point : line) {
+    if (!point.allFinite()) {
+      close();
+      continue;
+    }
+    above.emplace_back(point.x(), point.y() + half_width);
+    below.emplace_back(point.x(), point.y() - half_width);
+  }
+  close();
+}
+
+Panel section_panel(const Section& section, const HeightMap& before, const AreaChange& area) {
+  const Profiles profiles = profiles_of(section, before, area.difference);
+  const double line = section.along_x ? before.y(section.line) : before.x(section.line);
+  const std::string title = "section through the " + section.name + ", " +
+                            (section.along_x ? "y = " : "x = ") + rounded(line, 0.01) + " m";
+  Panel panel(title, section.along_x ? "x [m]" : "y [m]", "z [m]");
+  panel.equal_aspect(false);
+  draw_band(panel, profiles.after, 1.96 * area.noise_sd);
+  panel.line(profiles.before, {"#777777", 1.5, "none", 1.0, "6 3"}, "ground before");
+  panel.line(profiles.after, {"#d55e00", 1.8}, "ground after");
+  return panel;
+}
+
+/// Where a section lies on the map.
+void draw_place(Panel& map, const Section& section, const HeightMap& on) {
+  const auto end = [&](Eigen::Index i) -> Eigen::Vector2d {
+    return section.along_x ? Eigen::Vector2d(on.x(i), on.y(section.line))
+                           : Eigen::Vector2d(on.x(section.line), on.y(i));
+  };
+  map.line({end(section.first), end(section.last)}, {"#222222", 1.2, "none", 1.0, "2 4"},
+           "section");
+}
+
+// ---- The text beside it -----------------------------------------------------------------------
+
+/// Lines of at most this many bytes; those after the first are indented.
+void add_wrapped(const std::string& text, std::vector<std::string>& lines) {
+  constexpr std::size_t most = 72;
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > most) {
+      lines.push_back(line);
+      line = "   ";
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  lines.push_back(line);
+}
+
+std::string signed_volume(const Measured& volume) {
+  return (volume.value < 0.0 ? "−" : "+") + volume_text(volume);
+}
+
+void add_open_changes(const VolumeChange& change, std::vector<std::string>& notes) {
+  for (const bool counted : {true, false}) {
+    std::vector<std::string> lines;
+    for (const AttributedChange& open : change.attribution) {
+      if (open.counted != counted) continue;
+      add_wrapped(signed_volume(open.volume) + "  " + open.what +
+                      " (ours: " + rounded(100.0 * open.probability, 1.0) + " %)",
+                  lines);
+    }
+    if (lines.empty()) continue;
+    notes.insert(notes.end(), {"", counted ? "counted, might not be ours" : "left out, open"});
+    notes.insert(notes.end(), lines.begin(), lines.end());
+  }
+}
+
+/// Zones of the kind `other` as a list, the largest first.
+void add_left_out(const VolumeChange& change, std::vector<std::string>& notes) {
+  std::vector<const ChangeZone*> zones;
+  for (const ChangeZone& zone : change.zones) {
+    if (zone.kind == ZoneKind::other) zones.push_back(&zone);
+  }
+  if (zones.empty()) return;
+  std::stable_sort(zones.begin(), zones.end(), [](const auto* a, const auto* b) {
+    return std::abs(a->volume.value) > std::abs(b->volume.value);
+  });
+  notes.insert(notes.end(), {"", "left out of all volumes"});
+  constexpr std::size_t most = 5;
+  for (std::size_t i = 0; i < std::min(most, zones.size()); ++i) {
+    const Rectangle& r = zones[i]->extent;
+    notes.push_back(signed_volume(zones[i]->volume) + " around x " +
+                    rounded((r.x_min + r.x_max) / 2.0, 0.1) + ", y " +
+                    rounded((r.y_min + r.y_max) / 2.0, 0.1) + " m");
+  }
+  if (zones.size() > most) {
+    notes.push_back("and " + std::to_string(zones.size() - most) + " smaller ones");
+  }
+}
+
+std::vector<std::string> notes_of(const ChangeSheet& sheet) {
+  std::vector<std::string> notes;
+  for (const std::string& line : sheet.lines) add_wrapped(line, notes);
+  for (const AreaChange& area : sheet.change.areas) {
+    notes.push_back("noise of a cell " + readable(1000.0 * area.noise_sd) + " mm");
+  }
+  add_open_changes(sheet.change, notes);
+  add_left_out(sheet.change, notes);
+  if (!sheet.warnings.empty()) notes.insert(notes.end(), {"", "warnings"});
+  for (const Warning& warning : sheet.warnings) {
+    add_wrapped(warning.code + ": " + warning.message, notes);
+  }
+  return notes;
+}
+
+/// Standard deviation of k by source, the largest first.
+std::vector<Bar> error_bars(const VolumeChange& change) {
+  const BulkingErrors errors = bulking_errors(change);
+  std::vector<Bar> bars = {{"noise of the cells", errors.noise},
+                           {"correlated error", errors.correlated},
+                           {"motion between the scans", errors.datum},
+                           {"unseen ground", errors.holes},
+                           {"steep faces", errors.faces},
+                           {"open changes", errors.attribution}};
+  std::stable_sort(bars.begin(), bars.end(),
+                   [](const Bar& a, const Bar& b) { return a.value > b.value; });
+  bars.erase(
+      std::remove_if(bars.begin(), bars.end(), [](const Bar& bar) { return !(bar.value > 0.0); }),
+      bars.end());
+  for (Bar& bar : bars) bar.text = readable(bar.value) + "  " + bar.text;
+  return bars;
+}
+
+const char* title_of(std::size_t area, std::size_t areas) {
+  if (areas == 1) return "seen from above";
+  return area == 0 ? "dig area, seen from above" : "dump area, seen from above";
+}
+
+}  // namespace
+
+std::string height_change_figure(const ChangeSheet& sheet) {
+  const VolumeChange& change = sheet.change;
+  const std::vector<double> bands = bands_of(change);
+  Figure figure;
+  figure.title = "Height change of the ground";
+  figure.colour_bar = ColourBar{bands, "height after − before [cm]", 0.01};
+  for (std::size_t i = 0; i < change.areas.size(); ++i) {
+    const AreaChange& area = change.areas[i];
+    Panel map(title_of(i, change.areas.size()), "x [m]", "y [m]");
+    map.heat_map(area.difference, bands);
+    map.view(view_of(change, area));
+    for (std::size_t j = 0; j < change.zones.size(); ++j) {
+      const ChangeZone& zone = change.zones[j];
+      const int index = static_cast<int>(j);
+      if (!(area.zone == index).any()) continue;
+      const ZoneStyle style = style_of(zone.kind);
+      map.strokes(outline(area, index), style.outline, style.name);
+      if (zone.kind != ZoneKind::other) label_zone(map, change, area, index);
+      const bool cut = zone.kind == ZoneKind::dig || zone.kind == ZoneKind::dump;
+      if (!cut || i >= sheet.before.size() || !is_largest_of_its_kind(zone, change)) continue;
+      const Section section = section_of(area, zone, index);
+      draw_place(map, section, area.difference);
+      const bool hole = zone.kind == ZoneKind::dig;
+      figure.lower.insert(hole ? figure.lower.begin() : figure.lower.end(),
+                          section_panel(section, sheet.before[i], area));
+    }
+    figure.panels.push_back(map);
+  }
+  figure.notes = notes_of(sheet);
+  figure.bars = error_bars(change);
+  if (!figure.bars.empty()) {
+    figure.notes.insert(figure.notes.end(), {"", "standard deviation of the bulking factor"});
+  }
+  return to_svg(figure);
+}
+
+}  // namespace excavplan::tools

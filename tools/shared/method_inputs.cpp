@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/method_inputs.hpp"
+
+#include <cmath>
+
+namespace excavplan::tools {
+
+namespace {
+
+PaperOptions paper_options(const MethodInputs& inputs) {
+  PaperOptions options;
+  if (inputs.voxels == "cubes") options.voxels = PaperVoxels::cubes;
+  if (inputs.outliers == "none") {
+    options.outlier_neighbours = 0;
+    return options;
+  }
+  const std::string what = "--paper-outliers";
+  const auto parts = split(inputs.outliers, ',');
+  if (parts.size() != 2) {
+    usage_error(what + ": '" + inputs.outliers + "' is neither NEIGHBOURS,DEVIATIONS nor none");
+  }
+  const double neighbours = parse_quantity(what, parts[0], Quantity::ratio);
+  options.outlier_deviations = parse_quantity(what, parts[1], Quantity::ratio);
+  if (!(neighbours >= 1.0 && neighbours <= 10000.0) || neighbours != std::floor(neighbours)) {
+    usage_error(what + ": '" + parts[0] + "' is not a number of neighbours, 1 to 10000");
+  }
+  if (!(options.outlier_deviations > 0.0)) {
+    usage_error(what + ": '" + parts[1] + "' is not above 0");
+  }
+  options.outlier_neighbours = static_cast<int>(neighbours);
+  return options;
+}
+
+}  // namespace
+
+void declare_method(Arguments& arguments, MethodInputs& inputs) {
+  arguments.choice("method", inputs.method, {"surface", "paper"},
+                   "surface: signed change of one height map; paper: the pipeline as published");
+  arguments.choice("paper-voxels", inputs.voxels, {"columns", "cubes"},
+                   "of --method paper: one point a cell of the base plane, or one a cubic voxel");
+  arguments.text("paper-outliers", "NEIGHBOURS,DEVIATIONS|none", inputs.outliers,
+                 "of --method paper: points whose mean distance to their neighbours is this many "
+                 "standard deviations above the mean of all are removed");
+}
+
+void apply_method(const MethodInputs& inputs, DensityOptions& options) {
+  if (inputs.method == "paper") options.method = VolumeMethod::paper;
+  options.paper = paper_options(inputs);
+}
+
+}  // namespace excavplan::tools

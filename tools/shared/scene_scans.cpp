@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/scene_scans.hpp"
+
+#include <utility>
+
+#include <excavplan/survey/cloud.hpp>
+
+namespace excavplan::tools {
+namespace {
+
+void write_scan(const std::optional<std::string>& file, std::vector<Eigen::Vector3d> points) {
+  if (!file) return;
+  Cloud cloud;
+  cloud.points = std::move(points);
+  cloud.width = cloud.points.size();
+  write_cloud(*file, cloud, cloud_format_of_name(*file));
+}
+
+}  // namespace
+
+void declare_scans(Arguments& arguments, SceneScanInputs& inputs) {
+  arguments.output("before", inputs.before,
+                   "write a depth-camera scan of the ground before the dig");
+  arguments.output("after", inputs.after, "write a depth-camera scan after the dig");
+  arguments.option("camera", inputs.places,
+                   "place of a camera of the scans and point it faces; repeated for several "
+                   "(default: one over the dig and one over the heap)");
+  arguments.option("noise", inputs.camera.noise, Quantity::length,
+                   "depth noise of the scans at 1 m; grows with range squared");
+}
+
+void check_scans(const SceneScanInputs& inputs) {
+  for (const auto& file : {inputs.before, inputs.after}) {
+    if (file) cloud_format_of_name(*file);
+  }
+  if (inputs.before && inputs.before == inputs.after) {
+    usage_error("--before and --after name the same file, " + *inputs.before);
+  }
+}
+
+void write_scans(const SceneScanInputs& inputs, const DigScene& scene, std::uint64_t seed) {
+  if (!inputs.before && !inputs.after) return;
+  SceneScans scans = scan_scene(scene, inputs.camera, seed, inputs.places);
+  write_scan(inputs.before, std::move(scans.before));
+  write_scan(inputs.after, std::move(scans.after));
+}
+
+}  // namespace excavplan::tools
