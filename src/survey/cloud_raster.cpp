@@ -4,16 +4,19 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include <excavplan/error.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
 #include "base/text.hpp"
+#include "ground/sight_lines.hpp"
 #include "survey/cloud_cell.hpp"
 #include "survey/points_by_cell.hpp"
 #include "survey/scan_reading.hpp"
@@ -200,12 +203,56 @@ Surface surface_of(const PointSource& source, const HeightMap& map, const Raster
   return surface;
 }
 
+/// True if a cell is marked in which a point lies.
+bool holds(const Eigen::ArrayXXi& marked, const HeightMap& map, const Eigen::Vector3d& point) {
+  const Eigen::Vector2d cell = (point.head<2>() - map.origin) / map.cell_size;
+  const Rectangle all = {0.0, 0.0, static_cast<double>(marked.cols()) - 0.5,
+                         static_cast<double>(marked.rows()) - 0.5};
+  return all.contains(std::floor(cell.x()), std::floor(cell.y())) &&
+         marked(static_cast<Index>(cell.y()), static_cast<Index>(cell.x())) != 0;
+}
+
+/// From several standpoints: what only one of them lets look like a mixed return, or like ground
+/// of which a part is hidden, is left out of what it saw.
+Surface surface_of(const std::vector<Standpoint>& standpoints, const HeightMap& map,
+                   const RasterOptions& options) {
+  std::vector<Eigen::Vector3d> places;
+  std::vector<Eigen::ArrayXXi> dropped;
+  Eigen::ArrayXXi seen_from = Eigen::ArrayXXi::Zero(map.z.rows(), map.z.cols());
+  for (const Standpoint& from : standpoints) {
+    const PointSource source = [&from](const PointVisitor& visit) { visit_scan(from.scan, visit); };
+    Surface seen = surface_of(source, map, options);
+    seen.sensors = {from.place};
+    dropped.push_back(drop_mixed_returns(seen));
+    seen_from += (1 << places.size()) * (!seen.height.z.isNaN()).cast<int>();
+    places.push_back(from.place);
+  }
+  const PointSource kept = [&](const PointVisitor& visit) {
+    std::vector<Eigen::Vector3d> some;
+    for (std::size_t i = 0; i < standpoints.size(); ++i) {
+      visit_scan(standpoints[i].scan, [&](const std::vector<Eigen::Vector3d>& points) {
+        some.clear();
+        std::copy_if(points.begin(), points.end(), std::back_inserter(some),
+                     [&](const Eigen::Vector3d& p) { return !holds(dropped[i], map, p); });
+        visit(some);
+      });
+    }
+  };
+  Surface surface = surface_of(kept, map, options);
+  surface.sensors = std::move(places);
+  surface.seen_from = std::move(seen_from);
+  return surface;
+}
+
 }  // namespace
 
 Surface survey_surface(const Scan& scan, const Rectangle& extent, const RasterOptions& options) {
+  const std::vector<Standpoint> standpoints = standpoints_of(scan);
+  const HeightMap map = empty_map(extent, options);
+  if (standpoints.size() > 1) return surface_of(standpoints, map, options);
   const PointSource source = [&scan](const PointVisitor& visit) { visit_scan(scan, visit); };
-  Surface surface = surface_of(source, empty_map(extent, options), options);
-  surface.sensor = sensor_of(scan);
+  Surface surface = surface_of(source, map, options);
+  if (!standpoints.empty()) surface.sensors = {standpoints.front().place};
   return surface;
 }
 
