@@ -22,15 +22,17 @@ namespace {
 
 /// Probability that a change belongs to the dig, by what it looks like.
 namespace prior {
-constexpr double certain = 0.98;       // the main heap, spill beside the hole, a given area
-constexpr double main_hole = 0.9;      // the largest: another may fit the soil better
-constexpr double beside_main = 0.96;   // of the same kind as the hole or heap that it lies beside
-constexpr double second = 0.85;        // a hole or a heap away from the largest
-constexpr double along_swing = 0.9;    // clods between hole and heap
-constexpr double low_edge = 0.9;       // ground that runs out, thinner and thinner
-constexpr double anywhere = 0.5;       // small or low and in no place that tells
-constexpr double shallow_fall = 0.15;  // ground that sank by far less than the hole is deep
-constexpr double no_soil = 0.03;       // ruts and their berms, things, outside a given area
+constexpr double certain = 0.98;        // the main heap, spill beside the hole, a given area
+constexpr double main_hole = 0.9;       // the largest: another may fit the soil better
+constexpr double beside_main = 0.96;    // of the same kind as the hole or heap that it lies beside
+constexpr double second = 0.85;         // a hole or a heap away from the largest
+constexpr double along_swing = 0.9;     // clods between hole and heap
+constexpr double low_edge = 0.9;        // ground that runs out, thinner and thinner
+constexpr double steep_in_swing = 0.7;  // small, and steeper than loose soil
+constexpr double anywhere = 0.5;        // small or low and in no place that tells
+constexpr double doubtful = 0.3;        // what the error of its volume explains
+constexpr double shallow_fall = 0.15;   // ground that sank by far less than the hole is deep
+constexpr double no_soil = 0.03;        // ruts and their berms, things, outside a given area
 }  // namespace prior
 
 constexpr double highest_lone_track = 0.05;  // one deeper than this is no rut [m]
@@ -245,7 +247,19 @@ class ChangeReader {
     if (!in_given(p, fell ? -1.0 : 1.0) && (fell || !beside(p))) {
       return {"ground outside the given area", prior::no_soil, true};
     }
+    if (is_within_error(p)) return {"changes within their error", prior::doubtful, true};
     return fell ? meaning_of_fall(p) : meaning_of_rise(p);
+  }
+
+  /// Not known to have changed at all: filled where it was not seen, or at a step in both scans.
+  bool is_within_error(Place p) const {
+    constexpr double established = 2.0;  // sd; ours
+    const ZoneErrors& errors = areas_[p.area].errors;
+    const auto i = static_cast<Eigen::Index>(p.zone);
+    const double variance = zone(p).noise + zone(p).holes + zone(p).faces +
+                            errors.correlated(i, i) + errors.datum(i, i);
+    return !is(p, hole_) && !is(p, heap_) &&
+           std::abs(zone(p).volume) < established * std::sqrt(variance);
   }
 
   /// Of a tail that is no track: soil thins out, something else beside it does not.
@@ -276,7 +290,7 @@ class ChangeReader {
     const bool is_small = zone(p).volume < small_share * hole_volume();
     const bool is_thing = shape(p).steepest > upright && shape(p).height > least_upright &&
                           zone(p).volume < largest_upright * hole_volume();
-    if (is_thing && !beside(p)) return {"a thing that is no soil", prior::no_soil, false};
+    if (is_thing && !beside(p)) return meaning_of_thing(p);
     if (beside(p)) return {"spill beside the hole", prior::certain, true};
     if (part(p) == Part::tail) return {"the low edge of a heap", edge_prior(p), false};
     if (given(1.0)) return {"a heap in the given area", prior::certain, false};
@@ -292,6 +306,13 @@ class ChangeReader {
       return {"a rise in the dig area", prior::anywhere, false};
     }
     return {"a second heap", prior::second, false};
+  }
+
+  /// A few clods that fell together are as steep as a thing.
+  Meaning meaning_of_thing(Place p) const {
+    const bool could_be_clods = zone(p).volume < 2.0 * small_share * hole_volume() && in_swing(p);
+    if (could_be_clods) return {"clods together, or a thing,", prior::steep_in_swing, false};
+    return {"a thing that is no soil", prior::no_soil, false};
   }
 
   /// Between the hole and the heap, as the bucket goes.
@@ -359,9 +380,10 @@ double likelihood_of(const std::vector<Change>& changes, const std::vector<bool>
   double after = 0.0;
   double largest = 0.0;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    largest = std::max(largest, -changes[i].volume);
+    if (changes[i].prior >= 0.5) largest = std::max(largest, -changes[i].volume);
     if (counted[i]) (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
   }
+  if (largest == 0.0) return 1.0;
   return before > least_hole * largest ? likelihood_of_bulking(after / before) : 0.0;
 }
 
@@ -384,6 +406,10 @@ std::vector<Combination> combinations_of(const std::vector<Change>& changes) {
     one.weight *= likelihood_of(changes, one.counted);
     sum += one.weight;
     if (one.weight > 0.0) all.push_back(std::move(one));
+  }
+  if (all.empty()) {
+    base.weight = sum = 1.0;
+    all.push_back(base);
   }
   for (Combination& one : all) one.weight /= sum;
   std::stable_sort(all.begin(), all.end(),
@@ -570,9 +596,7 @@ void state_readings(const Attribution& attribution, VolumeChange& result) {
     weight += one.weight;
   }
   const double deeper = pressed.volume.value / result.before.value;
-  result.readings.push_back({"with " + pressed.what,
-                             pressed.probability,
-                             {k->value + deeper, sd}});
+  result.readings.push_back({"with " + pressed.what, pressed.probability, {k->value + deeper, sd}});
   weight += pressed.probability;
   for (Reading& reading : result.readings) reading.weight /= weight;
 }

@@ -207,6 +207,10 @@ void fill_sampling_gaps(Surface& surface) {
   constexpr double most = 0.5;       // ours: share of known cells with an unknown neighbour
   constexpr double nearby = 3.0;     // ours: distances to the nearest known cell
   constexpr Index least_radius = 4;  // ours [cell]
+  constexpr double farthest = 0.5;   // ours: from a known cell [m]
+  /// From a cell to the nearest known one, over the spacing of lines with the share that is known
+  /// nearby, whose farthest cells are half of it away; wider gaps were not seen. Ours.
+  constexpr double widest_to_usual = 2.0;
   const Mask known = !surface.height.z.isNaN();
   if (known.all() || !known.any()) return;
   const AreaSums all(known);
@@ -215,10 +219,13 @@ void fill_sampling_gaps(Surface& surface) {
   std::vector<Cell> gaps;
   for_each_cell(known, [&](Cell at) {
     const double away = distance(at.row, at.col);
-    if (known(at.row, at.col) || away > static_cast<double>(widest_gap)) return;
+    if (known(at.row, at.col) || away > farthest / surface.height.cell_size) return;
     const Index radius = std::max(least_radius, static_cast<Index>(std::ceil(nearby * away)));
-    const bool is_thin = thin.around(at, radius) >= most * all.around(at, radius);
-    if (is_thin && is_enclosed(known, at)) gaps.push_back(at);
+    const double points = all.around(at, radius);
+    const double width = 2.0 * static_cast<double>(radius) + 1.0;
+    const bool is_thin = thin.around(at, radius) >= most * points;
+    const bool is_usual = away * points <= widest_to_usual * width * width;
+    if (is_thin && is_usual && is_enclosed(known, at)) gaps.push_back(at);
   });
   fill(surface.height.z, held_by_known(known, gaps), Filling::thin_plate);
 }

@@ -56,6 +56,7 @@ struct Rim {
   Eigen::Vector2d place;  ///< (column, row)
   double height;          ///< above the ground before [m]
   double beyond = 0.5;    ///< the way from there on which the ground is not hidden [cell]
+  Eigen::Vector2d outward = Eigen::Vector2d::Zero();  ///< from the sensor, where the cell hides
 };
 
 struct Shadow {
@@ -80,7 +81,7 @@ class ShadowFiller {
         after_(scans.after),
         mixed_(scans.mixed),
         ground_(ground),
-        sight_(scans.after, scans.sensor),
+        sight_(scans.after, scans.places),
         change_{after_.origin, after_.cell_size, after_.z - before_.z - ground.datum},
         variance_(ground.zone_is_cut.size(), 0.0) {
     const Gradient gradient = gradient_of(change_);
@@ -207,7 +208,7 @@ class ShadowFiller {
           taken(r, c) = 1;
           facing += sight_.faces_unseen({r, c}) ? 1 : 0;
           shadow.rim.push_back(rim_at({r, c}));
-          if (sight_.hides({r, c})) shadow.hiding.push_back(shadow.rim.back());
+          if (sight_.hidden_by({r, c}) != nullptr) shadow.hiding.push_back(shadow.rim.back());
           note_zone({r, c}, shadow);
         }
       }
@@ -274,12 +275,14 @@ class ShadowFiller {
   /// goes on to the rim as it lies before it.
   Rim rim_at(Cell at) const {
     Rim rim{{static_cast<double>(at.col), static_cast<double>(at.row)}, change(at)};
-    if (!sight_.hides(at)) return rim;
+    const SightLines* const lines = sight_.hidden_by(at);
+    if (lines == nullptr) return rim;
     const Eigen::Vector3d plane = plane_at(at);
     if (plane.x() < 3.0 * ground_.noise_sd) {
-      rim.beyond = 0.5 * (0.5 + std::clamp(sight_.cells_to_rim(at), -0.5, 1.5));
+      rim.beyond = 0.5 * (0.5 + std::clamp(lines->cells_to_rim(at), -0.5, 1.5));
     }
-    rim.height = plane.x() + rim.beyond * plane.tail<2>().dot(sight_.outward(at));
+    rim.outward = lines->outward(at);
+    rim.height = plane.x() + rim.beyond * plane.tail<2>().dot(rim.outward);
     return rim;
   }
 
@@ -408,11 +411,10 @@ class ShadowFiller {
     for (const Rim& rim : shadow.hiding) {
       const Cell at = {static_cast<Eigen::Index>(rim.place.y()),
                        static_cast<Eigen::Index>(rim.place.x())};
-      const Eigen::Vector2d outward = sight_.outward(at);
       double sum = 0.0;
       for (int n = 0; n < along * along; ++n) {
         const Eigen::Vector2d off((n % along + 0.5) / along - 0.5, (n / along + 0.5) / along - 0.5);
-        const double hidden = std::max(0.0, off.dot(outward) - rim.beyond);
+        const double hidden = std::max(0.0, off.dot(rim.outward) - rim.beyond);
         const double way = descent.way(rim.height) - hidden;
         sum += std::max(floor, descent.height(way)) - rim.height;
       }
@@ -439,7 +441,7 @@ class ShadowFiller {
   HeightMap& after_;
   const Eigen::ArrayXXi& mixed_;
   ChangedGround& ground_;
-  SightLines sight_;
+  AllSightLines sight_;
   HeightMap change_;  ///< after - before, less the datum
   Eigen::ArrayXXd slope_;
   std::vector<Shape> shapes_;  ///< of the zones

@@ -7,20 +7,21 @@
 #include <Eigen/Core>
 
 #include <excavplan/ground/height_map.hpp>
+#include <excavplan/ground/surface.hpp>
 
 #include "ground/change_zones.hpp"
 
 namespace excavplan {
 
-/// Two scans of one area, the one after from one known place.
+/// Two scans of one area, the one after from known places.
 struct ShadowedScans {
   const HeightMap& before;
   HeightMap& after;              ///< NaN where unknown; shadows are filled
   const Eigen::ArrayXXi& mixed;  ///< 1 where drop_mixed_returns() dropped a cell of `after`
-  Eigen::Vector3d sensor;        ///< [m]
+  const Surface& places;         ///< where its sensors stood, and what each saw
 };
 
-/// Fills ground of the scan after that lies in the shadow of what its sensor saw.
+/// Fills ground of the scan after that lies in the shadow of what its sensors saw.
 ///
 /// From the rim of a shadow the ground is taken to fall at the slope of the faces that were seen of
 /// the same hole, or of the heaps, until it meets the floor of the hole or the ground before; it is

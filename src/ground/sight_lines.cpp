@@ -32,7 +32,7 @@ class PointsOfLevelCell {
   double shape(Cell at) const {
     const HeightMap& map = surface_.height;
     const Eigen::Vector3d ray =
-        *surface_.sensor - Eigen::Vector3d(map.x(at.col), map.y(at.row), map.z(at.row, at.col));
+        surface_.sensors[0] - Eigen::Vector3d(map.x(at.col), map.y(at.row), map.z(at.row, at.col));
     return std::max(0.05 * ray.norm(), ray.z()) / std::pow(ray.norm(), 3);
   }
 
@@ -54,6 +54,10 @@ int unknown_around(const Eigen::ArrayXXd& z, Cell at) {
 }  // namespace
 
 SightLines::SightLines(const HeightMap& map, const Eigen::Vector3d& sensor)
+    : SightLines(map, sensor, map.z) {}
+
+SightLines::SightLines(const HeightMap& map, const Eigen::Vector3d& sensor,
+                       const Eigen::ArrayXXd& seen)
     : map_(map),
       sensor_(sensor),
       tangent_(Eigen::ArrayXXd::Constant(map.z.rows(), map.z.cols(), infinity)) {
@@ -63,8 +67,8 @@ SightLines::SightLines(const HeightMap& map, const Eigen::Vector3d& sensor)
   std::sort(cells.begin(), cells.end(), [&](Cell a, Cell b) { return range(a) > range(b); });
   for (const Cell at : cells) {
     const Behind next = behind(at);
-    const double one = tangent_at(next.one);
-    const double two = tangent_at(next.two);
+    const double one = tangent_at(next.one, seen);
+    const double two = tangent_at(next.two, seen);
     const bool both = std::isfinite(one) && std::isfinite(two);
     tangent_(at.row, at.col) =
         both ? (1.0 - next.share) * one + next.share * two : std::min(one, two);
@@ -127,24 +131,56 @@ bool SightLines::is_inside(Cell at) const {
   return at.row >= 0 && at.col >= 0 && at.row < map_.z.rows() && at.col < map_.z.cols();
 }
 
-double SightLines::tangent_at(Cell at) const {
+double SightLines::tangent_at(Cell at, const Eigen::ArrayXXd& seen) const {
   if (!is_inside(at)) return infinity;
-  const double height = map_.z(at.row, at.col);
+  const double height = seen(at.row, at.col);
   const double own =
       std::isnan(height) ? infinity : (height - sensor_.z()) / std::max(range(at), map_.cell_size);
   return std::min(own, tangent_(at.row, at.col));
 }
 
+AllSightLines::AllSightLines(const HeightMap& map, const Surface& places) {
+  for (std::size_t i = 0; i < places.sensors.size(); ++i) {
+    if (places.seen_from.size() == 0) {
+      lines_.emplace_back(map, places.sensors[i]);
+      continue;
+    }
+    Eigen::ArrayXXd seen = map.z;
+    for_each_cell(seen, [&](Cell at) {
+      const bool is_seen = ((places.seen_from(at.row, at.col) >> i) & 1) != 0;
+      if (!is_seen) seen(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
+    });
+    lines_.emplace_back(map, places.sensors[i], seen);
+  }
+}
+
+double AllSightLines::ceiling(Cell at) const {
+  double lowest = infinity;
+  for (const SightLines& lines : lines_) lowest = std::min(lowest, lines.ceiling(at));
+  return lowest;
+}
+
+bool AllSightLines::faces_unseen(Cell at) const {
+  return std::any_of(lines_.begin(), lines_.end(),
+                     [&](const SightLines& lines) { return lines.faces_unseen(at); });
+}
+
+const SightLines* AllSightLines::hidden_by(Cell at) const {
+  const auto found = std::find_if(lines_.begin(), lines_.end(),
+                                  [&](const SightLines& lines) { return lines.hides(at); });
+  return found == lines_.end() ? nullptr : &*found;
+}
+
 Eigen::ArrayXXi drop_mixed_returns(Surface& surface) {
   Eigen::ArrayXXd& z = surface.height.z;
   Eigen::ArrayXXi dropped = Eigen::ArrayXXi::Zero(z.rows(), z.cols());
-  if (!surface.sensor) return dropped;
+  if (surface.sensors.size() != 1) return dropped;
   constexpr double least_share = 0.5;  // of the points: the rest ends at the rim on average
   constexpr double least_step = 0.35;  // ours: of a cell; mixed returns lie along one ray
   constexpr double fewest = 4.0;       // ours: points that tell a part of a cell from the whole
   constexpr int most_unseen = 2;       // ours: cells around a part of the ground
   const PointsOfLevelCell whole(surface);
-  const SightLines sight(surface.height, *surface.sensor);
+  const SightLines sight(surface.height, surface.sensors[0]);
   std::vector<Cell> part;
   for_each_cell(z, [&](Cell at) {
     if (!(surface.points(at.row, at.col) < least_share * whole(at))) return;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include <excavplan/ground/height_map.hpp>
@@ -22,6 +24,8 @@ namespace excavplan {
 class SightLines {
  public:
   SightLines(const HeightMap& map, const Eigen::Vector3d& sensor);
+  /// @param seen  heights of what this sensor saw of the map, NaN elsewhere
+  SightLines(const HeightMap& map, const Eigen::Vector3d& sensor, const Eigen::ArrayXXd& seen);
 
   /// Height of the lowest ray that passed over the centre of a cell; infinite where none did [m].
   double ceiling(Cell at) const;
@@ -44,17 +48,34 @@ class SightLines {
   Behind behind(Cell at) const;
   double range(Cell at) const;
   bool is_inside(Cell at) const;
-  double tangent_at(Cell at) const;
+  double tangent_at(Cell at, const Eigen::ArrayXXd& seen) const;
 
   const HeightMap& map_;
   Eigen::Vector3d sensor_;
   Eigen::ArrayXXd tangent_;  ///< of the lowest ray over a cell; infinite where there is none
 };
 
-/// Makes cells unknown that hold less than half of the points of level ground and are grazed by the
-/// rays behind them, or stand among unknown ones: returns mixed from the rim of a shadow and what
-/// lies behind it, and cells that are seen in part. What is left ends, on average, where the shadow
-/// begins. @return 1 for each of them
+/// The rays from all places where the sensor of one scan stood.
+class AllSightLines {
+ public:
+  /// @param places  sensors and the cells that they saw, of the surface whose heights the map holds
+  AllSightLines(const HeightMap& map, const Surface& places);
+
+  /// Height of the lowest ray that passed over the centre of a cell; infinite where none did [m].
+  double ceiling(Cell at) const;
+  /// True if nothing is known next to the cell on the side away from one of the places.
+  bool faces_unseen(Cell at) const;
+  /// Those from which the cell hides the unseen ground that it faces; null if there are none.
+  const SightLines* hidden_by(Cell at) const;
+
+ private:
+  std::vector<SightLines> lines_;
+};
+
+/// Of a surface seen from one place: makes cells unknown that hold less than half of the points of
+/// level ground and are grazed by the rays behind them, or stand among unknown ones: returns mixed
+/// from the rim of a shadow and what lies behind it, and cells that are seen in part. What is left
+/// ends, on average, where the shadow begins. @return 1 for each of them
 Eigen::ArrayXXi drop_mixed_returns(Surface& surface);
 
 }  // namespace excavplan

@@ -11,9 +11,9 @@
 
 #include "ground/grid_cells.hpp"
 #include "ground/relief.hpp"
+#include "ground/sampling_gaps.hpp"
 #include "ground/shadow_filling.hpp"
 #include "ground/sight_lines.hpp"
-#include "ground/sampling_gaps.hpp"
 #include "ground/stripes.hpp"
 #include "ground/zone_filling.hpp"
 
@@ -243,9 +243,8 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
   std::vector<double> shadows(area.zones.size(), 0.0);
-  if (pair.after.sensor) {
-    shadows =
-        fill_shadows({scans.before, scans.after, scans.mixed, *pair.after.sensor}, area.ground);
+  if (!pair.after.sensors.empty()) {
+    shadows = fill_shadows({scans.before, scans.after, scans.mixed, pair.after}, area.ground);
   }
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;

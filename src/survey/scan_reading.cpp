@@ -161,22 +161,34 @@ void visit_scan(const Scan& scan, const PointVisitor& visit) {
   }
 }
 
-std::optional<Eigen::Vector3d> sensor_of(const Scan& scan) {
-  constexpr double one_place = 0.05;  // [m], ours
-  std::vector<std::optional<Eigen::Vector3d>> said;
-  if (scan.sensor_origin) {
-    said.push_back(scan.sensor_origin);
-  } else {
-    for (const std::string& file : scan.files) said.push_back(read_sensor_origin(file));
-    for (const auto& cloud : scan.clouds) said.push_back(cloud->sensor_origin);
+std::vector<Standpoint> standpoints_of(const Scan& scan) {
+  constexpr double one_place = 0.05;      // [m], ours
+  constexpr std::size_t most_places = 4;  // ours
+  Scan none = scan;
+  none.files.clear();
+  none.clouds.clear();
+  std::vector<Standpoint> found;
+  bool are_known = true;
+  const auto part_from = [&](const std::optional<Eigen::Vector3d>& said) -> Scan& {
+    are_known = are_known && said.has_value();
+    const Eigen::Vector3d metres = scan.unit * said.value_or(Eigen::Vector3d::Zero());
+    const Eigen::Vector3d place = (scan.site_from_scan * metres.homogeneous()).head<3>();
+    for (Standpoint& known : found) {
+      if ((known.place - place).norm() < one_place) return known.scan;
+    }
+    found.push_back({place, none});
+    return found.back().scan;
+  };
+  for (const std::string& file : scan.files) {
+    const bool is_told = scan.sensor_origin.has_value();
+    part_from(is_told ? scan.sensor_origin : read_sensor_origin(file)).files.push_back(file);
   }
-  const bool agree =
-      !said.empty() && std::all_of(said.begin(), said.end(), [&](const auto& origin) {
-        return origin && said[0] && scan.unit * (*origin - *said[0]).norm() < one_place;
-      });
-  if (!agree) return std::nullopt;
-  const Eigen::Vector3d metres = scan.unit * *said[0];
-  return Eigen::Vector3d((scan.site_from_scan * metres.homogeneous()).head<3>());
+  for (const auto& cloud : scan.clouds) {
+    const auto said = scan.sensor_origin || !cloud ? scan.sensor_origin : cloud->sensor_origin;
+    part_from(said).clouds.push_back(cloud);
+  }
+  if (!are_known || found.size() > most_places) found.clear();
+  return found;
 }
 
 Cloud gathered(const Scan& scan) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <excavplan/survey/scan_surface.hpp>
 
@@ -14,9 +15,15 @@ namespace excavplan {
 /// not finite may be among them. The same on every call. @throws Error (bad_file)
 void visit_scan(const Scan& scan, const PointVisitor& visit);
 
-/// Where the sensor of a scan stood, in the site frame; nothing where it is unknown or several
-/// stood at different places.
-std::optional<Eigen::Vector3d> sensor_of(const Scan& scan);
+/// What a scan has from one place of the sensor.
+struct Standpoint {
+  Eigen::Vector3d place;  ///< in the site frame
+  Scan scan;
+};
+
+/// The scan by the places where the sensor stood, in the order of its files and clouds; empty where
+/// a place is unknown, or of more than four, which are those of a sensor that moved.
+std::vector<Standpoint> standpoints_of(const Scan& scan);
 
 /// All these points at once, for methods that need them.
 /// @throws Error (bad_file) as read_cloud()

@@ -185,6 +185,8 @@ TEST(VolumesOfSurfaces, BlocksOfAHeapAreNoObjects) {
   Surface after = exact(true);
   const VolumeChange smooth = measure_change({exact(false), after, {}});
   put(after, {5.4, 0.3, 5.6, 0.5}, 1.35);
+  put(after, {5.0, -0.3, 5.2, -0.1}, 1.1);
+  put(after, {5.8, -0.2, 6.0, 0.0}, 1.1);
   const VolumeChange rough = measure_change({exact(false), after, {}});
   EXPECT_EQ(count_of(rough, "object_taken_out"), 0);
   EXPECT_GT(rough.dumped.value, smooth.dumped.value + 0.02);

@@ -186,11 +186,17 @@ inline std::vector<Points> scanned(const SiteScene& scene, bool after, std::uint
   return clouds;
 }
 
-inline Scan handed_over(std::vector<Points> clouds, const PointMap& frame) {
+/// The clouds of one scan, each of which says where its lidar stood.
+inline Scan handed_over(const SiteScene& scene, bool after, std::uint64_t seed) {
+  const auto& lidars = after ? scene.sampling.lidars_after : scene.sampling.lidars_before;
+  const PointMap& frame = after ? scene.frame_after : scene.frame_before;
   Scan scan;
-  for (Points& points : clouds) {
+  for (Points& points : scanned(scene, after, seed)) {
     if (frame) std::transform(points.begin(), points.end(), points.begin(), frame);
     auto cloud = std::make_shared<Cloud>();
+    if (const std::size_t i = scan.clouds.size(); i < lidars.size()) {
+      cloud->sensor_origin = frame ? frame(lidars[i].position) : lidars[i].position;
+    }
     cloud->width = points.size();
     cloud->points = std::move(points);
     scan.clouds.push_back(std::move(cloud));
@@ -198,21 +204,9 @@ inline Scan handed_over(std::vector<Points> clouds, const PointMap& frame) {
   return scan;
 }
 
-/// Where the only lidar stood, in the frame of the clouds.
-inline std::optional<Eigen::Vector3d> origin_of(const std::vector<Lidar>& lidars,
-                                                const PointMap& frame) {
-  if (lidars.size() != 1) return std::nullopt;
-  const Eigen::Vector3d& position = lidars.front().position;
-  return frame ? frame(position) : position;
-}
-
 /// The scans of a scene as estimate_density() takes them.
 inline DigScans scans_of(const SiteScene& scene, std::uint64_t seed) {
-  const Sampling& sampling = scene.sampling;
-  DigScans scans{handed_over(scanned(scene, false, seed), scene.frame_before),
-                 handed_over(scanned(scene, true, seed), scene.frame_after)};
-  scans.before.sensor_origin = origin_of(sampling.lidars_before, scene.frame_before);
-  scans.after.sensor_origin = origin_of(sampling.lidars_after, scene.frame_after);
+  DigScans scans{handed_over(scene, false, seed), handed_over(scene, true, seed)};
   if (scene.swapped) std::swap(scans.before, scans.after);
   if (scene.two_areas) {
     const double middle = 0.5 * (scene.dig.pit_x + scene.heap.x());

@@ -69,14 +69,14 @@ TEST(SightLines, AGapInTheScanIsNoShadow) {
 TEST(SightLines, ReturnsMixedAtARimAreDropped) {
   Surface surface;
   surface.height = flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05);
-  surface.sensor = Eigen::Vector3d(-2.0, 2.0, 3.0);
+  surface.sensors = {{-2.0, 2.0, 3.0}};
   HeightMap& map = surface.height;
   surface.points.setConstant(map.z.rows(), map.z.cols(), 20);
   surface.variance.setConstant(map.z.rows(), map.z.cols(), 1e-5);
   for_each_cell(map.z, [&](Cell at) {
     if (map.x(at.col) > 1.0) map.z(at.row, at.col) = -0.5;
     const Eigen::Vector3d point(map.x(at.col), map.y(at.row), map.z(at.row, at.col));
-    const Eigen::Vector3d ray = *surface.sensor - point;
+    const Eigen::Vector3d ray = surface.sensors[0] - point;
     surface.points(at.row, at.col) = static_cast<int>(600.0 * ray.z() / std::pow(ray.norm(), 3));
   });
   map = blank(std::move(map), {1.0, 0.0, 1.5, 4.0});
@@ -158,15 +158,15 @@ TEST(ScanSensor, IsThatOfAllItsCloudsInTheSiteFrame) {
   Scan scan;
   scan.clouds = {cloud, other};
   scan.site_from_scan(0, 3) = 10.0;
-  const auto sensor = [&] { return survey_surface(scan, {9.0, -1.0, 12.0, 2.0}).sensor; };
-  ASSERT_TRUE(sensor());
-  EXPECT_EQ(*sensor(), Eigen::Vector3d(11.0, 2.0, 3.0));
+  const auto sensors = [&] { return survey_surface(scan, {9.0, -1.0, 12.0, 2.0}).sensors; };
+  using Places = std::vector<Eigen::Vector3d>;
+  EXPECT_EQ(sensors(), Places({{11.0, 2.0, 3.0}}));
   other->sensor_origin = Eigen::Vector3d(5.0, 2.0, 3.0);
-  EXPECT_FALSE(sensor());
+  EXPECT_EQ(sensors(), Places({{11.0, 2.0, 3.0}, {15.0, 2.0, 3.0}}));
   other->sensor_origin.reset();
-  EXPECT_FALSE(sensor());
+  EXPECT_TRUE(sensors().empty());
   scan.sensor_origin = Eigen::Vector3d(0.0, 0.0, 2.0);
-  EXPECT_EQ(*sensor(), Eigen::Vector3d(10.0, 0.0, 2.0));
+  EXPECT_EQ(sensors(), Places({{10.0, 0.0, 2.0}}));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -17,8 +17,11 @@ struct Surface {
   /// [m^2]; NaN where unknown.
   Eigen::ArrayXXd variance;
   Eigen::ArrayXXi points;  ///< accepted in each cell
-  /// Where the sensor stood, in the frame of the heights [m]; unset where unknown or not one place.
-  std::optional<Eigen::Vector3d> sensor = {};
+  /// Where the sensor stood, in the frame of the heights [m]: every place of it; empty where one is
+  /// unknown.
+  std::vector<Eigen::Vector3d> sensors = {};
+  /// Of several sensors, those that saw a cell: bit i is that of `sensors[i]`. Empty of one.
+  Eigen::ArrayXXi seen_from = {};
 };
 
 }  // namespace excavplan
