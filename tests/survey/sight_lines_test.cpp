@@ -150,6 +150,69 @@ TEST_F(OneStandpoint, WithoutTheSensorsPlaceItsShadowsAreGapsAsOthers) {
   EXPECT_LT(off(true), 0.5 * off(false));
 }
 
+// ---- Two standpoints --------------------------------------------------------------------------
+
+TEST(AllSightLines, BoundUnseenGroundByWhatEachPlaceSawItself) {
+  const HeightMap map = blank(flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05), {1.0, 0.0, 1.5, 4.0});
+  Surface surface;
+  surface.sensors = {{-2.0, 2.0, 3.0}, {8.0, 2.0, 3.0}};
+  surface.seen_from.setConstant(map.z.rows(), map.z.cols(), 3);
+  const SightLines left(map, surface.sensors[0]);
+  const SightLines right(map, surface.sensors[1]);
+  const Cell at = cell_at(map, 1.4, 2.0);
+  EXPECT_EQ(AllSightLines(map, surface).ceiling(at), std::min(left.ceiling(at), right.ceiling(at)));
+  EXPECT_LT(left.ceiling(at), right.ceiling(at));
+  for_each_cell(map.z, [&](Cell cell) {
+    if (map.x(cell.col) > 1.5) surface.seen_from(cell.row, cell.col) = 2;
+  });
+  EXPECT_EQ(AllSightLines(map, surface).ceiling(at), right.ceiling(at));
+}
+
+/// Low lidars on either side, as two clouds of each scan.
+class TwoStandpoints : public testing::Test {
+ protected:
+  static Scan scan(const Dig& dig, bool dug, bool known) {
+    HeightMap map = flat_ground(extent, 0.02);
+    for_each_cell(map.z, [&](Cell at) {
+      const double there = scenes::change_at(dig, Part::whole, map.x(at.col), map.y(at.row));
+      if (dug) map.z(at.row, at.col) = there;
+    });
+    Scan scan;
+    for (const double side : {-1.0, 1.0}) {
+      Lidar lidar;
+      lidar.position = {1.5, side * 2.8, 2.5};
+      lidar.azimuth = {0.2 - (side > 0.0 ? pi : 0.0), pi - 0.2 - (side > 0.0 ? pi : 0.0)};
+      lidar.elevation = {-1.2, -0.35};
+      lidar.angle_step = {0.006, 0.004};
+      auto cloud = std::make_shared<Cloud>();
+      cloud->points = scan_surface(map, lidar, (dug ? 4 : 2) + (side > 0.0 ? 1 : 0));
+      if (known) cloud->sensor_origin = lidar.position;
+      scan.clouds.push_back(cloud);
+    }
+    return scan;
+  }
+
+  static VolumeChange measured(const Dig& dig, bool known) {
+    RasterOptions raster;
+    raster.cell_size = 0.05;
+    const ScanPair scans = {scan(dig, false, known), scan(dig, true, known)};
+    return measure_change(survey_registered(scans, extent, raster, 0.06).surfaces);
+  }
+
+  static constexpr Rectangle extent = {-2.4, -2.0, 7.2, 2.0};
+};
+
+TEST_F(TwoStandpoints, ReturnsMixedFromOnePlaceAreLeftOutWhereTheOtherSees) {
+  Dig dig;
+  dig.wall_angle = 80.0 * scenes::degree;
+  const VolumeChange known = measured(dig, true);
+  const VolumeChange unknown = measured(dig, false);
+  const double truth = dig.pit_volume();
+  EXPECT_LT(std::abs(known.excavated.value - truth),
+            0.6 * std::abs(unknown.excavated.value - truth));
+  EXPECT_NEAR(known.excavated.value, truth, 3.0 * known.excavated.sd);
+}
+
 TEST(ScanSensor, IsThatOfAllItsCloudsInTheSiteFrame) {
   auto cloud = std::make_shared<Cloud>();
   cloud->points = {{0.0, 0.0, 0.0}, {1.0, 1.0, 0.0}};
