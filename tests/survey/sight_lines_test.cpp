@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/sight_lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -99,12 +101,12 @@ class OneStandpoint : public testing::Test {
     after = scan(true);
   }
 
-  static VolumeChange measured(bool known) {
+  static VolumeChange measured(bool known, const ChangeOptions& options = {}) {
     ScanPair scans = {before, after};
     if (known) scans.before.sensor_origin = scans.after.sensor_origin = place;
     RasterOptions raster;
     raster.cell_size = 0.06;
-    return measure_change(survey_registered(scans, extent, raster, 0.06).surfaces);
+    return measure_change(survey_registered(scans, extent, raster, 0.06).surfaces, options);
   }
 
   static Scan scan(bool dug) {
@@ -148,6 +150,20 @@ TEST_F(OneStandpoint, WithoutTheSensorsPlaceItsShadowsAreGapsAsOthers) {
     return std::abs(measured(known).excavated.value - dig.pit_volume());
   };
   EXPECT_LT(off(true), 0.5 * off(false));
+}
+
+TEST_F(OneStandpoint, ShadowsOfAHoleDoNotEndTrustWhereTheSensorIsKnown) {
+  ChangeOptions options;
+  options.max_unknown_share = 0.05;
+  const VolumeChange change = measured(true, options);
+  const auto hole = std::find_if(change.zones.begin(), change.zones.end(),
+                                 [](const ChangeZone& z) { return z.kind == ZoneKind::dig; });
+  ASSERT_NE(hole, change.zones.end());
+  EXPECT_GT(hole->unknown_share, options.max_unknown_share);
+  for (const Warning& warning : change.warnings) {
+    const bool is_of_hole = warning.message.find("ground that fell") != std::string::npos;
+    EXPECT_FALSE(is_of_hole && warning.code == "zone_partly_unseen") << warning.message;
+  }
 }
 
 // ---- Two standpoints --------------------------------------------------------------------------
