@@ -423,11 +423,21 @@ class ShadowFiller {
   }
 
   /// The mean of two places of the rim, each of which is even over a cell; where the rim runs along
-  /// the grid neighbours share the error.
-  static double rim_variance(const Shadow& shadow, const Shape& hole) {
+  /// the grid neighbours share the error. Cells beside a shadow of several places that do not hide
+  /// it are seen in part from one or the other: what was seen of them ends anywhere in the cell.
+  double rim_variance(const Shadow& shadow, const Shape& hole) const {
     constexpr double shared = 8.0;  // ours: cells
     constexpr double of_place = 1.0 / 24.0;
-    return hole.floor * hole.floor * of_place * shared * static_cast<double>(shadow.hiding.size());
+    constexpr double of_cell = 1.0 / 12.0;
+    const auto hiding = static_cast<double>(shadow.hiding.size());
+    double places = of_place * hiding;
+    if (sight_.are_several()) {
+      const auto upper = std::count_if(shadow.rim.begin(), shadow.rim.end(), [&](const Rim& rim) {
+        return rim.height > 0.5 * hole.floor;
+      });
+      places += of_cell * std::max(0.0, static_cast<double>(upper) - hiding);
+    }
+    return hole.floor * hole.floor * shared * places;
   }
 
   void enter(Cell at, double height, int zone) {

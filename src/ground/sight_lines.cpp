@@ -139,16 +139,12 @@ double SightLines::tangent_at(Cell at, const Eigen::ArrayXXd& seen) const {
   return std::min(own, tangent_(at.row, at.col));
 }
 
-AllSightLines::AllSightLines(const HeightMap& map, const Surface& places) {
+AllSightLines::AllSightLines(const HeightMap& map, const Surface& places)
+    : seen_from_(places.seen_from) {
   for (std::size_t i = 0; i < places.sensors.size(); ++i) {
-    if (places.seen_from.size() == 0) {
-      lines_.emplace_back(map, places.sensors[i]);
-      continue;
-    }
     Eigen::ArrayXXd seen = map.z;
     for_each_cell(seen, [&](Cell at) {
-      const bool is_seen = ((places.seen_from(at.row, at.col) >> i) & 1) != 0;
-      if (!is_seen) seen(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
+      if (!sees(i, at)) seen(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
     });
     lines_.emplace_back(map, places.sensors[i], seen);
   }
@@ -161,14 +157,20 @@ double AllSightLines::ceiling(Cell at) const {
 }
 
 bool AllSightLines::faces_unseen(Cell at) const {
-  return std::any_of(lines_.begin(), lines_.end(),
-                     [&](const SightLines& lines) { return lines.faces_unseen(at); });
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (sees(i, at) && lines_[i].faces_unseen(at)) return true;
+  }
+  return false;
 }
 
 const SightLines* AllSightLines::hidden_by(Cell at) const {
   const auto found = std::find_if(lines_.begin(), lines_.end(),
                                   [&](const SightLines& lines) { return lines.hides(at); });
   return found == lines_.end() ? nullptr : &*found;
+}
+
+bool AllSightLines::sees(std::size_t place, Cell at) const {
+  return seen_from_.size() == 0 || ((seen_from_(at.row, at.col) >> place) & 1) != 0;
 }
 
 Eigen::ArrayXXi drop_mixed_returns(Surface& surface) {

@@ -61,14 +61,18 @@ class AllSightLines {
   /// @param places  sensors and the cells that they saw, of the surface whose heights the map holds
   AllSightLines(const HeightMap& map, const Surface& places);
 
+  bool are_several() const { return lines_.size() > 1; }
   /// Height of the lowest ray that passed over the centre of a cell; infinite where none did [m].
   double ceiling(Cell at) const;
-  /// True if nothing is known next to the cell on the side away from one of the places.
+  /// True if nothing is known next to the cell on the side away from a place that saw the cell.
   bool faces_unseen(Cell at) const;
   /// Those from which the cell hides the unseen ground that it faces; null if there are none.
   const SightLines* hidden_by(Cell at) const;
 
  private:
+  bool sees(std::size_t place, Cell at) const;
+
+  const Eigen::ArrayXXi& seen_from_;
   std::vector<SightLines> lines_;
 };
 

@@ -31,8 +31,8 @@ constexpr double face_place = 0.15;
 /// may hide of the other; ours, from simulated digs that leave soil at the edge of the hole.
 constexpr double hidden_at_border = 0.1;
 
-/// Sums the difference over each zone: area, volume, place.
-void sum_zones(Area& area) {
+/// Sums the difference over each zone: area, volume, place. `shadow` is 1 for cells filled as such.
+void sum_zones(Area& area, const Eigen::ArrayXXi& shadow) {
   const HeightMap& grid = area.grid;
   const ChangedGround& ground = area.ground;
   const double cell_area = grid.cell_size * grid.cell_size;
@@ -51,6 +51,7 @@ void sum_zones(Area& area) {
     zone.area += cell_area;
     zone.centre += cell_area * place;
     if (area.unknown(cell.row, cell.col) != 0) zone.unknown += cell_area;
+    if (shadow(cell.row, cell.col) != 0) zone.shadow += cell_area;
   });
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
     if (area.zones[i].area > 0.0) area.zones[i].centre /= area.zones[i].area;
@@ -246,6 +247,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   if (!pair.after.sensors.empty()) {
     shadows = fill_shadows({scans.before, scans.after, scans.mixed, pair.after}, area.ground);
   }
+  const Eigen::ArrayXXi shadow = (scans.after.z - scans.before.z).isNaN().select(0, area.unknown);
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
@@ -256,7 +258,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   Alignment left = pair.alignment;
   const double share = take_relief_off(scans.before, area.ground, left);
   const std::vector<double> stripes = take_stripes_off(area.ground);
-  sum_zones(area);
+  sum_zones(area, shadow);
   NoiseModel noise = find_noise(area.ground.residual, area.grid.cell_size);
   noise.white = std::max(noise.white, least_noise * least_noise);
   sum_noise(area, scans.variance_of(share), noise.white);

@@ -23,6 +23,7 @@ struct ZoneSum {
   double holes = 0.0;    // and by the filling of unknown ones [m^6]
   double faces = 0.0;    // and by the position of steep faces [m^6]
   double unknown = 0.0;  // area that was filled [m^2]
+  double shadow = 0.0;   // and of that in shadows under known sight lines [m^2]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Rectangle extent;
   bool is_cut = false;

@@ -21,6 +21,7 @@ namespace {
 constexpr double largest_loss_beside_heap = 0.2;  // of the hole's volume; ours
 constexpr double least_warned_share = 0.01;  // of the volume of its kind; smaller ones are ignored
 constexpr double least_refused_share = 0.1;  // likewise
+constexpr double most_in_shadow = 0.35;      // ours: unseen cells whose error holds in shadows
 constexpr double least_stable_share = 0.4;   // ours
 constexpr double largest_noise = 0.1;        // ours: of a cell; coarser than any range sensor [m]
 constexpr double least_dumped_share = 0.2;   // ours: a smaller rise away from the hole is no heap
@@ -142,6 +143,9 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
                         true});
   }
   const double share = zone.unknown / zone.area;
+  const double guessed = zone.volume > 0.0 || share > most_in_shadow
+                             ? share
+                             : (zone.unknown - zone.shadow) / zone.area;
   if (share > options.refused_unknown_share && matters) {
     warnings.push_back({"zone_unseen", what + " was seen by no scan in " +
                                            hundredths(100.0 * share) +
@@ -149,7 +153,7 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
                                            hundredths(100.0 * options.refused_unknown_share) +
                                            " %: its volume is not trustworthy, so the bulking "
                                            "factor is unknown; scan it from a second standpoint"});
-  } else if (share > options.max_unknown_share) {
+  } else if (guessed > options.max_unknown_share) {
     warnings.push_back({"zone_partly_unseen",
                         what + " was seen by no scan in " + hundredths(100.0 * share) +
                             " % of its cells, which were interpolated; the limit is " +

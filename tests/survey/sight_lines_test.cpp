@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/sight_lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -99,12 +101,12 @@ class OneStandpoint : public testing::Test {
     after = scan(true);
   }
 
-  static VolumeChange measured(bool known) {
+  static VolumeChange measured(bool known, const ChangeOptions& options = {}) {
     ScanPair scans = {before, after};
     if (known) scans.before.sensor_origin = scans.after.sensor_origin = place;
     RasterOptions raster;
     raster.cell_size = 0.06;
-    return measure_change(survey_registered(scans, extent, raster, 0.06).surfaces);
+    return measure_change(survey_registered(scans, extent, raster, 0.06).surfaces, options);
   }
 
   static Scan scan(bool dug) {
@@ -148,6 +150,83 @@ TEST_F(OneStandpoint, WithoutTheSensorsPlaceItsShadowsAreGapsAsOthers) {
     return std::abs(measured(known).excavated.value - dig.pit_volume());
   };
   EXPECT_LT(off(true), 0.5 * off(false));
+}
+
+TEST_F(OneStandpoint, ShadowsOfAHoleDoNotEndTrustWhereTheSensorIsKnown) {
+  ChangeOptions options;
+  options.max_unknown_share = 0.05;
+  const VolumeChange change = measured(true, options);
+  const auto hole = std::find_if(change.zones.begin(), change.zones.end(),
+                                 [](const ChangeZone& z) { return z.kind == ZoneKind::dig; });
+  ASSERT_NE(hole, change.zones.end());
+  EXPECT_GT(hole->unknown_share, options.max_unknown_share);
+  for (const Warning& warning : change.warnings) {
+    const bool is_of_hole = warning.message.find("ground that fell") != std::string::npos;
+    EXPECT_FALSE(is_of_hole && warning.code == "zone_partly_unseen") << warning.message;
+  }
+}
+
+// ---- Two standpoints --------------------------------------------------------------------------
+
+TEST(AllSightLines, BoundUnseenGroundByWhatEachPlaceSawItself) {
+  const HeightMap map = blank(flat_ground({0.0, 0.0, 4.0, 4.0}, 0.05), {1.0, 0.0, 1.5, 4.0});
+  Surface surface;
+  surface.sensors = {{-2.0, 2.0, 3.0}, {8.0, 2.0, 3.0}};
+  surface.seen_from.setConstant(map.z.rows(), map.z.cols(), 3);
+  const SightLines left(map, surface.sensors[0]);
+  const SightLines right(map, surface.sensors[1]);
+  const Cell at = cell_at(map, 1.4, 2.0);
+  EXPECT_EQ(AllSightLines(map, surface).ceiling(at), std::min(left.ceiling(at), right.ceiling(at)));
+  EXPECT_LT(left.ceiling(at), right.ceiling(at));
+  for_each_cell(map.z, [&](Cell cell) {
+    if (map.x(cell.col) > 1.5) surface.seen_from(cell.row, cell.col) = 2;
+  });
+  EXPECT_EQ(AllSightLines(map, surface).ceiling(at), right.ceiling(at));
+}
+
+/// Low lidars on either side, as two clouds of each scan.
+class TwoStandpoints : public testing::Test {
+ protected:
+  static Scan scan(const Dig& dig, bool dug, bool known) {
+    HeightMap map = flat_ground(extent, 0.02);
+    for_each_cell(map.z, [&](Cell at) {
+      const double there = scenes::change_at(dig, Part::whole, map.x(at.col), map.y(at.row));
+      if (dug) map.z(at.row, at.col) = there;
+    });
+    Scan scan;
+    for (const double side : {-1.0, 1.0}) {
+      Lidar lidar;
+      lidar.position = {1.5, side * 2.8, 2.5};
+      lidar.azimuth = {0.2 - (side > 0.0 ? pi : 0.0), pi - 0.2 - (side > 0.0 ? pi : 0.0)};
+      lidar.elevation = {-1.2, -0.35};
+      lidar.angle_step = {0.006, 0.004};
+      auto cloud = std::make_shared<Cloud>();
+      cloud->points = scan_surface(map, lidar, (dug ? 4 : 2) + (side > 0.0 ? 1 : 0));
+      if (known) cloud->sensor_origin = lidar.position;
+      scan.clouds.push_back(cloud);
+    }
+    return scan;
+  }
+
+  static VolumeChange measured(const Dig& dig, bool known) {
+    RasterOptions raster;
+    raster.cell_size = 0.05;
+    const ScanPair scans = {scan(dig, false, known), scan(dig, true, known)};
+    return measure_change(survey_registered(scans, extent, raster, 0.06).surfaces);
+  }
+
+  static constexpr Rectangle extent = {-2.4, -2.0, 7.2, 2.0};
+};
+
+TEST_F(TwoStandpoints, ReturnsMixedFromOnePlaceAreLeftOutWhereTheOtherSees) {
+  Dig dig;
+  dig.wall_angle = 80.0 * scenes::degree;
+  const VolumeChange known = measured(dig, true);
+  const VolumeChange unknown = measured(dig, false);
+  const double truth = dig.pit_volume();
+  EXPECT_LT(std::abs(known.excavated.value - truth),
+            0.6 * std::abs(unknown.excavated.value - truth));
+  EXPECT_NEAR(known.excavated.value, truth, 3.0 * known.excavated.sd);
 }
 
 TEST(ScanSensor, IsThatOfAllItsCloudsInTheSiteFrame) {

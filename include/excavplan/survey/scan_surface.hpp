@@ -28,7 +28,7 @@ struct Scan {
   std::vector<std::shared_ptr<const Cloud>> clouds = {};  ///< in the frame of the files; not null
   double unit = 1.0;  ///< length of a unit of their coordinates; `site_from_scan` is in metres [m]
   /// Where the sensor stood, in the frame and unit of the files; unset: where files and clouds say
-  /// themselves, if they all say the same.
+  /// themselves, if they all do, at up to four places.
   std::optional<Eigen::Vector3d> sensor_origin = {};
 };
 
