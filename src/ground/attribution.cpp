@@ -555,15 +555,25 @@ void add_stirred(const std::vector<Area>& areas, VolumeChange& result) {
   }
 }
 
+/// Ground that the heap covers [m^2]; its zone is wider by what noise may hide of its foot.
+double covered_by_heap(const std::vector<Area>& areas) {
+  constexpr double least = 0.01;  // ours: what counts as covered [m]
+  double covered = 0.0;
+  for (const Area& area : areas) {
+    for_each_cell(area.ground.zone, [&](Cell at) {
+      const int zone = area.ground.zone(at.row, at.col);
+      if (zone < 0 || area.kinds[static_cast<std::size_t>(zone)] != ZoneKind::dump) return;
+      if (area.ground.difference(at.row, at.col) < std::max(least, area.ground.noise_sd)) return;
+      covered += area.grid.cell_size * area.grid.cell_size;
+    });
+  }
+  return covered;
+}
+
 /// Ground under the heap that gave way hides part of the heap.
 void add_pressed_ground(const std::vector<Area>& areas, const Attribution& attribution,
                         VolumeChange& result) {
-  double heap = 0.0;
-  for (const Area& area : areas) {
-    for (std::size_t z = 0; z < area.zones.size(); ++z) {
-      heap += area.kinds[z] == ZoneKind::dump ? area.zones[z].area : 0.0;
-    }
-  }
+  const double heap = covered_by_heap(areas);
   if (!(heap > 0.0)) return;
   double rut_volume = 0.0;
   double rut_area = 0.0;

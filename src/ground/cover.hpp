@@ -15,11 +15,13 @@ namespace excavplan {
 /// Looks for what covers the soil; both end trust.
 ///
 /// `grass`: returns scatter in height less on dug and dumped soil than they did before there: their
-/// variance is below 0.75 of that in both together, and below 0.9 in each (ours), by what the ground that did not change shows: it was covered, and by no more than sqrt(3) times the
-/// excess of the standard deviation, the mean of returns spread evenly from the ground up.
+/// variance is below 0.75 of that in both together, and below 0.9 in each (ours), by what the
+/// ground that did not change shows: it was covered, and by no more than sqrt(3) times the excess
+/// of the standard deviation, the mean of returns spread evenly from the ground up.
 ///
 /// `flat_water`: the lowest part of the hole is level to within the noise of its cells, where the
-/// ground before was rougher by three times. Where that was as even nothing can be told: state_water().
+/// ground before was rougher by three times. Where that was as even nothing can be told:
+/// state_water().
 ///
 /// @param pairs  the surfaces of each area of the change; without variances nothing is found
 std::vector<Warning> check_cover(const std::vector<const SurfacePair*>& pairs,

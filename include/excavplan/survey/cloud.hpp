@@ -106,7 +106,7 @@ struct RasterOptions {
                                   ///< their cell are left out [-], > 0
   std::uint64_t memory = std::uint64_t{256} << 20;  ///< for points held at a time [byte]; where
                                                     ///< it does not do, scans are read again
-  Eigen::Vector2d node = {0.0, 0.0};  ///< where corners of cells meet [m]
+  Eigen::Vector2d node = {0.0, 0.0};                ///< where corners of cells meet [m]
 };
 
 /// One height per cell of the grid that covers `extent`, its lower corner snapped down to a
