@@ -20,9 +20,9 @@ struct CalibrationOptions {
   SimulatorKind simulator = default_simulator();  ///< that digs
   /// Digs in drawn soils of all densities, in cells of 5 cm, for the scatter of the law; 0: none.
   int draws = 100;
-  /// These are along drawn paths too, for a law that is used where the path is not known: angle 0.5
-  /// .. 1.1 rad, penetration 0.2 .. 0.6 m, drag 0.8 .. 2.5 m, even; ours, digs of a third of a
-  /// bucket to two buckets.
+  /// These are along drawn paths too, for a law that is used where the path is not known: angle
+  /// from 0.5 to 1.1 rad, penetration from 0.2 to 0.6 m, drag from 0.8 to 2.5 m, even; ours, digs of
+  /// a third of a bucket to two buckets.
   bool any_path = true;
   SoilScatter scatter = {};  ///< of the drawn soils
   unsigned threads = 0;      ///< 0: one per core; the result is the same for any number

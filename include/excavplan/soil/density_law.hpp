@@ -92,8 +92,8 @@ struct RelativeDensity {
   double percent = 0.0;               ///< inside 0 .. 100
   double raw_percent = 0.0;           ///< as the law gives it
   double sd_given_law_percent = 0.0;  ///< of the bulking factor alone, dd/dk sd_k
-  /// Delta method: sd_given_law^2 + residual_sd^2, and where the law gives a density outside 0 ..
-  /// 100 % the excess in square: it is an error whose cause is not known.
+  /// Delta method: sd_given_law^2 + residual_sd^2, and where the law gives a density below 0 or
+  /// above 100 % the excess in square: it is an error whose cause is not known.
   double sd_percent = 0.0;
   std::array<double, 2> interval_percent = {0.0, 100.0};  ///< 95 %, inside 0 .. 100
   bool trustworthy = true;        ///< false: outside 0 .. 100 % by more than the error explains
