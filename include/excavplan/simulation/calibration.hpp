@@ -21,8 +21,8 @@ struct CalibrationOptions {
   /// Digs in drawn soils of all densities, in cells of 5 cm, for the scatter of the law; 0: none.
   int draws = 100;
   /// These are along drawn paths too, for a law that is used where the path is not known: angle
-  /// from 0.5 to 1.1 rad, penetration from 0.2 to 0.6 m, drag from 0.8 to 2.5 m, even; ours, digs of
-  /// a third of a bucket to two buckets.
+  /// from 0.5 to 1.1 rad, penetration from 0.2 to 0.6 m, drag from 0.8 to 2.5 m, even; ours, digs
+  /// of a third of a bucket to two buckets.
   bool any_path = true;
   SoilScatter scatter = {};  ///< of the drawn soils
   unsigned threads = 0;      ///< 0: one per core; the result is the same for any number
