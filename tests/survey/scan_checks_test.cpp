@@ -368,7 +368,7 @@ TEST(Cover, WaterOnRoughGroundEndsTrust) {
 }
 
 TEST(Cover, GrassInASmallDigEndsTrust) {
-  for (const std::uint64_t seed : {6, 15}) {
+  for (const std::uint64_t seed : {6U, 15U}) {
     Survey survey(seed, true, 0.0, 0.0, points_on_soil);
     grow_grass(survey, 0.4, 0.02);
     EXPECT_FALSE(answer_to(survey.scans()).trusted()) << seed;
