@@ -139,7 +139,10 @@ BlockShape drawn_block(const BlockDrop& drop, Random& random) {
 }
 
 Eigen::Quaterniond random_attitude(Random& random) {
-  Eigen::Quaterniond attitude(random.normal(), random.normal(), random.normal(), random.normal());
+  Eigen::Quaterniond attitude;  // drawn one by one: the order of arguments is the compiler's
+  for (double* const part : {&attitude.z(), &attitude.y(), &attitude.x(), &attitude.w()}) {
+    *part = random.normal();
+  }
   attitude.normalize();
   return attitude;
 }
