@@ -11,6 +11,7 @@
 #include <excavplan/ground/bulking.hpp>
 
 #include "base/text.hpp"
+#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/robust.hpp"
 #include "ground/zone_shape.hpp"
@@ -90,18 +91,21 @@ double lasting_of(const Area& area, std::size_t tail, const std::vector<Cell>& c
 
 /// The zones of an area as the attribution sees them.
 struct Look {
+  std::vector<Cell> cells;
   ZoneShape shape;
   double lasting = 1.0;  ///< lasting_of() a tail
 };
 
 std::vector<Look> looks_of(const Area& area) {
-  const std::vector<std::vector<Cell>> cells = cells_of(area.ground);
   std::vector<Look> looks;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    looks.push_back({shape_of(area.ground.difference, cells[i], area.grid.cell_size)});
-    if (area.parts.part[i] == Part::tail && !cells[i].empty()) {
-      looks.back().lasting = lasting_of(area, i, cells[i]);
+  for (std::vector<Cell>& cells : cells_of(area.ground)) {
+    const std::size_t i = looks.size();
+    Look look{std::move(cells), {}};
+    look.shape = shape_of(area.ground.difference, look.cells, area.grid.cell_size);
+    if (area.parts.part[i] == Part::tail && !look.cells.empty()) {
+      look.lasting = lasting_of(area, i, look.cells);
     }
+    looks.push_back(std::move(look));
   }
   return looks;
 }
@@ -115,6 +119,7 @@ class ChangeReader {
     hole_ = largest(0, -1.0);
     if (hole_) mark_beside();
     heap_ = largest(areas.size() - 1, 1.0);
+    if (heap_) beside_heap_ = near(*heap_);
   }
 
   std::vector<Change> read() {
@@ -200,9 +205,7 @@ class ChangeReader {
   void find_ruts() {
     for (std::size_t a = 0; a < areas_.size(); ++a) {
       is_rut_.emplace_back(areas_[a].zones.size(), false);
-      Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> ruts =
-          Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>::Constant(
-              areas_[a].ground.zone.rows(), areas_[a].ground.zone.cols(), false);
+      Mask ruts = Mask::Constant(areas_[a].ground.zone.rows(), areas_[a].ground.zone.cols(), false);
       for (std::size_t z = 0; z < areas_[a].zones.size(); ++z) {
         const Place p{a, z};
         is_rut_[a][z] =
@@ -217,12 +220,10 @@ class ChangeReader {
   bool lies_along_ruts(Place p) const {
     double cells = 0.0;
     double near = 0.0;
-    const Eigen::ArrayXXi& index = areas_[p.area].ground.zone;
-    for_each_cell(index, [&](Cell at) {
-      if (index(at.row, at.col) != static_cast<int>(p.zone)) return;
+    for (const Cell at : looks_[p.area][p.zone].cells) {
       cells += 1.0;
       near += away_from_ruts_[p.area](at.row, at.col) < berm_reach ? 1.0 : 0.0;
-    });
+    }
     return near > berm_share * cells;
   }
 
@@ -294,7 +295,7 @@ class ChangeReader {
     if (beside(p)) return {"spill beside the hole", prior::certain, true};
     if (part(p) == Part::tail) return {"the low edge of a heap", edge_prior(p), false};
     if (given(1.0)) return {"a heap in the given area", prior::certain, false};
-    if (heap_ && near(*heap_)[p.zone] && p.area == heap_->area) {
+    if (heap_ && p.area == heap_->area && beside_heap_[p.zone]) {
       return {"soil beside the heap", prior::beside_main, false};
     }
     if (p.area == 0 && !beside_others_.empty() && beside_others_[p.zone]) {
@@ -349,6 +350,7 @@ class ChangeReader {
   std::optional<Change::Place> heap_;
   std::vector<bool> beside_;
   std::vector<bool> beside_others_;
+  std::vector<bool> beside_heap_;
   std::vector<std::vector<bool>> is_rut_;
   std::vector<Eigen::ArrayXXd> away_from_ruts_;  // of each area [m]
   std::vector<Change> changes_;

@@ -20,8 +20,6 @@
 namespace excavplan {
 namespace {
 
-using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
-
 constexpr double degree = pi / 180.0;
 
 // Ours, found on simulated heaps of loose soil and of blocks (docs/methods.md#blocks).

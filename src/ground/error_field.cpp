@@ -389,4 +389,10 @@ Eigen::ArrayXXd slope_limited(const Eigen::ArrayXXd& z, double rise) {
   return limit;
 }
 
+Eigen::ArrayXXd distance_to(const Mask& marked) {
+  const Eigen::ArrayXXd start = marked.select(Eigen::ArrayXXd::Zero(marked.rows(), marked.cols()),
+                                              std::numeric_limits<double>::infinity());
+  return slope_limited(start, 1.0);
+}
+
 }  // namespace excavplan

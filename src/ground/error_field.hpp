@@ -8,6 +8,8 @@
 
 #include <excavplan/ground/registration.hpp>
 
+#include "ground/grid_cells.hpp"
+
 /// @file
 /// The error of height differences: estimated on stable ground, predicted for the zones. Private to
 /// the project.
@@ -77,5 +79,9 @@ struct ErrorField {
 /// The highest surface below `z` whose slope is nowhere above `rise` per cell. Unknown cells are no
 /// bound.
 Eigen::ArrayXXd slope_limited(const Eigen::ArrayXXd& z, double rise);
+
+/// From every cell to the nearest one that is marked, within 8 % (chamfer); infinite without one
+/// [cell].
+Eigen::ArrayXXd distance_to(const Mask& marked);
 
 }  // namespace excavplan

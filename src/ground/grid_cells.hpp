@@ -11,6 +11,8 @@
 
 namespace excavplan {
 
+using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
+
 struct Cell {
   Eigen::Index row;
   Eigen::Index col;

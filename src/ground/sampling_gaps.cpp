@@ -18,8 +18,6 @@ namespace excavplan {
 namespace {
 
 using Eigen::Index;
-using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
-
 constexpr Index widest_gap = 24;  // ours [cell]
 
 /// Sums over rectangles of cells.
@@ -47,13 +45,6 @@ class AreaSums {
  private:
   Eigen::ArrayXXd sums_;
 };
-
-/// From every cell to the nearest known one [cell].
-Eigen::ArrayXXd distance_to(const Mask& known) {
-  const Eigen::ArrayXXd start = known.select(Eigen::ArrayXXd::Zero(known.rows(), known.cols()),
-                                             std::numeric_limits<double>::infinity());
-  return slope_limited(start, 1.0);
-}
 
 /// Known cells with an unknown one among the eight around.
 Mask thin_cells(const Mask& known) {

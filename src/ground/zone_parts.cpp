@@ -17,8 +17,6 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
-
 // Ours, by what digs, tracks and heaps look like.
 constexpr double core_share = 0.3;       // of a zone's own height, above which it is no edge [-]
 constexpr double gentlest_edge = 0.27;   // slope of 15 degrees, below that of any dug or loose soil
@@ -331,32 +329,6 @@ std::vector<std::vector<Cell>> cells_of(const ChangedGround& ground) {
     if (index >= 0) cells[static_cast<std::size_t>(index)].push_back(at);
   });
   return cells;
-}
-
-Eigen::ArrayXXd distance_to(const Mask& marked) {
-  constexpr double diagonal = 1.4142;
-  const Eigen::Index rows = marked.rows();
-  const Eigen::Index cols = marked.cols();
-  Eigen::ArrayXXd away =
-      marked.select(Eigen::ArrayXXd::Zero(rows, cols),
-                    Eigen::ArrayXXd::Constant(rows, cols, std::numeric_limits<double>::infinity()));
-  const auto relax = [&](Eigen::Index r, Eigen::Index c, Eigen::Index dr, Eigen::Index dc) {
-    const Eigen::Index row = r + dr;
-    const Eigen::Index col = c + dc;
-    if (row < 0 || col < 0 || row >= rows || col >= cols) return;
-    away(r, c) = std::min(away(r, c), away(row, col) + (dr != 0 && dc != 0 ? diagonal : 1.0));
-  };
-  for (Eigen::Index c = 0; c < cols; ++c) {
-    for (Eigen::Index r = 0; r < rows; ++r) {
-      relax(r, c, -1, -1), relax(r, c, 0, -1), relax(r, c, 1, -1), relax(r, c, -1, 0);
-    }
-  }
-  for (Eigen::Index c = cols; c-- > 0;) {
-    for (Eigen::Index r = rows; r-- > 0;) {
-      relax(r, c, 1, 1), relax(r, c, 0, 1), relax(r, c, -1, 1), relax(r, c, 1, 0);
-    }
-  }
-  return away;
 }
 
 }  // namespace excavplan

@@ -34,7 +34,4 @@ ZoneParts part_zones(ChangedGround& ground, double cell_size);
 /// The cells of each zone.
 std::vector<std::vector<Cell>> cells_of(const ChangedGround& ground);
 
-/// Distance of every cell to the nearest one that is marked, in cells, within 8 % (chamfer).
-Eigen::ArrayXXd distance_to(const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& marked);
-
 }  // namespace excavplan

@@ -180,6 +180,24 @@ TEST(Attribution, StirredGroundIsNoiseOfWhatLiesInIt) {
   EXPECT_GT(bulking_factor(change)->sd, 3.0 * bulking_errors(change).scans);
 }
 
+TEST(Attribution, RisesInTheDigAreaLieBesideNoHeapOfTheDumpArea) {
+  const auto rises = [](double x, double y) {
+    double z = scenes::change_at(Dig{}, scenes::Part::dig, x, y);
+    for (const double at : {4.0, 5.5, 7.0}) z += cone(x, y, {at, -1.5}, 0.3);
+    return z;
+  };
+  const auto heap = [](double x, double y) { return Dig{}.dumped(x - scenes::dump_offset, y); };
+  const auto level = [](double, double) { return 0.0; };
+  const VolumeChange change = measure_change(HeightMapPair{scanned(level, 1), scanned(rises, 2)},
+                                             HeightMapPair{scanned(level, 3), scanned(heap, 4)});
+  double rise = 0.0;
+  for (const AttributedChange& open : change.attribution) {
+    EXPECT_EQ(open.what.find("soil beside the heap"), std::string::npos) << open.what;
+    if (open.what.rfind("a rise in the dig area", 0) == 0) rise += open.volume.value;
+  }
+  EXPECT_NEAR(rise, 3.0 * cone_volume(0.3), 0.005);
+}
+
 TEST(Attribution, GivenAreasLeaveNothingOpenOutside) {
   const auto two = [](double x, double y) { return dug(x, y) + cone(x, y, {3.2, -1.8}, 0.4); };
   ChangeOptions options;
