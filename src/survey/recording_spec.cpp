@@ -33,7 +33,8 @@ class SpecParser {
     const bool is_drive = query.path.size() == 1 && !is_recording(query.path);
     if (is_address || is_drive) return std::nullopt;
     query.topic = take_until(rest, "@+");
-    if (query.topic.size() == 1) refuse("the topic " + quoted(query.topic), "a name behind the /");
+    if (query.topic.size() == 1)
+      refuse("the topic " + excavplan::quoted(query.topic), "a name behind the /");
     if (!rest.empty() && rest.front() == '@') {
       rest.remove_prefix(1);
       query.time = seconds_of(take_until(rest, "+"), "time");
@@ -51,7 +52,8 @@ class SpecParser {
   std::optional<RecordingQuery> without_topic() const {
     const std::size_t end = text_.find_last_of(":@+");
     if (end == text_.npos || end == 0 || !is_recording(text_.substr(0, end))) return std::nullopt;
-    refuse(quoted(text_.substr(end)) + " behind a recording", "a topic that begins with /");
+    refuse(excavplan::quoted(text_.substr(end)) + " behind a recording",
+           "a topic that begins with /");
   }
   static std::string take_until(std::string_view& rest, std::string_view ends) {
     const std::string_view taken = rest.substr(0, rest.find_first_of(ends));
@@ -66,11 +68,11 @@ class SpecParser {
       const auto value = parse_number(word.substr(0, word.size() - unit.size()));
       if (!value) break;
       if (!(*value >= 0.0 && *value * factor <= longest)) {
-        refuse(what + " " + quoted(word), "0 to 1e9 s");
+        refuse(what + " " + excavplan::quoted(word), "0 to 1e9 s");
       }
       return *value * factor;
     }
-    refuse(what + " " + quoted(word), "a number with s, ms or min");
+    refuse(what + " " + excavplan::quoted(word), "a number with s, ms or min");
   }
 
   const std::string& text_;
