@@ -103,8 +103,12 @@ class FieldReader {
 MessageHeader read_header(FieldReader& reader) {
   if (!reader.is_cdr()) reader.number<std::uint32_t>();  // seq
   MessageHeader header;
-  const std::int64_t seconds =
-      reader.is_cdr() ? reader.number<std::int32_t>() : reader.number<std::uint32_t>();
+  std::int64_t seconds = 0;
+  if (reader.is_cdr()) {
+    seconds = reader.number<std::int32_t>();
+  } else {
+    seconds = reader.number<std::uint32_t>();
+  }
   header.stamp = seconds * 1000000000 + reader.number<std::uint32_t>();
   header.frame = reader.name();
   if (!header.frame.empty() && header.frame.front() == '/') header.frame.erase(0, 1);

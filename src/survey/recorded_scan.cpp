@@ -43,7 +43,7 @@ std::int64_t difference(std::int64_t from, std::int64_t to) {
   return __builtin_sub_overflow(to, from, &result) ? (to > from ? latest : earliest) : result;
 }
 
-double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) * 1e-9; }
+double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
 
 std::int64_t nanoseconds(double seconds, const char* what) {
   require(seconds >= 0.0 && seconds <= longest_time, what, seconds, "0 to 1e9 s");

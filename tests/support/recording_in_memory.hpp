@@ -19,16 +19,21 @@ class RecordingInMemory : public RecordingFile {
 
   void add(const std::string& topic, const std::string& type, std::int64_t time, std::string bytes,
            Serialization serialization = Serialization::cdr) {
-    messages_.push_back({topic, epoch + time, std::move(bytes), serialization});
+    add_at(epoch + time, topic, type, std::move(bytes), serialization);
+  }
+  /// At a time since 1970 [ns].
+  void add_at(std::int64_t time, const std::string& topic, const std::string& type,
+              std::string bytes, Serialization serialization = Serialization::cdr) {
+    messages_.push_back({topic, time, std::move(bytes), serialization});
     std::stable_sort(messages_.begin(), messages_.end(),
                      [](const Stored& a, const Stored& b) { return a.time < b.time; });
-    if (find(topic) == nullptr) topics_.push_back({topic, type, 0, epoch + time, epoch + time});
+    if (find(topic) == nullptr) topics_.push_back({topic, type, 0, time, time});
     std::sort(topics_.begin(), topics_.end(),
               [](const RecordedTopic& a, const RecordedTopic& b) { return a.name < b.name; });
     RecordedTopic& entry = *find(topic);
     ++entry.messages;
-    entry.first = std::min(entry.first, epoch + time);
-    entry.last = std::max(entry.last, epoch + time);
+    entry.first = std::min(entry.first, time);
+    entry.last = std::max(entry.last, time);
   }
 
   const std::string& path() const override { return path_; }
