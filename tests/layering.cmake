@@ -32,7 +32,7 @@ set(third_party_places
   "^src/(soil|optimisation)/[a-z_]+\\.cpp$"
   "^(src/base/json\\.hpp|src/.*\\.[ch]pp|tools/.*|tests/.*)$"
   "^tools/shared/tool\\.cpp$"
-  "^src/recording/sqlite_recording\\.cpp$"
+  "^(src/recording/sqlite_recording|tests/recording/containers_test)\\.cpp$"
   "^src/recording/compression\\.cpp$" "^src/recording/compression\\.cpp$"
   "^src/recording/compression\\.cpp$")
 

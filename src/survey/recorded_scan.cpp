@@ -24,11 +24,12 @@ constexpr std::int64_t earliest = std::numeric_limits<std::int64_t>::min();
 constexpr std::int64_t latest = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t second = 1000000000;  // [ns]
 // Ours.
-constexpr double longest_time = 1e9;                    // [s]
-constexpr std::int64_t transforms_about = 10 * second;  // before and after the messages
-constexpr std::int64_t largest_clock_step = second;     // of stamps against times of recording
-constexpr std::int64_t joints_about = second / 2;       // before and after the time asked for
-constexpr std::size_t most_points = 500000000;          // of all messages together
+constexpr double longest_time = 1e9;                      // [s]
+constexpr std::int64_t transforms_about = second;         // before and after the messages, or
+constexpr std::int64_t transforms_farther = 10 * second;  // where that does not do
+constexpr std::int64_t largest_clock_step = second;       // of stamps against times of recording
+constexpr std::int64_t joints_about = second / 2;         // before and after the time asked for
+constexpr std::size_t most_points = 150000000;            // of all messages together
 
 // ---- Times ------------------------------------------------------------------------------------
 
@@ -197,7 +198,7 @@ std::vector<MessageHead> read_heads(RecordingFile& recording, const RecordedTopi
     points += std::min(heads.back().size.pixels(), most_points);
     if (span > 0 && points > most_points) {
       excavplan::refuse(recording.path() + ": the span of " + number_text(query.span) +
-                        " s holds more than 500 million points of " + topic.name +
+                        " s holds more than 150 million points of " + topic.name +
                         ", must be shorter");
     }
     return span > 0;
@@ -212,6 +213,7 @@ void require_steady_clock(const RecordingFile& recording, const std::vector<Mess
     const std::int64_t recorded = difference(heads[i - 1].time, heads[i].time);
     const std::int64_t stamped = difference(heads[i - 1].header.stamp, heads[i].header.stamp);
     const std::int64_t step = difference(recorded, stamped);
+    if (stamped == 0) continue;  // never set, or the same points once more
     if (step >= -largest_clock_step && step <= largest_clock_step) continue;
     refuse(recording, "a clock jumped: the message at " + time_text(recording, heads[i].time) +
                           " was recorded " + decimals(seconds(recorded), 3) +
@@ -223,7 +225,8 @@ void require_steady_clock(const RecordingFile& recording, const std::vector<Mess
 
 // ---- Transforms -------------------------------------------------------------------------------
 
-/// The static ones, and those recorded in a time.
+/// The static ones, and those recorded in a time, if any: of a chunked file that reads all chunks
+/// of that time.
 TransformTree read_transforms(RecordingFile& recording, const TimeRange& range) {
   std::vector<StampedTransform> transforms;
   const auto take = [&](const RecordedMessage& message) {
@@ -238,7 +241,8 @@ TransformTree read_transforms(RecordingFile& recording, const TimeRange& range) 
     (holds_static_transforms(name) ? statics : others).push_back(name);
   }
   if (!statics.empty()) recording.visit(statics, earliest, latest, take);
-  if (!others.empty()) recording.visit(others, range.from, range.to, take);
+  if (!others.empty() && range.from <= range.to)
+    recording.visit(others, range.from, range.to, take);
   return {recording.path(), recording.start(), std::move(transforms)};
 }
 
@@ -332,8 +336,12 @@ class ScanReader {
         topic_(scan_topic(recording, query.topic)),
         target_(frame_name(query.frame)),
         heads_(read_heads(recording, topic_, query)),
-        tree_(read_transforms(recording, {later(heads_.front().time, -transforms_about),
-                                          later(heads_.back().time, transforms_about)})) {
+        tree_(read_transforms(recording, target_.empty() && heads_.size() == 1
+                                             ? TimeRange{latest, earliest}
+                                             : around(transforms_about))) {
+    if (!target_.empty() && !is_target_known()) {
+      tree_ = read_transforms(recording, around(transforms_farther));
+    }
     require_steady_clock(recording, heads_);
     if (use_of(topic_.type) == MessageUse::depth) {
       pinhole_ = read_pinhole(recording, topic_, heads_.front().time);
@@ -365,6 +373,17 @@ class ScanReader {
     return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
   }
   const MessageHead& first() const { return heads_.front(); }
+  TimeRange around(std::int64_t margin) const {
+    return {later(first().time, -margin), later(heads_.back().time, margin)};
+  }
+  bool is_target_known() const {
+    try {
+      for (const MessageHead& head : heads_) pose_of(head);
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  }
 
   bool same_frame_ids() const {
     return std::all_of(heads_.begin(), heads_.end(), [&](const MessageHead& head) {
@@ -516,9 +535,8 @@ RecordingContents describe_recording(RecordingFile& recording) {
     }
     contents.topics.push_back(std::move(entry));
   }
-  contents.frames =
-      read_transforms(recording, {recording.start(), later(recording.start(), transforms_about)})
-          .frames();
+  const std::int64_t start = recording.start();
+  contents.frames = read_transforms(recording, {start, later(start, transforms_about)}).frames();
   return contents;
 }
 

@@ -36,7 +36,7 @@ struct RecordingContents {
   double start = 0.0;                  ///< when its first message was recorded [s since 1970]
   double duration = 0.0;               ///< up to its last message [s]
   std::vector<RecordingTopic> topics;  ///< sorted by name
-  /// Between which there are transforms: of /tf_static, and of the first 10 s of /tf; sorted.
+  /// Between which there are transforms: of /tf_static, and of the first second of /tf; sorted.
   std::vector<std::string> frames;
 };
 
@@ -98,7 +98,7 @@ struct RecordedScan {
 ///
 /// @throws Error (bad_file) also if there is no such topic or no message at that time, no transform
 /// into the frame at the time of a message, no camera info, or if a clock jumped between the
-/// messages; (bad_input) if a time is out of range, the span holds more than 500 million points or
+/// messages; (bad_input) if a time is out of range, the span holds more than 150 million points or
 /// pixels, or the sensor moved and no frame is named
 RecordedScan read_recorded_scan(const RecordingQuery& query);
 
