@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/survey/depth_image.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -19,6 +18,7 @@
 #include "base/json.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
+#include "survey/robust_mean.hpp"
 
 namespace excavplan {
 namespace {
@@ -175,36 +175,6 @@ std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths) {
   return frames;
 }
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-struct RobustMean {
-  double value = 0.0;
-  int count = 0;
-};
-
-RobustMean robust_mean(const std::vector<double>& values) {
-  constexpr double mad_to_sd = 1.4826;
-  constexpr double within = 3.0;
-  RobustMean mean;
-  if (values.empty()) return mean;
-  std::vector<double> work = values;
-  const double middle = median(work);
-  for (double& value : work) value = std::abs(value - middle);
-  const double limit = std::max(1.0, within * mad_to_sd * median(work));
-  for (const double value : values) {
-    if (std::abs(value - middle) > limit) continue;
-    mean.value += value;
-    ++mean.count;
-  }
-  if (mean.count > 0) mean.value /= mean.count;
-  return mean;
-}
-
 }  // namespace
 
 DepthIntrinsics load_intrinsics(const std::string& path) {
@@ -246,7 +216,7 @@ AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
         const std::uint16_t count = frame.ptr<std::uint16_t>(row)[column];
         if (camera.sees(count)) counts.push_back(count);
       }
-      const RobustMean mean = robust_mean(counts);
+      const RobustMean mean = robust_mean(counts, 1.0);
       const bool is_known =
           mean.count > 0 && 2 * static_cast<std::size_t>(mean.count) >= frames.size();
       average.frames.push_back(is_known ? mean.count : 0);
@@ -282,7 +252,7 @@ Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrin
     refuse("has " + std::to_string(depths.size()) +
            " pixels with a depth within 2 of it, must be 3 or more");
   }
-  return camera.point(u, v, median(depths));
+  return camera.point(u, v, mean_median(depths));
 }
 
 KnownPoints read_known_points(const std::string& path, const Cloud& cloud,

@@ -17,46 +17,10 @@
 
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/text.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-// ---- Suggestions ------------------------------------------------------------------------------
-
-/// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other
-/// (optimal string alignment).
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
-/// The word that was probably meant, or nothing.
-std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& words) {
-  std::optional<std::string> best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : words) {
-    const bool abbreviated = word.size() >= 2 && candidate.rfind(word, 0) == 0;
-    const std::size_t distance = abbreviated ? 1 : edit_distance(word, candidate);
-    if (distance < least && distance < candidate.size()) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  return best;
-}
 
 // ---- Help -------------------------------------------------------------------------------------
 
@@ -198,7 +162,7 @@ void refuse_left_over(const std::vector<std::string>& left_over,
     if (start == std::string::npos) continue;
     if (start == 0) usage_error("unexpected argument '" + word + "'");
     const std::string option = word.substr(0, word.find('='));
-    const auto meant = nearest(option.substr(start), names);
+    const auto meant = nearest_word(option.substr(start), names);
     usage_error("unknown option " + option + (meant ? ", did you mean --" + *meant + "?" : ""));
   }
 }
