@@ -42,7 +42,7 @@ CloudShape stream(FileStream& file, PointSink& sink) {
   }
   const auto foreign = foreign_content(file);
   file.fail(foreign ? foreign->place : "byte 0", foreign ? foreign->found : "text",
-            "a cloud as " + alternatives(titles));
+            "a cloud as " + alternatives(titles) + (foreign ? foreign->hint : ""));
 }
 
 [[noreturn]] void refuse_size(const FileStream& file, std::uint64_t points, std::uint64_t limit) {
@@ -135,8 +135,9 @@ void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format
                                           std::to_string(cloud.height));
   }
   const auto& formats = cloud_file_formats();
-  const auto known = std::find_if(formats.begin(), formats.end(),
-                                  [&](const CloudFileFormat& f) { return f.name == format.name; });
+  const auto known = std::find_if(formats.begin(), formats.end(), [&](const CloudFileFormat& f) {
+    return f.content != nullptr && f.name == format.name;
+  });
   if (known == formats.end()) {
     throw Error(ErrorKind::bad_input,
                 path + ": '" + format.name + "' is not a supported output format");
@@ -148,7 +149,11 @@ CloudFormat cloud_format_of_name(const std::string& path) {
   const std::string ending = ending_of(path);
   for (const CloudFileFormat& format : cloud_file_formats()) {
     const auto& own = format.endings;
-    if (std::find(own.begin(), own.end(), ending) != own.end()) return {format.name};
+    if (std::find(own.begin(), own.end(), ending) == own.end()) continue;
+    if (format.content != nullptr) return {format.name};
+    throw Error(ErrorKind::bad_input, path + ": " + format.title +
+                                          " is read, not written; the name must end in " +
+                                          cloud_endings());
   }
   throw Error(ErrorKind::bad_input, path + ": the name of a cloud must end in " + cloud_endings());
 }
@@ -156,6 +161,7 @@ CloudFormat cloud_format_of_name(const std::string& path) {
 std::string cloud_endings() {
   std::vector<std::string> endings;
   for (const CloudFileFormat& format : cloud_file_formats()) {
+    if (format.content == nullptr) continue;
     endings.insert(endings.end(), format.endings.begin(), format.endings.end());
   }
   return alternatives(endings);

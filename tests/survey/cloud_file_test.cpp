@@ -655,9 +655,16 @@ TEST(BadText, IsNotACloud) {
       {"east north height\n1 2 3\n", "line 1: found 'east north height'"},
       {"x x y z\n1 2 3 4\n", "line 1: found 'x x y z'"},
       {"{\"points\": []}\n", "line 1: found '{\"points\": []}'"},
-      {string("1\0 2\0 3\0", 8), "byte 1: found the byte 0, expected a cloud as PCD, PLY or XYZ"},
-      {"LASF\x01\x02", "byte 0: found a LAS or LAZ file, expected a cloud as PCD, PLY"},
-      {"SQLite format 3", "found a database, such as a ROS 2 bag"},
+      {string("1\0 2\0 3\0", 8), "byte 1: found the byte 0, expected a cloud as PCD, PLY, LAS"},
+      {"ASTM-E57\x01",
+       "byte 0: found an E57 file, expected a cloud as PCD, PLY, LAS or XYZ text; convert it by "
+       "pdal "
+       "translate in.e57 out.las, or CloudCompare -SILENT -O in.e57"},
+      {"SQLite format 3",
+       "found a recording (ROS 2 bag) or another database, expected a cloud as PCD, PLY, LAS or "
+       "XYZ text; name a topic of it, FILE:TOPIC@TIME; inspect-cloud FILE lists them"},
+      {"\x89MCAP0\r\n", "found a recording (MCAP)"},
+      {"#ROSBAG V2.0\n", "found a recording (ROS 1 bag)"},
       {"\x89PNG\r\n\x1a\n", "found a PNG image"},
       {"1 2 3\n" + string(9000, '1'), "line 2: found a line of more than 4096 bytes"},
       {"PLY\nformat ascii 1.0\n", "line 1: found 'PLY'"},
@@ -796,7 +803,7 @@ TEST(WriteCloud, TheNameAsksForTheFormat) {
   EXPECT_EQ(cloud_format_of_name("a.xyz").name, "xyz");
   EXPECT_EQ(cloud_format_of_name("a.b.txt").name, "xyz");
   EXPECT_EQ(cloud_format_of_name("a.asc").name, "xyz");
-  for (const string name : {"a.las", "pcd", "a.pcd/b", "a.", ""}) {
+  for (const string name : {"a.e57", "pcd", "a.pcd/b", "a.", ""}) {
     EXPECT_EQ(error_about([&] { cloud_format_of_name(name); }, name, ErrorKind::bad_input),
               "the name of a cloud must end in .pcd, .ply, .xyz, .txt or .asc");
   }
