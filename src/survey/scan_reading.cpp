@@ -208,6 +208,7 @@ Cloud gathered(const Scan& scan) {
 }
 
 std::string name_of(const Scan& scan) {
+  if (!scan.name.empty()) return scan.name;
   if (scan.files.empty()) return "a scan in memory";
   std::string name = scan.files.front();
   for (std::size_t i = 1; i < scan.files.size(); ++i) name += " with " + scan.files[i];

@@ -4,11 +4,13 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <excavplan/survey/scan_surface.hpp>
 
 #include "shared/arguments.hpp"
 #include "shared/found_pose.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 
@@ -24,24 +26,32 @@ struct ScanFrames {
   std::string unit = "m";         ///< of the coordinates in all clouds
   std::string before_unit;        ///< of those before, if another
   std::string after_unit;
+  std::string tf_frame;                               ///< of the transforms of a recording
   std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their frame and unit
+  std::optional<Eigen::Vector3d> before_origin = {};  ///< of those before
+  std::optional<Eigen::Vector3d> after_origin = {};
 };
 
-/// --frame, --before-frame, --after-frame, --before-pose, --after-pose, --level, --sensor-origin.
+/// --frame, --before-frame, --after-frame, --before-pose, --after-pose, --tf-frame, --level,
+/// --sensor-origin, --before-origin, --after-origin.
 void declare_frames(Arguments& arguments, ScanFrames& frames);
 /// --unit, --before-unit and --after-unit.
 void declare_units(Arguments& arguments, ScanFrames& frames);
 
-/// A pair with the pose by which both were levelled, if they were.
-struct PlacedPair {
-  ScanPair scans;
-  std::optional<FoundPose> level;
+/// What was done to bring scans in.
+struct ScanReport {
+  std::optional<FoundPose> level;  ///< of the last pair, if it was levelled
+  nlohmann::ordered_json recordings = nlohmann::ordered_json::array();
+  std::vector<std::string> lines;  ///< of both, for people
+
+  /// Into a tool's result, as `pose` and `recordings`.
+  void add_to(Outcome& outcome) const;
 };
 
-/// @throws Error (bad_file) if a file cannot be read; (bad_input) if options exclude each other, or
-/// as level_on_ground()
-PlacedPair placed_pair(const std::string& before, const std::string& after,
-                       const ScanFrames& frames);
+/// @throws Error (bad_file) if a file or recording cannot be read; (bad_input) if options exclude
+/// each other, or as level_on_ground()
+ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
+                     ScanReport& report);
 
 /// Runs `work`, and adds to an error about the frame of a scan the options that correct it.
 template <typename Work>
