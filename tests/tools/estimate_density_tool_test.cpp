@@ -371,7 +371,9 @@ TEST_F(BadInput, IncompleteOptionsAreRefused) {
   refused(2, "--payload-mass: must be above 0", tool, {scan, later_scan, "--payload-mass", "0"});
   refused(2, "--payload-mass: '1,2,3' is not VALUE,SD", tool,
           {scan, later_scan, "--payload-mass", "1,2,3"});
-  refused(2, "--moisture: must be in 0 .. 10", tool, {scan, later_scan, "--moisture", "12"});
+  refused(2, "--moisture: must be in 0 .. 2 (12 % is 0.12)", tool,
+          {scan, later_scan, "--payload-mass", "480", "--moisture", "12"});
+  refused(2, "--moisture needs --payload-mass", tool, {scan, later_scan, "--moisture", "0.1"});
   refused(2, "takes no scans", tool, {scan, later_scan, "--plan-survey", "height=2"});
   refused(2,
           "--plan-survey: 'hight' is not one of sensor, height, offset, volume, depth, area, k, "
