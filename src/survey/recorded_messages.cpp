@@ -27,8 +27,10 @@ std::string scan_topics_text(const RecordingFile& recording) {
 const RecordedTopic& only_scan_topic(const RecordingFile& recording) {
   const auto& topics = recording.topics();
   const auto found = std::find_if(topics.begin(), topics.end(), holds_scans);
-  if (found == topics.end() || std::any_of(found + 1, topics.end(), holds_scans)) {
-    refuse_recording(recording, "no topic is named, expected one of several or none: " +
+  const auto count = std::count_if(found, topics.end(), holds_scans);
+  if (count != 1) {
+    refuse_recording(recording, "found " + std::to_string(count) +
+                                    " topics to choose from, expected one or the name of one; " +
                                     scan_topics_text(recording));
   }
   return *found;

@@ -204,22 +204,25 @@ class ScanReader {
            std::all_of(heads_.begin(), heads_.end(),
                        [&](const MessageHead& head) { return head.size == first().size; });
   }
-  /// @throws Error (bad_input) if it did not, and no frame is named
-  bool stood_still() const {
-    if (heads_.size() == 1) return true;
+  /// By the stamps and, as a sensor's clock may not be set, by the times of recording.
+  bool moved() const {
     const auto [from, to] = std::minmax_element(
         heads_.begin(), heads_.end(),
         [](const auto& a, const auto& b) { return a.header.stamp < b.header.stamp; });
     const std::string& frame = first().header.frame;
+    return tree_.moved(target_, frame, from->header.stamp, to->header.stamp) ||
+           tree_.moved(target_, frame, first().time, heads_.back().time);
+  }
+  /// @throws Error (bad_input) if it did not, and no frame is named
+  bool stood_still() const {
+    if (heads_.size() == 1) return true;
     const bool one_frame = same_frame_ids();
-    if (one_frame && !tree_.moved(target_, frame, from->header.stamp, to->header.stamp))
-      return true;
+    if (one_frame && !moved()) return true;
     if (!target_.empty()) return false;
     refuse(recording_.path() + ": between " + time_text(recording_, first().time) + " and " +
-           time_text(recording_, heads_.back().time) + " frame " + quoted(frame) + " of " +
-           topic_.name + (one_frame ? " moved" : " became another") +
-           ": name the frame into which the points are put, or a span in which it "
-           "stood; frames: " +
+           time_text(recording_, heads_.back().time) + " frame " + quoted(first().header.frame) +
+           " of " + topic_.name + (one_frame ? " moved" : " became another") +
+           ": name the frame into which the points are put, or a span in which it stood; frames: " +
            name_list(tree_.frames()));
   }
   bool is_sensor_frame() const {

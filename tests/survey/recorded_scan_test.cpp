@@ -159,8 +159,8 @@ TEST(RecordedScan, TheOnlyTopicNeedNotBeNamed) {
   recording.add("/image", image_type, 0, depth_bytes(0, "camera", 1, {1}));
   EXPECT_EQ(
       error_of_read(recording, query_of("")),
-      "no topic is named, expected one of several or none: topics that hold clouds or images: "
-      "'/points', '/image'");
+      "found 2 topics to choose from, expected one or the name of one; topics that hold clouds "
+      "or images: '/points', '/image'");
 }
 
 TEST(RecordedScan, SaysWhatIsThereInsteadOfATopic) {
@@ -334,6 +334,17 @@ TEST(RecordedScan, ASensorWhoseClockIsNotSetCannotBeTransformed) {
   // nothing is wrong with it as long as no transform is asked for, or a static one
   expect_near(read_recorded_scan(recording, query_of("/own", {}, 0.0, "base")).cloud.points.at(0),
               {1.0, 0.0, 2.0});
+}
+
+TEST(RecordedScan, ASensorWhoseClockIsNotSetIsSeenToMove) {
+  RecordingInMemory recording = driving_machine();
+  for (const int time : {2050, 2350}) {
+    recording.add("/own", cloud_type, time * ms,
+                  cloud_bytes(time * ms, "lidar", {{1.0, 0.0, 0.0}}));
+  }
+  EXPECT_NE(error_of_read(recording, query_of("/own", {}, 1.0), ErrorKind::bad_input)
+                .find("frame 'lidar' of /own moved"),
+            std::string::npos);
 }
 
 TEST(RecordedScan, FramesThatChangeNeedAFrameToBePutInto) {
@@ -703,9 +714,9 @@ TEST(RecordingSpec, ErrorsShowTheForm) {
   }
   const std::string file = recording("scene.db3");
   EXPECT_EQ(error(file + "@2s"), "'" + file +
-                                          "@2s': found '@2s' behind a recording, expected a topic "
-                                          "that begins with /" +
-                                          form);
+                                     "@2s': found '@2s' behind a recording, expected a topic "
+                                     "that begins with /" +
+                                     form);
   EXPECT_NE(error(file + ":lidar"), "no error");
 }
 
