@@ -22,6 +22,7 @@ const About about = {
       "separate scans of the dig area and of the dump area"},
      {"estimate-density before.pcd after.pcd --dug-path 45deg,0.35m,1.5m --dug-start 6.05",
       "known path: corrects for soil that fell back into the cut"},
+     {"estimate-density before.las after.las --level", "scans in the frame of the sensor"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
       "without scans: expected density error of a D435i on a 2.5 m mast"},
      {"estimate-density before.pcd after.pcd --json --plot change.svg",
@@ -47,7 +48,7 @@ struct Inputs {
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
-  arguments.positional("BEFORE", inputs.before, "cloud before the dig: PCD, PLY or XYZ");
+  arguments.positional("BEFORE", inputs.before, "cloud before the dig: PCD, PLY, LAS or XYZ");
   arguments.positional("AFTER", inputs.after, "cloud after the dig");
   arguments.file("dump-before", inputs.dump_before,
                  "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
@@ -78,11 +79,12 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
 
-DigScans scans_of(const Inputs& inputs) {
-  const ScanPair whole = scan_pair(*inputs.before, *inputs.after, inputs.frames);
-  DigScans scans{whole.before, whole.after};
+DigScans scans_of(const Inputs& inputs, std::optional<FoundPose>& level) {
+  const PlacedPair whole = placed_pair(*inputs.before, *inputs.after, inputs.frames);
+  level = whole.level;
+  DigScans scans{whole.scans.before, whole.scans.after};
   if (inputs.dump_before) {
-    scans.dump = scan_pair(*inputs.dump_before, *inputs.dump_after, inputs.frames);
+    scans.dump = placed_pair(*inputs.dump_before, *inputs.dump_after, inputs.frames).scans;
   }
   return scans;
 }
@@ -102,7 +104,8 @@ Outcome work_on_scans(const Inputs& inputs) {
     usage_error("--dump-before and --dump-after must be given together");
   }
   if (inputs.dug_start && !inputs.dug_path) usage_error("--dug-start needs --dug-path");
-  const DigScans scans = scans_of(inputs);
+  std::optional<FoundPose> level;
+  const DigScans scans = scans_of(inputs, level);
   DensityOptions options = options_of(inputs);
   const DensityLaw law = law_of(inputs.soil, inputs.machine, options);
   BothEstimates both;
@@ -117,6 +120,8 @@ Outcome work_on_scans(const Inputs& inputs) {
   naming_options({{"path that was dug", "--dug-path"}, {"inside the area", "inside --area"}},
                  [&] { with_frame_hint(pair_frame_hint, estimate); });
   Outcome outcome = estimate_outcome(counts, options.soil);
+  outcome.json["pose"] = level ? level->json : nlohmann::ordered_json();
+  if (level) outcome.lines.push_back("levelled   " + level->line);
   if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
   if (inputs.compare) add_comparison(both, counts, outcome);
   return outcome;

@@ -4,6 +4,7 @@
 
 #include <excavplan/survey/cloud.hpp>
 
+#include "shared/found_pose.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -12,22 +13,27 @@ namespace {
 struct Inputs {
   std::string file;
   std::optional<std::string> frame;
+  PoseInputs pose;
   std::optional<std::string> out;
   bool ascii = false;
 };
 
 const About about = {
     "inspect-cloud",
-    "Summarises a scan (PCD, PLY or XYZ text, detected from the content), and converts it to "
+    "Summarises a scan (PCD, PLY, LAS or XYZ text, detected from the content), and converts it to "
     "another format or frame.",
     {{"inspect-cloud scan.pcd", "points, extent, point density and a guess of the frame"},
      {"inspect-cloud scan.xyz --out scan.ply", "the summary, and the points as binary PLY"},
-     {"inspect-cloud scan.pcd --frame scan_frame.txt --out site.pcd", "into the site frame"}}};
+     {"inspect-cloud scan.pcd --frame scan_frame.txt --out site.pcd", "into the site frame"},
+     {"inspect-cloud scan.pcd --level --pose-out pose.txt --out level.pcd",
+      "z up by the ground plane"},
+     {"inspect-cloud scan.pcd --points markers.csv --out site.pcd",
+      "markers.csv has the columns scan_x_m,scan_y_m,scan_z_m,x_m,y_m,z_m"}}};
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("FILE", inputs.file, "scan to summarise");
-  arguments.file("frame", inputs.frame,
-                 "4 x 4 text matrix that transforms the scan into the site frame; applied first");
+  arguments.text("frame", "FRAME", inputs.frame, "another name of --pose");
+  declare_pose(arguments, inputs.pose, "scan_x_m,scan_y_m,scan_z_m");
   arguments.output("out", inputs.out, "write the cloud here: " + cloud_endings());
   arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text, with full precision");
 }
@@ -40,7 +46,8 @@ std::string range(const std::string& axis, double low, double high) {
 }
 
 std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& cloud,
-                                          const CloudSummary& summary) {
+                                          const CloudSummary& summary,
+                                          const std::optional<FoundPose>& pose) {
   std::string points = std::to_string(summary.points) + " points";
   if (cloud.height > 1) {
     points += " (" + std::to_string(cloud.width) + " x " + std::to_string(cloud.height) + ")";
@@ -57,6 +64,7 @@ std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& clo
     }
     lines.push_back("  frame (a guess): " + summary.frame_guess);
   }
+  if (pose && !pose->line.empty()) lines.push_back("  " + pose->line);
   if (inputs.out) lines.push_back("written to " + *inputs.out);
   return lines;
 }
@@ -65,11 +73,17 @@ Outcome inspect(const Inputs& inputs) {
   if (inputs.ascii && !inputs.out) {
     usage_error("--ascii needs --out");
   }
+  PoseInputs placed = inputs.pose;
+  if (inputs.frame && placed.pose) usage_error("--frame and --pose are the same: give one of them");
+  if (inputs.frame) placed.pose = inputs.frame;
+  check_pose(placed);
   CloudFormat format;
   if (inputs.out) format = cloud_format_of_name(*inputs.out);
   format.text = inputs.ascii;
   Cloud cloud = read_cloud(inputs.file);
-  if (inputs.frame) transform(cloud, read_frame(*inputs.frame));
+  const auto pose =
+      find_pose(placed, cloud, [](const std::string& path) { return read_known_points(path); });
+  if (pose) transform(cloud, pose->site_from_scan);
   const CloudSummary summary = summarise(cloud);
   if (inputs.out) write_cloud(*inputs.out, cloud, format);
 
@@ -83,9 +97,10 @@ Outcome inspect(const Inputs& inputs) {
                   {"min_m", to_json(summary.min)},
                   {"max_m", to_json(summary.max)},
                   {"density_per_m2", summary.density},
-                  {"frame_guess", summary.frame_guess}};
+                  {"frame_guess", summary.frame_guess},
+                  {"pose", pose ? pose->json : nlohmann::ordered_json()}};
   if (inputs.out) outcome.json["out"] = *inputs.out;
-  outcome.lines = lines_for_people(inputs, cloud, summary);
+  outcome.lines = lines_for_people(inputs, cloud, summary, pose);
   if (summary.finite_points == 0) {
     outcome.warnings.push_back({"no_finite_points", inputs.file + " has no finite points"});
   }

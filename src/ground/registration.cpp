@@ -24,6 +24,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_cells = 100;
 constexpr double tukey = 4.685;            // 95 % efficient for normal noise
+constexpr double tukey_variance = 1.594;   // E w / (E psi')^2 of it for normal noise
 constexpr double quartile_to_sd = 3.1386;  // a quarter of normal residuals is within 0.3186 sd
 constexpr double least_bend = 0.02;        // ours: a shift of rough ground bends it by no more [-]
 constexpr double significant = 11.345;     // chi-square, three degrees of freedom, 99 %
@@ -202,18 +203,22 @@ class Aligner {
             factor.solve(MotionCovariance::Identity())};
   }
 
+  /// Of what each cell adds to the estimate, its weighted residual, as for any M-estimate (Huber
+  /// 1981): the thin edges of a change weigh little, but as whole residuals they would pass for
+  /// error that is correlated over metres.
   double inflated_variance(const Motion& motion) {
-    Eigen::ArrayXXd residual = Eigen::ArrayXXd::Constant(map_.z.rows(), map_.z.cols(), nan);
+    Eigen::ArrayXXd weighted = Eigen::ArrayXXd::Constant(map_.z.rows(), map_.z.cols(), nan);
     std::size_t stable = 0;
     for (const Sample& sample : samples_) {
       if (sample.weight == 0.0) continue;
-      residual(sample.cell.row, sample.cell.col) = sample.change - sample.effect.dot(motion);
+      weighted(sample.cell.row, sample.cell.col) =
+          sample.weight * (sample.change - sample.effect.dot(motion));
       ++stable;
     }
     found_.stable_share = static_cast<double>(stable) / static_cast<double>(samples_.size());
     const double variance =
-        find_noise(residual, map_.cell_size).large_area_variance(map_.cell_size);
-    return std::max(variance, scale_ * scale_);
+        find_noise(weighted, map_.cell_size).large_area_variance(map_.cell_size);
+    return std::max(tukey_variance * variance, scale_ * scale_);
   }
 
   /// Keeps the significant part of the motion and sets the covariance of what may be left.

@@ -5,6 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
 #include <memory>
 #include <string>
 
@@ -12,6 +16,7 @@
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/soil/soil.hpp>
 
+#include "base/random.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 #include "support/survey_scenes.hpp"
@@ -201,6 +206,45 @@ TEST(EstimateDensity, APathThatWasNotDugHereIsRefused) {
               estimate_density(whole_scene(), paper_law(), options);
             }).rfind("path that was dug: ", 0),
             0U);
+}
+
+/// The scans of a wheel loader's bite, of which no truth is known, each in two random halves.
+DigScans half_of_the_bite(std::uint64_t split, bool second) {
+  const std::string folder = std::string(EXCAVPLAN_SHARED_DATA) + "/dig-pair-livox/";
+  Random random(split, 0);
+  const auto half = [&](const std::string& name) {
+    std::vector<Eigen::Vector3d> points;
+    for (const Eigen::Vector3d& point : read_cloud(folder + name + ".pcd").points) {
+      if ((random.uniform() < 0.5) == second) points.push_back(point);
+    }
+    Scan scan;
+    scan.clouds = {cloud_of(std::move(points))};
+    scan.site_from_scan = read_frame(folder + name + "_frame.txt");
+    scan.area = Rectangle{0.3, 0.3, 9.0, 10.0};
+    return scan;
+  };
+  Scan before = half("before");
+  return {std::move(before), half("after")};
+}
+
+TEST(EstimateDensity, HalvesOfARealPairAgreeWithinTheirIntervals) {
+  if (!std::filesystem::exists(EXCAVPLAN_SHARED_DATA "/dig-pair-livox")) {
+    GTEST_SKIP() << "no real scans in " << EXCAVPLAN_SHARED_DATA;
+  }
+  int holes = 0;
+  int spills = 0;
+  const auto agree = [](const Measured& a, const Measured& b) {
+    return std::abs(a.value - b.value) < 1.96 * std::hypot(a.sd, b.sd);
+  };
+  for (std::uint64_t split = 1; split <= 10; ++split) {
+    const VolumeChange one = estimate_density(half_of_the_bite(split, false), paper_law()).change;
+    const VolumeChange two = estimate_density(half_of_the_bite(split, true), paper_law()).change;
+    holes += agree(one.excavated, two.excavated);
+    spills += agree(one.spilled, two.spilled);
+  }
+  std::cout << "  hole agrees in " << holes << ", spill in " << spills << " of 10 splits\n";
+  EXPECT_GE(holes, 9);
+  EXPECT_GE(spills, 9);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ LoggedDig RunInputs::dig(const ScanFrames& frames) const {
   } else if (mass) {
     result.lifted = Payload{Lifted::mass, {*mass, mass_sd.value_or(std::nan(""))}};
   } else {
-    result.lifted = scan_pair(*dump_before, *dump_after, frames);
+    result.lifted = placed_pair(*dump_before, *dump_after, frames).scans;
   }
   return result;
 }

@@ -15,23 +15,43 @@ const std::map<std::string, double>& units() {
   return lengths;
 }
 
-Scan scan_of(const std::string& file, const std::optional<std::string>& frame,
-             const std::string& unit, const ScanFrames& frames) {
+Scan scan_of(const std::string& file, const std::string& unit, const ScanFrames& frames) {
   Scan scan;
   scan.files = {file};
-  if (frame) scan.site_from_scan = read_frame(*frame);
   scan.area = frames.area;
   scan.unit = units().at(unit.empty() ? frames.unit : unit);
   scan.sensor_origin = frames.sensor_origin;
   return scan;
 }
 
+/// Brings a scan into the site frame if an option says how; `which` is "before" or "after".
+void place(const std::string& which, const std::optional<std::string>& own,
+           const std::optional<Eigen::Matrix4d>& pose, const ScanFrames& frames, Scan& scan) {
+  const std::string frame = "--" + which + "-frame";
+  if (own && pose) usage_error("give either " + frame + " or --" + which + "-pose");
+  if ((own || pose) && (frames.both || frames.level)) {
+    usage_error(std::string(frames.both ? "--frame" : "--level") + " excludes " +
+                (own ? frame : "--" + which + "-pose"));
+  }
+  scan.z_is_up = own || pose || frames.both;
+  if (pose) scan.site_from_scan = *pose;
+  if (own) scan.site_from_scan = frame_named(frame, *own);
+  if (frames.both) scan.site_from_scan = frame_named("--frame", *frames.both);
+}
+
 }  // namespace
 
 void declare_frames(Arguments& arguments, ScanFrames& frames) {
-  arguments.file("before-frame", frames.before,
-                 "4 x 4 matrix that transforms the clouds before into the site frame");
-  arguments.file("after-frame", frames.after, "the same for the clouds after");
+  arguments.text("frame", "FRAME", frames.both,
+                 std::string("transforms all clouds into the site frame: ") + frame_forms);
+  arguments.text("before-frame", "FRAME", frames.before, "the same for the clouds before");
+  arguments.text("after-frame", "FRAME", frames.after, "the same for the clouds after");
+  arguments.option("before-pose", frames.before_pose,
+                   "pose of the sensor before in the site frame: translation and quaternion [m,-]");
+  arguments.option("after-pose", frames.after_pose, "the same after [m,-]");
+  arguments.flag("level", frames.level,
+                 "level both clouds by the ground plane in the one before: origin on the ground "
+                 "below the sensor, z up, x forward");
   arguments.option("sensor-origin", frames.sensor_origin,
                    "where the sensor stood, in the frame of the scans (default: VIEWPOINT of PCD)");
 }
@@ -45,9 +65,20 @@ void declare_units(Arguments& arguments, ScanFrames& frames) {
   arguments.choice("after-unit", frames.after_unit, words, "of those after (default: as --unit)");
 }
 
-ScanPair scan_pair(const std::string& before, const std::string& after, const ScanFrames& frames) {
-  return {scan_of(before, frames.before, frames.before_unit, frames),
-          scan_of(after, frames.after, frames.after_unit, frames)};
+PlacedPair placed_pair(const std::string& before, const std::string& after,
+                       const ScanFrames& frames) {
+  if (frames.both && frames.level) usage_error("--level excludes --frame");
+  PlacedPair pair = {
+      {scan_of(before, frames.before_unit, frames), scan_of(after, frames.after_unit, frames)}, {}};
+  place("before", frames.before, frames.before_pose, frames, pair.scans.before);
+  place("after", frames.after, frames.after_pose, frames, pair.scans.after);
+  if (frames.level) {
+    Scan whole = pair.scans.before;
+    whole.area.reset();  // is in the levelled frame
+    pair.level = found_pose(level_on_ground(whole));
+    pair.scans.before.site_from_scan = pair.scans.after.site_from_scan = pair.level->site_from_scan;
+  }
+  return pair;
 }
 
 }  // namespace excavplan::tools

@@ -8,13 +8,18 @@
 #include <excavplan/survey/scan_surface.hpp>
 
 #include "shared/arguments.hpp"
+#include "shared/found_pose.hpp"
 
 namespace excavplan::tools {
 
 /// What brings scans into the site frame and what part of them counts.
 struct ScanFrames {
-  std::optional<std::string> before;  ///< file with the matrix of the scans before
+  std::optional<std::string> both;    ///< frame of all scans, as frame_named() takes it
+  std::optional<std::string> before;  ///< of those before
   std::optional<std::string> after;
+  std::optional<Eigen::Matrix4d> before_pose = {};
+  std::optional<Eigen::Matrix4d> after_pose = {};
+  bool level = false;             ///< by the ground in the scan before
   std::optional<Rectangle> area;  ///< points outside are left out
   std::string unit = "m";         ///< of the coordinates in all clouds
   std::string before_unit;        ///< of those before, if another
@@ -22,13 +27,21 @@ struct ScanFrames {
   std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their frame and unit
 };
 
-/// --before-frame and --after-frame.
+/// --frame, --before-frame, --after-frame, --before-pose, --after-pose, --level, --sensor-origin.
 void declare_frames(Arguments& arguments, ScanFrames& frames);
 /// --unit, --before-unit and --after-unit.
 void declare_units(Arguments& arguments, ScanFrames& frames);
 
-/// @throws Error (bad_file) if a matrix cannot be read
-ScanPair scan_pair(const std::string& before, const std::string& after, const ScanFrames& frames);
+/// A pair with the pose by which both were levelled, if they were.
+struct PlacedPair {
+  ScanPair scans;
+  std::optional<FoundPose> level;
+};
+
+/// @throws Error (bad_file) if a file cannot be read; (bad_input) if options exclude each other, or
+/// as level_on_ground()
+PlacedPair placed_pair(const std::string& before, const std::string& after,
+                       const ScanFrames& frames);
 
 /// Runs `work`, and adds to an error about the frame of a scan the options that correct it.
 template <typename Work>

@@ -30,6 +30,7 @@ struct Scan {
   /// Where the sensor stood, in the frame and unit of the files; unset: where files and clouds say
   /// themselves, if they all do, at up to four places.
   std::optional<Eigen::Vector3d> sensor_origin = {};
+  bool z_is_up = false;  ///< is known, so that no frame of a camera is suspected
 };
 
 /// The error (bad_file) of scans outside the expected area, mostly because `site_from_scan` does
