@@ -121,6 +121,7 @@ TEST(DamagedRecordings, OfMcapSayWhatIsWrong) {
           put(b, second + 25, get(b, first + 25, 8), 8);
         },
         "by"},
+       {"channel twice", in_mcap(8, 0, 55, 0, 2), "two message indexes of channel 0"},
        {"message index elsewhere", in_mcap(8, 0, 47, 8, 8),
         "found a message index at byte 8, expected one in the"},
        {"no message index", in_mcap(7, 0, 0, 5, 1), "expected message index (opcode 7)"},
