@@ -279,7 +279,7 @@ Bytes BagRecording::load(const RecordedChunk& chunk) const {
 }
 
 std::string_view BagRecording::message_at(const MessagePlace& place) {
-  std::string_view bytes = chunk_bytes(place.chunk);
+  std::string_view bytes = chunk_of(place);
   bytes.remove_prefix(std::min<std::uint64_t>(place.offset, bytes.size()));
   ByteReader record({file_, place.offset, chunks_[place.chunk].offset}, bytes);
   const Fields fields(record.part("header of a message"));

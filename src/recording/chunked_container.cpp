@@ -10,8 +10,9 @@
 namespace excavplan {
 namespace {
 
-constexpr std::uint64_t kept_bytes = std::uint64_t{1}
-                                     << 26;  // of chunks that overlap in time; ours
+// Of chunks that overlap in time [byte]; ours.
+constexpr std::uint64_t kept_bytes = std::uint64_t{1} << 28;
+constexpr int most_loads = 16;  // of one chunk, by one cursor; ours
 
 bool is_later(const MessagePlace& a, const MessagePlace& b) {
   return std::tie(a.time, a.chunk, a.offset) > std::tie(b.time, b.chunk, b.offset);
@@ -73,6 +74,7 @@ class ChunkedCursor : public MessageCursor {
 
 std::unique_ptr<MessageCursor> ChunkedContainer::messages(const std::vector<std::size_t>& topics,
                                                           std::int64_t from, std::int64_t to) {
+  loads_.clear();
   std::vector<bool> is_asked_for(topics_.size());
   for (const std::size_t topic : topics) is_asked_for[topic] = true;
   std::vector<bool> wanted;
@@ -118,20 +120,27 @@ void ChunkedContainer::add_channel(RecordedChannel channel, const ByteReader& re
   }
 }
 
-std::string_view ChunkedContainer::chunk_bytes(std::uint32_t chunk) {
+std::string_view ChunkedContainer::chunk_of(const MessagePlace& place) {
   const auto found = std::find_if(kept_.begin(), kept_.end(),
-                                  [&](const auto& kept) { return kept.first == chunk; });
+                                  [&](const auto& kept) { return kept.first == place.chunk; });
   if (found != kept_.end()) {
     kept_.splice(kept_.begin(), kept_, found);
     return kept_.front().second.view();
   }
+  if (++loads_[place.chunk] > most_loads) {
+    file_.fail(chunks_[place.chunk].offset,
+               "a chunk that overlaps in time with more than can be kept in memory",
+               "chunks that follow each other");
+  }
+  // Messages come in the order of their times.
+  kept_.remove_if([&](const auto& kept) { return chunks_[kept.first].end < place.time; });
   std::uint64_t held = 0;
   for (const auto& kept : kept_) held += kept.second.size();
   while (!kept_.empty() && held > kept_bytes) {
     held -= kept_.back().second.size();
     kept_.pop_back();
   }
-  kept_.emplace_front(chunk, load(chunks_[chunk]));
+  kept_.emplace_front(place.chunk, load(chunks_[place.chunk]));
   return kept_.front().second.view();
 }
 

@@ -71,8 +71,8 @@ class ChunkedContainer : public Container {
   /// The channel with this id. @return channels_.size() if there is none
   std::uint32_t channel_of(std::uint32_t id) const;
   void add_channel(RecordedChannel channel, const ByteReader& reader);
-  /// The chunk uncompressed, kept for the next messages; good until the next call.
-  std::string_view chunk_bytes(std::uint32_t chunk);
+  /// The chunk of a message uncompressed, kept for the next messages; good until the next call.
+  std::string_view chunk_of(const MessagePlace& place);
   /// Makes the topics from channels_ and chunks_, and puts the chunks in the order of their starts.
   void finish();
 
@@ -90,6 +90,7 @@ class ChunkedContainer : public Container {
 
   std::map<std::uint32_t, std::uint32_t> channel_of_id_;
   std::list<std::pair<std::uint32_t, Bytes>> kept_;  // the last one used first
+  std::map<std::uint32_t, int> loads_;               // of a chunk, by the last cursor
 };
 
 }  // namespace excavplan

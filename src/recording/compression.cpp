@@ -29,7 +29,7 @@ namespace {
           "none: this build is without " + name + "; build it anew with Debian's " + package);
 }
 
-void require_size(const CompressedPart& part, std::uint64_t delivered) {
+[[maybe_unused]] void require_size(const CompressedPart& part, std::uint64_t delivered) {
   if (delivered == part.size) return;
   fail(part, "compressed data that hold " + std::to_string(delivered) + " bytes",
        "the " + std::to_string(part.size) + " that it says to hold");

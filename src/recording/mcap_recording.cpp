@@ -81,6 +81,7 @@ class McapRecording : public ChunkedContainer {
   void read_schema(ByteReader record);
   void read_channel(ByteReader record);
   void read_chunk_index(ByteReader record);
+  void require_once_each(RecordedChunk& chunk, const ByteReader& record) const;
   void read_statistics(ByteReader record);
 
   void scan(std::uint64_t data_start);
@@ -272,9 +273,21 @@ void McapRecording::read_chunk_index(ByteReader record) {
     lacks_index_ = lacks_index_ || times.u64("start of a chunk") != 0;
     return;
   }
+  require_once_each(chunk, record);
   chunk.start = times.nanoseconds("start of a chunk");
   chunk.end = times.nanoseconds("end of a chunk");
   chunks_.push_back(std::move(chunk));
+}
+
+/// No message index is read twice.
+void McapRecording::require_once_each(RecordedChunk& chunk, const ByteReader& record) const {
+  std::sort(chunk.channels.begin(), chunk.channels.end());
+  for (std::size_t i = 1; i < chunk.channels.size(); ++i) {
+    if (chunk.channels[i].first != chunk.channels[i - 1].first) continue;
+    record.fail("two message indexes of channel " +
+                    std::to_string(channels_[chunk.channels[i].first].id) + " in a chunk",
+                "one");
+  }
 }
 
 void McapRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
@@ -357,7 +370,7 @@ std::string_view McapRecording::message_at(const MessagePlace& place) {
     bytes = message_.view();
     origin.chunk = Origin::in_file;
   } else {
-    bytes = chunk_bytes(place.chunk);
+    bytes = chunk_of(place);
     bytes.remove_prefix(std::min<std::uint64_t>(place.offset, bytes.size()));
   }
   ByteReader reader(origin, bytes);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view older_bag_magic = "#ROSRECORD V";
 constexpr std::size_t longest_name = 1000;  // of a topic or type; ours [byte]
-constexpr std::size_t most_files = 10000;   // of a folder; ours
+constexpr std::size_t most_files = 500;     // of a folder; ours
 
 bool starts_with(std::string_view text, std::string_view start) {
   return text.substr(0, start.size()) == start;

@@ -22,7 +22,7 @@ namespace excavplan {
 namespace {
 
 constexpr int longest_name = 4096;            // of a topic or type, and of other texts; ours [byte]
-constexpr std::size_t most_topics = 1 << 16;  // ours
+constexpr std::size_t most_topics = 1 << 14;  // ours
 constexpr int steps_between_checks = 1000;    // of SQLite's virtual machine
 
 using Connection = std::unique_ptr<sqlite3, decltype(&sqlite3_close_v2)>;
@@ -273,10 +273,11 @@ void SqliteRecording::require_readable(std::size_t topic) const {
 
 std::unique_ptr<MessageCursor> SqliteRecording::messages(const std::vector<std::size_t>& topics,
                                                          std::int64_t from, std::int64_t to) {
+  std::vector<bool> is_asked_for(topics_.size());
+  for (const std::size_t topic : topics) is_asked_for[topic] = true;
   std::string ids;
   for (const auto& [id, topic] : topic_of_id_) {
-    const bool is_asked_for = std::find(topics.begin(), topics.end(), topic) != topics.end();
-    if (is_asked_for) ids += (ids.empty() ? "" : ",") + std::to_string(id);
+    if (is_asked_for[topic]) ids += (ids.empty() ? "" : ",") + std::to_string(id);
   }
   // Blobs are read by themselves, so that no sorting ever holds them.
   Statement statement = prepare(

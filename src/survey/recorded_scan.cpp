@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,216 +14,19 @@
 #include <excavplan/survey/depth_image.hpp>
 
 #include "base/check.hpp"
-#include "recording/ros_messages.hpp"
 #include "recording/transform_tree.hpp"
 #include "survey/frame_average.hpp"
+#include "survey/recorded_messages.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::int64_t earliest = std::numeric_limits<std::int64_t>::min();
-constexpr std::int64_t latest = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t second = 1000000000;  // [ns]
 // Ours.
-constexpr double longest_time = 1e9;                      // [s]
-constexpr std::int64_t transforms_about = second;         // before and after the messages, or
-constexpr std::int64_t transforms_farther = 10 * second;  // where that does not do
-constexpr std::int64_t largest_clock_step = second;       // of stamps against times of recording
-constexpr std::int64_t joints_about = second / 2;         // before and after the time asked for
-constexpr std::size_t most_points = 150000000;            // of all messages together
-
-// ---- Times ------------------------------------------------------------------------------------
-
-/// Times of a hostile file may be any, so that sums stop at the ends of the range.
-std::int64_t later(std::int64_t time, std::int64_t by) {
-  std::int64_t sum = 0;
-  return __builtin_add_overflow(time, by, &sum) ? (by > 0 ? latest : earliest) : sum;
-}
-
-std::int64_t difference(std::int64_t from, std::int64_t to) {
-  std::int64_t result = 0;
-  return __builtin_sub_overflow(to, from, &result) ? (to > from ? latest : earliest) : result;
-}
-
-double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
-
-std::int64_t nanoseconds(double seconds, const char* what) {
-  require(seconds >= 0.0 && seconds <= longest_time, what, seconds, "0 to 1e9 s");
-  return std::llround(seconds * 1e9);
-}
-
-std::string time_text(const RecordingFile& recording, std::int64_t time) {
-  return decimals(seconds(difference(recording.start(), time)), 3) + " s";
-}
-
-// ---- Topics -----------------------------------------------------------------------------------
-
-[[noreturn]] void refuse(const RecordingFile& recording, const std::string& why) {
-  throw Error(ErrorKind::bad_file, recording.path() + ": " + why);
-}
-
-bool holds_scans(const RecordedTopic& topic) {
-  const MessageUse use = use_of(topic.type);
-  return use == MessageUse::points || use == MessageUse::depth;
-}
-
-std::vector<std::string> topics_for(const RecordingFile& recording, MessageUse use) {
-  std::vector<std::string> names;
-  for (const RecordedTopic& topic : recording.topics()) {
-    if (use_of(topic.type) == use) names.push_back(topic.name);
-  }
-  return names;
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 20;
-  if (names.empty()) return "none";
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
-    text += (i == 0 ? "" : ", ") + quoted(names[i]);
-  }
-  return text + (names.size() > most ? ", ..." : "");
-}
-
-std::string scan_topics_text(const RecordingFile& recording) {
-  std::vector<std::string> names = topics_for(recording, MessageUse::points);
-  for (std::string& name : topics_for(recording, MessageUse::depth)) names.push_back(name);
-  return "topics that hold clouds or images: " + list_of(names);
-}
-
-const RecordedTopic* find_topic(const RecordingFile& recording, const std::string& name) {
-  const auto& topics = recording.topics();
-  const auto found = std::find_if(topics.begin(), topics.end(),
-                                  [&](const RecordedTopic& topic) { return topic.name == name; });
-  return found == topics.end() ? nullptr : &*found;
-}
-
-const RecordedTopic& only_scan_topic(const RecordingFile& recording) {
-  const auto& topics = recording.topics();
-  const auto found = std::find_if(topics.begin(), topics.end(), holds_scans);
-  if (found == topics.end() || std::any_of(found + 1, topics.end(), holds_scans)) {
-    refuse(recording,
-           "no topic is named, expected one of several or none: " + scan_topics_text(recording));
-  }
-  return *found;
-}
-
-const RecordedTopic& scan_topic(const RecordingFile& recording, const std::string& name) {
-  if (name.empty()) return only_scan_topic(recording);
-  const RecordedTopic* const topic = find_topic(recording, name);
-  if (topic == nullptr) {
-    std::vector<std::string> names;
-    for (const RecordedTopic& known : recording.topics()) names.push_back(known.name);
-    const auto meant = nearest_word(name, names);
-    refuse(recording, "found no topic " + quoted(name) +
-                          (meant ? ", did you mean " + quoted(*meant) + "? " : "; ") +
-                          scan_topics_text(recording));
-  }
-  if (use_of(topic->type) == MessageUse::compressed) {
-    refuse(recording, quoted(name) +
-                          ": found compressed images, expected raw ones: record the raw topic, or "
-                          "play the recording through image_transport's republish");
-  }
-  if (!holds_scans(*topic)) {
-    refuse(recording, quoted(name) + ": found messages of type " + quoted(topic->type) + "; " +
-                          scan_topics_text(recording));
-  }
-  return *topic;
-}
-
-// ---- Messages at a time -----------------------------------------------------------------------
-
-/// The last message of a topic before a time, looked for in steps that grow, so that little of a
-/// long recording is read.
-std::optional<std::int64_t> last_before(RecordingFile& recording, const RecordedTopic& topic,
-                                        std::int64_t time) {
-  if (topic.first >= time) return std::nullopt;
-  std::optional<std::int64_t> last;
-  std::int64_t step = second;
-  for (std::int64_t to = later(time, -1); !last && to >= topic.first;
-       step = step < latest / 4 ? 4 * step : latest) {
-    const std::int64_t from = std::max(topic.first, later(to, -step));
-    recording.visit({topic.name}, from, to, [&](const RecordedMessage& message) {
-      last = message.time;
-      return true;
-    });
-    if (from == topic.first) break;
-    to = later(from, -1);
-  }
-  return last;
-}
-
-[[noreturn]] void refuse_gap(RecordingFile& recording, const RecordedTopic& topic,
-                             std::int64_t from, std::int64_t to) {
-  std::string near;
-  const auto before = last_before(recording, topic, from);
-  if (before) near = "the last one before is at " + time_text(recording, *before);
-  if (to < latest) {
-    recording.visit({topic.name}, to, latest, [&](const RecordedMessage& message) {
-      near += (near.empty() ? "" : ", ");
-      near += "the next one after at " + time_text(recording, message.time);
-      return false;
-    });
-  }
-  refuse(recording, "found no message of " + topic.name + " at " + time_text(recording, from) +
-                        (to < latest ? " to " + time_text(recording, to) : " or later") + ": " +
-                        (near.empty() ? "the recording holds none" : near));
-}
-
-/// What is known of a message before its points are read.
-struct MessageHead {
-  std::int64_t time = 0;
-  MessageHeader header;
-  FrameSize size;
-};
-
-/// Times at which messages were recorded, both included.
-struct TimeRange {
-  std::int64_t from = earliest;
-  std::int64_t to = latest;
-};
-
-/// Of the first message at or after the time of the query, or of all in its span.
-std::vector<MessageHead> read_heads(RecordingFile& recording, const RecordedTopic& topic,
-                                    const RecordingQuery& query) {
-  const std::int64_t span = nanoseconds(query.span, "span");
-  TimeRange range;
-  range.from =
-      query.time ? later(recording.start(), nanoseconds(*query.time, "time")) : topic.first;
-  if (span > 0) range.to = later(range.from, span);
-  std::vector<MessageHead> heads;
-  std::size_t points = 0;
-  recording.visit({topic.name}, range.from, range.to, [&](const RecordedMessage& message) {
-    heads.push_back({message.time, decode_header(recording.path(), message),
-                     decode_size(recording.path(), message)});
-    points += std::min(heads.back().size.pixels(), most_points);
-    if (span > 0 && points > most_points) {
-      excavplan::refuse(recording.path() + ": the span of " + number_text(query.span) +
-                        " s holds more than 150 million points of " + topic.name +
-                        ", must be shorter");
-    }
-    return span > 0;
-  });
-  if (heads.empty()) refuse_gap(recording, topic, range.from, range.to);
-  return heads;
-}
-
-/// @throws Error (bad_file) if the sensor's clock, or that of the recording, jumped
-void require_steady_clock(const RecordingFile& recording, const std::vector<MessageHead>& heads) {
-  for (std::size_t i = 1; i < heads.size(); ++i) {
-    const std::int64_t recorded = difference(heads[i - 1].time, heads[i].time);
-    const std::int64_t stamped = difference(heads[i - 1].header.stamp, heads[i].header.stamp);
-    const std::int64_t step = difference(recorded, stamped);
-    if (stamped == 0) continue;  // never set, or the same points once more
-    if (step >= -largest_clock_step && step <= largest_clock_step) continue;
-    refuse(recording, "a clock jumped: the message at " + time_text(recording, heads[i].time) +
-                          " was recorded " + decimals(seconds(recorded), 3) +
-                          " s after the one before, but stamped " + decimals(seconds(stamped), 3) +
-                          " s after it, expected the same within 1 s; choose a time or span "
-                          "without the jump");
-  }
-}
+constexpr std::int64_t transforms_about = one_second;         // before and after the messages, or
+constexpr std::int64_t transforms_farther = 10 * one_second;  // where that does not do
+constexpr std::int64_t longest_delay = one_second;            // of a recording behind a stamp
+constexpr std::int64_t joints_about = one_second / 2;         // before and after the time asked for
 
 // ---- Transforms -------------------------------------------------------------------------------
 
@@ -277,7 +82,8 @@ CameraMessage read_camera(RecordingFile& recording, const std::string& topic, st
       return false;
     });
   }
-  if (!camera) refuse(recording, "found no message of " + topic + ", expected the intrinsics");
+  if (!camera)
+    refuse_recording(recording, "found no message of " + topic + ", expected the intrinsics");
   return *camera;
 }
 
@@ -286,17 +92,19 @@ Pinhole read_pinhole(RecordingFile& recording, const RecordedTopic& image, std::
   const std::string folder = image.name.substr(0, image.name.rfind('/') + 1);
   const std::string topic = folder + "camera_info";
   if (find_topic(recording, topic) == nullptr) {
-    refuse(recording, "found no topic " + quoted(topic) + ", expected the intrinsics of " +
-                          quoted(image.name) + " there; camera infos: " +
-                          list_of(topics_for(recording, MessageUse::camera)));
+    refuse_recording(
+        recording,
+        "found no topic " + quoted(topic) + ", expected the intrinsics of " + quoted(image.name) +
+            " there; camera infos: " + name_list(topics_for(recording, MessageUse::camera)));
   }
   const CameraMessage camera = read_camera(recording, topic, time);
   const bool is_distorted = std::any_of(camera.distortion.begin(), camera.distortion.end(),
                                         [](double value) { return value != 0.0; });
   const bool rectified = is_rectified(image.name);
   if (is_distorted && !rectified) {
-    refuse(recording, quoted(image.name) + ": found a raw image of a lens with distortion, " +
-                          "expected a rectified one: " + rectified_beside(recording, folder));
+    refuse_recording(recording,
+                     quoted(image.name) + ": found a raw image of a lens with distortion, " +
+                         "expected a rectified one: " + rectified_beside(recording, folder));
   }
   const auto& k = camera.intrinsics;
   const auto& p = camera.rectified_projection;
@@ -304,9 +112,10 @@ Pinhole read_pinhole(RecordingFile& recording, const RecordedTopic& image, std::
                                                    : Pinhole{camera.size, k[0], k[4], k[2], k[5]};
   if (!(pinhole.fx > 0.0 && pinhole.fy > 0.0 && std::isfinite(pinhole.fx + pinhole.fy) &&
         std::isfinite(pinhole.cx + pinhole.cy))) {
-    refuse(recording, quoted(topic) + ": found focal lengths " + number_text(pinhole.fx) + ", " +
-                          number_text(pinhole.fy) + " and centre " + number_text(pinhole.cx) +
-                          ", " + number_text(pinhole.cy) + ", expected those of a camera");
+    refuse_recording(recording, quoted(topic) + ": found focal lengths " + number_text(pinhole.fx) +
+                                    ", " + number_text(pinhole.fy) + " and centre " +
+                                    number_text(pinhole.cx) + ", " + number_text(pinhole.cy) +
+                                    ", expected those of a camera");
   }
   return pinhole;
 }
@@ -353,8 +162,8 @@ class ScanReader {
     scan.recorded_frame = first().header.frame;
     scan.frame = target_.empty() ? scan.recorded_frame : target_;
     scan.messages = heads_.size();
-    scan.first = seconds(difference(recording_.start(), first().time));
-    scan.last = seconds(difference(recording_.start(), heads_.back().time));
+    scan.first = seconds_of(time_between(recording_.start(), first().time));
+    scan.last = seconds_of(time_between(recording_.start(), heads_.back().time));
     const bool stood = stood_still();
     const bool averages = heads_.size() > 1 && stood && same_organised_frames();
     if (heads_.size() == 1) {
@@ -395,24 +204,26 @@ class ScanReader {
            std::all_of(heads_.begin(), heads_.end(),
                        [&](const MessageHead& head) { return head.size == first().size; });
   }
-  /// @throws Error (bad_input) if it did not, and no frame is named
-  bool stood_still() const {
-    if (heads_.size() == 1) return true;
+  /// By the stamps and, as a sensor's clock may not be set, by the times of recording.
+  bool moved() const {
     const auto [from, to] = std::minmax_element(
         heads_.begin(), heads_.end(),
         [](const auto& a, const auto& b) { return a.header.stamp < b.header.stamp; });
     const std::string& frame = first().header.frame;
+    return tree_.moved(target_, frame, from->header.stamp, to->header.stamp) ||
+           tree_.moved(target_, frame, first().time, heads_.back().time);
+  }
+  /// @throws Error (bad_input) if it did not, and no frame is named
+  bool stood_still() const {
+    if (heads_.size() == 1) return true;
     const bool one_frame = same_frame_ids();
-    if (one_frame && !tree_.moved(target_, frame, from->header.stamp, to->header.stamp))
-      return true;
+    if (one_frame && !moved()) return true;
     if (!target_.empty()) return false;
-    excavplan::refuse(recording_.path() + ": between " + time_text(recording_, first().time) +
-                      " and " + time_text(recording_, heads_.back().time) + " frame " +
-                      quoted(frame) + " of " + topic_.name +
-                      (one_frame ? " moved" : " became another") +
-                      ": name the frame into which the points are put, or a span in which it "
-                      "stood; frames: " +
-                      list_of(tree_.frames()));
+    refuse(recording_.path() + ": between " + time_text(recording_, first().time) + " and " +
+           time_text(recording_, heads_.back().time) + " frame " + quoted(first().header.frame) +
+           " of " + topic_.name + (one_frame ? " moved" : " became another") +
+           ": name the frame into which the points are put, or a span in which it stood; frames: " +
+           name_list(tree_.frames()));
   }
   bool is_sensor_frame() const {
     const bool by_type = use_of(topic_.type) == MessageUse::depth ||
@@ -425,11 +236,11 @@ class ScanReader {
     try {
       return tree_.lookup(target_, head.header.frame, head.header.stamp);
     } catch (const Error& error) {
-      const std::int64_t off = difference(head.time, head.header.stamp);
-      if (off >= -largest_clock_step && off <= largest_clock_step) throw;
+      const std::int64_t off = time_between(head.time, head.header.stamp);
+      if (off >= -longest_delay && off <= longest_delay) throw;
       throw Error(error.kind(), std::string(error.what()) + "; the message recorded at " +
                                     time_text(recording_, head.time) + " is stamped " +
-                                    decimals(seconds(off), 3) +
+                                    decimals(seconds_of(off), 3) +
                                     " s later: the clocks of sensor and transforms differ");
     }
   }
@@ -441,8 +252,9 @@ class ScanReader {
       const auto text = [](const FrameSize& size) {
         return std::to_string(size.width) + " x " + std::to_string(size.height);
       };
-      refuse(recording_, message.place + ": found " + text(image.size) + " pixels, expected " +
-                             text(pinhole_->size) + " as in the camera info");
+      refuse_recording(recording_, message.place + ": found " + text(image.size) +
+                                       " pixels, expected " + text(pinhole_->size) +
+                                       " as in the camera info");
     }
     return points_of_depths(image, *pinhole_);
   }
@@ -523,13 +335,13 @@ std::string first_frame(RecordingFile& recording, const RecordedTopic& topic) {
 
 RecordingContents describe_recording(RecordingFile& recording) {
   RecordingContents contents;
-  contents.start = seconds(recording.start());
+  contents.start = seconds_of(recording.start());
   for (const RecordedTopic& topic : recording.topics()) {
     RecordingTopic entry = {topic.name, topic.type, topic.messages, unknown, unknown, {}, false};
     entry.is_scan = holds_scans(topic);
     if (topic.messages > 0) {
-      entry.first = seconds(difference(recording.start(), topic.first));
-      entry.last = seconds(difference(recording.start(), topic.last));
+      entry.first = seconds_of(time_between(recording.start(), topic.first));
+      entry.last = seconds_of(time_between(recording.start(), topic.last));
       entry.frame = first_frame(recording, topic);
       contents.duration = std::max(contents.duration, entry.last);
     }
@@ -546,8 +358,8 @@ RecordedScan read_recorded_scan(RecordingFile& recording, const RecordingQuery& 
 
 std::map<std::string, double> joint_positions(RecordingFile& recording, double time) {
   const std::vector<std::string> topics = topics_for(recording, MessageUse::joints);
-  if (topics.empty()) refuse(recording, "found no topic of sensor_msgs/JointState");
-  const std::int64_t at = later(recording.start(), nanoseconds(time, "time"));
+  if (topics.empty()) refuse_recording(recording, "found no topic of sensor_msgs/JointState");
+  const std::int64_t at = later(recording.start(), nanoseconds_of(time, "time"));
   struct Nearest {
     std::int64_t away = latest;
     double position = 0.0;
@@ -555,7 +367,7 @@ std::map<std::string, double> joint_positions(RecordingFile& recording, double t
   std::map<std::string, Nearest> joints;
   recording.visit(topics, later(at, -joints_about), later(at, joints_about),
                   [&](const RecordedMessage& message) {
-                    const std::int64_t away = std::abs(difference(at, message.time));
+                    const std::int64_t away = std::abs(time_between(at, message.time));
                     for (const auto& [name, position] : decode_joints(recording.path(), message)) {
                       Nearest& nearest = joints[name];
                       if (away < nearest.away) nearest = {away, position};
@@ -563,8 +375,8 @@ std::map<std::string, double> joint_positions(RecordingFile& recording, double t
                     return true;
                   });
   if (joints.empty()) {
-    refuse(recording, "found no joint positions within 0.5 s of " + time_text(recording, at) +
-                          " on " + list_of(topics));
+    refuse_recording(recording, "found no joint positions within 0.5 s of " +
+                                    time_text(recording, at) + " on " + name_list(topics));
   }
   std::map<std::string, double> positions;
   for (const auto& [name, nearest] : joints) positions[name] = nearest.position;

@@ -121,6 +121,7 @@ TEST(DamagedRecordings, OfMcapSayWhatIsWrong) {
           put(b, second + 25, get(b, first + 25, 8), 8);
         },
         "by"},
+       {"channel twice", in_mcap(8, 0, 55, 0, 2), "two message indexes of channel 0"},
        {"message index elsewhere", in_mcap(8, 0, 47, 8, 8),
         "found a message index at byte 8, expected one in the"},
        {"no message index", in_mcap(7, 0, 0, 5, 1), "expected message index (opcode 7)"},
@@ -327,7 +328,7 @@ string mcap_of_chunk(const string& compression, const string& data, std::uint64_
 }
 
 /// A frame of so many blocks of 128 KiB, each of 4 bytes (RFC 8878, 3.1.1).
-string zstd_bomb(std::uint64_t blocks) {
+[[maybe_unused]] string zstd_bomb(std::uint64_t blocks) {
   constexpr std::uint64_t block_size = 1 << 17;
   string frame = "\x28\xB5\x2F\xFD\xE0" + field(blocks * block_size, 8);  // one segment, its size
   for (std::uint64_t k = 1; k <= blocks; ++k) {

@@ -21,6 +21,26 @@ namespace excavplan::test {
 /// A recording of tests/recording/data.
 inline std::string recording(const std::string& name) { return EXCAVPLAN_RECORDINGS "/" + name; }
 
+/// What this build is without, "" if it has all that a file of the data needs.
+inline std::string missing_for([[maybe_unused]] const std::string& name) {
+  [[maybe_unused]] const auto needs = [&](const char* part) {
+    return name.find(part) != std::string::npos;
+  };
+#ifndef EXCAVPLAN_WITH_SQLITE3
+  if (needs("db3") || needs("split")) return "libsqlite3-dev";
+#endif
+#ifndef EXCAVPLAN_WITH_LZ4
+  if (needs("lz4")) return "liblz4-dev";
+#endif
+#ifndef EXCAVPLAN_WITH_ZSTD
+  if (needs("zstd") || needs("ros1") || needs("no_summary")) return "libzstd-dev";
+#endif
+#ifndef EXCAVPLAN_WITH_BZ2
+  if (needs("bz2")) return "libbz2-dev";
+#endif
+  return "";
+}
+
 inline std::string content_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "support/errors.hpp"
+#include "support/recording_files.hpp"
 #include "support/recording_in_memory.hpp"
 
 namespace excavplan::test {
@@ -24,7 +25,6 @@ const std::string image_type = "sensor_msgs/msg/Image";
 const std::string camera_type = "sensor_msgs/msg/CameraInfo";
 const std::string tf_type = "tf2_msgs/msg/TFMessage";
 const std::string joint_type = "sensor_msgs/msg/JointState";
-const std::string fixtures = std::string(EXCAVPLAN_DATA_SOURCE) + "/../tests/recording/data/";
 
 RecordingQuery query_of(const std::string& topic, std::optional<double> time = {},
                         double span = 0.0, const std::string& frame = "") {
@@ -159,8 +159,8 @@ TEST(RecordedScan, TheOnlyTopicNeedNotBeNamed) {
   recording.add("/image", image_type, 0, depth_bytes(0, "camera", 1, {1}));
   EXPECT_EQ(
       error_of_read(recording, query_of("")),
-      "no topic is named, expected one of several or none: topics that hold clouds or images: "
-      "'/points', '/image'");
+      "found 2 topics to choose from, expected one or the name of one; topics that hold clouds "
+      "or images: '/points', '/image'");
 }
 
 TEST(RecordedScan, SaysWhatIsThereInsteadOfATopic) {
@@ -334,6 +334,17 @@ TEST(RecordedScan, ASensorWhoseClockIsNotSetCannotBeTransformed) {
   // nothing is wrong with it as long as no transform is asked for, or a static one
   expect_near(read_recorded_scan(recording, query_of("/own", {}, 0.0, "base")).cloud.points.at(0),
               {1.0, 0.0, 2.0});
+}
+
+TEST(RecordedScan, ASensorWhoseClockIsNotSetIsSeenToMove) {
+  RecordingInMemory recording = driving_machine();
+  for (const int time : {2050, 2350}) {
+    recording.add("/own", cloud_type, time * ms,
+                  cloud_bytes(time * ms, "lidar", {{1.0, 0.0, 0.0}}));
+  }
+  EXPECT_NE(error_of_read(recording, query_of("/own", {}, 1.0), ErrorKind::bad_input)
+                .find("frame 'lidar' of /own moved"),
+            std::string::npos);
 }
 
 TEST(RecordedScan, FramesThatChangeNeedAFrameToBePutInto) {
@@ -554,9 +565,13 @@ TEST(RecordedScan, MutatedRecordingsEndInAScanOrAnError) {
 
 class EveryContainer : public testing::TestWithParam<const char*> {
  protected:
-  RecordedScan read(const RecordingQuery& query) const {
+  void SetUp() override {
+    if (!missing_for(GetParam()).empty()) GTEST_SKIP() << "without " << missing_for(GetParam());
+  }
+  static std::string path() { return recording(GetParam()); }
+  static RecordedScan read(const RecordingQuery& query) {
     RecordingQuery in_file = query;
-    in_file.path = fixtures + GetParam();
+    in_file.path = path();
     return read_recorded_scan(in_file);
   }
 };
@@ -596,9 +611,8 @@ TEST_P(EveryContainer, SpansAreAveragedOnTheMachineAndJoinedInTheMap) {
   const RecordedScan in_map = read(query_of("/lidar/points", 0.0, 5.0, "map"));
   EXPECT_EQ(in_map.merge, ScanMerge::joined);
   EXPECT_EQ(in_map.cloud.points.size(), 6U * 29U);
-  const std::string path = fixtures + GetParam();
   EXPECT_NE(
-      error_about([&] { read(query_of("/lidar/points", 0.0, 5.0)); }, path, ErrorKind::bad_input)
+      error_about([&] { read(query_of("/lidar/points", 0.0, 5.0)); }, path(), ErrorKind::bad_input)
           .find("frame 'lidar' of /lidar/points moved"),
       std::string::npos);
 }
@@ -617,7 +631,7 @@ TEST_P(EveryContainer, DepthImagesOnTheMachine) {
 }
 
 TEST_P(EveryContainer, ContentsAndJoints) {
-  const RecordingContents contents = describe_recording(fixtures + GetParam());
+  const RecordingContents contents = describe_recording(path());
   EXPECT_EQ(contents.start, 1.7e9);
   EXPECT_EQ(contents.duration, 5.0);
   EXPECT_EQ(contents.frames, (std::vector<std::string>{"base_link", "camera", "lidar", "map"}));
@@ -629,7 +643,7 @@ TEST_P(EveryContainer, ContentsAndJoints) {
     }
   }
   EXPECT_EQ(scans, 2U);
-  EXPECT_EQ(joint_positions(fixtures + GetParam(), 2.0),
+  EXPECT_EQ(joint_positions(path(), 2.0),
             (std::map<std::string, double>{
                 {"boom", 0.54}, {"bucket", 0.3}, {"stick", -1.2}, {"swing", 0.0}}));
 }
@@ -637,6 +651,7 @@ TEST_P(EveryContainer, ContentsAndJoints) {
 TEST(RecordedScan, TheSiteOfARealBag) {
   const std::string folder = std::string(EXCAVPLAN_SHARED_DATA) + "/site-terrain/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  if (!missing_for("db3").empty()) GTEST_SKIP() << "without " << missing_for("db3");
   const RecordedScan scan = read_recorded_scan(
       {folder + "rosbag2_static_terrain_0.db3", "/demo2/terrain/static", {}, 0.0, ""});
   EXPECT_EQ(scan.frame, "world");
@@ -669,7 +684,7 @@ TEST(RecordingSpec, FileNamesAreNone) {
                                  "a:b", "run@12s.pcd", "/absolute/cloud.pcd"}) {
     EXPECT_FALSE(parse_recording_spec(name)) << name;
   }
-  EXPECT_FALSE(parse_recording_spec(fixtures + "scene.db3"));
+  EXPECT_FALSE(parse_recording_spec(recording("scene.db3")));
 }
 
 TEST(RecordingSpec, AFileThatExistsIsNeverASpec) {
@@ -697,12 +712,12 @@ TEST(RecordingSpec, ErrorsShowTheForm) {
                                  "run.db3:/a@infs", "run.db3:/a@1s+2s+3s", "run.db3:/a+1s@2s"}) {
     EXPECT_NE(error(text).find(form), std::string::npos) << text;
   }
-  const std::string recording = fixtures + "scene.db3";
-  EXPECT_EQ(error(recording + "@2s"), "'" + recording +
-                                          "@2s': found '@2s' behind a recording, expected a topic "
-                                          "that begins with /" +
-                                          form);
-  EXPECT_NE(error(recording + ":lidar"), "no error");
+  const std::string file = recording("scene.db3");
+  EXPECT_EQ(error(file + "@2s"), "'" + file +
+                                     "@2s': found '@2s' behind a recording, expected a topic "
+                                     "that begins with /" +
+                                     form);
+  EXPECT_NE(error(file + ":lidar"), "no error");
 }
 
 }  // namespace
