@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "recording/recording_file.hpp"
+#include "support/run_program.hpp"
 
 namespace excavplan::test {
 
@@ -39,11 +39,6 @@ inline std::string missing_for([[maybe_unused]] const std::string& name) {
   if (needs("bz2")) return "libbz2-dev";
 #endif
   return "";
-}
-
-inline std::string content_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// A folder that is gone when the test ends.

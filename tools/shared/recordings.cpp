@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "recording/recording_file.hpp"
+#include "shared/arguments.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -47,7 +48,8 @@ std::optional<RecordedInput> recorded_input(const std::string& text, const std::
   if (!query) return std::nullopt;
   query->frame = tf_frame;
   RecordedInput input;
-  input.scan = read_recorded_scan(*query);
+  const OptionNames names = {{"name the frame", "--tf-frame: name the frame"}};
+  input.scan = naming_options(names, [&] { return read_recorded_scan(*query); });
   const RecordedScan& scan = input.scan;
   input.json = {{"scan", text},
                 {"messages", scan.messages},
