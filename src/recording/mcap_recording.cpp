@@ -90,6 +90,7 @@ class McapRecording : public ChunkedContainer {
   void scan_message(RecordedChunk& chunk, std::uint64_t offset, ByteReader fields);
   void keep_chunk(RecordedChunk chunk);
 
+  ByteReader reader_at(const MessagePlace& place);
   ChunkHead head_of(std::uint64_t offset, std::uint64_t length) const;
   Bytes load(std::uint64_t offset, std::uint64_t length) const;
   ByteReader reader(std::uint64_t offset, const Bytes& bytes) const {
@@ -358,35 +359,35 @@ Bytes McapRecording::load(std::uint64_t offset, std::uint64_t length) const {
   return bytes;
 }
 
-std::string_view McapRecording::message_at(const MessagePlace& place) {
+/// The record of a message outside chunks, or the rest of its chunk.
+ByteReader McapRecording::reader_at(const MessagePlace& place) {
   const RecordedChunk& chunk = chunks_[place.chunk];
-  Origin origin{file_, place.offset, chunk.offset};
-  std::string_view bytes;
   if (chunk.offset == 0) {
-    message_ = file_.read(
-        place.offset,
-        record_head + content_length(place.offset, file_.size(), Opcode::message, "message"),
-        "message");
-    bytes = message_.view();
-    origin.chunk = Origin::in_file;
-  } else {
-    bytes = chunk_of(place);
-    bytes.remove_prefix(std::min<std::uint64_t>(place.offset, bytes.size()));
+    const std::uint64_t length =
+        content_length(place.offset, file_.size(), Opcode::message, "message");
+    message_ = file_.read(place.offset, record_head + length, "message");
+    return reader(place.offset, message_);
   }
-  ByteReader reader(origin, bytes);
-  Record record = next_record(reader);
-  const Record whole = record;
-  const std::uint32_t channel = channel_of(record.content.u16("channel"));
-  record.content.u32("sequence of a message");
-  const std::int64_t time = record.content.nanoseconds("time of a message");
-  if (record.opcode != Opcode::message || channel != place.channel || time != place.time) {
-    whole.content.fail("a record of opcode " + std::to_string(record.opcode) + " at " +
+  std::string_view bytes = chunk_of(place);
+  bytes.remove_prefix(std::min<std::uint64_t>(place.offset, bytes.size()));
+  return {{file_, place.offset, chunk.offset}, bytes};
+}
+
+std::string_view McapRecording::message_at(const MessagePlace& place) {
+  ByteReader reader = reader_at(place);
+  const Record whole = next_record(reader);
+  ByteReader fields = whole.content;
+  const std::uint32_t channel = channel_of(fields.u16("channel"));
+  fields.u32("sequence of a message");
+  const std::int64_t time = fields.nanoseconds("time of a message");
+  if (whole.opcode != Opcode::message || channel != place.channel || time != place.time) {
+    whole.content.fail("a record of opcode " + std::to_string(whole.opcode) + " at " +
                            std::to_string(time) + " ns",
                        "a message (opcode 5) of " + channels_[place.channel].topic + " at " +
                            std::to_string(place.time) + " ns, as the index says");
   }
-  record.content.u64("time of a message");
-  return record.content.take(record.content.left(), "message");
+  fields.u64("time of a message");
+  return fields.take(fields.left(), "message");
 }
 
 /// Reads what is whole. A complete file has no record that is cut off; another one ends there.

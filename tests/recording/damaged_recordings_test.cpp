@@ -102,8 +102,13 @@ TEST(DamagedRecordings, OfMcapSayWhatIsWrong) {
        {"chunk's data", in_mcap(6, 0, 9 + 32, huge, 8), "found data of 4611686018427387904 bytes"},
        {"chunk's name", in_mcap(6, 0, 9 + 28, 0xFFFFFFFF, 4), "expected 4294967295 of compression"},
        {"no chunk", in_mcap(6, 0, 0, 9, 1), "expected chunk (opcode 6)"},
-       {"chunk length", in_mcap(6, 0, 1, huge, 8), "expected chunk (opcode 6) that ends before"},
-       {"index of a chunk: start", in_mcap(8, 0, 9, ~std::uint64_t{0}, 8),
+       {"chunk length", in_mcap(6, 0, 1, huge, 8), "expected chunk (opcode 6) that ends before"}});
+}
+
+TEST(DamagedRecordings, OfMcapWithWrongIndexesSayWhatIsWrong) {
+  expect_errors(
+      "scene_none.mcap",
+      {{"index of a chunk: start", in_mcap(8, 0, 9, ~std::uint64_t{0}, 8),
         "start of a chunk 18446744073709551615, expected below 2^63"},
        {"index of a chunk: end", in_mcap(8, 0, 17, 5, 8), "as the index of the file says"},
        {"index of a chunk: place", in_mcap(8, 0, 25, huge, 8), "none above the size of the file"},
@@ -200,8 +205,13 @@ TEST(DamagedRecordings, OfRos1SayWhatIsWrong) {
         "a record of op 6, expected op 7"},
        {"too many chunks", in_bag("chunk_count", 0, 0xFFFFFFFF, 4),
         "found 0 bytes left, expected 4 of header of"},
-       {"too few connections", in_bag("conn_count", 0, 1, 4), "a record of op 7, expected op 6"},
-       {"chunk in the index", in_bag_index("chunk_pos", 0, huge, 8),
+       {"too few connections", in_bag("conn_count", 0, 1, 4), "a record of op 7, expected op 6"}});
+}
+
+TEST(DamagedRecordings, OfRos1WithWrongChunksSayWhatIsWrong) {
+  expect_errors(
+      "scene_none.bag",
+      {{"chunk in the index", in_bag_index("chunk_pos", 0, huge, 8),
         "found a chunk at byte 4611686018427387904, expected one before"},
        {"chunk in the magic", in_bag_index("chunk_pos", 0, 3, 8), "found a chunk at byte 3"},
        {"two chunks in one place",
