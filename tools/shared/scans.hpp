@@ -12,6 +12,16 @@
 
 namespace excavplan::tools {
 
+/// The machine, and how it stood in scans that it is in the view of.
+struct MachineInView {
+  std::string machine = "zx120";  ///< its name or file
+  std::optional<MachinePosture> both;
+  std::optional<MachinePosture> before;
+  std::optional<MachinePosture> after;
+
+  bool any() const { return both || before || after; }
+};
+
 /// What brings scans into the site frame and what part of them counts.
 struct ScanFrames {
   std::optional<std::string> both;    ///< frame of all scans, as frame_named() takes it
@@ -25,21 +35,24 @@ struct ScanFrames {
   std::string before_unit;        ///< of those before, if another
   std::string after_unit;
   std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their frame and unit
+  MachineInView view = {};  ///< boom, arm and bucket are left out of the scans
 };
 
 /// --frame, --before-frame, --after-frame, --before-pose, --after-pose, --level, --sensor-origin.
 void declare_frames(Arguments& arguments, ScanFrames& frames);
-/// --unit, --before-unit and --after-unit.
-void declare_units(Arguments& arguments, ScanFrames& frames);
-
 /// A pair with the pose by which both were levelled, if they were.
 struct PlacedPair {
   ScanPair scans;
   std::optional<FoundPose> level;
 };
 
+/// --machine, --machine-pose, --before-machine-pose and --after-machine-pose.
+void declare_machine_in_view(Arguments& arguments, MachineInView& view);
+/// --unit, --before-unit and --after-unit.
+void declare_units(Arguments& arguments, ScanFrames& frames);
+
 /// @throws Error (bad_file) if a file cannot be read; (bad_input) if options exclude each other, or
-/// as level_on_ground()
+/// as level_on_ground() and machine_named()
 PlacedPair placed_pair(const std::string& before, const std::string& after,
                        const ScanFrames& frames);
 
