@@ -44,7 +44,6 @@ struct Inputs {
   std::optional<std::string> plan_survey;
   std::optional<DigParameters> dug_path;
   std::optional<double> dug_start;
-  std::string machine = "zx120";
   SoilInputs soil;
   std::optional<std::string> plot;
 };
@@ -78,7 +77,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("dug-start", inputs.dug_start, Quantity::length,
                    "x at which that path enters the ground: measures the soil that fell back into "
                    "the cut; needs scans in the site frame");
-  arguments.machine(inputs.machine);
+  declare_machine_in_view(arguments, inputs.frames.view);
   arguments.plot(inputs.plot, "the height change and its zones");
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
@@ -97,7 +96,8 @@ DensityOptions options_of(const Inputs& inputs) {
   options.registered = !inputs.still;
   apply_method(inputs.method, options);
   if (inputs.dug_path) {
-    options.dug_path = DugPath{machine_named(inputs.machine), *inputs.dug_path, inputs.dug_start};
+    options.dug_path =
+        DugPath{machine_named(inputs.frames.view.machine), *inputs.dug_path, inputs.dug_start};
   }
   return options;
 }
@@ -110,7 +110,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   ScanReport report;
   const DigScans scans = scans_of(inputs, report);
   DensityOptions options = options_of(inputs);
-  const DensityLaw law = law_of(inputs.soil, inputs.machine, options);
+  const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
   BothEstimates both;
   DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   const auto estimate = [&] {

@@ -150,6 +150,12 @@ void Arguments::option(const std::string& name, std::optional<Eigen::Matrix4d>& 
        [&value, name](const std::string& text) { value = parse_pose("--" + name, text); }});
 }
 
+void Arguments::option(const std::string& name, std::optional<MachinePosture>& value,
+                       const std::string& help) {
+  add({name, "SWING,BOOM,ARM,BUCKET", help + " [rad]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_posture("--" + name, text); }});
+}
+
 void Arguments::choice(const std::string& name, std::string& value,
                        const std::vector<std::string>& words, const std::string& help) {
   add({name, joined(words, "|"), help, value, false, false,

@@ -81,6 +81,9 @@ class Arguments {
   /// "x,y,z,qx,qy,qz,qw", as 4 x 4 matrix
   void option(const std::string& name, std::optional<Eigen::Matrix4d>& value,
               const std::string& help);
+  /// "swing,boom,arm,bucket"
+  void option(const std::string& name, std::optional<MachinePosture>& value,
+              const std::string& help);
   /// One of `words`.
   void choice(const std::string& name, std::string& value, const std::vector<std::string>& words,
               const std::string& help);

@@ -189,6 +189,13 @@ Eigen::Matrix4d parse_pose(const std::string& what, const std::string& text) {
   }
 }
 
+MachinePosture parse_posture(const std::string& what, const std::string& text) {
+  const auto parts =
+      parts_of(what, text, 4, "a posture SWING,BOOM,ARM,BUCKET such as 0,-20deg,70deg,40deg");
+  const auto angle = [&](std::size_t i) { return parse_quantity(what, parts[i], Quantity::angle); };
+  return {angle(0), {angle(1), angle(2), angle(3)}};
+}
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char c : text) {

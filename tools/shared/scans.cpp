@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shared/recordings.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -61,6 +62,20 @@ void place(const Side& side, const ScanFrames& frames, Scan& scan) {
   if (frames.both) scan.site_from_scan = frame_named("--frame", *frames.both);
 }
 
+/// Leaves the points of the machine's front out.
+void cut_out(const MachineInView& view, ScanPair& scans) {
+  if (view.both && (view.before || view.after)) {
+    usage_error("--machine-pose excludes --before-machine-pose and --after-machine-pose");
+  }
+  const Machine machine = machine_named(view.machine);
+  const auto cut = [&](const std::optional<MachinePosture>& own, Scan& scan) {
+    const std::optional<MachinePosture>& posture = own ? own : view.both;
+    if (posture) scan.machine = std::make_shared<const MachineFront>(machine, *posture);
+  };
+  cut(view.before, scans.before);
+  cut(view.after, scans.after);
+}
+
 }  // namespace
 
 void declare_frames(Arguments& arguments, ScanFrames& frames) {
@@ -92,9 +107,21 @@ void declare_units(Arguments& arguments, ScanFrames& frames) {
   arguments.choice("after-unit", frames.after_unit, words, "of those after (default: as --unit)");
 }
 
+void declare_machine_in_view(Arguments& arguments, MachineInView& view) {
+  arguments.machine(view.machine);
+  arguments.option("machine-pose", view.both,
+                   "how --machine stood in both scans: leaves out the points of boom, arm and "
+                   "bucket; needs scans in the site frame");
+  arguments.option("before-machine-pose", view.before, "the same of the scan before");
+  arguments.option("after-machine-pose", view.after, "the same of the scan after");
+}
+
 ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
                      ScanReport& report) {
   if (frames.both && frames.level) usage_error("--level excludes --frame");
+  if (frames.level && frames.view.any()) {
+    usage_error("--level excludes --machine-pose: it does not find the swing axis");
+  }
   const auto placed = [&](const Side& side) {
     Scan scan = scan_of(side, frames, report);
     place(side, frames, scan);
@@ -114,6 +141,7 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
     report.lines.push_back("levelled   " + report.level->line);
     pair.before.site_from_scan = pair.after.site_from_scan = report.level->site_from_scan;
   }
+  if (frames.view.any()) cut_out(frames.view, pair.scans);
   return pair;
 }
 

@@ -14,6 +14,16 @@
 
 namespace excavplan::tools {
 
+/// The machine, and how it stood in scans that it is in the view of.
+struct MachineInView {
+  std::string machine = "zx120";  ///< its name or file
+  std::optional<MachinePosture> both;
+  std::optional<MachinePosture> before;
+  std::optional<MachinePosture> after;
+
+  bool any() const { return both || before || after; }
+};
+
 /// What brings scans into the site frame and what part of them counts.
 struct ScanFrames {
   std::optional<std::string> both;    ///< frame of all scans, as frame_named() takes it
@@ -30,11 +40,14 @@ struct ScanFrames {
   std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their frame and unit
   std::optional<Eigen::Vector3d> before_origin = {};  ///< of those before
   std::optional<Eigen::Vector3d> after_origin = {};
+  MachineInView view = {};  ///< boom, arm and bucket are left out of the scans
 };
 
 /// --frame, --before-frame, --after-frame, --before-pose, --after-pose, --tf-frame, --level,
 /// --sensor-origin, --before-origin, --after-origin.
 void declare_frames(Arguments& arguments, ScanFrames& frames);
+/// --machine, --machine-pose, --before-machine-pose and --after-machine-pose.
+void declare_machine_in_view(Arguments& arguments, MachineInView& view);
 /// --unit, --before-unit and --after-unit.
 void declare_units(Arguments& arguments, ScanFrames& frames);
 
@@ -49,7 +62,7 @@ struct ScanReport {
 };
 
 /// @throws Error (bad_file) if a file or recording cannot be read; (bad_input) if options exclude
-/// each other, or as level_on_ground()
+/// each other, or as level_on_ground() and machine_named()
 ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
                      ScanReport& report);
 
