@@ -73,6 +73,17 @@ TEST_F(Recordings, OneCommandGivesTheDensityOfARecordedDig) {
   EXPECT_NEAR(number(result, "/recordings/1/first_s"), 60.0, 1e-6);
 }
 
+TEST_F(Recordings, TheMachineIsWhereItsJointStatesSay) {
+  const std::string lidar = recording("scene.db3") + ":/lidar/points@0s+5s";
+  refused(3, "fewer than 100 finite points", "estimate-density",
+          {lidar, lidar, "--tf-frame", "map", "--machine-recorded"});
+  refused(
+      2, "--machine-recorded needs scans of a recording", "estimate-density",
+      {shipped("quickstart/before.pcd"), shipped("quickstart/after.pcd"), "--machine-recorded"});
+  refused(3, "found no topic of sensor_msgs/JointState", "estimate-density",
+          {dig + ":/merged/points", dig + ":/merged/points@60s", "--machine-recorded"});
+}
+
 TEST_F(Recordings, WhatIsNotThereIsSaidWithWhatIs) {
   const std::string tool = "inspect-cloud";
   refused(3, "/lidar/points", tool, {recording("scene.db3") + ":/lidar/point@1s"});

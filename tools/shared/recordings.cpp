@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <excavplan/error.hpp>
+
 #include "base/text.hpp"
 #include "recording/recording_file.hpp"
 #include "shared/arguments.hpp"
@@ -48,6 +50,7 @@ std::optional<RecordedInput> recorded_input(const std::string& text, const std::
   if (!query) return std::nullopt;
   query->frame = tf_frame;
   RecordedInput input;
+  input.path = query->path;
   const OptionNames names = {{"name the frame", "--tf-frame: name the frame"}};
   input.scan = naming_options(names, [&] { return read_recorded_scan(*query); });
   const RecordedScan& scan = input.scan;
@@ -62,6 +65,25 @@ std::optional<RecordedInput> recorded_input(const std::string& text, const std::
                                                                  : nlohmann::ordered_json()}};
   input.line = text + ": " + line_of(scan);
   return input;
+}
+
+MachinePosture recorded_posture(const RecordedInput& input) {
+  const auto joints = joint_positions(input.path, input.scan.first);
+  const auto angle = [&](const std::vector<std::string>& words) {
+    std::string names;
+    for (const auto& [name, position] : joints) {
+      for (const std::string& word : words) {
+        if (name.find(word) != std::string::npos) return position;
+      }
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    throw Error(ErrorKind::bad_file, input.path + ": joint states: found " + names +
+                                         ", expected a joint whose name holds " + words.front());
+  };
+  MachinePosture posture;
+  posture.swing = angle({"swing"});
+  posture.joints = JointAngles(angle({"boom"}), angle({"arm", "stick"}), angle({"bucket"}));
+  return posture;
 }
 
 std::optional<RecordingListing> recording_listing(const std::string& text) {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <excavplan/survey/machine_front.hpp>
 #include <excavplan/survey/recording.hpp>
 
 namespace excavplan::tools {
@@ -16,6 +17,7 @@ inline constexpr const char* recording_form =
 
 /// A scan out of a recording, with what was read for people and programs.
 struct RecordedInput {
+  std::string path;  ///< of the recording
   RecordedScan scan;
   nlohmann::ordered_json json;
   std::string line;
@@ -24,6 +26,10 @@ struct RecordedInput {
 /// Reads what `text` names if it is FILE:TOPIC@TIME+SPAN, or a recording of one topic of scans; of
 /// a plain cloud file nothing. @throws Error as parse_recording_spec() and read_recorded_scan()
 std::optional<RecordedInput> recorded_input(const std::string& text, const std::string& tf_frame);
+
+/// How the machine stood when a scan was recorded: of /joint_states the joints whose names hold
+/// swing, boom, arm or stick, and bucket. @throws Error (bad_file) if one of them is not there
+MachinePosture recorded_posture(const RecordedInput& input);
 
 /// What is in a recording, as inspect-cloud shows it; nothing if `text` does not name one alone.
 struct RecordingListing {

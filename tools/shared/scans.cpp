@@ -28,13 +28,16 @@ struct Side {
   const std::optional<std::string>& frame;
   const std::optional<Eigen::Matrix4d>& pose;
   const std::optional<Eigen::Vector3d>& origin;
+  const std::optional<MachinePosture>& posture;
 };
 
 /// Reads the scan if it is of a recording; a file is left where it is.
 Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
   Scan scan;
+  std::optional<MachinePosture> posture = side.posture ? side.posture : frames.view.both;
   if (auto input = recorded_input(side.text, frames.tf_frame)) {
     scan.name = side.text;
+    if (frames.view.recorded) posture = recorded_posture(*input);
     scan.clouds = {std::make_shared<const Cloud>(std::move(input->scan.cloud))};
     report.recordings.push_back(std::move(input->json));
     report.lines.push_back("recorded   " + input->line);
@@ -44,6 +47,10 @@ Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
   scan.area = frames.area;
   scan.unit = units().at(side.unit.empty() ? frames.unit : side.unit);
   scan.sensor_origin = side.origin ? side.origin : frames.sensor_origin;
+  if (posture) {
+    scan.machine =
+        std::make_shared<const MachineFront>(machine_named(frames.view.machine), *posture);
+  }
   return scan;
 }
 
@@ -60,20 +67,6 @@ void place(const Side& side, const ScanFrames& frames, Scan& scan) {
   if (side.pose) scan.site_from_scan = *side.pose;
   if (side.frame) scan.site_from_scan = frame_named(option + "-frame", *side.frame);
   if (frames.both) scan.site_from_scan = frame_named("--frame", *frames.both);
-}
-
-/// Leaves the points of the machine's front out.
-void cut_out(const MachineInView& view, ScanPair& scans) {
-  if (view.both && (view.before || view.after)) {
-    usage_error("--machine-pose excludes --before-machine-pose and --after-machine-pose");
-  }
-  const Machine machine = machine_named(view.machine);
-  const auto cut = [&](const std::optional<MachinePosture>& own, Scan& scan) {
-    const std::optional<MachinePosture>& posture = own ? own : view.both;
-    if (posture) scan.machine = std::make_shared<const MachineFront>(machine, *posture);
-  };
-  cut(view.before, scans.before);
-  cut(view.after, scans.after);
 }
 
 }  // namespace
@@ -114,6 +107,8 @@ void declare_machine_in_view(Arguments& arguments, MachineInView& view) {
                    "bucket; needs scans in the site frame");
   arguments.option("before-machine-pose", view.before, "the same of the scan before");
   arguments.option("after-machine-pose", view.after, "the same of the scan after");
+  arguments.flag("machine-recorded", view.recorded,
+                 "the same by the joint states in the recordings; needs --tf-frame");
 }
 
 ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
@@ -122,18 +117,22 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
   if (frames.level && frames.view.any()) {
     usage_error("--level excludes --machine-pose: it does not find the swing axis");
   }
+  if (frames.view.both && (frames.view.before || frames.view.after)) {
+    usage_error("--machine-pose excludes --before-machine-pose and --after-machine-pose");
+  }
   const auto placed = [&](const Side& side) {
     Scan scan = scan_of(side, frames, report);
     place(side, frames, scan);
     return scan;
   };
   Scan first = placed({"before", before, frames.before_unit, frames.before, frames.before_pose,
-                       frames.before_origin});
-  ScanPair pair = {std::move(first), placed({"after", after, frames.after_unit, frames.after,
-                                             frames.after_pose, frames.after_origin})};
-  if (!frames.tf_frame.empty() && report.recordings.empty()) {
-    usage_error("--tf-frame needs scans of a recording, FILE:TOPIC@TIME+SPAN");
-  }
+                       frames.before_origin, frames.view.before});
+  ScanPair pair = {std::move(first),
+                   placed({"after", after, frames.after_unit, frames.after, frames.after_pose,
+                           frames.after_origin, frames.view.after})};
+  const std::string needs = " needs scans of a recording, FILE:TOPIC@TIME+SPAN";
+  if (!frames.tf_frame.empty() && report.recordings.empty()) usage_error("--tf-frame" + needs);
+  if (frames.view.recorded && report.recordings.empty()) usage_error("--machine-recorded" + needs);
   if (frames.level) {
     Scan whole = pair.before;
     whole.area.reset();  // is in the levelled frame
@@ -141,7 +140,6 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
     report.lines.push_back("levelled   " + report.level->line);
     pair.before.site_from_scan = pair.after.site_from_scan = report.level->site_from_scan;
   }
-  if (frames.view.any()) cut_out(frames.view, pair.scans);
   return pair;
 }
 

@@ -20,8 +20,9 @@ struct MachineInView {
   std::optional<MachinePosture> both;
   std::optional<MachinePosture> before;
   std::optional<MachinePosture> after;
+  bool recorded = false;  ///< by the joint states of recordings
 
-  bool any() const { return both || before || after; }
+  bool any() const { return both || before || after || recorded; }
 };
 
 /// What brings scans into the site frame and what part of them counts.
