@@ -88,6 +88,27 @@ TEST_F(SoilAnswers, IntervalsHoldTheTruthInSoilsAndPathsOfBothSimulators) {
   EXPECT_LT(known.mean_sd(), 2.0 * known.rms());
 }
 
+TEST_F(SoilAnswers, TheScatterOfALawIsThatOfDigsInLooseAndInDenseSoil) {
+  for (const SoilLaw& kind : laws_) {
+    for (const auto& [low, high] : {std::pair{0.0, 33.0}, {67.0, 100.0}}) {
+      SCOPED_TRACE(kind.soil.name + " from " + std::to_string(low) + " %");
+      constexpr int digs = 50;
+      double found = 0.0, stated = 0.0;
+      for (int i = 0; i < digs; ++i) {
+        test::SoilDigOptions options;
+        options.volume_error = 1e-6;
+        options.density_percent = low + (high - low) * (i + 0.5) / digs;
+        const SoilDig dig =
+            test::random_dig(machine_, kind.soil, 7000U + static_cast<std::uint64_t>(i), options);
+        const double k = bulking_factor(dig.change)->value;
+        found += std::pow(density_of_bulking(kind.law.form, k) - dig.density_percent, 2);
+        stated += std::pow(residual_sd_at(kind.law.form, dig.density_percent), 2);
+      }
+      EXPECT_NEAR(std::sqrt(found / stated), 1.0, 0.3);
+    }
+  }
+}
+
 TEST_F(SoilAnswers, ALawForTheFieldPathReadsWhatTheDefaultLawDoesNot) {
   for (const double density : {10.0, 40.0, 80.0}) {
     SCOPED_TRACE(density);
