@@ -87,12 +87,12 @@ DigScans scans_of(const Inputs& inputs) {
   return scans;
 }
 
-DensityOptions options_of(const Inputs& inputs) {
+DensityOptions options_of(const Inputs& inputs, const Machine& machine) {
   DensityOptions options = inputs.options;
   options.registered = !inputs.still;
   apply_method(inputs.method, options);
   if (inputs.dug_path) {
-    options.dug_path = DugPath{machine_named(inputs.machine), *inputs.dug_path, inputs.dug_start};
+    options.dug_path = DugPath{machine, *inputs.dug_path, inputs.dug_start};
   }
   return options;
 }
@@ -103,7 +103,8 @@ Outcome work_on_scans(const Inputs& inputs) {
   }
   if (inputs.dug_start && !inputs.dug_path) usage_error("--dug-start needs --dug-path");
   const DigScans scans = scans_of(inputs);
-  DensityOptions options = options_of(inputs);
+  const Machine machine = machine_named(inputs.machine);
+  DensityOptions options = options_of(inputs, machine);
   const DensityLaw law = law_of(inputs.soil, inputs.machine, options);
   BothEstimates both;
   DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
@@ -117,6 +118,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   naming_options({{"path that was dug", "--dug-path"}, {"inside the area", "inside --area"}},
                  [&] { with_frame_hint(pair_frame_hint, estimate); });
   Outcome outcome = estimate_outcome(counts, options.soil);
+  if (const auto warning = many_buckets(counts, machine)) outcome.warnings.push_back(*warning);
   if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
   if (inputs.compare) add_comparison(both, counts, outcome);
   return outcome;

@@ -92,14 +92,20 @@ inline SoilDig random_dig(const Machine& machine, const SoilKind& kind, std::uin
   }
 }
 
+/// @param known  change, and what is known of fallback and blocks
+inline DensityEstimate estimate_of(DensityEstimate known, const DensityLaw& law,
+                                   const DensityOptions& options) {
+  known.bulking = bulking_factor(known.change);
+  const LawsForDig laws = laws_for_dig(law, options, known.fallback);
+  set_density(known, laws, options);
+  return known;
+}
+
 inline DensityEstimate estimate_of(const VolumeChange& change, const DensityLaw& law,
                                    const DensityOptions& options) {
-  DensityEstimate estimate;
-  estimate.change = change;
-  estimate.bulking = bulking_factor(change);
-  const LawsForDig laws = laws_for_dig(law, options, estimate.fallback);
-  set_density(estimate, laws, options);
-  return estimate;
+  DensityEstimate known;
+  known.change = change;
+  return estimate_of(std::move(known), law, options);
 }
 
 /// How often an interval held the truth, and how far the estimate was from it.
