@@ -19,15 +19,6 @@
 namespace excavplan {
 namespace {
 
-/// Volumes do not depend on what the machine can hold: no soil is too hard to calibrate for.
-Machine that_never_stalls(Machine machine) {
-  machine.body.reset();
-  for (JointLimits& limits : machine.limits) {
-    limits.torque = std::numeric_limits<double>::infinity();
-  }
-  return machine;
-}
-
 /// @param machine  that never stalls
 DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
                                    const CalibrationOptions& options) {
@@ -104,6 +95,14 @@ DensityCalibration origin_of(const Machine& machine, const SoilKind& soil,
 }
 
 }  // namespace
+
+Machine that_never_stalls(Machine machine) {
+  machine.body.reset();
+  for (JointLimits& limits : machine.limits) {
+    limits.torque = std::numeric_limits<double>::infinity();
+  }
+  return machine;
+}
 
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
                                      const CalibrationOptions& options) {

@@ -34,11 +34,6 @@ nlohmann::ordered_json to_object(const ScatterDigs& digs) {
           {"loose_density_share", digs.scatter.loose_density}};
 }
 
-/// One decimal, for messages.
-std::string tenths(double value) { return number_text(std::round(value * 10.0) / 10.0); }
-
-std::string thousandths(double value) { return number_text(std::round(value * 1000.0) / 1000.0); }
-
 /// The growth g of a deviation s (1 + g x) along x in -1 .. 1 from its mean squares q below and
 /// above 0: (q_above - q_below) / (q_above + q_below) = g / (1 + g^2 / 3). It is at most 1, where
 /// the deviation is 0 at one end.
@@ -49,8 +44,8 @@ double growth_of(double contrast) {
 }
 
 void warn_of_range(const DensityLaw& law, double bulking_factor, RelativeDensity& estimate) {
-  const std::string found = "bulking factor " + thousandths(bulking_factor) +
-                            " gives a relative density of " + tenths(estimate.raw_percent) +
+  const std::string found = "bulking factor " + decimals(bulking_factor, 3) +
+                            " gives a relative density of " + decimals(estimate.raw_percent, 1) +
                             " % by the law '" + law.name + "', ";
   if (estimate.raw_percent > 100.0) {
     estimate.warnings.push_back(

@@ -28,6 +28,13 @@ bool has(const std::vector<Warning>& warnings, const std::string& code) {
                      [&](const Warning& warning) { return warning.code == code; });
 }
 
+Reading reading_of(double bulking, double weight) {
+  Reading reading;
+  reading.weight = weight;
+  reading.bulking = {bulking, 0.0};
+  return reading;
+}
+
 class SoilAnswers : public testing::Test {
  protected:
   DensityOptions in(const SoilLaw& kind) const {
@@ -274,7 +281,7 @@ TEST_F(SoilAnswers, ReadingsAreReadAsTheAnswerIs) {
   DensityEstimate known;
   known.change = dig.change;
   const double k = bulking_factor(dig.change)->value;
-  known.change.readings = {{"as counted", 0.8, {k, 0.0}}, {"with more", 0.2, {1.1 * k, 0.0}}};
+  known.change.readings = {reading_of(k, 0.8), reading_of(1.1 * k, 0.2)};
   known.fallback = Fallback{1.0, 0.2, {0.2, 0.03}, 1.0};
   const DensityEstimate freed = test::estimate_of(known, loam_.law, in(loam_));
   EXPECT_NEAR(freed.readings[1].density_percent,
@@ -302,8 +309,9 @@ TEST_F(SoilAnswers, AReadingOfAnotherHoleIsThatOfItsWeight) {
   known.change.excavated.value = known.change.before.value = without;
   const double k = bulking_factor(known.change)->value;
   const double whole = bulking_factor(dig.change)->value;
-  known.change.readings = {{"as counted", 0.8, {k, 0.0}}, {"with a hole", 0.2, {whole, 0.0}}};
-  known.change.attribution = {{"a hole", {-part, 0.001}, false, 0.2}};
+  known.change.readings = {reading_of(k, 0.8), reading_of(whole, 0.2)};
+  known.change.attribution.resize(1);
+  known.change.attribution[0].volume = {-part, 0.001};
   DensityOptions options = in(loam_);
   options.payload_mass = {dig.payload_mass.value, 0.01 * dig.payload_mass.value};
   const DensityEstimate found = test::estimate_of(known, loam_.law, options);
