@@ -112,7 +112,7 @@ void measure(const Condition& condition, int digs) {
     for (int i = 0; i < of_kind; ++i) {
       const SoilDig dig = test::random_dig(machine, kind.soil, seed++, condition.digs);
       for (const Knowledge& known : cases) {
-        if (!applies(known, condition) || (known.path && i % 3 != 0)) continue;
+        if (!applies(known, condition) || (known.path && i % 6 != 0)) continue;
         const RelativeDensity density = found(dig, kind, known, condition.digs.more_water, laws);
         const std::string name = std::string(condition.text) + " | " + known.text;
         for (const std::string& row :
