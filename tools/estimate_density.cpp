@@ -91,13 +91,12 @@ DigScans scans_of(const Inputs& inputs, ScanReport& report) {
   return scans;
 }
 
-DensityOptions options_of(const Inputs& inputs) {
+DensityOptions options_of(const Inputs& inputs, const Machine& machine) {
   DensityOptions options = inputs.options;
   options.registered = !inputs.still;
   apply_method(inputs.method, options);
   if (inputs.dug_path) {
-    options.dug_path =
-        DugPath{machine_named(inputs.frames.view.machine), *inputs.dug_path, inputs.dug_start};
+    options.dug_path = DugPath{machine, *inputs.dug_path, inputs.dug_start};
   }
   return options;
 }
@@ -109,7 +108,8 @@ Outcome work_on_scans(const Inputs& inputs) {
   if (inputs.dug_start && !inputs.dug_path) usage_error("--dug-start needs --dug-path");
   ScanReport report;
   const DigScans scans = scans_of(inputs, report);
-  DensityOptions options = options_of(inputs);
+  const Machine machine = machine_named(inputs.frames.view.machine);
+  DensityOptions options = options_of(inputs, machine);
   const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
   BothEstimates both;
   DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
@@ -123,6 +123,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   naming_options({{"path that was dug", "--dug-path"}, {"inside the area", "inside --area"}},
                  [&] { with_frame_hint(pair_frame_hint, estimate); });
   Outcome outcome = estimate_outcome(counts, options.soil);
+  if (const auto warning = many_buckets(counts, machine)) outcome.warnings.push_back(*warning);
   report.add_to(outcome);
   if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
   if (inputs.compare) add_comparison(both, counts, outcome);

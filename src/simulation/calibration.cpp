@@ -19,15 +19,6 @@
 namespace excavplan {
 namespace {
 
-/// Volumes do not depend on what the machine can hold: no soil is too hard to calibrate for.
-Machine that_never_stalls(Machine machine) {
-  machine.body.reset();
-  for (JointLimits& limits : machine.limits) {
-    limits.torque = std::numeric_limits<double>::infinity();
-  }
-  return machine;
-}
-
 /// @param machine  that never stalls
 DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
                                    const CalibrationOptions& options) {
@@ -48,27 +39,33 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
   return sample;
 }
 
-DigParameters drawn_path(Random& random) {
-  return {random.uniform(0.5, 1.1), random.uniform(0.2, 0.6), random.uniform(0.8, 2.5)};
+/// Paths that fill the box evenly whatever their number (the additive recurrence of Roberts 2018
+/// with the powers of 1 / 1.22074, the root of x^4 = x + 1).
+DigParameters drawn_path(std::size_t index) {
+  const auto in = [&](double low, double high, double step) {
+    const double turns = 0.5 + static_cast<double>(index) * step;
+    return low + (high - low) * (turns - std::floor(turns));
+  };
+  return {in(0.5, 1.1, 0.8191725134), in(0.2, 0.6, 0.6710436067), in(0.8, 2.5, 0.5497004779)};
 }
 
 /// A dig of a density even over the range, in drawn soil and along a drawn path.
 DensityCalibration::Sample measure_draw(const Machine& machine, const SoilKind& soil,
                                         std::size_t draw, CalibrationOptions options) {
-  constexpr int most_paths = 100;
-  Random random(draw, 1);
-  const double share = (static_cast<double>(draw) + 0.5) / options.draws;
-  const SoilKind drawn = drawn_soil(soil, options.scatter, random.bits());
+  constexpr std::size_t most_paths = 100;
+  const auto draws = static_cast<std::size_t>(options.draws);
+  const double density = 100.0 * (static_cast<double>(draw) + 0.5) / options.draws;
+  const SoilKind drawn = drawn_soil(soil, options.scatter, Random(draw, 1).bits());
   options.cell_size = CalibrationOptions{}.cell_size;
-  for (int i = 0; options.any_path && i < most_paths; ++i) {
-    options.path = drawn_path(random);
+  for (std::size_t i = 0; options.any_path && i < most_paths; ++i) {
+    options.path = drawn_path(draw + i * draws);
     try {
-      return measure(machine, drawn, 100.0 * share, options);
+      return measure(machine, drawn, density, options);
     } catch (const Error&) {
       // This path cannot be driven.
     }
   }
-  return measure(machine, drawn, 100.0 * share, options);
+  return measure(machine, drawn, density, options);
 }
 
 std::vector<BulkingSample> pairs(const std::vector<DensityCalibration::Sample>& samples,
@@ -98,6 +95,14 @@ DensityCalibration origin_of(const Machine& machine, const SoilKind& soil,
 }
 
 }  // namespace
+
+Machine that_never_stalls(Machine machine) {
+  machine.body.reset();
+  for (JointLimits& limits : machine.limits) {
+    limits.torque = std::numeric_limits<double>::infinity();
+  }
+  return machine;
+}
 
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
                                      const CalibrationOptions& options) {
@@ -136,7 +141,7 @@ DensityCalibration calibrate_path(const Machine& machine, const SoilKind& soil,
   for (int i = 0; i <= 10; ++i) options.densities_percent.push_back(10.0 * i);
   options.path = path;
   options.any_path = false;
-  options.draws = 30;
+  options.draws = 100;
   options.threads = threads;
   DensityCalibration calibration = calibrate_density(machine, soil, options);
   calibration.name += "-path";

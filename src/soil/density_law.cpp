@@ -34,14 +34,18 @@ nlohmann::ordered_json to_object(const ScatterDigs& digs) {
           {"loose_density_share", digs.scatter.loose_density}};
 }
 
-/// One decimal, for messages.
-std::string tenths(double value) { return number_text(std::round(value * 10.0) / 10.0); }
-
-std::string thousandths(double value) { return number_text(std::round(value * 1000.0) / 1000.0); }
+/// The growth g of a deviation s (1 + g x) along x in -1 .. 1 from its mean squares q below and
+/// above 0: (q_above - q_below) / (q_above + q_below) = g / (1 + g^2 / 3). It is at most 1, where
+/// the deviation is 0 at one end.
+double growth_of(double contrast) {
+  constexpr double steepest = 0.75;  // the contrast where g is 1
+  const double c = std::clamp(contrast, -steepest, steepest);
+  return c == 0.0 ? 0.0 : 1.5 * (1.0 - std::sqrt(1.0 - 4.0 / 3.0 * c * c)) / c;
+}
 
 void warn_of_range(const DensityLaw& law, double bulking_factor, RelativeDensity& estimate) {
-  const std::string found = "bulking factor " + thousandths(bulking_factor) +
-                            " gives a relative density of " + tenths(estimate.raw_percent) +
+  const std::string found = "bulking factor " + decimals(bulking_factor, 3) +
+                            " gives a relative density of " + decimals(estimate.raw_percent, 1) +
                             " % by the law '" + law.name + "', ";
   if (estimate.raw_percent > 100.0) {
     estimate.warnings.push_back(
@@ -160,7 +164,6 @@ DensityLaw law_of(const DensityCalibration& calibration) {
 }
 
 void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
-  constexpr double steepest = 0.5;             // of the growth: at 0 % there is scatter too; ours
   std::array<double, 2> squares = {0.0, 0.0};  // of loose and of dense soil
   std::array<int, 2> counts = {0, 0};
   for (const BulkingSample& dig : digs) {
@@ -169,17 +172,17 @@ void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
         std::pow(density_of_bulking(form, dig.bulking_factor) - dig.density_percent, 2);
     ++counts[half];
   }
-  const double rms = std::sqrt((squares[0] + squares[1]) / static_cast<double>(digs.size()));
+  const double square = (squares[0] + squares[1]) / static_cast<double>(digs.size());
   double growth = 0.0;
-  if (counts[0] > 0 && counts[1] > 0 && rms > 0.0) {
-    const double loose = std::sqrt(squares[0] / counts[0]);
-    const double dense = std::sqrt(squares[1] / counts[1]);
-    growth = std::clamp(2.0 * (dense - loose) / (dense + loose), -steepest, steepest);
+  if (counts[0] > 0 && counts[1] > 0 && square > 0.0) {
+    const double loose = squares[0] / counts[0];
+    const double dense = squares[1] / counts[1];
+    growth = growth_of((dense - loose) / (dense + loose));
   }
   std::visit(
       [&](auto& f) {
         f.residual_growth = growth;
-        f.residual_sd = rms / std::sqrt(1.0 + growth * growth / 3.0);  // rms over 0 .. 100 %
+        f.residual_sd = std::sqrt(square / (1.0 + growth * growth / 3.0));
       },
       form);
 }

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -341,20 +342,42 @@ TEST_F(LawFile, WhatItWasMeasuredOnIsReadBack) {
   }
 }
 
-TEST(DensityFit, ScatterIsThatOfTheDigsAndGrowsWithThem) {
-  const DensityClosedForm exact = paper_closed_form();
+/// Digs whose density by this law errs by a deviation that is linear in the density.
+std::vector<BulkingSample> scattered(const DensityClosedForm& exact, double at_0, double at_100) {
   Random random(5);
   std::vector<BulkingSample> digs;
-  for (int i = 0; i < 4000; ++i) {
-    const double d = random.uniform(5.0, 95.0);
-    const double error = (3.0 + 3.0 * d / 100.0) * random.normal();
+  for (int i = 0; i < 8000; ++i) {
+    const double d = random.uniform(0.0, 100.0);
+    const double error = (at_0 + (at_100 - at_0) * d / 100.0) * random.normal();
     digs.push_back({bulking_of_density(exact, d + error), d});
+  }
+  return digs;
+}
+
+TEST(DensityFit, ScatterIsThatOfTheDigsAndGrowsWithThem) {
+  const DensityClosedForm exact = paper_closed_form();
+  for (const auto& [at_0, at_100] : {std::pair{3.0, 6.0}, {1.0, 8.0}, {6.0, 2.0}, {4.0, 4.0}}) {
+    SCOPED_TRACE(at_0);
+    DensityForm form = exact;
+    set_scatter(form, scattered(exact, at_0, at_100));
+    EXPECT_NEAR(residual_sd_at(form, 50.0), 0.5 * (at_0 + at_100), 0.15);
+    EXPECT_NEAR(residual_sd_at(form, 0.0), at_0, 0.3);
+    EXPECT_NEAR(residual_sd_at(form, 100.0), at_100, 0.3);
+  }
+}
+
+TEST(DensityFit, ScatterIsNowhereBelowZero) {
+  const DensityClosedForm exact = paper_closed_form();
+  std::vector<BulkingSample> digs;
+  for (const double d : {10.0, 20.0, 60.0, 70.0, 80.0, 90.0}) {
+    digs.push_back({bulking_of_density(exact, d < 50.0 ? d : d + 5.0), d});
   }
   DensityForm form = exact;
   set_scatter(form, digs);
-  EXPECT_NEAR(residual_sd_at(form, 50.0), 4.5, 0.2);
-  EXPECT_NEAR(residual_sd_at(form, 0.0), 3.0, 0.4);
-  EXPECT_NEAR(residual_sd_at(form, 100.0), 6.0, 0.4);
+  EXPECT_EQ(residual_sd_at(form, 0.0), 0.0);
+  double square = 0.0;
+  for (int d = 0; d < 100; ++d) square += std::pow(residual_sd_at(form, d + 0.5), 2) / 100.0;
+  EXPECT_NEAR(square, 25.0 * 4.0 / 6.0, 0.01) << "the mean square is that of the digs";
 }
 
 TEST_F(LawFile, EveryFormIsFittedWrittenAndReadUnderItsKey) {

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include <excavplan/error.hpp>
 #include <excavplan/ground/bulking.hpp>
+#include <excavplan/simulation/calibration.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/scene.hpp>
 #include <excavplan/soil/soil_scatter.hpp>
@@ -36,15 +37,12 @@ struct SoilDigOptions {
   SoilScatter scatter;                         ///< of the soil about its kind
   double volume_error = 0.005;                 ///< of each volume, as a share
   double mass_error = 0.01;                    ///< likewise
+  double more_water = 0.0;                     ///< than the drawn soil has, per dry mass
+  double more_particle_density = 0.0;          ///< likewise [Mg/m^3]
+  bool path_outside = false;                   ///< of the box that calibrate_density() draws from
   std::optional<DigParameters> path = {};      ///< else random
   std::optional<double> density_percent = {};  ///< else random
 };
-
-inline Machine tireless(Machine machine) {
-  machine.body.reset();
-  for (JointLimits& joint : machine.limits) joint.torque = std::numeric_limits<double>::infinity();
-  return machine;
-}
 
 /// A volume change with independent errors, of which it states the deviations.
 inline VolumeChange measured(const HeightMapVolumes& truth, double error, Random& random) {
@@ -64,24 +62,34 @@ inline VolumeChange measured(const HeightMapVolumes& truth, double error, Random
   return change;
 }
 
+inline DigParameters random_path(bool outside, Random& random) {
+  const double angle = outside ? random.uniform(0.3, 1.3) : random.uniform(0.5, 1.1);
+  const double penetration = outside ? random.uniform(0.1, 0.8) : random.uniform(0.2, 0.6);
+  const double drag = outside ? random.uniform(0.3, 3.2) : random.uniform(0.8, 2.5);
+  const bool inside = angle > 0.5 && angle < 1.1 && penetration > 0.2 && penetration < 0.6 &&
+                      drag > 0.8 && drag < 2.5;
+  return outside && inside ? random_path(outside, random) : DigParameters{angle, penetration, drag};
+}
+
 /// Paths that cannot be driven are drawn again.
 inline SoilDig random_dig(const Machine& machine, const SoilKind& kind, std::uint64_t seed,
                           const SoilDigOptions& options = {}) {
   Random random(seed, 77);
   SoilDig dig;
   dig.soil = drawn_soil(kind, options.scatter, random.bits());
+  dig.soil.water_content = std::max(0.0, dig.soil.water_content + options.more_water);
+  dig.soil.specific_gravity += options.more_particle_density;
   dig.density_percent = options.density_percent.value_or(random.uniform(0.0, 100.0));
   const Eigen::Vector2d dump_at = default_dump_point();
   const Terrain ground = undisturbed(flat_ground(scene_extent(machine, dump_at), 0.05));
   while (true) {
-    dig.path = options.path.value_or(DigParameters{
-        random.uniform(0.5, 1.1), random.uniform(0.2, 0.6), random.uniform(0.8, 2.5)});
+    dig.path = options.path ? *options.path : random_path(options.path_outside, random);
     SceneOptions scene;
     scene.simulator = options.simulator;
     scene.path = dig.path;
     try {
       const DigScene dug =
-          run_scene(tireless(machine), dig.soil, dig.density_percent, ground, scene);
+          run_scene(that_never_stalls(machine), dig.soil, dig.density_percent, ground, scene);
       dig.change = measured(dug.volumes, options.volume_error, random);
       const double sd = options.mass_error * dug.dig.payload_mass;
       dig.payload_mass = {dug.dig.payload_mass + sd * random.normal(), sd};
@@ -92,14 +100,20 @@ inline SoilDig random_dig(const Machine& machine, const SoilKind& kind, std::uin
   }
 }
 
+/// @param known  change, and what is known of fallback and blocks
+inline DensityEstimate estimate_of(DensityEstimate known, const DensityLaw& law,
+                                   const DensityOptions& options) {
+  known.bulking = bulking_factor(known.change);
+  const LawsForDig laws = laws_for_dig(law, options, known.fallback);
+  set_density(known, laws, options);
+  return known;
+}
+
 inline DensityEstimate estimate_of(const VolumeChange& change, const DensityLaw& law,
                                    const DensityOptions& options) {
-  DensityEstimate estimate;
-  estimate.change = change;
-  estimate.bulking = bulking_factor(change);
-  const LawsForDig laws = laws_for_dig(law, options, estimate.fallback);
-  set_density(estimate, laws, options);
-  return estimate;
+  DensityEstimate known;
+  known.change = change;
+  return estimate_of(std::move(known), law, options);
 }
 
 /// How often an interval held the truth, and how far the estimate was from it.

@@ -68,7 +68,7 @@ TEST_F(Tools, CalibrateDensitySaysOnWhichDigsTheLawIs) {
   EXPECT_EQ(any["machine"], "zx120");
   EXPECT_TRUE(contains(any["simulator"], "height-map"));
   EXPECT_EQ(any["any_path"], true);
-  EXPECT_EQ(any["scatter"]["draws"], 100);
+  EXPECT_EQ(any["scatter"]["draws"], 200);
   const json one = answer("calibrate-density", {"--densities", "0:25:100", "--path",
                                                 "45deg,0.35m,1.5m", "--draws", "40"});
   EXPECT_EQ(one["path"], any["path"]);

@@ -104,6 +104,33 @@ TEST_F(Tools, AWeighedPayloadChecksTheSoil) {
   EXPECT_TRUE(answer("estimate-density", quickstart(folder))["payload"].is_null());
 }
 
+TEST_F(Tools, AWeighedPayloadInUnknownSoilIsCheckedToo) {
+  const Words unknown = quickstart(folder) + Words{"--soil", "unknown"};
+  const json right = answer("estimate-density", unknown + Words{"--payload-mass", "257,2.6"});
+  EXPECT_EQ(right["trustworthy"], true) << right["warnings"];
+  EXPECT_EQ(number(right, "/payload/mass_kg"), 257.0);
+  EXPECT_NEAR(number(right, "/payload/bulk_density_kg_m3"), 1542.0, 60.0);
+  for (const json& soil : right["soils"]) {
+    expect_keys(soil, "number", {"payload/bulk_density_kg_m3", "payload/disagreement_sds"});
+  }
+  EXPECT_EQ(right["readings"][0]["density_percent"], right["density_percent"]);
+  const json wrong =
+      answer("estimate-density", unknown + Words{"--payload-mass", "400", "--strict"}, 4);
+  EXPECT_TRUE(warns(wrong, "payload_disagrees")) << wrong["warnings"];
+}
+
+TEST_F(Tools, AHoleOfManyBucketsIsSaidAndTrusted) {
+  json machine = json::parse(content_of(shipped("machines/zx120.json")));
+  EXPECT_FALSE(warns(answer("estimate-density", quickstart(folder)), "many_buckets"));
+  machine["bucket"]["width_outside_m"] = 0.07;
+  machine["bucket"]["width_inside_m"] = 0.03;
+  machine["bucket"].erase("teeth");
+  const std::string narrow = folder.write("narrow.json", machine.dump());
+  const json found = answer("estimate-density", quickstart(folder) + Words{"--machine", narrow});
+  EXPECT_TRUE(warns(found, "many_buckets")) << found["warnings"];
+  EXPECT_EQ(found["trustworthy"], true);
+}
+
 TEST_F(Tools, APathThatWasNotDugEndsTrust) {
   const Words words = quickstart(folder) + Words{"--soil", "loam", "--dug-start", "6.05"};
   const json dug =
@@ -187,7 +214,9 @@ TEST_F(Tools, PaperMethodGivesItsVolumesAndNoTrust) {
     // A face counts once for each cube it crosses: docs/methods.md#volumes.
     EXPECT_GT(number(cubes, volume), 1.5 * number(truth, volume));
   }
-  expect_keys(paper, "null", {"volume/excavated_sd_m3", "bulking_factor_sd"});
+  expect_keys(paper, "null",
+              {"volume/excavated_sd_m3", "bulking_factor_sd", "bulking_factor_sd_scans",
+               "density_sd_given_law_percent"});
   EXPECT_TRUE(warns(paper, "volume_error_unknown")) << paper["warnings"];
   answer("estimate-density", words + Words{"--strict"}, 4);
 }

@@ -103,16 +103,6 @@ nlohmann::ordered_json density_json(const RelativeDensity& density) {
           {"density_interval_percent", density.interval_percent}};
 }
 
-nlohmann::ordered_json soils_json(const std::vector<SoilAnswer>& soils) {
-  auto list = nlohmann::ordered_json::array();
-  for (const SoilAnswer& soil : soils) {
-    nlohmann::ordered_json json = {{"name", soil.name}, {"weight", soil.weight}};
-    json.update(density_json(soil.density));
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
 nlohmann::ordered_json payload_json(const PayloadDensity& payload) {
   return {{"mass_kg", payload.mass.value},
           {"mass_sd_kg", payload.mass.sd},
@@ -124,6 +114,18 @@ nlohmann::ordered_json payload_json(const PayloadDensity& payload) {
           {"law_density_percent", payload.law_density_percent.value},
           {"law_density_sd_percent", payload.law_density_percent.sd},
           {"disagreement_sds", payload.disagreement}};
+}
+
+nlohmann::ordered_json soils_json(const std::vector<SoilAnswer>& soils) {
+  auto list = nlohmann::ordered_json::array();
+  for (const SoilAnswer& soil : soils) {
+    nlohmann::ordered_json json = {{"name", soil.name}, {"weight", soil.weight}};
+    json.update(density_json(soil.density));
+    json["payload"] = nullptr;
+    if (soil.payload) json["payload"] = payload_json(*soil.payload);
+    list.push_back(std::move(json));
+  }
+  return list;
 }
 
 nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
@@ -140,7 +142,9 @@ nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
   if (estimate.bulking) {
     json["bulking_factor"] = estimate.bulking->value;
     json["bulking_factor_sd"] = estimate.bulking->sd;
-    json["bulking_factor_sd_scans"] = bulking_errors(estimate.change).scans;
+    if (!std::isnan(estimate.bulking->sd)) {
+      json["bulking_factor_sd_scans"] = bulking_errors(estimate.change).scans;
+    }
     json["density_raw_percent"] = estimate.density->raw_percent;
     json["density_sd_given_law_percent"] = estimate.density->sd_given_law_percent;
     json.update(density_json(*estimate.density));
@@ -251,6 +255,19 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
   outcome.warnings = estimate.warnings;
   outcome.trustworthy = estimate.trustworthy;
   return outcome;
+}
+
+std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machine& machine) {
+  constexpr double most = 10.0;  // ours
+  const double bucket = heaped_capacity(machine);
+  const double buckets = estimate.change.excavated.value / bucket;
+  if (!(buckets > most)) return std::nullopt;
+  return Warning{"many_buckets",
+                 "the hole of " + readable(estimate.change.excavated.value) + " m3 is " +
+                     readable(buckets, 2) + " heaped buckets of " + readable(bucket, 2) +
+                     " m3 of the machine " + machine.name +
+                     ": right for a pit of many digs or another --machine; if it was one dig, the "
+                     "scans may be in feet: --unit ft"};
 }
 
 std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome) {

@@ -14,6 +14,12 @@ namespace excavplan::tools {
 /// @param soil  what was known of it
 Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);
 
+/// Code many_buckets, for a hole of more than ten heaped buckets of the machine: one dig fills one.
+/// The coordinates may be in feet, which no other check can tell from metres: 35 times the volume.
+/// It does not end trust. A pit of many digs is measured as well as that of one, and bulking factor
+/// and density have no unit.
+std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machine& machine);
+
 /// The figure of an estimate, as SVG.
 std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome);
 

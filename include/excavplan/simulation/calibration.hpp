@@ -19,7 +19,7 @@ struct CalibrationOptions {
   double cell_size = 0.05;                        ///< [m]
   SimulatorKind simulator = default_simulator();  ///< that digs
   /// Digs in drawn soils of all densities, in cells of 5 cm, for the scatter of the law; 0: none.
-  int draws = 100;
+  int draws = 200;
   /// These are along drawn paths too, for a law that is used where the path is not known: angle
   /// from 0.5 to 1.1 rad, penetration from 0.2 to 0.6 m, drag from 0.8 to 2.5 m, even; ours, digs
   /// of a third of a bucket to two buckets.
@@ -27,6 +27,10 @@ struct CalibrationOptions {
   SoilScatter scatter = {};  ///< of the drawn soils
   unsigned threads = 0;      ///< 0: one per core; the result is the same for any number
 };
+
+/// The machine without body and torque limits. Volumes do not depend on what it can hold: no soil is
+/// too hard to calibrate for.
+Machine that_never_stalls(Machine machine);
 
 /// Digs the simulator at every density, measures the bulking factor from its height maps as the
 /// paper does (section 3.1), and fits the forms of a law to it: once as measured, once corrected
@@ -39,8 +43,8 @@ struct CalibrationOptions {
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
                                      const CalibrationOptions& options = {});
 
-/// The law of the built-in simulator for digs along one path, from 11 digs at 0, 10 .. 100 % and 30
-/// for its scatter.
+/// The law of the built-in simulator for digs along one path, from 11 digs at 0, 10 .. 100 % and
+/// 100 for its scatter.
 /// @throws Error (bad_input) if the path cannot be driven
 DensityCalibration calibrate_path(const Machine& machine, const SoilKind& soil,
                                   const DigParameters& path, unsigned threads = 0);

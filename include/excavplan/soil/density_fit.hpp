@@ -81,8 +81,9 @@ struct DensityCalibration {
 /// The law that a calibration gives.
 DensityLaw law_of(const DensityCalibration& calibration);
 
-/// Sets the scatter of a form to the rms error of the densities that it gives for these digs,
-/// growing with the density as that of the digs below and above 50 %. @param digs  at least one
+/// Sets the scatter of a form so that its mean square below 50 % and above is that of the densities
+/// that the form gives for these digs; at 0 % and at 100 % it is 0 at least, and then twice that at
+/// 50 % at the other end. @param digs  at least one
 void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs);
 
 /// The text of a law file. @throws nothing

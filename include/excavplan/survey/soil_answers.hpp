@@ -31,24 +31,26 @@ struct SoilKnowledge {
   std::optional<Measured> water_content = {};
 };
 
+/// The density by the mass of the payload. Where the soil is unknown: means over the soils, their
+/// standard deviation, and the disagreement in the soil of at least 5 % where it is least.
+struct PayloadDensity {
+  Measured mass;                 ///< moist, of one dump [kg]
+  Measured dug_mass;             ///< with the spill: mass after / dumped, sd of the mass [kg]
+  Measured bulk_density;         ///< moist, in place, without the voids between blocks [kg/m^3]
+  Measured density_percent;      ///< by bulk density, water content and void ratios
+  Measured law_density_percent;  ///< by the law alone
+  /// Difference of the two over its standard deviation; both know the hole's volume [-].
+  double disagreement = 0.0;
+};
+
 /// The density if the soil is of one kind.
 struct SoilAnswer {
   std::string name;  ///< of the kind
   /// Its probability: the one before the dig, times that of the measured bulking factor and payload
   /// in this soil if all densities in 0 .. 100 % are equally likely.
   double weight = 0.0;
-  RelativeDensity density;  ///< in this soil
-};
-
-/// The density by the mass of the payload.
-struct PayloadDensity {
-  Measured mass;                 ///< moist, of one dump [kg]
-  Measured dug_mass;             ///< with the spill: mass after / dumped, sd of the mass [kg]
-  Measured bulk_density;         ///< moist, in place [kg/m^3]
-  Measured density_percent;      ///< by bulk density, water content and void ratios
-  Measured law_density_percent;  ///< by the law alone
-  /// Difference of the two over its standard deviation; both know the hole's volume [-].
-  double disagreement = 0.0;
+  RelativeDensity density;                ///< in this soil
+  std::optional<PayloadDensity> payload;  ///< likewise, if the payload was weighed
 };
 
 }  // namespace excavplan
