@@ -80,6 +80,7 @@ class ShadowFiller {
       : before_(scans.before),
         after_(scans.after),
         mixed_(scans.mixed),
+        inferred_(scans.inferred),
         ground_(ground),
         sight_(scans.after, scans.places),
         change_{after_.origin, after_.cell_size, after_.z - before_.z - ground.datum},
@@ -399,7 +400,8 @@ class ShadowFiller {
       variance += weight[i] * (sums[i] - mean).cwiseAbs2();
     }
     cut_rims(shadow, descent_at(hole, heap, 0.0), hole.floor);
-    variance(0) += std::pow(hole.floor_sd * tries[1].on_floor, 2) + rim_variance(shadow, hole);
+    variance(0) += std::pow(hole.floor_sd * tries[1].on_floor, 2) + rim_variance(shadow, hole) +
+                   place_variance(shadow, hole);
     if (shadow.hole_zone >= 0) variance_[static_cast<std::size_t>(shadow.hole_zone)] += variance(0);
     if (shadow.heap_zone >= 0) variance_[static_cast<std::size_t>(shadow.heap_zone)] += variance(1);
   }
@@ -440,6 +442,19 @@ class ShadowFiller {
     return hole.floor * hole.floor * shared * places;
   }
 
+  /// By the place of the sensor, where only the scan tells it: what a wall hides is as wide as the
+  /// wall is high, times the tangent of the rays, and half of it is the wall's own slope.
+  double place_variance(const Shadow& shadow, const Shape& hole) const {
+    if (!inferred_ || shadow.hiding.empty()) return 0.0;
+    double sds = 0.0;
+    for (const Rim& rim : shadow.hiding) {
+      const Cell at = {static_cast<Eigen::Index>(rim.place.y()),
+                       static_cast<Eigen::Index>(rim.place.x())};
+      sds += inferred_->tangent_sd({after_.x(at.col), after_.y(at.row), after_.z(at.row, at.col)});
+    }
+    return std::pow(0.5 * sds * hole.floor * hole.floor / after_.cell_size, 2);
+  }
+
   void enter(Cell at, double height, int zone) {
     after_.z(at.row, at.col) = before_.z(at.row, at.col) + ground_.datum + height;
     if (std::abs(height) > 3.0 * ground_.noise_sd && zone >= 0) {
@@ -450,6 +465,7 @@ class ShadowFiller {
   const HeightMap& before_;
   HeightMap& after_;
   const Eigen::ArrayXXi& mixed_;
+  const std::optional<SensorPlace>& inferred_;
   ChangedGround& ground_;
   AllSightLines sight_;
   HeightMap change_;  ///< after - before, less the datum

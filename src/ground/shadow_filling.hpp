@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,6 +11,7 @@
 #include <excavplan/ground/surface.hpp>
 
 #include "ground/change_zones.hpp"
+#include "ground/sensor_place.hpp"
 
 namespace excavplan {
 
@@ -19,6 +21,8 @@ struct ShadowedScans {
   HeightMap& after;              ///< NaN where unknown; shadows are filled
   const Eigen::ArrayXXi& mixed;  ///< 1 where drop_mixed_returns() dropped a cell of `after`
   const Surface& places;         ///< where its sensors stood, and what each saw
+  /// Set if nothing says where it stood but the scan itself.
+  const std::optional<SensorPlace>& inferred;
 };
 
 /// Fills ground of the scan after that lies in the shadow of what its sensors saw.

@@ -188,7 +188,9 @@ void sum_walls(Area& area, const Eigen::ArrayXXd& before) {
 struct Scans {
   HeightMap before;
   HeightMap after;
-  Eigen::ArrayXXi mixed;            // 1 where returns after were mixed and dropped
+  Eigen::ArrayXXi mixed;  // 1 where returns after were mixed and dropped
+  Surface places;         // sensors of the scan after, and what each saw
+  std::optional<SensorPlace> inferred;
   Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where unknown
   Eigen::ArrayXXd variance_after;
 
@@ -198,6 +200,14 @@ struct Scans {
   }
 };
 
+/// Where nothing says where the sensor stood, the scan itself may.
+std::optional<SensorPlace> complete_place(Surface& surface) {
+  if (!surface.sensors.empty()) return std::nullopt;
+  std::optional<SensorPlace> inferred = infer_sensor(surface);
+  if (inferred) surface.sensors = {inferred->place()};
+  return inferred;
+}
+
 Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
                std::vector<Object>& objects) {
   if (!same_grid(pair.before.height, pair.after.height)) {
@@ -206,9 +216,17 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
   }
   Surface before = pair.before;
   Surface after = pair.after;
+  complete_place(before);
   drop_mixed_returns(before);
+  const std::optional<SensorPlace> inferred = complete_place(after);
   const Eigen::ArrayXXi mixed = drop_mixed_returns(after);
-  Scans scans{before.height, realigned(after.height, pair.alignment), mixed, {}, {}};
+  Scans scans{before.height,
+              realigned(after.height, pair.alignment),
+              mixed,
+              {{}, {}, {}, after.sensors, after.seen_from},
+              inferred,
+              {},
+              {}};
   const bool told = before.variance.size() == scans.before.z.size() &&
                     after.variance.size() == scans.after.z.size();
   if (told) {
@@ -236,6 +254,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.grid.origin = scans.before.origin;
   area.grid.cell_size = scans.before.cell_size;
   Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
+  area.inferred = scans.inferred;
   area.unknown = difference.isNaN().cast<int>();
   area.ground =
       find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell_size, options);
@@ -244,8 +263,9 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.kinds.assign(area.zones.size(), ZoneKind::other);
 
   std::vector<double> shadows(area.zones.size(), 0.0);
-  if (!pair.after.sensors.empty()) {
-    shadows = fill_shadows({scans.before, scans.after, scans.mixed, pair.after}, area.ground);
+  if (!scans.places.sensors.empty()) {
+    shadows = fill_shadows({scans.before, scans.after, scans.mixed, scans.places, scans.inferred},
+                           area.ground);
   }
   const Eigen::ArrayXXi shadow = (scans.after.z - scans.before.z).isNaN().select(0, area.unknown);
   const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,6 +12,7 @@
 #include "ground/change_zones.hpp"
 #include "ground/error_field.hpp"
 #include "ground/objects.hpp"
+#include "ground/sensor_place.hpp"
 #include "ground/zone_parts.hpp"
 
 namespace excavplan {
@@ -39,6 +41,7 @@ struct Area {
   std::vector<ZoneKind> kinds;
   ZoneErrors errors;
   std::vector<Object> objects;
+  std::optional<SensorPlace> inferred;  // of the scan after, where nothing says it
 };
 
 /// Surveys one area: corrects for motion, removes objects, finds, fills and sums zones, and

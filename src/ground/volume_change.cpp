@@ -162,6 +162,26 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
   }
 }
 
+std::string text_of(const Eigen::Vector3d& place) {
+  return "(" + hundredths(place.x()) + ", " + hundredths(place.y()) + ", " + hundredths(place.z()) +
+         ") m";
+}
+
+/// Of a place that no one told.
+void warn_of_place(const Area& area, std::vector<Warning>& warnings) {
+  const bool has_shadow = std::any_of(area.zones.begin(), area.zones.end(),
+                                      [](const ZoneSum& zone) { return zone.shadow > 0.0; });
+  if (area.inferred && has_shadow) {
+    warnings.push_back(
+        {"sensor_place_inferred",
+         "nothing says where the sensor of the scan after stood: by the number of its points on "
+         "slopes it was at about " +
+             text_of(area.inferred->place()) +
+             ", from where ground was filled that it did not see; give the place by "
+             "--sensor-origin"});
+  }
+}
+
 void warn_of_ground(const ChangedGround& ground, std::vector<Warning>& warnings) {
   if (ground.stable_share < least_stable_share) {
     warnings.push_back(
@@ -309,6 +329,7 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
     }
   }
   warn_of_ground(area.ground, change.warnings);
+  warn_of_place(area, change.warnings);
   AreaChange result;
   result.difference = std::move(area.grid);
   result.difference.z =

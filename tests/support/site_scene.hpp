@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,6 +45,8 @@ struct Sampling {
   double grass_height = 0.0;         ///< these spread evenly up to here [m]
   double face_share = 0.0;           ///< points on the near face of the wall, as a share of all
   std::vector<Lidar> lidars_before;  ///< one for each cloud
+  bool places_told = true;           ///< the clouds say where their lidars stood
+  double voxel = 0.0;                ///< edge of the cubes that are left one point each [m]
   std::vector<Lidar> lidars_after;
 };
 
@@ -174,6 +178,16 @@ inline Points even_scan(const SiteScene& scene, bool after, std::uint64_t seed) 
   return cloud;
 }
 
+/// Leaves the first point in each cube.
+inline void thin(Points& points, double edge) {
+  std::set<std::array<long long, 3>> taken;
+  const auto is_later = [&](const Eigen::Vector3d& p) {
+    const auto number = [&](int axis) { return std::llround(p(axis) / edge); };
+    return !taken.insert({number(0), number(1), number(2)}).second;
+  };
+  points.erase(std::remove_if(points.begin(), points.end(), is_later), points.end());
+}
+
 /// The clouds of one scan, in the frame of the scene.
 inline std::vector<Points> scanned(const SiteScene& scene, bool after, std::uint64_t seed) {
   const auto& lidars = after ? scene.sampling.lidars_after : scene.sampling.lidars_before;
@@ -182,6 +196,7 @@ inline std::vector<Points> scanned(const SiteScene& scene, bool after, std::uint
   std::vector<Points> clouds;
   for (std::size_t i = 0; i < lidars.size(); ++i) {
     clouds.push_back(scan_surface(surface, lidars[i], seed * 8 + (after ? 4 : 0) + i));
+    if (scene.sampling.voxel > 0.0) thin(clouds.back(), scene.sampling.voxel);
   }
   return clouds;
 }
@@ -194,7 +209,7 @@ inline Scan handed_over(const SiteScene& scene, bool after, std::uint64_t seed) 
   for (Points& points : scanned(scene, after, seed)) {
     if (frame) std::transform(points.begin(), points.end(), points.begin(), frame);
     auto cloud = std::make_shared<Cloud>();
-    if (const std::size_t i = scan.clouds.size(); i < lidars.size()) {
+    if (const std::size_t i = scan.clouds.size(); i < lidars.size() && scene.sampling.places_told) {
       cloud->sensor_origin = frame ? frame(lidars[i].position) : lidars[i].position;
     }
     cloud->width = points.size();

@@ -79,6 +79,19 @@ inline void scan_from(Draft& d, double height, bool both_sides) {
 }
 
 inline void lidar_one(Draft& d) { scan_from(d, d.random.uniform(4.0, 6.0), false); }
+/// Nothing says where the lidars stood.
+inline void untold(Draft& d, double height, bool both_sides) {
+  scan_from(d, height, both_sides);
+  d.scene.sampling.places_told = false;
+}
+inline void lidar_untold(Draft& d) { untold(d, d.random.uniform(4.0, 6.0), false); }
+inline void lidar_untold_low(Draft& d) { untold(d, 2.5, false); }
+inline void lidar_untold_two(Draft& d) { untold(d, 2.5, true); }
+/// One point is left in a voxel, which hides where the lidar stood.
+inline void lidar_untold_thinned(Draft& d) {
+  lidar_untold(d);
+  d.scene.sampling.voxel = 0.04;
+}
 inline void lidar_one_low(Draft& d) { scan_from(d, 2.5, false); }
 inline void lidar_two(Draft& d) { scan_from(d, 2.5, true); }
 

@@ -14,6 +14,7 @@
 #include <excavplan/simulation/depth_camera.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
+#include "ground/sensor_place.hpp"
 #include "support/survey_scenes.hpp"
 
 namespace excavplan {
@@ -90,6 +91,11 @@ TEST(SightLines, ReturnsMixedAtARimAreDropped) {
   EXPECT_EQ(dropped.sum(), 1);
 }
 
+bool has_warning(const VolumeChange& change, const std::string& code) {
+  return std::any_of(change.warnings.begin(), change.warnings.end(),
+                     [&](const Warning& warning) { return warning.code == code; });
+}
+
 // ---- One standpoint ---------------------------------------------------------------------------
 
 /// The whole scene from one place, by a lidar: walls of 80 degrees.
@@ -145,11 +151,37 @@ TEST_F(OneStandpoint, ShadowsAreFilledWithinTheirErrorWhereTheSensorIsKnown) {
   EXPECT_NEAR(change.dumped.value, dig.heap_volume(), 0.03 * dig.heap_volume());
 }
 
-TEST_F(OneStandpoint, WithoutTheSensorsPlaceItsShadowsAreGapsAsOthers) {
-  const auto off = [&](bool known) {
-    return std::abs(measured(known).excavated.value - dig.pit_volume());
+TEST_F(OneStandpoint, TellsItsPlaceByThePointsOnSlopes) {
+  RasterOptions raster;
+  raster.cell_size = 0.06;
+  const auto found = infer_sensor(survey_surface(after, extent, raster));
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->place() - place).norm(), 0.15 * place.norm());
+  const Eigen::Vector3d pit(dig.pit_x, dig.pit_y, 0.0);
+  const auto tangent = [&](const Eigen::Vector3d& from) {
+    return (pit - from).head<2>().norm() / from.z();
   };
-  EXPECT_LT(off(true), 0.5 * off(false));
+  EXPECT_NEAR(tangent(found->place()), tangent(place), 2.0 * found->tangent_sd(pit));
+}
+
+TEST_F(OneStandpoint, IsToldByNoEvenGroundAndNoThinnedPoints) {
+  RasterOptions raster;
+  raster.cell_size = 0.06;
+  EXPECT_FALSE(infer_sensor(survey_surface(before, extent, raster)));
+  Surface thinned = survey_surface(after, extent, raster);
+  thinned.points = thinned.points.min(1);
+  EXPECT_FALSE(infer_sensor(thinned));
+}
+
+TEST_F(OneStandpoint, ShadowsAreFilledWithinTheirErrorWhereOnlyTheScanTellsItsPlace) {
+  const VolumeChange change = measured(false);
+  const auto k = bulking_factor(change);
+  ASSERT_TRUE(k);
+  EXPECT_NEAR(k->value, dig.bulking, 0.03 * dig.bulking);
+  EXPECT_NEAR(k->value, dig.bulking, 2.0 * k->sd);
+  EXPECT_GT(k->sd, bulking_factor(measured(true))->sd);
+  EXPECT_TRUE(has_warning(change, "sensor_place_inferred"));
+  EXPECT_FALSE(has_warning(measured(true), "sensor_place_inferred"));
 }
 
 TEST_F(OneStandpoint, ShadowsOfAHoleDoNotEndTrustWhereTheSensorIsKnown) {
