@@ -95,9 +95,7 @@ DensityOptions options_of(const Inputs& inputs, const Machine& machine) {
   DensityOptions options = inputs.options;
   options.registered = !inputs.still;
   apply_method(inputs.method, options);
-  if (inputs.dug_path) {
-    options.dug_path = DugPath{machine, *inputs.dug_path, inputs.dug_start};
-  }
+  if (inputs.dug_path) options.dug_path = DugPath{machine, *inputs.dug_path, inputs.dug_start};
   return options;
 }
 
