@@ -28,8 +28,8 @@ struct CalibrationOptions {
   unsigned threads = 0;      ///< 0: one per core; the result is the same for any number
 };
 
-/// The machine without body and torque limits. Volumes do not depend on what it can hold: no soil is
-/// too hard to calibrate for.
+/// The machine without body and torque limits. Volumes do not depend on what it can hold: no soil
+/// is too hard to calibrate for.
 Machine that_never_stalls(Machine machine);
 
 /// Digs the simulator at every density, measures the bulking factor from its height maps as the
