@@ -573,10 +573,11 @@ double covered_by_heap(const std::vector<Area>& areas) {
 }
 
 /// Ground under the heap that gave way hides part of the heap.
-void add_pressed_ground(const std::vector<Area>& areas, const Attribution& attribution,
-                        VolumeChange& result) {
+std::optional<AttributedChange> pressed_ground(const std::vector<Area>& areas,
+                                               const Attribution& attribution,
+                                               VolumeChange& result) {
   const double heap = covered_by_heap(areas);
-  if (!(heap > 0.0)) return;
+  if (!(heap > 0.0)) return std::nullopt;
   double rut_volume = 0.0;
   double rut_area = 0.0;
   for (const Change& change : attribution.changes) {
@@ -588,18 +589,18 @@ void add_pressed_ground(const std::vector<Area>& areas, const Attribution& attri
   }
   const double shown = rut_area > 0.0 ? pressed_to_rut * rut_volume / rut_area : 0.0;
   result.errors.attribution(2, 2) += std::pow(shown * heap, 2);
-  result.attribution.push_back({"ground under the heap, if it gave way by " +
-                                    number_text(100.0 * pressed_depth) + " cm: no scan shows it",
-                                {pressed_depth * heap, 0.5 * pressed_depth * heap},
-                                false,
-                                pressed_weight});
+  return AttributedChange{"ground under the heap, if it gave way by " +
+                              number_text(100.0 * pressed_depth) + " cm: no scan shows it",
+                          {pressed_depth * heap, 0.5 * pressed_depth * heap},
+                          false,
+                          pressed_weight};
 }
 
-void state_readings(const Attribution& attribution, VolumeChange& result) {
+void state_readings(const Attribution& attribution, const std::optional<AttributedChange>& pressed,
+                    VolumeChange& result) {
   const auto k = bulking_factor(result);
   if (!k) return;
   const double sd = bulking_errors(result).scans;
-  const AttributedChange& pressed = result.attribution.back();
   double weight = 0.0;
   for (const Combination& one : attribution.combinations) {
     if (one.weight < least_stated || result.readings.size() == most_readings) break;
@@ -607,9 +608,12 @@ void state_readings(const Attribution& attribution, VolumeChange& result) {
     result.readings.push_back({text_of(attribution, one), one.weight, {factor, sd}});
     weight += one.weight;
   }
-  const double deeper = pressed.volume.value / result.before.value;
-  result.readings.push_back({"with " + pressed.what, pressed.probability, {k->value + deeper, sd}});
-  weight += pressed.probability;
+  if (pressed) {
+    const double deeper = pressed->volume.value / result.before.value;
+    result.readings.push_back(
+        {"with " + pressed->what, pressed->probability, {k->value + deeper, sd}});
+    weight += pressed->probability;
+  }
   for (Reading& reading : result.readings) reading.weight /= weight;
 }
 
@@ -666,8 +670,9 @@ void state_open_changes(const std::vector<Area>& areas, const Attribution& attri
   if (attribution.changes.empty()) return;
   list_changes(areas, attribution, result);
   add_stirred(areas, result);
-  add_pressed_ground(areas, attribution, result);
-  state_readings(attribution, result);
+  const auto pressed = pressed_ground(areas, attribution, result);
+  if (pressed) result.attribution.push_back(*pressed);
+  state_readings(attribution, pressed, result);
   warn_of_readings(result);
   warn_of_stirred(attribution, result);
 }

@@ -37,8 +37,8 @@ double cone_volume(double radius) {
   return pi / 3.0 * std::pow(radius, 3) * std::tan(35.0 * scenes::degree);
 }
 
-/// Mean heights of 5 cm cells with 2 mm of noise.
-HeightMap scanned(const Shape& shape, std::uint64_t scan) {
+/// Mean heights of 5 cm cells.
+HeightMap scanned(const Shape& shape, std::uint64_t scan, double noise = 0.002) {
   constexpr int fine = 4;
   Random random(5, scan);
   HeightMap map = flat_ground(extent, 0.05);
@@ -49,7 +49,7 @@ HeightMap scanned(const Shape& shape, std::uint64_t scan) {
         sum += shape(map.x(col) + 0.05 * ((i % fine + 0.5) / fine - 0.5),
                      map.y(row) + 0.05 * ((i / fine + 0.5) / fine - 0.5));
       }
-      map.z(row, col) = sum / (fine * fine) + 0.002 * random.normal();
+      map.z(row, col) = sum / (fine * fine) + noise * random.normal();
     }
   }
   return map;
@@ -99,6 +99,23 @@ TEST(Attribution, GroundThatGaveWayUnderTheHeapIsOneOfTheReadings) {
   const VolumeChange change = change_of(pressed);
   EXPECT_LT(bulking_factor(change)->value, 1.22);
   EXPECT_TRUE(reads(change, 1.25));
+}
+
+TEST(Attribution, HeapThinnerThanACentimetreHasNoReadingOfPressedGround) {
+  constexpr double thickness = 0.006;
+  const Rectangle pit = {-1.5, -0.9, 1.5, 0.9};
+  const Rectangle heap = {3.2, -2.5, 7.7, 2.5};
+  const auto thin = [&](double x, double y) {
+    return box(x, y, pit, -0.02) + box(x, y, heap, thickness);
+  };
+  const auto level = [](double, double) { return 0.0; };
+  const VolumeChange change =
+      measure_change(scanned(level, 1, 0.0005), scanned(thin, 2, 0.0005), {});
+  for (const AttributedChange& open : change.attribution) {
+    EXPECT_EQ(open.what.find("gave way"), std::string::npos);
+  }
+  ASSERT_FALSE(change.readings.empty());
+  EXPECT_NEAR(change.readings.front().bulking.value, 4.5 * 5.0 * thickness / (5.4 * 0.02), 0.1);
 }
 
 TEST(Attribution, SecondHeapIsCountedAndTheOtherReadingStated) {
