@@ -147,9 +147,13 @@ class ChangeReader {
   const std::optional<Rectangle>& given(double sign) const {
     return sign < 0.0 ? options_.dig_area : options_.dump_area;
   }
+  double sign_of(Place p) const { return zone(p).volume < 0.0 ? -1.0 : 1.0; }
   bool in_given(Place p, double sign) const {
     return !given(sign) || given(sign)->contains(zone(p).centre.x(), zone(p).centre.y());
   }
+
+  /// Lies in an area that was given for what it is.
+  bool is_told(Place p) const { return given(sign_of(p)) && in_given(p, sign_of(p)); }
 
   /// The largest zone of a sign; of those that rose, one away from the hole.
   std::optional<Place> largest(std::size_t area, double sign) const {
@@ -186,7 +190,7 @@ class ChangeReader {
   // ---- Tracks ---------------------------------------------------------------------------------
 
   bool looks_like_track(Place p) const {
-    if (is(p, hole_) || is(p, heap_) || part(p) == Part::churn) return false;
+    if (is(p, hole_) || is(p, heap_) || part(p) == Part::churn || is_told(p)) return false;
     return shape(p).is_track_wide() && looks_[p.area][p.zone].lasting > lasting_track &&
            (has_twin(p) || (shape(p).is_strip() && shape(p).height < highest_lone_track));
   }
@@ -248,8 +252,13 @@ class ChangeReader {
     if (!in_given(p, fell ? -1.0 : 1.0) && (fell || !beside(p))) {
       return {"ground outside the given area", prior::no_soil, true};
     }
+    if (is_told(p) && !is(p, hole_) && !is(p, heap_)) return told(fell);
     if (is_within_error(p)) return {"changes within their error", prior::doubtful, true};
     return fell ? meaning_of_fall(p) : meaning_of_rise(p);
+  }
+
+  static Meaning told(bool fell) {
+    return {fell ? "a hole in the given area" : "a heap in the given area", prior::certain, false};
   }
 
   /// Not known to have changed at all: filled where it was not seen, or at a step in both scans.
@@ -275,7 +284,6 @@ class ChangeReader {
     if (is(p, hole_)) return {"the hole", given(-1.0) ? prior::certain : prior::main_hole, false};
     if (is_rut_[p.area][p.zone]) return {"ruts", prior::no_soil, true};
     if (part(p) == Part::tail) return {"the low edge of a hole", edge_prior(p), false};
-    if (given(-1.0)) return {"a hole in the given area", prior::certain, false};
     if (beside(p)) return {"a hole beside the largest", prior::beside_main, false};
     const bool is_shallow = shape(p).height < std::min(shallow, shallow_share * hole_height());
     if (is_shallow) return {"ground that fell a little", prior::shallow_fall, false};
@@ -294,7 +302,6 @@ class ChangeReader {
     if (is_thing && !beside(p)) return meaning_of_thing(p);
     if (beside(p)) return {"spill beside the hole", prior::certain, true};
     if (part(p) == Part::tail) return {"the low edge of a heap", edge_prior(p), false};
-    if (given(1.0)) return {"a heap in the given area", prior::certain, false};
     if (heap_ && p.area == heap_->area && beside_heap_[p.zone]) {
       return {"soil beside the heap", prior::beside_main, false};
     }

@@ -225,5 +225,20 @@ TEST(Attribution, GivenAreasLeaveNothingOpenOutside) {
   EXPECT_FALSE(warns(change, "attribution_open", false));
 }
 
+TEST(Attribution, WhatLiesInAGivenAreaBelongsToTheDigWhateverItLooksLike) {
+  const Rectangle like_a_rut = {2.0, -2.4, 2.85, 0.4};
+  const auto with_both = [&](double x, double y) {
+    return dug(x, y) + box(x, y, like_a_rut, -0.04) + box(x, y, {3.6, -2.2, 4.0, -1.8}, 0.3);
+  };
+  ChangeOptions options;
+  options.dig_area = Rectangle{-2.0, -2.6, 3.0, 2.6};
+  options.dump_area = Rectangle{3.2, -2.6, 8.0, 2.6};
+  const VolumeChange change = change_of(with_both, options);
+  EXPECT_NEAR(change.before.value, hole + 0.04 * 0.85 * 2.8, 0.01);
+  EXPECT_NEAR(change.after.value, 1.25 * hole + 0.3 * 0.16, 0.01);
+  EXPECT_FALSE(warns(change, "attribution_open", false));
+  EXPECT_LE(bulking_factor(change)->sd, 1.5 * bulking_errors(change).scans);
+}
+
 }  // namespace
 }  // namespace excavplan
