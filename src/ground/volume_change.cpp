@@ -13,6 +13,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/attribution.hpp"
+#include "ground/open_changes.hpp"
 #include "ground/surveyed_area.hpp"
 
 namespace excavplan {

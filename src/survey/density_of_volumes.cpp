@@ -13,6 +13,7 @@
 #include <excavplan/simulation/calibration.hpp>
 
 #include "base/check.hpp"
+#include "base/normal_mixture.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -114,8 +115,6 @@ struct Answer {
   double evidence = 1.0;  ///< likelihood of what was measured, up to a factor for all soils
   std::optional<PayloadDensity> payload;
 };
-
-double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
 /// Finds the density of an estimate by a law, and by the payload if it is known.
 class SoilReader {
@@ -324,6 +323,24 @@ void add_readings(const DensityLaw& law, const Measured& k, DensityEstimate& est
   }
 }
 
+/// The interval of the mixture of the likely readings.
+void widen_by_readings(DensityEstimate& estimate) {
+  RelativeDensity& density = *estimate.density;
+  const double explained =
+      variance_by_readings(estimate.change) / std::pow(estimate.bulking->sd, 2);
+  const double rest = std::sqrt(std::pow(density.sd_percent, 2) -
+                                explained * std::pow(density.sd_given_law_percent, 2));
+  std::vector<NormalPart> parts;
+  for (const DensityReading& each : estimate.readings) {
+    if (is_unseen(each.reading)) continue;
+    const double shift = each.density_percent - estimate.readings.front().density_percent;
+    parts.push_back({each.reading.weight, std::clamp(density.percent + shift, 0.0, 100.0), rest});
+  }
+  if (parts.size() < 2 || !(rest > 0.0)) return;
+  density.interval_percent = {std::clamp(quantile_of(parts, 0.025), 0.0, 100.0),
+                              std::clamp(quantile_of(parts, 0.975), 0.0, 100.0)};
+}
+
 void take_any_soil(DensityEstimate& estimate) {
   estimate.density = estimate.any_soil;
   estimate.law.name = "any soil";
@@ -386,6 +403,7 @@ void set_density(DensityEstimate& estimate, const LawsForDig& laws, const Densit
   estimate.payload = answer.payload;
   add_soils(reader, laws, estimate);
   add_readings(laws.law, k, estimate);
+  widen_by_readings(estimate);
   if (options.soil.unknown) take_any_soil(estimate);
   estimate.trustworthy = known_error && estimate.density->trustworthy;
   for (const Warning& warning : estimate.density->warnings) estimate.warnings.push_back(warning);
