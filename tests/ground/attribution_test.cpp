@@ -256,6 +256,28 @@ TEST(Attribution, WeightFarFromTheAnswerIsInTheDeviation) {
   EXPECT_NEAR(bulking_errors(change).attribution, sd, 0.03 * sd);
 }
 
+TEST(Attribution, LooseSoilOfAnEarlierDigIsAReading) {
+  const auto ridge = [](double x, double y) {
+    return std::abs(x) < 1.5 ? std::max(0.0, 0.2 - 0.65 * std::abs(y + 0.2)) : 0.0;
+  };
+  double loose = 0.0;
+  for (double x = -3.0; x < 3.0; x += 0.01) {
+    for (double y = -2.5; y < 2.5; y += 0.01) loose += dug(x, y) < 0.0 ? 1e-4 * ridge(x, y) : 0.0;
+  }
+  Dig dig;
+  dig.bulking = 1.25 + loose / hole;
+  const auto after = [&](double x, double y) {
+    return scenes::change_at(dig, scenes::Part::whole, x, y) +
+           (dug(x, y) < 0.0 ? 0.0 : ridge(x, y));
+  };
+  const VolumeChange change = measure_change(scanned(ridge, 1), scanned(after, 2));
+  EXPECT_TRUE(warns(change, "earlier_soil", true));
+  EXPECT_TRUE(reads(change, 1.25));
+  EXPECT_LT(std::abs(bulking_factor(change)->value - 1.25), 1.96 * bulking_factor(change)->sd);
+  const VolumeChange level = change_of(dug);
+  EXPECT_FALSE(warns(level, "earlier_soil", false) || warns(level, "earlier_soil", true));
+}
+
 TEST(Attribution, UprightThingsAndClodsAreToldApart) {
   const auto with_both = [](double x, double y) {
     double z = dug(x, y) + box(x, y, {3.0, -2.2, 3.4, -1.8}, 0.3);
