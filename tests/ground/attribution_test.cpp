@@ -278,6 +278,15 @@ TEST(Attribution, LooseSoilOfAnEarlierDigIsAReading) {
   EXPECT_FALSE(warns(level, "earlier_soil", false) || warns(level, "earlier_soil", true));
 }
 
+TEST(Attribution, ThinDigIsNotStirredGround) {
+  const auto thin = [](double x, double y) {
+    return box(x, y, {-1.5, -0.9, 1.5, 0.9}, -0.02) + box(x, y, {3.2, -2.0, 7.4, 2.0}, 0.008);
+  };
+  const auto level = [](double, double) { return 0.0; };
+  const VolumeChange change = measure_change(scanned(level, 1, 0.0005), scanned(thin, 2, 0.0005));
+  EXPECT_FALSE(warns(change, "stirred_ground", false) || warns(change, "stirred_ground", true));
+}
+
 TEST(Attribution, UprightThingsAndClodsAreToldApart) {
   const auto with_both = [](double x, double y) {
     double z = dug(x, y) + box(x, y, {3.0, -2.2, 3.4, -1.8}, 0.3);
