@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -249,12 +250,13 @@ Warning flat_water(const LevelFloor& floor) {
 }
 
 /// Volume of the hole below a level floor, if water hides this share of its depth: the area of the
-/// hole goes on shrinking with depth as above the floor.
+/// hole goes on shrinking with depth as above the floor, to nothing.
 double hidden_volume(const LevelFloor& floor, double hole, double share) {
-  const double deeper = floor.depth * share / (1.0 - share);
   const double flare =
       2.0 * std::max(0.0, hole - floor.area * floor.depth) / std::pow(floor.depth, 2);
-  return std::max(0.0, floor.area * deeper - 0.5 * flare * deeper * deeper);
+  const double bottom = flare > 0.0 ? floor.area / flare : std::numeric_limits<double>::infinity();
+  const double deeper = std::min(floor.depth * share / (1.0 - share), bottom);
+  return floor.area * deeper - 0.5 * flare * deeper * deeper;
 }
 
 /// The reading that a level floor on even ground is water, of any depth.
@@ -267,7 +269,7 @@ void add_water(const LevelFloor& floor, VolumeChange& change) {
   if (!k || change.readings.empty() || floor.share < least_share || !(floor.depth > 0.0)) return;
   const double hole = change.before.value;
   const double least = hidden_volume(floor, hole, shallowest);
-  const double most = std::max(least, hidden_volume(floor, hole, deepest));
+  const double most = hidden_volume(floor, hole, deepest);
   const double highest = k->value * hole / (hole + least);
   const double lowest = k->value * hole / (hole + most);
   const std::string what =

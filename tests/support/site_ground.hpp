@@ -63,8 +63,9 @@ inline void scrape_like_rut(Draft& d) {
 
 /// Steeper than loose soil, as cohesive soil stands.
 inline void steep_heap(Draft& d) {
-  d.add_heap(d.random.uniform(0.06, 0.16), d.random.uniform(0.8, 2.5),
-             d.random.uniform(50.0, 60.0) * degree);
+  const double volume = d.random.uniform(0.06, 0.16);
+  const double gap = d.random.uniform(0.8, 2.5);
+  d.add_heap(volume, gap, d.random.uniform(50.0, 60.0) * degree);
 }
 
 /// Ground that breaks into blocks.
