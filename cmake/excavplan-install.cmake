@@ -45,6 +45,13 @@ excavplan_install(planning
 excavplan_install(clouds
   SUMMARY "Point clouds in and out, height maps, terrain and efficiency from them"
   REQUIRES_PUBLIC excavplan-planning)
+get_target_property(recordings_links excavplan_recordings EXCAVPLAN_LINKS)
+if(NOT recordings_links)
+  set(recordings_links "")
+endif()
+excavplan_install(recordings
+  SUMMARY "Scans from rosbag2, MCAP and ROS 1 recordings"
+  REQUIRES_PUBLIC excavplan-clouds LINKS ${recordings_links})
 if(EXCAVPLAN_SURVEY)
   excavplan_install(survey
     SUMMARY "Density from scans, survey planning and depth images"

@@ -16,17 +16,15 @@ struct Inputs {
   std::string image;
   std::string intrinsics;
   std::string average;
-  std::optional<std::string> pose;
-  bool level = false;
-  std::optional<std::string> points;
-  std::optional<std::string> pose_out;
+  PoseInputs pose;
   std::string out;
 };
 
 const About about = {
     "depth-to-cloud",
     "Turns a depth image (16-bit single-channel PNG), or several frames of one view averaged, into "
-    "a cloud in the site frame. The intrinsics are a JSON file {\"format\": "
+    "a cloud in the site frame. The intrinsics are those of Open3D or RealSense (JSON), of "
+    "camera_calibration or CameraInfo (ROS, YAML), or a JSON file {\"format\": "
     "\"excavplan-depth-intrinsics\", \"version\": 1, \"fx\": 615.5, \"fy\": 615.5, \"cx\": 320, "
     "\"cy\": 240} in pixels, optionally with depth_unit_m (0.001), min_depth_m (0.1) and "
     "max_depth_m (20). The camera pose is given (--pose), found from known points "
@@ -45,21 +43,12 @@ const About about = {
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("IMAGE", inputs.image, "depth image, 16-bit PNG");
-  arguments.file("intrinsics", inputs.intrinsics, "camera intrinsics, JSON");
+  arguments.file("intrinsics", inputs.intrinsics, "camera intrinsics, JSON or YAML");
   arguments.require("intrinsics");
   arguments.text("average", "FILES", inputs.average,
                  "more frames of the same view, averaged with IMAGE pixel by pixel: files "
                  "separated by commas, or a folder, for all its .png files");
-  arguments.file("pose", inputs.pose,
-                 "4 x 4 text matrix that transforms the camera frame into the site frame");
-  arguments.flag("level", inputs.level,
-                 "level the cloud by the ground plane: origin on the ground below the camera, z "
-                 "up, x along the view direction");
-  arguments.file("points", inputs.points,
-                 "CSV of 3 or more known points: u_px,v_px (or camera_x_m,camera_y_m,camera_z_m) "
-                 "and x_m,y_m,z_m in the site frame");
-  arguments.output("pose-out", inputs.pose_out,
-                   "write the pose found, for --pose of the next scan");
+  declare_pose(arguments, inputs.pose, "u_px,v_px (or scan_x_m,scan_y_m,scan_z_m)");
   arguments.output("out", inputs.out, "cloud to write: " + cloud_endings());
   arguments.require("out");
 }
@@ -85,34 +74,18 @@ std::vector<std::string> frames_of(const Inputs& inputs) {
   return frames;
 }
 
-std::optional<FoundPose> find_pose(const Inputs& inputs, const Cloud& cloud,
-                                   const DepthIntrinsics& intrinsics) {
-  if (inputs.level) return levelled_pose(cloud);
-  if (inputs.points) return pose_from_points(*inputs.points, cloud, intrinsics);
-  if (inputs.pose) return FoundPose{read_frame(*inputs.pose), {{"method", "given"}}, {}};
-  return std::nullopt;
-}
-
-void check(const Inputs& inputs) {
-  if ((inputs.pose ? 1 : 0) + (inputs.level ? 1 : 0) + (inputs.points ? 1 : 0) > 1) {
-    usage_error("--pose, --level and --points are mutually exclusive");
-  }
-  if (inputs.pose_out && !inputs.level && !inputs.points) {
-    usage_error("--pose-out needs --level or --points");
-  }
-}
-
 Outcome convert(const Inputs& inputs) {
-  check(inputs);
+  check_pose(inputs.pose);
   const CloudFormat format = cloud_format_of_name(inputs.out);
   const DepthIntrinsics intrinsics = load_intrinsics(inputs.intrinsics);
   const std::vector<std::string> frames = frames_of(inputs);
   AveragedDepth average = average_depth_images(frames, intrinsics);
   Cloud& cloud = average.cloud;
-  const auto pose = find_pose(inputs, cloud, intrinsics);
-  if (pose) transform(cloud, pose->site_from_camera);
+  const auto pose = find_pose(inputs.pose, cloud, [&](const std::string& path) {
+    return read_known_points(path, cloud, intrinsics);
+  });
+  if (pose) transform(cloud, pose->site_from_scan);
   const CloudSummary summary = summarise(cloud);
-  if (inputs.pose_out) write_frame(*inputs.pose_out, pose->site_from_camera);
   write_cloud(inputs.out, cloud, format);
 
   Outcome outcome;

@@ -5,6 +5,7 @@
 #include "base/files.hpp"
 #include "shared/estimate.hpp"
 #include "shared/method_inputs.hpp"
+#include "shared/recordings.hpp"
 #include "shared/scans.hpp"
 #include "shared/soil_inputs.hpp"
 #include "shared/survey_planning.hpp"
@@ -22,6 +23,8 @@ const About about = {
       "separate scans of the dig area and of the dump area"},
      {"estimate-density before.pcd after.pcd --dug-path 45deg,0.35m,1.5m --dug-start 6.05",
       "known path: corrects for soil that fell back into the cut"},
+     {"estimate-density run.db3:/points@0s+2s run.db3:/points@95s+2s --tf-frame map",
+      "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
       "without scans: expected density error of a D435i on a 2.5 m mast"},
      {"estimate-density before.pcd after.pcd --json --plot change.svg",
@@ -41,13 +44,14 @@ struct Inputs {
   std::optional<std::string> plan_survey;
   std::optional<DigParameters> dug_path;
   std::optional<double> dug_start;
-  std::string machine = "zx120";
   SoilInputs soil;
   std::optional<std::string> plot;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
-  arguments.positional("BEFORE", inputs.before, "cloud before the dig: PCD, PLY or XYZ");
+  arguments.positional(
+      "BEFORE", inputs.before,
+      "cloud before the dig: PCD, PLY, LAS or XYZ, or " + std::string(recording_form));
   arguments.positional("AFTER", inputs.after, "cloud after the dig");
   arguments.file("dump-before", inputs.dump_before,
                  "cloud of the dump area before; BEFORE and AFTER then show the dig area only");
@@ -73,16 +77,16 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("dug-start", inputs.dug_start, Quantity::length,
                    "x at which that path enters the ground: measures the soil that fell back into "
                    "the cut; needs scans in the site frame");
-  arguments.machine(inputs.machine);
+  declare_machine_in_view(arguments, inputs.frames.view);
   arguments.plot(inputs.plot, "the height change and its zones");
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
 
-DigScans scans_of(const Inputs& inputs) {
-  const ScanPair whole = scan_pair(*inputs.before, *inputs.after, inputs.frames);
+DigScans scans_of(const Inputs& inputs, ScanReport& report) {
+  const ScanPair whole = placed_pair(*inputs.before, *inputs.after, inputs.frames, report);
   DigScans scans{whole.before, whole.after};
   if (inputs.dump_before) {
-    scans.dump = scan_pair(*inputs.dump_before, *inputs.dump_after, inputs.frames);
+    scans.dump = placed_pair(*inputs.dump_before, *inputs.dump_after, inputs.frames, report);
   }
   return scans;
 }
@@ -92,7 +96,8 @@ DensityOptions options_of(const Inputs& inputs) {
   options.registered = !inputs.still;
   apply_method(inputs.method, options);
   if (inputs.dug_path) {
-    options.dug_path = DugPath{machine_named(inputs.machine), *inputs.dug_path, inputs.dug_start};
+    options.dug_path =
+        DugPath{machine_named(inputs.frames.view.machine), *inputs.dug_path, inputs.dug_start};
   }
   return options;
 }
@@ -102,9 +107,10 @@ Outcome work_on_scans(const Inputs& inputs) {
     usage_error("--dump-before and --dump-after must be given together");
   }
   if (inputs.dug_start && !inputs.dug_path) usage_error("--dug-start needs --dug-path");
-  const DigScans scans = scans_of(inputs);
+  ScanReport report;
+  const DigScans scans = scans_of(inputs, report);
   DensityOptions options = options_of(inputs);
-  const DensityLaw law = law_of(inputs.soil, inputs.machine, options);
+  const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
   BothEstimates both;
   DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   const auto estimate = [&] {
@@ -117,6 +123,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   naming_options({{"path that was dug", "--dug-path"}, {"inside the area", "inside --area"}},
                  [&] { with_frame_hint(pair_frame_hint, estimate); });
   Outcome outcome = estimate_outcome(counts, options.soil);
+  report.add_to(outcome);
   if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
   if (inputs.compare) add_comparison(both, counts, outcome);
   return outcome;

@@ -8,6 +8,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "base/yaml.hpp"
 
 namespace excavplan {
 namespace {
@@ -34,6 +35,12 @@ json parse(const std::string& path, const std::string& content) {
   } catch (const json::exception& e) {
     throw Error(ErrorKind::bad_file, path + ": not valid JSON: " + e.what());
   }
+}
+
+/// A value in a message.
+std::string shown(const json& value) {
+  const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  return text.size() > 200 ? text.substr(0, 200) + "..." : text;
 }
 
 }  // namespace
@@ -72,6 +79,16 @@ JsonObject JsonObject::open_sealed(const std::string& name, const std::string& c
   return top;
 }
 
+JsonObject JsonObject::of_others(const std::string& name, const std::string& content) {
+  const std::size_t start = content.find_first_not_of(" \t\r\n");
+  const bool is_json = start != content.npos && content[start] == '{';
+  JsonObject top(name, "", is_json ? parse(name, content) : parse_yaml(name, content));
+  if (!top.json_.is_object()) {
+    throw Error(ErrorKind::bad_file, name + ": expected keys with values, as JSON or YAML");
+  }
+  return top;
+}
+
 std::string sealed(const std::string& content) {
   return content + ",\n\"checksum\": \"" + checksum_text(content) + "\"\n}\n";
 }
@@ -96,7 +113,7 @@ const json& JsonObject::at(const std::string& key) {
 
 double JsonObject::number(const std::string& key, double lowest, double highest) {
   const json& value = at(key);
-  if (!value.is_number()) fail(key, "is " + value.dump() + ", expected a number");
+  if (!value.is_number()) fail(key, "is " + shown(value) + ", expected a number");
   const double number = value.get<double>();
   if (!std::isfinite(number) || number < lowest || number > highest) {
     fail(key, "is " + number_text(number) + ", must be in " + number_text(lowest) + " .. " +
@@ -112,7 +129,7 @@ double JsonObject::number_or(const std::string& key, double fallback, double low
 
 std::string JsonObject::text(const std::string& key) {
   const json& value = at(key);
-  if (!value.is_string()) fail(key, "is " + value.dump() + ", expected a text");
+  if (!value.is_string()) fail(key, "is " + shown(value) + ", expected a text");
   return value.get<std::string>();
 }
 
@@ -122,18 +139,24 @@ std::string JsonObject::text_or(const std::string& key, const std::string& fallb
 
 bool JsonObject::flag(const std::string& key) {
   const json& value = at(key);
-  if (!value.is_boolean()) fail(key, "is " + value.dump() + ", expected true or false");
+  if (!value.is_boolean()) fail(key, "is " + shown(value) + ", expected true or false");
   return value.get<bool>();
 }
 
 std::vector<double> JsonObject::numbers(const std::string& key, std::size_t size) {
   const json& list = at(key);
   if (!list.is_array() || list.size() != size) {
-    fail(key, "expected a list of " + std::to_string(size) + " numbers, got " + list.dump());
+    fail(key, "expected a list of " + std::to_string(size) + " numbers, got " + shown(list));
   }
+  return numbers(key);
+}
+
+std::vector<double> JsonObject::numbers(const std::string& key) {
+  const json& list = at(key);
+  if (!list.is_array()) fail(key, "expected a list of numbers, got " + shown(list));
   std::vector<double> numbers;
   for (const json& entry : list) {
-    if (!entry.is_number()) fail(key, "holds " + entry.dump() + ", expected a number");
+    if (!entry.is_number()) fail(key, "holds " + shown(entry) + ", expected a number");
     numbers.push_back(entry.get<double>());
   }
   return numbers;

@@ -25,6 +25,10 @@ class JsonObject {
   static JsonObject open_sealed(const std::string& name, const std::string& content,
                                 const std::string& format, int version = 1);
 
+  /// The content of a file of another program, JSON or YAML (base/yaml.hpp); what is not read of
+  /// it is no error. @throws Error (bad_file)
+  static JsonObject of_others(const std::string& name, const std::string& content);
+
   bool has(const std::string& key) const;
   double number(const std::string& key, double lowest = -std::numeric_limits<double>::max(),
                 double highest = std::numeric_limits<double>::max());
@@ -36,6 +40,8 @@ class JsonObject {
   bool flag(const std::string& key);
   /// A list of numbers of exactly `size` entries.
   std::vector<double> numbers(const std::string& key, std::size_t size);
+  /// One of any length.
+  std::vector<double> numbers(const std::string& key);
   JsonObject object(const std::string& key);
   std::vector<JsonObject> objects(const std::string& key);
 

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 /// @file
 /// Numbers as text, for files and for messages, and checksums of text. Private to the project.
@@ -22,6 +25,12 @@ std::string decimals(double value, int digits);
 std::string readable(double value, int digits = 3);
 /// "0.451 ± 0.012": the standard deviation with two digits, the value with as many decimals.
 std::string readable(double value, double sd);
+
+/// A text of unknown origin made fit for a message: in quotes, cut, without control characters.
+std::string quoted(std::string_view text);
+/// Of some words that which was probably meant, if one of them is near.
+std::optional<std::string> nearest_word(const std::string& word,
+                                        const std::vector<std::string>& words);
 
 /// FNV-1a, 64 bit: detects damage, not manipulation. The text has 16 hexadecimal digits.
 std::uint64_t checksum(const std::string& text);

@@ -67,6 +67,27 @@ bool is_part_of_heap(const std::vector<Cell>& cells, const Eigen::ArrayXXd& rise
   return !around.empty() && median(around) > of_a_heap * top;
 }
 
+/// The cells with those that they enclose: the steep sides of an object go all round its top.
+std::vector<Cell> with_enclosed(const std::vector<Cell>& cells) {
+  Cell low = cells.front();
+  Cell high = cells.front();
+  for (const Cell at : cells) {
+    low = {std::min(low.row, at.row), std::min(low.col, at.col)};
+    high = {std::max(high.row, at.row), std::max(high.col, at.col)};
+  }
+  constexpr int open = -1;
+  Eigen::ArrayXXi label =
+      Eigen::ArrayXXi::Constant(high.row - low.row + 3, high.col - low.col + 3, open);
+  for (const Cell at : cells) label(at.row - low.row + 1, at.col - low.col + 1) = 0;
+  mark_connected(label, {0, 0}, 1, [](Cell) { return true; });
+  std::vector<Cell> whole = cells;
+  for_each_cell(label, [&](Cell at) {
+    if (label(at.row, at.col) == open)
+      whole.push_back({at.row + low.row - 1, at.col + low.col - 1});
+  });
+  return whole;
+}
+
 /// Objects in `with` that are not in `without`.
 std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd& without,
                              double cell_size, double margin) {
@@ -85,7 +106,8 @@ std::vector<Object> standing(const Eigen::ArrayXXd& with, const Eigen::ArrayXXd&
     }
     const auto joins = [&](Cell cell_at) { return excess(cell_at.row, cell_at.col) > edge_excess; };
     Object object;
-    object.cells = mark_connected(label, seed, 0, joins);
+    object.cells = with_enclosed(mark_connected(label, seed, 0, joins));
+    for (const Cell at : object.cells) label(at.row, at.col) = 0;
     object.is_blunder =
         static_cast<double>(object.cells.size()) * cell_size * cell_size < least_area;
     if (!object.is_blunder) {

@@ -20,7 +20,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double largest_loss_beside_heap = 0.2;  // of the hole's volume; ours
 constexpr double least_warned_share = 0.01;  // of the volume of its kind; smaller ones are ignored
 constexpr double least_refused_share = 0.1;  // likewise
 constexpr double most_in_shadow = 0.35;      // ours: unseen cells whose error holds in shadows
@@ -213,39 +212,15 @@ void warn_of_balance(VolumeChange& change) {
   const bool shrank = ratio < least_bulking && before - after > 2.0 * error;
   if (shrank || ratio > largest_bulking) {
     change.warnings.push_back(
-        {"looks_swapped", "before and after are probably swapped: " + litres_as_m3(before) +
-                              " were dug, " + litres_as_m3(after) +
-                              " were deposited, a factor of " + hundredths(ratio) +
-                              "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
-                              hundredths(largest_bulking) +
-                              " times that of the hole; exchange BEFORE and AFTER, or if z points "
-                              "down, give frames with z up by --before-frame and --after-frame"});
+        {"looks_swapped",
+         "before and after are probably swapped: " + litres_as_m3(before) + " were dug, " +
+             litres_as_m3(after) + " were deposited, a factor of " + hundredths(ratio) +
+             "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
+             hundredths(largest_bulking) +
+             " times that of the hole; exchange BEFORE and AFTER; or leave out what "
+             "is no soil, a vehicle, by --dig-area and --dump-area; or, if z "
+             "points down, give frames with z up"});
   }
-}
-
-/// Soil is spilled beside a hole; ground that fell beside a heap is spill of swapped scans.
-void warn_of_loss_beside_heap(const std::vector<Area>& areas, const ChangeOptions& options,
-                              VolumeChange& change) {
-  double lost = 0.0;
-  for (const Area& area : areas) {
-    std::vector<bool> heap(area.zones.size());
-    for (std::size_t i = 0; i < heap.size(); ++i) heap[i] = area.kinds[i] == ZoneKind::dump;
-    const std::vector<bool> beside =
-        zones_near(area.ground.zone, heap, options.spill_distance / area.grid.cell_size);
-    for (std::size_t i = 0; i < heap.size(); ++i) {
-      if (area.kinds[i] == ZoneKind::other && beside[i]) lost -= area.zones[i].volume;
-    }
-  }
-  const bool known = std::any_of(change.warnings.begin(), change.warnings.end(),
-                                 [](const Warning& w) { return w.code == "looks_swapped"; });
-  const double hole = change.before.value;
-  if (known || !(hole > 0.0) || !(lost > largest_loss_beside_heap * hole)) return;
-  change.warnings.push_back(
-      {"looks_swapped", "before and after are probably swapped: the ground fell by " +
-                            litres_as_m3(lost) + " beside what would be the heap, and by " +
-                            litres_as_m3(change.before.value) +
-                            " where the hole would be; exchange BEFORE and AFTER, or if z points "
-                            "down, give frames with z up by --before-frame and --after-frame"});
 }
 
 /// Volume of all zones of a kind; infinite for the kind `other`.
@@ -360,7 +335,6 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   sum_volumes(areas, change);
   set_deviations(change);
   warn_of_balance(change);
-  warn_of_loss_beside_heap(areas, options, change);
   state_open_changes(areas, attribution, change);
   state_earlier_soil(before, areas, change);
   set_deviations(change);

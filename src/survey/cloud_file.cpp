@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include <Eigen/LU>
-
 #include <excavplan/error.hpp>
 #include <excavplan/survey/cloud.hpp>
 
@@ -42,7 +40,7 @@ CloudShape stream(FileStream& file, PointSink& sink) {
   }
   const auto foreign = foreign_content(file);
   file.fail(foreign ? foreign->place : "byte 0", foreign ? foreign->found : "text",
-            "a cloud as " + alternatives(titles));
+            "a cloud as " + alternatives(titles) + (foreign ? foreign->hint : ""));
 }
 
 [[noreturn]] void refuse_size(const FileStream& file, std::uint64_t points, std::uint64_t limit) {
@@ -135,8 +133,9 @@ void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format
                                           std::to_string(cloud.height));
   }
   const auto& formats = cloud_file_formats();
-  const auto known = std::find_if(formats.begin(), formats.end(),
-                                  [&](const CloudFileFormat& f) { return f.name == format.name; });
+  const auto known = std::find_if(formats.begin(), formats.end(), [&](const CloudFileFormat& f) {
+    return f.content != nullptr && f.name == format.name;
+  });
   if (known == formats.end()) {
     throw Error(ErrorKind::bad_input,
                 path + ": '" + format.name + "' is not a supported output format");
@@ -148,7 +147,11 @@ CloudFormat cloud_format_of_name(const std::string& path) {
   const std::string ending = ending_of(path);
   for (const CloudFileFormat& format : cloud_file_formats()) {
     const auto& own = format.endings;
-    if (std::find(own.begin(), own.end(), ending) != own.end()) return {format.name};
+    if (std::find(own.begin(), own.end(), ending) == own.end()) continue;
+    if (format.content != nullptr) return {format.name};
+    throw Error(ErrorKind::bad_input, path + ": " + format.title +
+                                          " is read, not written; the name must end in " +
+                                          cloud_endings());
   }
   throw Error(ErrorKind::bad_input, path + ": the name of a cloud must end in " + cloud_endings());
 }
@@ -156,55 +159,10 @@ CloudFormat cloud_format_of_name(const std::string& path) {
 std::string cloud_endings() {
   std::vector<std::string> endings;
   for (const CloudFileFormat& format : cloud_file_formats()) {
+    if (format.content == nullptr) continue;
     endings.insert(endings.end(), format.endings.begin(), format.endings.end());
   }
   return alternatives(endings);
-}
-
-Eigen::Matrix4d read_frame(const std::string& path) {
-  constexpr std::uint64_t largest = 1 << 20;
-  constexpr double tolerance = 1e-4;
-  FileStream file(path);
-  if (file.size() > largest) {
-    file.refuse("found " + std::to_string(file.size()) + " bytes, expected at most " +
-                std::to_string(largest) + " for a frame");
-  }
-  LineReader lines(file);
-  std::vector<double> numbers;
-  while (lines.next_filled()) {
-    for (const auto word : words_of(lines.line().substr(0, lines.line().find('#')))) {
-      numbers.push_back(number_of(word, lines));
-    }
-  }
-  const auto refuse = [&](const std::string& found, const std::string& expected) {
-    file.fail("a frame", found, expected);
-  };
-  if (numbers.size() != 16) refuse(std::to_string(numbers.size()) + " numbers", "4 rows of 4");
-  Eigen::Matrix4d frame =
-      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
-  if (!frame.allFinite()) refuse("a number that is not finite", "finite numbers");
-  if (frame.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
-    refuse("another last row", "0 0 0 1");
-  }
-  const Eigen::Matrix3d rotation = frame.topLeftCorner<3, 3>();
-  const double error =
-      (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (error > tolerance) {
-    refuse("a matrix R with an entry " + number_text(error) + " off in R'R - 1",
-           "a rotation to " + number_text(tolerance));
-  }
-  if (rotation.determinant() < 0.0) refuse("a mirroring (determinant -1)", "a rotation");
-  return frame;
-}
-
-void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan) {
-  std::string text;
-  for (Eigen::Index row = 0; row < 4; ++row) {
-    for (Eigen::Index col = 0; col < 4; ++col) {
-      text += number_text(site_from_scan(row, col)) + (col == 3 ? "\n" : " ");
-    }
-  }
-  write_file(path, text);
 }
 
 }  // namespace excavplan

@@ -36,7 +36,8 @@ struct CloudFileFormat {
   bool (*holds)(FileStream& file);
   /// Reads a file of this format. @throws Error (bad_file)
   CloudShape (*stream)(FileStream& file, PointSink& sink);
-  /// The content of a file; text with every digit or, where the format has it, binary.
+  /// The content of a file; text with every digit or, where the format has it, binary. Null of a
+  /// format that is read only.
   std::string (*content)(const Cloud& cloud, bool text);
   /// Cloud::sensor_origin from the head of a file; null where the format has none.
   std::optional<Eigen::Vector3d> (*sensor)(FileStream& file) = nullptr;
@@ -49,6 +50,7 @@ const std::vector<CloudFileFormat>& cloud_file_formats();
 struct ForeignContent {
   std::string place;
   std::string found;
+  std::string hint;  ///< what to do with it, behind what was expected
 };
 std::optional<ForeignContent> foreign_content(FileStream& file);
 

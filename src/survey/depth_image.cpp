@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/survey/depth_image.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,9 +15,9 @@
 
 #include "base/check.hpp"
 #include "base/files.hpp"
-#include "base/json.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
+#include "survey/robust_mean.hpp"
 
 namespace excavplan {
 namespace {
@@ -150,7 +149,17 @@ class Camera {
   DepthIntrinsics intrinsics_;
 };
 
-std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths) {
+void require_size(const cv::Mat& image, const std::string& path, const cv::Size& size,
+                  const std::string& as_in) {
+  if (image.size() == size) return;
+  throw Error(ErrorKind::bad_file, path + ": found " + std::to_string(image.cols) + " x " +
+                                       std::to_string(image.rows) + " pixels, expected " +
+                                       std::to_string(size.width) + " x " +
+                                       std::to_string(size.height) + " as in " + as_in);
+}
+
+std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths,
+                                 const DepthIntrinsics& intrinsics) {
   constexpr std::size_t most_frames = 10000;
   constexpr std::size_t most_pixels = 2000000000;
   if (paths.empty() || paths.size() > most_frames) {
@@ -160,13 +169,9 @@ std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths) {
   std::vector<cv::Mat> frames;
   for (const std::string& path : paths) {
     frames.push_back(read_depth_image(path));
-    const cv::Size first = frames.front().size();
-    if (frames.back().size() != first) {
-      throw Error(ErrorKind::bad_file, path + ": found " + std::to_string(frames.back().cols) +
-                                           " x " + std::to_string(frames.back().rows) +
-                                           " pixels, expected " + std::to_string(first.width) +
-                                           " x " + std::to_string(first.height) + " as in " +
-                                           paths.front());
+    require_size(frames.back(), path, frames.front().size(), paths.front());
+    if (intrinsics.width > 0) {
+      require_size(frames.back(), path, {intrinsics.width, intrinsics.height}, "the intrinsics");
     }
     if (frames.size() * frames.front().total() > most_pixels) {
       throw Error(ErrorKind::bad_input, "depth images: more than 2 billion pixels up to " + path);
@@ -175,55 +180,7 @@ std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths) {
   return frames;
 }
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-struct RobustMean {
-  double value = 0.0;
-  int count = 0;
-};
-
-RobustMean robust_mean(const std::vector<double>& values) {
-  constexpr double mad_to_sd = 1.4826;
-  constexpr double within = 3.0;
-  RobustMean mean;
-  if (values.empty()) return mean;
-  std::vector<double> work = values;
-  const double middle = median(work);
-  for (double& value : work) value = std::abs(value - middle);
-  const double limit = std::max(1.0, within * mad_to_sd * median(work));
-  for (const double value : values) {
-    if (std::abs(value - middle) > limit) continue;
-    mean.value += value;
-    ++mean.count;
-  }
-  if (mean.count > 0) mean.value /= mean.count;
-  return mean;
-}
-
 }  // namespace
-
-DepthIntrinsics load_intrinsics(const std::string& path) {
-  constexpr double tiny = std::numeric_limits<double>::min();
-  JsonObject json = JsonObject::open(path, "excavplan-depth-intrinsics");
-  DepthIntrinsics intrinsics;
-  intrinsics.fx = json.number("fx", tiny);
-  intrinsics.fy = json.number("fy", tiny);
-  intrinsics.cx = json.number("cx");
-  intrinsics.cy = json.number("cy");
-  intrinsics.depth_unit = json.number_or("depth_unit_m", intrinsics.depth_unit, tiny);
-  intrinsics.min_depth = json.number_or("min_depth_m", intrinsics.min_depth, 0.0);
-  intrinsics.max_depth =
-      json.number_or("max_depth_m", intrinsics.max_depth,
-                     std::nextafter(intrinsics.min_depth, std::numeric_limits<double>::max()));
-  json.ignore("sources");
-  json.done();
-  return intrinsics;
-}
 
 Cloud depth_image_to_cloud(const std::string& image_path, const DepthIntrinsics& intrinsics) {
   return average_depth_images({image_path}, intrinsics).cloud;
@@ -232,7 +189,7 @@ Cloud depth_image_to_cloud(const std::string& image_path, const DepthIntrinsics&
 AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
                                    const DepthIntrinsics& intrinsics) {
   const Camera camera(intrinsics);
-  const std::vector<cv::Mat> frames = read_frames(image_paths);
+  const std::vector<cv::Mat> frames = read_frames(image_paths, intrinsics);
   AveragedDepth average;
   average.cloud.width = static_cast<std::size_t>(frames.front().cols);
   average.cloud.height = static_cast<std::size_t>(frames.front().rows);
@@ -246,7 +203,7 @@ AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
         const std::uint16_t count = frame.ptr<std::uint16_t>(row)[column];
         if (camera.sees(count)) counts.push_back(count);
       }
-      const RobustMean mean = robust_mean(counts);
+      const RobustMean mean = robust_mean(counts, 1.0);
       const bool is_known =
           mean.count > 0 && 2 * static_cast<std::size_t>(mean.count) >= frames.size();
       average.frames.push_back(is_known ? mean.count : 0);
@@ -282,19 +239,17 @@ Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrin
     refuse("has " + std::to_string(depths.size()) +
            " pixels with a depth within 2 of it, must be 3 or more");
   }
-  return camera.point(u, v, median(depths));
+  return camera.point(u, v, mean_median(depths));
 }
 
 KnownPoints read_known_points(const std::string& path, const Cloud& cloud,
                               const DepthIntrinsics& intrinsics) {
   const Table table = Table::read(path);
-  const bool by_pixel = table.has("u_px");
+  if (!table.has("u_px")) return read_known_points(path);
   KnownPoints points;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto value = [&](const char* name) { return table.column(name)[i]; };
-    points.in_camera.push_back(
-        by_pixel ? point_at_pixel(cloud, intrinsics, value("u_px"), value("v_px"))
-                 : Eigen::Vector3d(value("camera_x_m"), value("camera_y_m"), value("camera_z_m")));
+    points.in_scan.push_back(point_at_pixel(cloud, intrinsics, value("u_px"), value("v_px")));
     points.in_site.emplace_back(value("x_m"), value("y_m"), value("z_m"));
   }
   return points;

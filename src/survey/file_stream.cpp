@@ -148,13 +148,6 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-std::string quoted(std::string_view text) {
-  std::string out(text.substr(0, 40));
-  std::replace_if(
-      out.begin(), out.end(), [](char c) { return c < 32 || c == 127; }, '?');
-  return "'" + out + (text.size() > 40 ? "...'" : "'");
-}
-
 std::optional<double> parse_number(std::string_view word) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0.0;

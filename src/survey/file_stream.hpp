@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/text.hpp"
+
 /// @file The bytes of a file that may be larger than memory, its lines and the numbers in them, and
 /// errors that name the place. Private to the library.
 
@@ -90,8 +92,6 @@ class LineReader {
 /// Takes the next word, delimited by blanks, off the front of a text; empty if there is none.
 std::string_view take_word(std::string_view& text);
 std::vector<std::string_view> words_of(std::string_view line);
-/// A text of unknown origin made fit for a message: in quotes, cut, without control characters.
-std::string quoted(std::string_view text);
 
 /// The number that the whole of `word` spells (also nan and inf), if it does.
 std::optional<double> parse_number(std::string_view word);

@@ -10,46 +10,6 @@
 namespace excavplan {
 namespace {
 
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "binary PCD is read and written as is");
-
-/// Calls `body` with a value of the C++ type that `type` stands for.
-template <typename Body>
-auto with_type(ScalarType type, Body body) {
-  switch (type) {
-    case ScalarType::int8:
-      return body(std::int8_t{});
-    case ScalarType::uint8:
-      return body(std::uint8_t{});
-    case ScalarType::int16:
-      return body(std::int16_t{});
-    case ScalarType::uint16:
-      return body(std::uint16_t{});
-    case ScalarType::int32:
-      return body(std::int32_t{});
-    case ScalarType::uint32:
-      return body(std::uint32_t{});
-    case ScalarType::int64:
-      return body(std::int64_t{});
-    case ScalarType::uint64:
-      return body(std::uint64_t{});
-    case ScalarType::float32:
-      return body(float{});
-    case ScalarType::float64:
-      break;
-  }
-  return body(double{});
-}
-
-template <typename T>
-double load(const char* bytes, bool swapped) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes, raw.size());
-  if (swapped) std::reverse(raw.begin(), raw.end());
-  T value;
-  std::memcpy(&value, raw.data(), raw.size());
-  return static_cast<double>(value);
-}
-
 /// True if every point is three float32 of this machine and nothing else, as most are.
 bool are_plain_floats(const Columns& columns, bool swapped) {
   constexpr std::size_t size = sizeof(float);
@@ -78,7 +38,7 @@ void copy_points(const char* block, const Columns& columns, bool swapped,
     with_type(columns.type[axis], [&](auto value) {
       for (std::size_t i = 0; i < points.size(); ++i) {
         points[i][static_cast<Eigen::Index>(axis)] =
-            load<decltype(value)>(column + i * stride, swapped);
+            static_cast<double>(load<decltype(value)>(column + i * stride, swapped));
       }
     });
   }
@@ -103,12 +63,9 @@ std::string rows_of(const std::vector<Eigen::Vector3d>& points) {
 
 }  // namespace
 
-std::size_t size_of(ScalarType type) {
-  return with_type(type, [](auto value) { return sizeof value; });
-}
-
 double load_scalar(ScalarType type, const char* bytes, bool swapped) {
-  return with_type(type, [&](auto value) { return load<decltype(value)>(bytes, swapped); });
+  return with_type(
+      type, [&](auto value) { return static_cast<double>(load<decltype(value)>(bytes, swapped)); });
 }
 
 void stream_block(const char* block, std::uint64_t count, const Columns& columns, PointSink& sink) {

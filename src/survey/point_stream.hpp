@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "base/scalar.hpp"
 #include "survey/file_stream.hpp"
 
 /// @file Points on their way out of files and into them. Private to the library.
@@ -47,20 +48,6 @@ class PointBatch {
   std::vector<Eigen::Vector3d> points_;
 };
 
-enum class ScalarType {
-  int8,
-  uint8,
-  int16,
-  uint16,
-  int32,
-  uint32,
-  int64,
-  uint64,
-  float32,
-  float64
-};
-std::size_t size_of(ScalarType type);
-inline bool is_integer(ScalarType type) { return type < ScalarType::float32; }
 /// The number at `bytes`, of the machine's byte order or, with `swapped`, the other one.
 double load_scalar(ScalarType type, const char* bytes, bool swapped);
 

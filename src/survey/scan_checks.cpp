@@ -18,7 +18,8 @@ namespace {
 
 constexpr double degree = pi / 180.0;
 constexpr const char* give_frames =
-    "give the transform into a frame with z up by --before-frame and --after-frame";
+    "let --level find the ground, or give the transform into a frame with z up by --frame, or "
+    "--before-frame and --after-frame";
 
 std::string degrees(double angle) { return readable(angle / degree, 2) + " degrees"; }
 
@@ -108,13 +109,13 @@ std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
                        " to level, so z is not up: " + give_frames,
                    true};
   }
-  if (scan.site_from_scan != Eigen::Matrix4d::Identity()) return std::nullopt;
+  if (scan.z_is_up || scan.site_from_scan != Eigen::Matrix4d::Identity()) return std::nullopt;
   if (!(seen.seen_along_z >= nearly_all)) return std::nullopt;
   return Warning{"frame",
                  name_of(scan) +
                      ": all points lie ahead of the origin along z, as in the frame of a camera, "
                      "where hole and heap are exchanged: " +
-                     give_frames + "; if z is up, let it put the ground near z = 0",
+                     give_frames + "; if z is up, say so by --frame lidar",
                  true};
 }
 

@@ -9,9 +9,12 @@
 #include <Eigen/Dense>
 
 #include <excavplan/error.hpp>
-#include "base/random.hpp"
 
+#include "base/random.hpp"
+#include "base/table.hpp"
 #include "base/text.hpp"
+#include "survey/cloud_outline.hpp"
+#include "survey/scan_reading.hpp"
 
 namespace excavplan {
 namespace {
@@ -19,11 +22,12 @@ namespace {
 // Ours.
 constexpr std::size_t fewest_points = 100;
 constexpr std::size_t sampled_points = 5000;  // RANSAC counts on these
-constexpr int trials = 500;           // finds a plane of a fifth of the points, odds 50 to 1
-constexpr double plane_width = 0.01;  // of the median range [-]
-constexpr double least_share = 0.2;
+constexpr int trials = 3000;           // finds a plane of a tenth of the points, odds 20 to 1
+constexpr double plane_width = 0.01;   // of the median range [-]
+constexpr double least_share = 0.1;    // a lidar that saw a whole site has 0.14 to 0.15
 constexpr double least_height = 0.05;  // [m]
 constexpr double steep_look = 0.9962;  // cosine of 5 deg
+constexpr double upright = 0.7071;     // cosine of 45 deg
 constexpr int most_rounds = 20;
 constexpr double thin = 1e-3;  // points whose spread across their line is less lie on it [-]
 
@@ -37,11 +41,13 @@ struct Plane {
   double distance(const Eigen::Vector3d& p) const { return normal.dot(p) + offset; }
 };
 
-std::vector<Eigen::Vector3d> finite_points(const Cloud& scan) {
+/// The finite points, seen from a place.
+std::vector<Eigen::Vector3d> seen_from(const Eigen::Vector3d& place,
+                                       const std::vector<Eigen::Vector3d>& scan) {
   std::vector<Eigen::Vector3d> points;
-  points.reserve(scan.points.size());
-  for (const Eigen::Vector3d& p : scan.points) {
-    if (p.allFinite() && p.squaredNorm() > 0.0) points.push_back(p);
+  points.reserve(scan.size());
+  for (const Eigen::Vector3d& p : scan) {
+    if (p.allFinite() && p != place) points.push_back(p - place);
   }
   return points;
 }
@@ -131,7 +137,7 @@ Ground find_ground(const std::vector<Eigen::Vector3d>& points, std::uint64_t see
     ground.share = static_cast<double>(away.size()) / static_cast<double>(points.size());
     if (ground.share < least_share) {
       refuse("only " + number_text(std::round(1000.0 * ground.share) / 10.0) +
-             " % of its points lie on one plane, less than 20 %: no ground plane to level it");
+             " % of its points lie on one plane, less than 10 %: no ground plane to level it");
     }
     ground.sd = mad_to_sd * median(std::move(away));
     width = std::max(within * ground.sd, 0.1 * plane_width * median_range(points));
@@ -166,10 +172,16 @@ Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-}  // namespace
+/// Which axis of the sensor shows ahead.
+Eigen::Vector3d forward(const Eigen::Vector3d& up) {
+  if (up.z() > upright) return Eigen::Vector3d::UnitX();
+  if (up.z() < -steep_look) return -Eigen::Vector3d::UnitY();
+  return Eigen::Vector3d::UnitZ();
+}
 
-LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed) {
-  const std::vector<Eigen::Vector3d> points = finite_points(scan);
+LevelPose level(const std::vector<Eigen::Vector3d>& scan, const Eigen::Vector3d& place,
+                std::uint64_t seed) {
+  const std::vector<Eigen::Vector3d> points = seen_from(place, scan);
   if (points.size() < fewest_points) {
     refuse(std::to_string(points.size()) + " finite points, must be 100 or more to level it");
   }
@@ -183,15 +195,43 @@ LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed) {
     refuse("its largest plane is " + number_text(pose.height) +
            " m from the sensor, less than 0.05 m: it is not the ground");
   }
-  const Eigen::Vector3d look = Eigen::Vector3d::UnitZ();
-  pose.tilt = std::acos(std::clamp(-look.dot(up), -1.0, 1.0));
-  const Eigen::Vector3d ahead =
-      std::abs(look.dot(up)) > steep_look ? Eigen::Vector3d(-Eigen::Vector3d::UnitY()) : look;
+  pose.tilt = std::acos(std::clamp(-up.z(), -1.0, 1.0));
+  const Eigen::Vector3d ahead = forward(up);
   const Eigen::Vector3d x = (ahead - ahead.dot(up) * up).normalized();
   pose.site_from_scan.topLeftCorner<3, 3>() << x.transpose(), up.cross(x).transpose(),
       up.transpose();
   pose.site_from_scan(2, 3) = pose.height;
+  const Eigen::Vector3d moved = pose.site_from_scan.topLeftCorner<3, 3>() * place;
+  pose.site_from_scan.topRightCorner<3, 1>() -= moved;
   return pose;
+}
+
+}  // namespace
+
+LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed) {
+  return level(scan.points, scan.sensor_origin.value_or(Eigen::Vector3d::Zero()), seed);
+}
+
+LevelPose level_on_ground(const Scan& scan, std::uint64_t seed) {
+  StreamSample<Eigen::Vector3d> sample(std::size_t{1} << 16);
+  visit_scan(scan, [&sample](const std::vector<Eigen::Vector3d>& points) { sample.add(points); });
+  const std::vector<Standpoint> known = standpoints_of(scan);
+  const Eigen::Vector3d place =
+      known.size() == 1 ? known[0].place : scan.site_from_scan.topRightCorner<3, 1>();
+  return level(sample.values(), place, seed);
+}
+
+KnownPoints read_known_points(const std::string& path) {
+  const Table table = Table::read(path);
+  const std::string sensor = table.has("camera_x_m") ? "camera_" : "scan_";
+  KnownPoints points;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto value = [&](const std::string& name) { return table.column(name)[i]; };
+    points.in_scan.emplace_back(value(sensor + "x_m"), value(sensor + "y_m"),
+                                value(sensor + "z_m"));
+    points.in_site.emplace_back(value("x_m"), value("y_m"), value("z_m"));
+  }
+  return points;
 }
 
 PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
@@ -220,6 +260,20 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
     squares += (placed - in_site[i]).squaredNorm();
   }
   pose.rms = std::sqrt(squares / static_cast<double>(in_scan.size()));
+  return pose;
+}
+
+Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
+                                   const Eigen::Vector4d& quaternion) {
+  constexpr double tolerance = 1e-3;
+  const double norm = quaternion.norm();
+  if (!translation.allFinite() || !quaternion.allFinite()) refuse("a number is not finite");
+  if (std::abs(norm - 1.0) > tolerance) {
+    refuse("the quaternion's norm is " + number_text(norm) + ", must be 1 to 0.001");
+  }
+  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+  pose.topLeftCorner<3, 3>() = Eigen::Quaterniond(quaternion / norm).toRotationMatrix();
+  pose.topRightCorner<3, 1>() = translation;
   return pose;
 }
 

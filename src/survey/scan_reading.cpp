@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <excavplan/error.hpp>
+#include <excavplan/survey/machine_front.hpp>
 
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -143,14 +144,15 @@ void visit_scan(const Scan& scan, const PointVisitor& visit) {
     kept.clear();
     for (const Eigen::Vector3d& point : points) {
       const Eigen::Vector3d p = is_moved ? Eigen::Vector3d(rotation * point + shift) : point;
-      if (!scan.area || scan.area->contains(p.x(), p.y())) kept.push_back(p);
+      if (scan.area && !scan.area->contains(p.x(), p.y())) continue;
+      if (!scan.machine || !scan.machine->holds(p)) kept.push_back(p);
     }
     visit(kept);
   };
   if (std::find(scan.clouds.begin(), scan.clouds.end(), nullptr) != scan.clouds.end()) {
     throw Error(ErrorKind::bad_input, "scan: one of its clouds is a null pointer");
   }
-  const bool as_it_is = !is_moved && !scan.area;
+  const bool as_it_is = !is_moved && !scan.area && !scan.machine;
   for (const std::string& file : scan.files) stream_cloud(file, as_it_is ? visit : bring_in);
   for (const auto& cloud : scan.clouds) {
     if (as_it_is) {
@@ -208,6 +210,7 @@ Cloud gathered(const Scan& scan) {
 }
 
 std::string name_of(const Scan& scan) {
+  if (!scan.name.empty()) return scan.name;
   if (scan.files.empty()) return "a scan in memory";
   std::string name = scan.files.front();
   for (std::size_t i = 1; i < scan.files.size(); ++i) name += " with " + scan.files[i];

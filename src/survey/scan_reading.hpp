@@ -11,8 +11,9 @@
 
 namespace excavplan {
 
-/// Passes on the points of a scan in the site frame, without those outside its area; those that are
-/// not finite may be among them. The same on every call. @throws Error (bad_file)
+/// Passes on the points of a scan in the site frame, without those outside its area or of the
+/// machine; those that are not finite may be among them. The same on every call.
+/// @throws Error (bad_file)
 void visit_scan(const Scan& scan, const PointVisitor& visit);
 
 /// What a scan has from one place of the sensor.

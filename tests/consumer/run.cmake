@@ -39,16 +39,20 @@ function(check_program program)
     message(FATAL_ERROR "${program} planned nothing")
   endif()
   run(env LD_LIBRARY_PATH=${WORK}/moved/${LIBDIR} ldd ${program})
-  if(output MATCHES "libpcl|libopencv|libvtk|libboost")
-    message(FATAL_ERROR "${program} must load neither PCL nor OpenCV:\n${output}")
+  if(output MATCHES "libpcl|libopencv|libvtk|libboost|libsqlite3|liblz4|libzstd|libbz2")
+    message(FATAL_ERROR "${program} must load neither PCL nor OpenCV nor what recordings need:\n${output}")
   endif()
 endfunction()
 
-# The tools find their libraries by themselves.
+# The tools find their libraries by themselves, and plan-path loads none for recordings.
 function(check_tool prefix)
   run(${hidden} env -i ${prefix}/bin/plan-path --density 40 --json --quiet)
   if(NOT output MATCHES "\"source\": *\"library\"")
     message(FATAL_ERROR "${prefix}/bin/plan-path: ${output}")
+  endif()
+  run(ldd ${prefix}/bin/plan-path)
+  if(output MATCHES "libsqlite3|liblz4|libzstd|libbz2")
+    message(FATAL_ERROR "${prefix}/bin/plan-path:\n${output}")
   endif()
 endfunction()
 

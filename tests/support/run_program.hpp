@@ -83,15 +83,16 @@ inline pid_t started(const std::string& name, std::vector<std::string> arguments
   return child;
 }
 
-/// Runs a program to its end, with nothing on its standard input.
+/// Runs a program to its end, with a file, or by default nothing, on its standard input.
 inline ProgramResult run_program(const std::string& name,
-                                 const std::vector<std::string>& arguments = {}) {
+                                 const std::vector<std::string>& arguments = {},
+                                 const std::string& input = "/dev/null") {
   const TemporaryFolder folder;
   const std::string out = folder.file("out");
   const std::string err = folder.file("err");
   const pid_t child = started(name, arguments, [&] {
     constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
-    ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
+    ::dup2(::open(input.c_str(), O_RDONLY), STDIN_FILENO);
     ::dup2(::open(out.c_str(), flags, 0600), STDOUT_FILENO);
     ::dup2(::open(err.c_str(), flags, 0600), STDERR_FILENO);
   });

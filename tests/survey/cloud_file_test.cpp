@@ -655,9 +655,16 @@ TEST(BadText, IsNotACloud) {
       {"east north height\n1 2 3\n", "line 1: found 'east north height'"},
       {"x x y z\n1 2 3 4\n", "line 1: found 'x x y z'"},
       {"{\"points\": []}\n", "line 1: found '{\"points\": []}'"},
-      {string("1\0 2\0 3\0", 8), "byte 1: found the byte 0, expected a cloud as PCD, PLY or XYZ"},
-      {"LASF\x01\x02", "byte 0: found a LAS or LAZ file, expected a cloud as PCD, PLY"},
-      {"SQLite format 3", "found a database, such as a ROS 2 bag"},
+      {string("1\0 2\0 3\0", 8), "byte 1: found the byte 0, expected a cloud as PCD, PLY, LAS"},
+      {"ASTM-E57\x01",
+       "byte 0: found an E57 file, expected a cloud as PCD, PLY, LAS or XYZ text; convert it by "
+       "pdal "
+       "translate in.e57 out.las, or CloudCompare -SILENT -O in.e57"},
+      {"SQLite format 3",
+       "found a recording (ROS 2 bag) or another database, expected a cloud as PCD, PLY, LAS or "
+       "XYZ text; name a topic of it, FILE:TOPIC@TIME; inspect-cloud FILE lists them"},
+      {"\x89MCAP0\r\n", "found a recording (MCAP)"},
+      {"#ROSBAG V2.0\n", "found a recording (ROS 1 bag)"},
       {"\x89PNG\r\n\x1a\n", "found a PNG image"},
       {"1 2 3\n" + string(9000, '1'), "line 2: found a line of more than 4096 bytes"},
       {"PLY\nformat ascii 1.0\n", "line 1: found 'PLY'"},
@@ -796,7 +803,7 @@ TEST(WriteCloud, TheNameAsksForTheFormat) {
   EXPECT_EQ(cloud_format_of_name("a.xyz").name, "xyz");
   EXPECT_EQ(cloud_format_of_name("a.b.txt").name, "xyz");
   EXPECT_EQ(cloud_format_of_name("a.asc").name, "xyz");
-  for (const string name : {"a.las", "pcd", "a.pcd/b", "a.", ""}) {
+  for (const string name : {"a.e57", "pcd", "a.pcd/b", "a.", ""}) {
     EXPECT_EQ(error_about([&] { cloud_format_of_name(name); }, name, ErrorKind::bad_input),
               "the name of a cloud must end in .pcd, .ply, .xyz, .txt or .asc");
   }
@@ -835,6 +842,87 @@ TEST(ReadFrame, AnythingElseIsRefused) {
   EXPECT_NE(error("2 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n").find("found a matrix R with an entry 3"),
             string::npos);
   EXPECT_EQ(error(""), "is empty");
+}
+
+/// A quarter turn to the left and (1, 2, 3).
+Eigen::Matrix4d quarter_turn() {
+  Eigen::Matrix4d frame;
+  frame << 0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1;
+  return frame;
+}
+
+TEST(ReadFrame, TransformsAndPosesAsRosWritesThem) {
+  const string numbers =
+      "translation:\n      x: 1.0\n      y: 2.0\n      z: 3.0\n    rotation:\n      x: 0.0\n"
+      "      y: 0.0\n      z: 0.7071067811865476\n      w: 0.7071067811865476\n";
+  const string stamped =
+      "header:\n    stamp:\n      sec: 5\n      nanosec: 0\n    frame_id: map\n"
+      "  child_frame_id: lidar\n  transform:\n    " +
+      numbers;
+  const std::vector<string> contents = {
+      "transforms:\n- " + stamped + "---\n",  // ros2 topic echo /tf_static
+      // rostopic echo of ROS 1
+      "transforms: \n  - \n    header: \n      seq: 0\n      frame_id: \"/world\"\n"
+      "    child_frame_id: \"lidar\"\n    transform: \n      translation: \n        x: 1.0\n"
+      "        y: 2.0\n        z: 3.0\n      rotation: \n        x: 0.0\n        y: 0.0\n"
+      "        z: 0.70710678\n        w: 0.70710678\n---\n",
+      "    " + numbers,  // Transform
+      // Odometry, PoseWithCovarianceStamped
+      "pose:\n  pose:\n    position: {x: 1, y: 2, z: 3}\n"
+      "    orientation: {x: 0, y: 0, z: -0.70710678, w: -0.70710678}\n  covariance:\n  - 0.0\n",
+      R"({"header": {"frame_id": "map"}, "transform": {"translation": {"x": 1, "y": 2, "z": 3},
+          "rotation": {"x": 0, "y": 0, "z": 0.7071, "w": 0.7071}}})",
+      R"({"position": {"x": 1, "y": 2, "z": 3},
+          "orientation": {"x": 0, "y": 0, "z": 0.7071, "w": 0.7071}})",
+      // tf2_echo
+      "[INFO] [1783248767.16] [tf2_echo]: Waiting for transform\nAt time 20.274000000\n"
+      "- Translation: [1.000, 2.000, 3.000]\n"
+      "- Rotation: in Quaternion (xyzw) [0.000, -0.000, 0.707, 0.707]\n"
+      "- Rotation: in RPY (radian) [0.000, 0.000, 1.571]\n"};
+  for (const string& content : contents) {
+    SCOPED_TRACE(content);
+    const TempFile file(content);
+    const Eigen::Matrix4d frame = read_frame(file.path());
+    EXPECT_LT((frame - quarter_turn()).norm(), 1e-6);
+    const Eigen::Matrix3d rotation = frame.topLeftCorner<3, 3>();
+    EXPECT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  }
+}
+
+TEST(ReadFrame, OtherMessagesAreRefused) {
+  const auto error = [](const string& content) {
+    const TempFile file(content);
+    return error_about([&] { read_frame(file.path()); }, file.path());
+  };
+  const string none =
+      "a frame: found neither numbers nor a translation or position, expected 4 "
+      "rows of 4 numbers, or a transform or pose as ROS writes it";
+  EXPECT_EQ(error("Dear reader\n").substr(0, none.size()), none);
+  EXPECT_EQ(error("{}").substr(0, none.size()), none);
+  const string pose = R"({"position": {"x": 1, "y": 2, "z": 3}, "orientation": )";
+  EXPECT_EQ(error(pose + R"({"x": 0, "y": 0, "z": 0.5, "w": 0.7}})"),
+            "pose of a scan: the quaternion's norm is 0.8602325267042626, must be 1 to 0.001");
+  EXPECT_EQ(error(pose + R"({"x": 0, "y": 0, "z": 0}})"), "orientation.w: is missing");
+  EXPECT_EQ(error(pose + R"({"x": 0, "y": 0, "z": "a", "w": 1}})"),
+            "orientation.z: is \"a\", expected a number");
+  EXPECT_EQ(error(R"({"position": 5})"), "position: expected an object");
+  EXPECT_EQ(error("rotation: {w: .nan}\nmy_position: 1\n").substr(0, 47),
+            "a frame: found neither translation nor position");
+  EXPECT_EQ(
+      error("translation: {x: nan, y: 0, z: 0}\nrotation: {x: 0, y: 0, z: 0, w: 1}").substr(0, 24),
+      "translation.x: is nan, m");
+  const string item = "{transform: {translation: {x: 0, y: 0, z: 0}}}";
+  EXPECT_EQ(error("transforms: [" + item + ", " + item + "]"), "transforms: holds 2, must be one");
+  EXPECT_EQ(error("position: {x: 1}\n---\nposition: {x: 2}\n"),
+            "line 3: found 'position: {x: 2}', expected the end of the file after one document");
+  EXPECT_NE(error("- Translation: [1, 2]\n- Rotation: in Quaternion [0, 0, 0, 1]\n")
+                .find("found 2 and 4 numbers"),
+            string::npos);
+  EXPECT_NE(error("- Translation: [1, 2, x]\n- Rotation: in Quaternion [0, 0, 0, 1]\n")
+                .find("found 'x', expected a number"),
+            string::npos);
+  EXPECT_NE(error("- Translation: 1\n- Rotation: in Quaternion\n").find("found no Translation:"),
+            string::npos);
 }
 
 void mutate(string& content, Random& random) {

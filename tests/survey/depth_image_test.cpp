@@ -251,6 +251,86 @@ TEST_F(DepthImage, IntrinsicsAreReadFromJson) {
   EXPECT_NE(error().find("max_depth_m: is 0.1, must be in"), string::npos);
 }
 
+TEST_F(DepthImage, IntrinsicsAreReadAsOthersWriteThem) {
+  const std::vector<string> contents = {
+      // write_pinhole_camera_intrinsic of Open3D: column by column
+      R"({"height": 480, "intrinsic_matrix": [615.5, 0.0, 0.0, 0.0, 616.0, 0.0, 320.0, 240.5, 1.0],
+          "width": 640})",
+      R"({"class_name": "PinholeCameraParameters", "extrinsic": [1.0], "intrinsic": {"height": 480,
+          "intrinsic_matrix": [615.5, 0, 0, 0, 616, 0, 320, 240.5, 1], "width": 640}})",
+      // rs2_intrinsics of RealSense
+      R"({"width": 640, "height": 480, "fx": 615.5, "fy": 616.0, "ppx": 320.0, "ppy": 240.5,
+          "model": "distortion.brown_conrady", "coeffs": [0.0, 0.0, 0.0, 0.0, 0.0]})",
+      "fx: 615.5\nfy: 616\ncx: 320\ncy: 240.5\nwidth: 640\nheight: 480\n",
+      // camera_calibration of ROS
+      "image_width: 640\nimage_height: 480\ncamera_name: narrow_stereo\ncamera_matrix:\n  rows: 3\n"
+      "  cols: 3\n  data: [ 615.5,   0.   , 320.   ,\n            0.   , 616.   , 240.5  ,\n"
+      "            0.   ,   0.   ,   1.   ]\ndistortion_model: plumb_bob\n"
+      "distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [0, 0.000, 0, 0, 0]\n",
+      "%YAML:1.0\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n  rows: 3\n"
+      "  cols: 3\n  dt: d\n  data: [615.5, 0, 320, 0, 616, 240.5, 0, 0, 1]\n",
+      // ros2 topic echo, rostopic echo
+      "header:\n  stamp:\n    sec: 1718500617\n    nanosec: 444867328\n  frame_id: optical\n"
+      "height: 480\nwidth: 640\ndistortion_model: plumb_bob\nd:\n- 0.0\n- 0.0\nk:\n- 615.5\n- 0.0\n"
+      "- 320.0\n- 0.0\n- 616.0\n- 240.5\n- 0.0\n- 0.0\n- 1.0\nbinning_x: 0\nbinning_y: 0\nroi:\n"
+      "  x_offset: 0\n  y_offset: 0\n  do_rectify: false\n---\n",
+      "header: \n  seq: 2468773\n  stamp: \n    secs: 1416402182\nheight: 480\nwidth: 640\n"
+      "D: [0.0, 0.0, 0.0,\n0.0, 0.0]\nK: [615.5, 0.0, 320.0, 0.0, 616.0,\n240.5, 0.0, 0.0, 1.0]\n"
+      "binning_x: 1\nroi: \n  x_offset: 0\n"};
+  for (const string& content : contents) {
+    SCOPED_TRACE(content);
+    write(content);
+    const DepthIntrinsics camera = load_intrinsics(path_);
+    EXPECT_EQ(camera.fx, 615.5);
+    EXPECT_EQ(camera.fy, 616.0);
+    EXPECT_EQ(camera.cx, 320.0);
+    EXPECT_EQ(camera.cy, 240.5);
+    EXPECT_EQ(camera.width, 640);
+    EXPECT_EQ(camera.height, 480);
+    EXPECT_EQ(camera.depth_unit, 0.001);
+  }
+  const string flat = R"({"fx": 1, "fy": 1, "cx": 0, "cy": 0, "depth_scale": )";
+  write(flat + "0.00025}");  // pyrealsense2: metres per count
+  EXPECT_EQ(load_intrinsics(path_).depth_unit, 0.00025);
+  write(flat + "4000}");  // Open3D: counts per metre
+  EXPECT_EQ(load_intrinsics(path_).depth_unit, 0.00025);
+  EXPECT_EQ(load_intrinsics(path_).width, 0);
+}
+
+TEST_F(DepthImage, IntrinsicsThatAreNoPinholeAreRefused) {
+  const auto error = [&](const string& content) {
+    write(content);
+    return error_of([this] { load_intrinsics(path_); });
+  };
+  const string zeros = ", must be zeros: rectify the depth images";
+  const string flat = R"({"fx": 1, "fy": 1, "ppx": 0, "ppy": 0, )";
+  EXPECT_NE(error(flat + R"("coeffs": [0, 0.12, 0]})").find("coeffs: holds 0.12" + zeros),
+            string::npos);
+  const string k = "k: [600, 0, 320, 0, 600, 240, 0, 0, 1]\n";
+  EXPECT_NE(error(k + "d: [0, 0, nan]\n").find("d: holds nan" + zeros), string::npos);
+  EXPECT_EQ(error(k + "binning_y: 2\n"),
+            "binning_y: is above 1: give the intrinsics of the binned image");
+  EXPECT_EQ(error(k + "roi: {x_offset: 0, y_offset: 200}\n"),
+            "roi.y_offset: is not 0: give the intrinsics of the part of the image");
+  const string matrix = "must be the matrix fx 0 cx, 0 fy cy, 0 0 1, with fx and fy above 0";
+  EXPECT_EQ(error("K: [0, 0, 0, 0, 0, 0, 0, 0, 0]"), "K: " + matrix);
+  EXPECT_EQ(error("k: [600, 1, 320, 0, 600, 240, 0, 0, 1]"), "k: " + matrix);
+  EXPECT_EQ(error("k: [600, 0, nan, 0, 600, 240, 0, 0, 1]"), "k: " + matrix);
+  EXPECT_EQ(error("k: [600, 0, 320]"), "k: expected a list of 9 numbers, got [600.0,0.0,320.0]");
+  EXPECT_EQ(error(R"({"intrinsic_matrix": [600, 0, 320, 0, 600, 240, 0, 0, 1]})"),
+            "intrinsic_matrix (column by column): " + matrix);
+  EXPECT_EQ(error("camera_matrix: {rows: 3}"), "camera_matrix.data: is missing");
+  EXPECT_NE(error("camera_matrix: {data: [600, 0, 320, 0, 600, 240, 0, 0, 1]}\n"
+                  "distortion_coefficients: {data: [0, -0.3]}\n")
+                .find("distortion_coefficients.data: holds -0.3" + zeros),
+            string::npos);
+  EXPECT_EQ(error(R"({"focal": 600})").substr(0, 39), "found none of the keys format, intrinsi");
+  EXPECT_EQ(error(R"({"format": "other"})"),
+            "format: is 'other', expected 'excavplan-depth-intrinsics'");
+  EXPECT_EQ(error("[1, 2]"), "expected keys with values, as JSON or YAML");
+  EXPECT_EQ(error(R"({"fx": 1, "fy": -1, "cx": 0, "cy": 0})").substr(0, 9), "fy: is -1");
+}
+
 /// The program depth-to-cloud on what a camera 2.2 m above level ground sees, 30 deg from straight
 /// down.
 class DepthTool : public testing::Test {
@@ -367,6 +447,26 @@ TEST_F(DepthTool, PosesExcludeEachOther) {
   };
   refused({"--level", "--points", "p.csv"}, "--pose, --level and --points are mutually exclusive");
   refused({"--pose-out", "p.txt"}, "--pose-out needs --level or --points");
+  refused({"--pose", "1,2,3,0,0,0,2"}, "--pose: pose of a scan: the quaternion's norm is 2");
+}
+
+TEST_F(DepthTool, TakesAPoseOfSevenNumbers) {
+  // Above (4, 1) and straight down: x of the camera to -y of the site, y to -x.
+  const auto result = answer({"--pose", "4,1,2.2,0.7071067811865476,-0.7071067811865476,0,0"});
+  EXPECT_EQ(result.at("pose").at("method"), "given");
+  const Cloud cloud = read_cloud(folder_.file("cloud.pcd"));
+  const Eigen::Vector3d middle = cloud.points[30 * columns + 40];
+  EXPECT_NEAR((middle - Eigen::Vector3d(4.0, 1.0, 2.2 - depth(30))).norm(), 0.0, 0.1);
+}
+
+TEST_F(DepthTool, ImagesOfAnotherSizeThanTheIntrinsicsAreRefused) {
+  folder_.write("camera.json", R"({"width": 640, "height": 480, "fx": 60, "fy": 60, "ppx": 40,
+                                   "ppy": 30})");
+  const test::ProgramResult result = run({});
+  EXPECT_EQ(result.code, 3);
+  EXPECT_NE(result.err.find("found 80 x 60 pixels, expected 640 x 480 as in the intrinsics"),
+            string::npos)
+      << result.err;
 }
 
 }  // namespace

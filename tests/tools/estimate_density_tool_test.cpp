@@ -2,9 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
 #include <sstream>
 
+#include <Eigen/Geometry>
+
+#include <excavplan/survey/cloud.hpp>
+
+#include "base/angles.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
@@ -365,7 +371,9 @@ TEST_F(BadInput, IncompleteOptionsAreRefused) {
   refused(2, "--payload-mass: must be above 0", tool, {scan, later_scan, "--payload-mass", "0"});
   refused(2, "--payload-mass: '1,2,3' is not VALUE,SD", tool,
           {scan, later_scan, "--payload-mass", "1,2,3"});
-  refused(2, "--moisture: must be in 0 .. 10", tool, {scan, later_scan, "--moisture", "12"});
+  refused(2, "--moisture: must be in 0 .. 2 (12 % is 0.12)", tool,
+          {scan, later_scan, "--payload-mass", "480", "--moisture", "12"});
+  refused(2, "--moisture needs --payload-mass", tool, {scan, later_scan, "--moisture", "0.1"});
   refused(2, "takes no scans", tool, {scan, later_scan, "--plan-survey", "height=2"});
   refused(2,
           "--plan-survey: 'hight' is not one of sensor, height, offset, volume, depth, area, k, "
@@ -390,6 +398,140 @@ TEST_F(BadInput, FramesThatAreNotRigidAreRefused) {
   const std::string skew = folder.write("skew.txt", "1 0 0 0\n0 2 0 0\n0 0 1 0\n0 0 0 1\n");
   refused(3, "skew.txt: ", "estimate-density", {scan, later_scan, "--before-frame", skew});
   refused(3, "letter.txt: ", "estimate-density", {scan, later_scan, "--before-frame", letter});
+}
+
+/// Both quick-start scans as a camera sees them from 6 m above (-3, 2), looking down by 40 degrees
+/// from level, and the inverse of what brought them there.
+class ScansOfACamera : public BadInput {
+ protected:
+  ScansOfACamera() {
+    const double down = 40.0 * pi / 180.0;
+    Eigen::Matrix4d site_from_camera = Eigen::Matrix4d::Identity();
+    site_from_camera.topLeftCorner<3, 3>() << 0.0, -std::sin(down), std::cos(down), -1.0, 0.0, 0.0,
+        0.0, -std::cos(down), -std::sin(down);
+    site_from_camera.topRightCorner<3, 1>() << -3.0, 2.0, 6.0;
+    write_frame(folder.file("pose.txt"), site_from_camera);
+    write_frame(folder.file("inverse.txt"), site_from_camera.inverse());
+    answer("inspect-cloud", {scan, "--frame", folder.file("inverse.txt"), "--out", before});
+    answer("inspect-cloud", {later_scan, "--frame", folder.file("inverse.txt"), "--out", after});
+    const Eigen::Quaterniond turn(Eigen::Matrix3d(site_from_camera.topLeftCorner<3, 3>()));
+    std::ostringstream numbers;
+    numbers.precision(17);
+    numbers << "-3,2,6," << turn.x() << ',' << turn.y() << ',' << turn.z() << ',' << turn.w();
+    pose = numbers.str();
+  }
+  void expect_density_of_site_frame(const json& result) const {
+    const json site = answer("estimate-density", {scan, later_scan});
+    const double sd = number(site, "/density_sd_percent");
+    EXPECT_NEAR(number(result, "/density_percent"), number(site, "/density_percent"), 0.25 * sd);
+    EXPECT_EQ(result.at("trustworthy"), site.at("trustworthy"));
+    EXPECT_FALSE(warns(result, "frame"));
+  }
+
+  const std::string before = folder.file("camera-before.pcd");
+  const std::string after = folder.file("camera-after.pcd");
+  std::string pose;
+};
+
+TEST_F(ScansOfACamera, LevelFindsTheirFrame) {
+  const json result = answer("estimate-density", {before, after, "--level"});
+  expect_density_of_site_frame(result);
+  EXPECT_EQ(result.at("/pose/method"_json_pointer), "level");
+  EXPECT_NEAR(number(result, "/pose/height_m"), 6.0, 0.05);
+  EXPECT_NEAR(number(result, "/pose/tilt_rad"), 50.0 * pi / 180.0, 0.01);
+}
+
+TEST_F(ScansOfACamera, PosesAreAsGoodAsFrames) {
+  const json result =
+      answer("estimate-density", {before, after, "--before-pose", pose, "--after-pose", pose});
+  expect_density_of_site_frame(result);
+  EXPECT_EQ(result.at("pose"), nullptr);
+  const json framed =
+      answer("estimate-density", {before, after, "--frame", folder.file("pose.txt")});
+  EXPECT_NEAR(number(framed, "/volume/excavated_m3"), number(result, "/volume/excavated_m3"), 1e-6);
+  const json numbers = answer("estimate-density", {before, after, "--frame", pose});
+  EXPECT_NEAR(number(numbers, "/volume/excavated_m3"), number(result, "/volume/excavated_m3"),
+              1e-9);
+}
+
+TEST_F(ScansOfACamera, FramesExcludeEachOther) {
+  const std::string file = folder.file("pose.txt");
+  const auto refuse = [&](const std::string& reason, const Words& more) {
+    Words words = {before, after};
+    words.insert(words.end(), more.begin(), more.end());
+    refused(2, reason, "estimate-density", words);
+  };
+  refuse("--level excludes --frame", {"--level", "--frame", "camera"});
+  refuse("--level excludes --before-pose", {"--level", "--before-pose", pose});
+  refuse("--frame excludes --after-frame", {"--frame", "lidar", "--after-frame", file});
+  refuse("give either --before-frame or --before-pose",
+         {"--before-pose", pose, "--before-frame", file});
+  refuse("--before-pose: '1,2' is not a pose", {"--before-pose", "1,2"});
+  refuse("the quaternion's norm is 2, must be 1", {"--after-pose", "0,0,0,0,0,0,2"});
+}
+
+TEST_F(ScansOfACamera, AFrameThatIsNamedIsNotSuspected) {
+  // Ground at 5 m that lies ahead of the origin along z, as all that a camera sees.
+  const std::string raised = folder.write("up.txt", "1 0 0 -6\n0 1 0 0\n0 0 1 12\n0 0 0 1\n");
+  const std::string low = folder.file("low.pcd");
+  const std::string high = folder.file("high.pcd");
+  answer("inspect-cloud", {scan, "--frame", raised, "--out", low});
+  answer("inspect-cloud", {later_scan, "--frame", raised, "--out", high});
+  EXPECT_TRUE(warns(answer("estimate-density", {low, high}), "frame"));
+  expect_density_of_site_frame(answer("estimate-density", {low, high, "--frame", "lidar"}));
+}
+
+TEST_F(ScansOfACamera, OneScanMayBeStandardInput) {
+  const ProgramResult piped = run_program("estimate-density", {"-", later_scan, "--json"}, scan);
+  ASSERT_EQ(piped.code, 0) << piped.err;
+  expect_density_of_site_frame(json::parse(piped.out));
+  const ProgramResult twice = run_program("estimate-density", {"-", "-"}, scan);
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_TRUE(contains(twice.err, "only one input can be -")) << twice.err;
+}
+
+/// The quick-start scan after with points all over boom, arm and bucket of the zx120 above the
+/// hole: boom pin at (0.14, 1.424), 4.6, 2.519 and 1.23 m of links, swung by `swing`.
+std::string with_machine(const TemporaryFolder& folder, const std::string& scan, double swing,
+                         const Eigen::Vector3d& joints) {
+  answer("inspect-cloud", {scan, "--out", folder.file("plain.xyz")});
+  std::ostringstream rows;
+  rows << content_of(folder.file("plain.xyz"));
+  Eigen::Vector2d pin(0.14, 1.424);
+  double angle = 0.0;
+  const double lengths[] = {4.6, 2.519, 1.23};
+  for (Eigen::Index link = 0; link < 3; ++link) {
+    angle -= joints[link];
+    const Eigen::Vector2d end =
+        pin + lengths[link] * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    for (double along = 0.0; along <= 1.0; along += 0.02) {
+      for (double side = -0.3; side <= 0.3; side += 0.05) {
+        const Eigen::Vector2d p = pin + along * (end - pin);
+        rows << std::cos(swing) * p.x() - std::sin(swing) * side << ' '
+             << std::sin(swing) * p.x() + std::cos(swing) * side << ' ' << p.y() << '\n';
+      }
+    }
+    pin = end;
+  }
+  return folder.write("machine.xyz", rows.str());
+}
+
+TEST_F(BadInput, TheMachineIsCutOutOfAScan) {
+  const json clean = answer("estimate-density", {scan, later_scan});
+  const std::string seen = with_machine(folder, later_scan, 0.1, {-0.5, 1.2, 0.9});
+  const json disturbed = answer("estimate-density", {scan, seen});
+  const json cut =
+      answer("estimate-density", {scan, seen, "--after-machine-pose", "0.1,-0.5,1.2,0.9"});
+  const double sd = number(clean, "/density_sd_percent");
+  EXPECT_NEAR(number(cut, "/density_percent"), number(clean, "/density_percent"), 0.25 * sd);
+  EXPECT_EQ(warning_codes(cut), warning_codes(clean));
+  EXPECT_NE(warning_codes(disturbed), warning_codes(clean));
+  refused(2, "--level excludes --machine-pose", "estimate-density",
+          {scan, seen, "--level", "--machine-pose", "0,0,1,1"});
+  refused(2, "--machine-pose excludes --before-machine-pose", "estimate-density",
+          {scan, seen, "--machine-pose", "0,0,1,1", "--before-machine-pose", "0,0,1,1"});
+  refused(2, "--machine-pose: '0,1' is not a posture SWING,BOOM,ARM,BUCKET", "estimate-density",
+          {scan, seen, "--machine-pose", "0,1"});
 }
 
 /// A wheel loader's bite. No truth is known; others found with the frames that came with the scans

@@ -1,7 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
+#include "support/las_file.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
@@ -34,6 +40,107 @@ TEST_F(Tools, CloudsKeepTheirPointsInEveryFormat) {
   for (const char* key : {"finite_points", "centroid_m", "min_m", "max_m"}) {
     EXPECT_EQ(copy.at(key), original.at(key)) << key;
   }
+}
+
+TEST_F(Tools, InspectCloudReadsLas) {
+  LasFile las;
+  las.offset = {500000.0, 5800000.0, 0.0};
+  const json result = answer("inspect-cloud", {folder.write("a.las", las.bytes())});
+  EXPECT_EQ(result.at("points"), 2);
+  EXPECT_EQ(result.at("min_m"), json({499996.0, 5800002.0, 3.0}));
+  EXPECT_EQ(result.at("pose"), nullptr);
+}
+
+/// A flat place seen by a lidar 2 m above it that leans forward by a tenth.
+std::string leaning_scan(const TemporaryFolder& folder) {
+  std::string rows;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) {
+      const double x = 2.0 + 0.1 * i;
+      const double z = -2.0;
+      const double c = std::cos(0.1);
+      const double s = std::sin(0.1);
+      rows += std::to_string(c * x - s * z) + " " + std::to_string(-3.0 + 0.1 * j) + " " +
+              std::to_string(s * x + c * z) + "\n";
+    }
+  }
+  return folder.write("leaning.xyz", rows);
+}
+
+TEST_F(Tools, InspectCloudLevelsACloudAndKeepsThePose) {
+  const std::string scan = leaning_scan(folder);
+  const std::string pose = folder.file("pose.txt");
+  const json result =
+      answer("inspect-cloud", {scan, "--level", "--pose-out", pose, "--out", folder.file("a.ply")});
+  EXPECT_EQ(result.at("/pose/method"_json_pointer), "level");
+  EXPECT_NEAR(number(result, "/pose/height_m"), 2.0, 1e-4);
+  EXPECT_NEAR(number(result, "/min_m/2"), 0.0, 1e-4);
+  EXPECT_NEAR(number(result, "/max_m/2"), 0.0, 1e-4);
+  EXPECT_NEAR(number(result, "/min_m/0"), 2.0, 1e-3);
+  for (const char* option : {"--pose", "--frame"}) {
+    const json again = answer("inspect-cloud", {scan, option, pose});
+    EXPECT_EQ(again.at("/pose/method"_json_pointer), "given");
+    EXPECT_NEAR(number(again, "/max_m/2"), number(result, "/max_m/2"), 1e-9);
+  }
+}
+
+TEST_F(Tools, InspectCloudFindsThePoseFromKnownPoints) {
+  const std::string scan = folder.write("a.xyz", "0 0 0\n1 0 0\n0 2 0\n");
+  const std::string rows = "0,0,0,5,6,7\n1,0,0,5,7,7\n0,2,0,3,6,7\n";
+  for (const std::string sensor : {"scan", "camera"}) {
+    const std::string markers = folder.write(
+        "markers.csv", sensor + "_x_m," + sensor + "_y_m," + sensor + "_z_m,x_m,y_m,z_m\n" + rows);
+    const json result = answer("inspect-cloud", {scan, "--points", markers});
+    EXPECT_EQ(result.at("/pose/method"_json_pointer), "points");
+    EXPECT_NEAR(number(result, "/pose/residual_rms_m"), 0.0, 1e-9);
+    EXPECT_NEAR(number(result, "/min_m/0"), 3.0, 1e-9);
+    EXPECT_NEAR(number(result, "/max_m/1"), 7.0, 1e-9);
+  }
+}
+
+TEST_F(Tools, InspectCloudTakesFramesByWordAndNumbers) {
+  const std::string scan = folder.write("a.xyz", "0.5 0.25 3\n");
+  const auto place = [&](const std::string& frame) {
+    return answer("inspect-cloud", {scan, "--frame", frame}).at("centroid_m");
+  };
+  EXPECT_EQ(place("lidar"), json({0.5, 0.25, 3.0}));
+  EXPECT_EQ(place("camera"), json({3.0, -0.5, -0.25}));
+  EXPECT_EQ(place("1,0,-2,0,0,1,0"), json({0.5, -0.25, 1.0}));
+  EXPECT_EQ(place("-1m,50cm,0,0,0,0,1"), json({-0.5, 0.75, 3.0}));
+}
+
+TEST_F(BadInput, PosesOfACloudExcludeEachOther) {
+  const Words both = {scan, "--frame", "lidar", "--pose", "camera"};
+  refused(2, "--frame and --pose are the same", "inspect-cloud", both);
+  refused(2, "mutually exclusive", "inspect-cloud", {scan, "--frame", "lidar", "--level"});
+  refused(2, "--pose-out needs --level or --points", "inspect-cloud", {scan, "--pose-out", plot});
+  refused(3, "no column", "inspect-cloud", {scan, "--points", folder.write("m.csv", "u_px\n1\n")});
+}
+
+TEST_F(Tools, InspectCloudReadsStandardInput) {
+  const std::string scan = shipped("quickstart/before.pcd");
+  const ProgramResult piped = run_program("inspect-cloud", {"-", "--json"}, scan);
+  ASSERT_EQ(piped.code, 0) << piped.err;
+  json read = json::parse(piped.out);
+  EXPECT_EQ(read.at("file"), "standard input");
+  const json direct = answer("inspect-cloud", {scan});
+  EXPECT_EQ(read.at("centroid_m"), direct.at("centroid_m"));
+  const ProgramResult none = run_program("inspect-cloud", {"-"});
+  EXPECT_EQ(none.code, 3);
+  EXPECT_EQ(none.err, "inspect-cloud: standard input: is empty\n");
+}
+
+TEST_F(RealScans, TheGroundIsFoundInAScanOfAWholeSite) {
+  // The third row of the frame that came with the scan, which others found.
+  const json result = answer("inspect-cloud", {shared("dig-pair-livox/before.pcd"), "--level",
+                                               "--pose-out", folder.file("pose.txt")});
+  std::istringstream numbers(content_of(folder.file("pose.txt")));
+  std::vector<double> pose(16);
+  for (double& value : pose) numbers >> value;
+  EXPECT_NEAR(pose[8], -0.10254807745574128, 0.002);
+  EXPECT_NEAR(pose[9], -0.008625173881281251, 0.002);
+  EXPECT_NEAR(pose[10], 0.9946906545181015, 0.001);
+  EXPECT_LT(number(result, "/pose/residual_sd_m"), 0.02);
 }
 
 TEST_F(RealScans, AreRead) {

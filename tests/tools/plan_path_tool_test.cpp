@@ -345,6 +345,9 @@ TEST_F(Tools, ADensityByTheLawOfAnotherSoilIsWarnedOf) {
   const std::string result =
       folder.write("result.json", R"({"density_percent": 40, "law_soil": "sand"})");
   const json plan = answer("plan-path", {"--density-from", result});
+  const ProgramResult piped = run_program("plan-path", {"--density-from", "-", "--json"}, result);
+  EXPECT_EQ(piped.code, 0) << piped.err;
+  EXPECT_EQ(json::parse(piped.out).at("path"), plan.at("path"));
   ASSERT_EQ(warning_codes(plan), Words{"law_of_other_soil"});
   EXPECT_EQ(plan["warnings"][0].at("message").get<std::string>().rfind(result + ": ", 0), 0U);
   EXPECT_FALSE(warns(answer("plan-path", {"--density-from", result, "--soil", "sand"}),

@@ -30,7 +30,8 @@ const std::vector<Contract>& contracts() {
   static const std::vector<Contract> list = {
       {"estimate-density",
        {"--dump-before", "--dump-after", "--dig-area", "--dump-area", "--before-frame",
-        "--after-frame", "--sensor-origin", "--method", "--cell", "--law", "--plot", "--strict"},
+        "--after-frame", "--before-pose", "--after-pose", "--frame", "--level", "--sensor-origin",
+        "--method", "--cell", "--law", "--plot", "--strict"},
        "--dig-aera",
        "--dig-area",
        quickstart},

@@ -51,11 +51,13 @@ void Arguments::add(Entry entry) { entries_.push_back(std::move(entry)); }
 
 void Arguments::positional(const std::string& name, std::string& value, const std::string& help) {
   add({name, name, help, "", true, true, [&value](const std::string& text) { value = text; }});
+  entries_.back().input = true;
 }
 
 void Arguments::positional(const std::string& name, std::optional<std::string>& value,
                            const std::string& help) {
   add({name, name, help, "", true, false, [&value](const std::string& text) { value = text; }});
+  entries_.back().input = true;
 }
 
 void Arguments::flag(const std::string& name, bool& value, const std::string& help) {
@@ -142,6 +144,18 @@ void Arguments::option(const std::string& name, std::optional<Eigen::Vector3d>& 
        [&value, name](const std::string& text) { value = parse_place("--" + name, text); }});
 }
 
+void Arguments::option(const std::string& name, std::optional<Eigen::Matrix4d>& value,
+                       const std::string& help) {
+  add({name, "X,Y,Z,QX,QY,QZ,QW", help, "", false, false,
+       [&value, name](const std::string& text) { value = parse_pose("--" + name, text); }});
+}
+
+void Arguments::option(const std::string& name, std::optional<MachinePosture>& value,
+                       const std::string& help) {
+  add({name, "SWING,BOOM,ARM,BUCKET", help + " [rad]", "", false, false,
+       [&value, name](const std::string& text) { value = parse_posture("--" + name, text); }});
+}
+
 void Arguments::choice(const std::string& name, std::string& value,
                        const std::vector<std::string>& words, const std::string& help) {
   add({name, joined(words, "|"), help, value, false, false,
@@ -156,22 +170,26 @@ void Arguments::choice(const std::string& name, std::string& value,
 void Arguments::file(const std::string& name, std::string& value, const std::string& help) {
   add({name, "FILE", help, value, false, false,
        [&value](const std::string& text) { value = text; }});
+  entries_.back().input = true;
 }
 
 void Arguments::file(const std::string& name, std::optional<std::string>& value,
                      const std::string& help) {
   add({name, "FILE", help, value.value_or(""), false, false,
        [&value](const std::string& text) { value = text; }});
+  entries_.back().input = true;
 }
 
 void Arguments::output(const std::string& name, std::string& value, const std::string& help) {
   file(name, value, help);
+  entries_.back().input = false;
   entries_.back().output = true;
 }
 
 void Arguments::output(const std::string& name, std::optional<std::string>& value,
                        const std::string& help) {
   file(name, value, help);
+  entries_.back().input = false;
   entries_.back().output = true;
 }
 
@@ -179,12 +197,14 @@ void Arguments::text(const std::string& name, const std::string& placeholder, st
                      const std::string& help) {
   add({name, placeholder, help, value, false, false,
        [&value](const std::string& text) { value = text; }});
+  entries_.back().input = placeholder.find("FILE") != placeholder.npos;
 }
 
 void Arguments::text(const std::string& name, const std::string& placeholder,
                      std::optional<std::string>& value, const std::string& help) {
   add({name, placeholder, help, value.value_or(""), false, false,
        [&value](const std::string& text) { value = text; }});
+  entries_.back().input = placeholder.find("FILE") != placeholder.npos;
 }
 
 void Arguments::soil(std::string& name) {

@@ -51,6 +51,7 @@ class Arguments {
     bool required = false;
     Assign assign;
     bool output = false;    ///< a file to write
+    bool input = false;     ///< a file to read, or "-" for standard input
     bool repeated = false;  ///< may be given several times, `assign` is called for each
   };
 
@@ -77,15 +78,22 @@ class Arguments {
   /// "x,y,z"
   void option(const std::string& name, std::optional<Eigen::Vector3d>& value,
               const std::string& help);
+  /// "x,y,z,qx,qy,qz,qw", as 4 x 4 matrix
+  void option(const std::string& name, std::optional<Eigen::Matrix4d>& value,
+              const std::string& help);
+  /// "swing,boom,arm,bucket"
+  void option(const std::string& name, std::optional<MachinePosture>& value,
+              const std::string& help);
   /// One of `words`.
   void choice(const std::string& name, std::string& value, const std::vector<std::string>& words,
               const std::string& help);
+  /// A file to read.
   void file(const std::string& name, std::string& value, const std::string& help);
   void file(const std::string& name, std::optional<std::string>& value, const std::string& help);
   /// A file to write; whether it can be written is checked before the work.
   void output(const std::string& name, std::string& value, const std::string& help);
   void output(const std::string& name, std::optional<std::string>& value, const std::string& help);
-  /// A text that is not a file: a name, a list of its own syntax.
+  /// A text of its own syntax; a file to read too if the placeholder has FILE in it.
   void text(const std::string& name, const std::string& placeholder, std::string& value,
             const std::string& help);
   void text(const std::string& name, const std::string& placeholder,

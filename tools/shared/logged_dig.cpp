@@ -39,7 +39,8 @@ LoggedDig RunInputs::dig(const ScanFrames& frames) const {
   } else if (mass) {
     result.lifted = Payload{Lifted::mass, {*mass, mass_sd.value_or(std::nan(""))}};
   } else {
-    result.lifted = scan_pair(*dump_before, *dump_after, frames);
+    ScanReport unread;
+    result.lifted = placed_pair(*dump_before, *dump_after, frames, unread);
   }
   return result;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <excavplan/error.hpp>
+#include <excavplan/survey/scan_pose.hpp>
 
 #include "base/angles.hpp"
 
@@ -172,6 +173,27 @@ Eigen::Vector3d parse_place(const std::string& what, const std::string& text) {
   return {parse_quantity(what, parts[0], Quantity::length),
           parse_quantity(what, parts[1], Quantity::length),
           parse_quantity(what, parts[2], Quantity::length)};
+}
+
+Eigen::Matrix4d parse_pose(const std::string& what, const std::string& text) {
+  const auto parts = parts_of(what, text, 7, "a pose X,Y,Z,QX,QY,QZ,QW such as 1,0,2,0,0,0,1");
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Quantity kind = i < 3 ? Quantity::length : Quantity::ratio;
+    numbers.push_back(parse_quantity(what, parts[i], kind));
+  }
+  try {
+    return pose_of_quaternion(Eigen::Vector3d(numbers.data()), Eigen::Vector4d(&numbers[3]));
+  } catch (const Error& error) {
+    throw Error(error.kind(), what + ": " + error.what());
+  }
+}
+
+MachinePosture parse_posture(const std::string& what, const std::string& text) {
+  const auto parts =
+      parts_of(what, text, 4, "a posture SWING,BOOM,ARM,BUCKET such as 0,-20deg,70deg,40deg");
+  const auto angle = [&](std::size_t i) { return parse_quantity(what, parts[i], Quantity::angle); };
+  return {angle(0), {angle(1), angle(2), angle(3)}};
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {

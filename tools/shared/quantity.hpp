@@ -5,8 +5,11 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_parameters.hpp>
+#include <excavplan/survey/machine_front.hpp>
 
 #include "base/text.hpp"
 
@@ -58,5 +61,11 @@ Rectangle parse_rectangle(const std::string& what, const std::string& text);
 Eigen::Vector2d parse_point(const std::string& what, const std::string& text);
 /// "x,y,z". @throws Error (bad_input)
 Eigen::Vector3d parse_place(const std::string& what, const std::string& text);
+
+/// "x,y,z,qx,qy,qz,qw": a translation and a quaternion, as 4 x 4 matrix. @throws Error (bad_input)
+Eigen::Matrix4d parse_pose(const std::string& what, const std::string& text);
+
+/// "swing,boom,arm,bucket", angles. @throws Error (bad_input)
+MachinePosture parse_posture(const std::string& what, const std::string& text);
 
 }  // namespace excavplan::tools

@@ -3,7 +3,12 @@
 #include "shared/scans.hpp"
 
 #include <map>
+#include <memory>
+#include <utility>
 #include <vector>
+
+#include "shared/recordings.hpp"
+#include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -15,25 +20,75 @@ const std::map<std::string, double>& units() {
   return lengths;
 }
 
-Scan scan_of(const std::string& file, const std::optional<std::string>& frame,
-             const std::string& unit, const ScanFrames& frames) {
+/// One side of a pair, as its options say.
+struct Side {
+  const char* name;  ///< "before" or "after"
+  const std::string& text;
+  const std::string& unit;
+  const std::optional<std::string>& frame;
+  const std::optional<Eigen::Matrix4d>& pose;
+  const std::optional<Eigen::Vector3d>& origin;
+  const std::optional<MachinePosture>& posture;
+};
+
+/// Reads the scan if it is of a recording; a file is left where it is.
+Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
   Scan scan;
-  scan.files = {file};
-  if (frame) scan.site_from_scan = read_frame(*frame);
+  std::optional<MachinePosture> posture = side.posture ? side.posture : frames.view.both;
+  if (auto input = recorded_input(side.text, frames.tf_frame)) {
+    scan.name = side.text;
+    if (frames.view.recorded) posture = recorded_posture(*input);
+    scan.clouds = {std::make_shared<const Cloud>(std::move(input->scan.cloud))};
+    report.recordings.push_back(std::move(input->json));
+    report.lines.push_back("recorded   " + input->line);
+  } else {
+    scan.files = {side.text};
+  }
   scan.area = frames.area;
-  scan.unit = units().at(unit.empty() ? frames.unit : unit);
-  scan.sensor_origin = frames.sensor_origin;
+  scan.unit = units().at(side.unit.empty() ? frames.unit : side.unit);
+  scan.sensor_origin = side.origin ? side.origin : frames.sensor_origin;
+  if (posture) {
+    scan.machine =
+        std::make_shared<const MachineFront>(machine_named(frames.view.machine), *posture);
+  }
   return scan;
+}
+
+/// Brings a scan into the site frame if an option says how.
+void place(const Side& side, const ScanFrames& frames, Scan& scan) {
+  const std::string option = "--" + std::string(side.name);
+  if (side.frame && side.pose)
+    usage_error("give either " + option + "-frame or " + option + "-pose");
+  if ((side.frame || side.pose) && (frames.both || frames.level)) {
+    usage_error(std::string(frames.both ? "--frame" : "--level") + " excludes " + option +
+                (side.frame ? "-frame" : "-pose"));
+  }
+  scan.z_is_up = side.frame || side.pose || frames.both || !frames.tf_frame.empty();
+  if (side.pose) scan.site_from_scan = *side.pose;
+  if (side.frame) scan.site_from_scan = frame_named(option + "-frame", *side.frame);
+  if (frames.both) scan.site_from_scan = frame_named("--frame", *frames.both);
 }
 
 }  // namespace
 
 void declare_frames(Arguments& arguments, ScanFrames& frames) {
-  arguments.file("before-frame", frames.before,
-                 "4 x 4 matrix that transforms the clouds before into the site frame");
-  arguments.file("after-frame", frames.after, "the same for the clouds after");
+  arguments.text("frame", "FRAME", frames.both,
+                 std::string("transforms all clouds into the site frame: ") + frame_forms);
+  arguments.text("before-frame", "FRAME", frames.before, "the same for the clouds before");
+  arguments.text("after-frame", "FRAME", frames.after, "the same for the clouds after");
+  arguments.option("before-pose", frames.before_pose,
+                   "pose of the sensor before in the site frame: translation and quaternion [m,-]");
+  arguments.option("after-pose", frames.after_pose, "the same after [m,-]");
+  arguments.flag("level", frames.level,
+                 "level both clouds by the ground plane in the one before: origin on the ground "
+                 "below the sensor, z up, x forward");
+  arguments.text("tf-frame", "NAME", frames.tf_frame,
+                 "frame of the transforms of a recording into which its scans are put");
   arguments.option("sensor-origin", frames.sensor_origin,
-                   "where the sensor stood, in the frame of the scans (default: VIEWPOINT of PCD)");
+                   "where the sensor stood, in the frame of the scans (default: VIEWPOINT of PCD, "
+                   "or what a recording tells)");
+  arguments.option("before-origin", frames.before_origin, "the same of the clouds before alone");
+  arguments.option("after-origin", frames.after_origin, "the same of the clouds after alone");
 }
 
 void declare_units(Arguments& arguments, ScanFrames& frames) {
@@ -45,9 +100,53 @@ void declare_units(Arguments& arguments, ScanFrames& frames) {
   arguments.choice("after-unit", frames.after_unit, words, "of those after (default: as --unit)");
 }
 
-ScanPair scan_pair(const std::string& before, const std::string& after, const ScanFrames& frames) {
-  return {scan_of(before, frames.before, frames.before_unit, frames),
-          scan_of(after, frames.after, frames.after_unit, frames)};
+void declare_machine_in_view(Arguments& arguments, MachineInView& view) {
+  arguments.machine(view.machine);
+  arguments.option("machine-pose", view.both,
+                   "how --machine stood in both scans: leaves out the points of boom, arm and "
+                   "bucket; needs scans in the site frame");
+  arguments.option("before-machine-pose", view.before, "the same of the scan before");
+  arguments.option("after-machine-pose", view.after, "the same of the scan after");
+  arguments.flag("machine-recorded", view.recorded,
+                 "the same by the joint states in the recordings; needs --tf-frame");
+}
+
+ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
+                     ScanReport& report) {
+  if (frames.both && frames.level) usage_error("--level excludes --frame");
+  if (frames.level && frames.view.any()) {
+    usage_error("--level excludes --machine-pose: it does not find the swing axis");
+  }
+  if (frames.view.both && (frames.view.before || frames.view.after)) {
+    usage_error("--machine-pose excludes --before-machine-pose and --after-machine-pose");
+  }
+  const auto placed = [&](const Side& side) {
+    Scan scan = scan_of(side, frames, report);
+    place(side, frames, scan);
+    return scan;
+  };
+  Scan first = placed({"before", before, frames.before_unit, frames.before, frames.before_pose,
+                       frames.before_origin, frames.view.before});
+  ScanPair pair = {std::move(first),
+                   placed({"after", after, frames.after_unit, frames.after, frames.after_pose,
+                           frames.after_origin, frames.view.after})};
+  const std::string needs = " needs scans of a recording, FILE:TOPIC@TIME+SPAN";
+  if (!frames.tf_frame.empty() && report.recordings.empty()) usage_error("--tf-frame" + needs);
+  if (frames.view.recorded && report.recordings.empty()) usage_error("--machine-recorded" + needs);
+  if (frames.level) {
+    Scan whole = pair.before;
+    whole.area.reset();  // is in the levelled frame
+    report.level = found_pose(level_on_ground(whole));
+    report.lines.push_back("levelled   " + report.level->line);
+    pair.before.site_from_scan = pair.after.site_from_scan = report.level->site_from_scan;
+  }
+  return pair;
+}
+
+void ScanReport::add_to(Outcome& outcome) const {
+  outcome.json["pose"] = level ? level->json : nlohmann::ordered_json();
+  outcome.json["recordings"] = recordings;
+  outcome.lines.insert(outcome.lines.end(), lines.begin(), lines.end());
 }
 
 }  // namespace excavplan::tools

@@ -9,9 +9,12 @@
 namespace excavplan::tools {
 namespace {
 
-void write_scan(const std::optional<std::string>& file, std::vector<Eigen::Vector3d> points) {
+/// One camera's place is that of the scan.
+void write_scan(const std::optional<std::string>& file, std::vector<Eigen::Vector3d> points,
+                const std::vector<CameraPlace>& places) {
   if (!file) return;
   Cloud cloud;
+  if (places.size() == 1) cloud.sensor_origin = places.front().position;
   cloud.points = std::move(points);
   cloud.width = cloud.points.size();
   write_cloud(*file, cloud, cloud_format_of_name(*file));
@@ -31,6 +34,9 @@ void declare_scans(Arguments& arguments, SceneScanInputs& inputs) {
 }
 
 void check_scans(const SceneScanInputs& inputs) {
+  if (!inputs.places.empty() && !inputs.before && !inputs.after) {
+    usage_error("--camera needs --before or --after");
+  }
   for (const auto& file : {inputs.before, inputs.after}) {
     if (file) cloud_format_of_name(*file);
   }
@@ -42,8 +48,8 @@ void check_scans(const SceneScanInputs& inputs) {
 void write_scans(const SceneScanInputs& inputs, const DigScene& scene, std::uint64_t seed) {
   if (!inputs.before && !inputs.after) return;
   SceneScans scans = scan_scene(scene, inputs.camera, seed, inputs.places);
-  write_scan(inputs.before, std::move(scans.before));
-  write_scan(inputs.after, std::move(scans.after));
+  write_scan(inputs.before, std::move(scans.before), inputs.places);
+  write_scan(inputs.after, std::move(scans.after), inputs.places);
 }
 
 }  // namespace excavplan::tools

@@ -7,6 +7,7 @@
 #include <excavplan/survey/scan_terrain.hpp>
 
 #include "shared/arguments.hpp"
+#include "shared/found_pose.hpp"
 #include "shared/scans.hpp"
 
 namespace excavplan::tools {
@@ -22,7 +23,7 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
   if (!terrain.cloud) return {undisturbed(flat_ground(extent, cell_size)), {}};
   Scan scan;
   scan.files = {*terrain.cloud};
-  if (terrain.frame) scan.site_from_scan = read_frame(*terrain.frame);
+  if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
   ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
                                         [&] { return terrain_from_scan(scan, extent, cell_size); });
   return {std::move(seen.terrain), std::move(seen.warnings)};

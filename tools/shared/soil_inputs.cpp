@@ -7,6 +7,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/calibration.hpp>
 
+#include "base/text.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -16,6 +17,7 @@ constexpr const char* usual_soil = "loam";
 constexpr const char* any_soil = "unknown";
 constexpr double usual_mass_error = 0.01;      // of a machine's scale, as a share
 constexpr double usual_moisture_error = 0.01;  // of a measured water content; ours
+constexpr double most_moisture = 2.0;          // ours: only peat holds more
 
 /// "VALUE" or "VALUE,SD". @throws Error (bad_input)
 Measured parse_measured(const std::string& option, const std::string& text, Quantity quantity) {
@@ -38,7 +40,9 @@ void set_payload(const std::string& text, DensityOptions& options) {
 
 void set_moisture(const std::string& text, DensityOptions& options) {
   Measured water = parse_measured("--moisture", text, Quantity::ratio);
-  if (!(water.value >= 0.0 && water.value <= 10.0)) usage_error("--moisture: must be in 0 .. 10");
+  if (!(water.value >= 0.0 && water.value <= most_moisture)) {
+    usage_error("--moisture: must be in 0 .. " + number_text(most_moisture) + " (12 % is 0.12)");
+  }
   if (water.sd < 0.0) water.sd = usual_moisture_error;
   options.soil.water_content = water;
 }
@@ -79,6 +83,7 @@ DensityLaw law_named(const std::string& name) {
 }
 
 DensityLaw law_of(const SoilInputs& inputs, const std::string& machine, DensityOptions& options) {
+  if (inputs.moisture && !inputs.payload_mass) usage_error("--moisture needs --payload-mass");
   if (inputs.payload_mass) set_payload(*inputs.payload_mass, options);
   if (inputs.moisture) set_moisture(*inputs.moisture, options);
   SoilKnowledge& soil = options.soil;

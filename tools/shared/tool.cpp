@@ -17,46 +17,11 @@
 
 #include "base/files.hpp"
 #include "base/json.hpp"
+#include "base/text.hpp"
+#include "shared/standard_input.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-// ---- Suggestions ------------------------------------------------------------------------------
-
-/// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other
-/// (optimal string alignment).
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      const std::size_t replaced = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
-/// The word that was probably meant, or nothing.
-std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& words) {
-  std::optional<std::string> best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const std::string& candidate : words) {
-    const bool abbreviated = word.size() >= 2 && candidate.rfind(word, 0) == 0;
-    const std::size_t distance = abbreviated ? 1 : edit_distance(word, candidate);
-    if (distance < least && distance < candidate.size()) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  return best;
-}
 
 // ---- Help -------------------------------------------------------------------------------------
 
@@ -112,7 +77,10 @@ std::string help_text(const About& about, const std::vector<Arguments::Entry>& e
       wrapped(about.name + ": " + about.summary, 0) + "\n\n" + usage + " [OPTIONS]\n";
   if (!positionals.empty()) text += '\n' + positionals;
   text += "\nOptions:\n" + options;
-  text += "\nA bare number is in the unit in brackets; 45deg, 5cm, 50mm are understood as well.\n";
+  text +=
+      "\nA bare number is in the unit in brackets; 45deg, 5cm, 50mm are understood as well. One "
+      "FILE "
+      "that\nis read may be -, standard input.\n";
   if (!about.examples.empty()) text += "\nExamples:\n";
   for (const Example& example : about.examples) {
     text += "  " + example.command + "\n      " + wrapped(example.meaning, 6) + '\n';
@@ -198,7 +166,7 @@ void refuse_left_over(const std::vector<std::string>& left_over,
     if (start == std::string::npos) continue;
     if (start == 0) usage_error("unexpected argument '" + word + "'");
     const std::string option = word.substr(0, word.find('='));
-    const auto meant = nearest(option.substr(start), names);
+    const auto meant = nearest_word(option.substr(start), names);
     usage_error("unknown option " + option + (meant ? ", did you mean --" + *meant + "?" : ""));
   }
 }
@@ -207,7 +175,7 @@ std::string shown_name(const Arguments::Entry& entry) {
   return entry.positional ? entry.name : "--" + entry.name;
 }
 
-void assign(const Arguments::Entry& entry, const ParsedWords::Given& given) {
+void assign(const Arguments::Entry& entry, const ParsedWords::Given& given, StandardInput& input) {
   const std::string name = shown_name(entry);
   if (given.texts.empty()) return;
   if (entry.placeholder.empty()) {
@@ -220,12 +188,13 @@ void assign(const Arguments::Entry& entry, const ParsedWords::Given& given) {
     if (!entry.positional && text.rfind("--", 0) == 0) {
       usage_error(name + " needs a value, got " + text);
     }
-    entry.assign(text);
+    entry.assign(entry.input && text == "-" ? input.path() : text);
   }
 }
 
-void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words) {
-  for (std::size_t i = 0; i < entries.size(); ++i) assign(entries[i], words.of_entry[i]);
+void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words,
+            StandardInput& input) {
+  for (std::size_t i = 0; i < entries.size(); ++i) assign(entries[i], words.of_entry[i], input);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].required && words.of_entry[i].texts.empty()) {
       usage_error(shown_name(entries[i]) + " is missing: " + entries[i].help);
@@ -247,10 +216,11 @@ void on_stop_signal(int signal) {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-void print_outcome(const About& about, const Common& common, const Outcome& outcome) {
+void print_outcome(const About& about, const Common& common, const Outcome& outcome,
+                   const StandardInput& input) {
   if (!common.quiet) {
     for (const Warning& warning : outcome.warnings) {
-      std::cerr << about.name << ": warning: " << warning.message << '\n';
+      std::cerr << about.name << ": warning: " << input.named(warning.message) << '\n';
     }
   }
   if (common.json) {
@@ -260,9 +230,10 @@ void print_outcome(const About& about, const Common& common, const Outcome& outc
     for (const Warning& warning : outcome.warnings) {
       json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
     }
-    std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    std::cout << input.named(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace))
+              << '\n';
   } else if (!common.quiet) {
-    for (const std::string& line : outcome.lines) std::cout << line << '\n';
+    for (const std::string& line : outcome.lines) std::cout << input.named(line) << '\n';
   }
   if (!std::cout.flush()) {
     throw Error(ErrorKind::bad_file, "standard output: cannot be written");
@@ -271,7 +242,7 @@ void print_outcome(const About& about, const Common& common, const Outcome& outc
 
 int run(int argc, const char* const* argv, const About& about,
         const std::function<void(Arguments&)>& declare,
-        const std::function<Outcome(Console&)>& work) {
+        const std::function<Outcome(Console&)>& work, StandardInput& input) {
   Arguments arguments;
   Common common;
   declare(arguments);
@@ -293,7 +264,7 @@ int run(int argc, const char* const* argv, const About& about,
     return 0;
   }
   refuse_left_over(words.left_over, arguments.entries());
-  assign(arguments.entries(), words);
+  assign(arguments.entries(), words, input);
 
   if (about.can_stop_early) {
     std::signal(SIGINT, on_stop_signal);
@@ -302,7 +273,7 @@ int run(int argc, const char* const* argv, const About& about,
   Console console(common.quiet, ::isatty(STDERR_FILENO) == 1);
   const Outcome outcome = work(console);
   console.clear();
-  print_outcome(about, common, outcome);
+  print_outcome(about, common, outcome, input);
   if (outcome.stopped_early) return 75;
   return common.strict && !outcome.trustworthy ? 4 : 0;
 }
@@ -336,11 +307,12 @@ void Console::clear() {
 int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
              const std::function<Outcome(Console&)>& work) {
+  StandardInput input;
   const auto report = [&](const std::string& message) {
-    std::cerr << about.name << ": " << message << '\n';
+    std::cerr << about.name << ": " << input.named(message) << '\n';
   };
   try {
-    return run(argc, argv, about, declare, work);
+    return run(argc, argv, about, declare, work, input);
   } catch (const Error& error) {
     report(error.what());
     if (error.kind() == ErrorKind::bad_file) return 3;

@@ -31,8 +31,9 @@ struct CloudFormat {
   bool text = false;  ///< every number with all its digits; else binary, where the format has it
 };
 
-/// Reads PCD (ascii, binary, binary_compressed), PLY (ascii, binary little and big endian) or XYZ
-/// text; the format is detected from the content, not from the name.
+/// Reads PCD (ascii, binary, binary_compressed), PLY (ascii, binary little and big endian), LAS
+/// (1.0 to 1.4) or XYZ text; the format is detected from the content, not from the name. Of LAS,
+/// points that are withheld or classified as noise are left out.
 ///
 /// x, y and z may be float32, float64 or integers; other fields are skipped. Every rule of
 /// docs/formats.md#clouds is checked before memory is allocated; a file that would take more than
@@ -69,9 +70,10 @@ CloudFormat cloud_format_of_name(const std::string& path);
 /// The supported endings, for help: ".pcd, .ply, .xyz, .txt or .asc".
 std::string cloud_endings();
 
-/// Reads a 4 x 4 matrix of text that transforms a scan into the site frame.
-/// @throws Error (bad_file) if it is not 16 numbers, the last row is not 0 0 0 1, or it is not
-/// rigid to 1e-4
+/// Reads what transforms a scan into the site frame: a 4 x 4 matrix of text, or a transform or pose
+/// as ROS writes it, in JSON or YAML (docs/formats.md#frame).
+/// @throws Error (bad_file) if it is none of these; if the matrix is not 16 numbers, its last row
+/// not 0 0 0 1, or it is not rigid to 1e-4; if the quaternion's norm is not 1 to 1e-3
 Eigen::Matrix4d read_frame(const std::string& path);
 
 /// Writes what read_frame() reads, every number with all its digits. @throws Error (bad_file)

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <excavplan/survey/cloud.hpp>
+#include <excavplan/survey/scan_pose.hpp>
 
 namespace excavplan {
 
@@ -20,17 +21,20 @@ struct DepthIntrinsics {
   double depth_unit = 0.001;  ///< metres per count; RealSense: 0.001
   double min_depth = 0.1;     ///< nearer pixels are dropped [m]
   double max_depth = 20.0;    ///< farther pixels are dropped [m]
+  int width = 0;              ///< of the images they hold for [pixel]; 0: of any
+  int height = 0;             ///< the same
 };
 
-/// Reads intrinsics from JSON: fx, fy, cx, cy and optionally depth_unit_m, min_depth_m,
-/// max_depth_m.
-/// @throws Error (bad_file) naming file, key, value and rule
+/// Reads intrinsics, whichever of the forms of docs/formats.md#intrinsics the content has: ours in
+/// JSON, those of Open3D, RealSense and OpenCV-like flat keys in JSON or YAML, a calibration of ROS
+/// (camera_matrix) or a CameraInfo message as it is echoed.
+/// @throws Error (bad_file) naming file, key, value and rule, also if a distortion is not zero
 DepthIntrinsics load_intrinsics(const std::string& path);
 
 /// Turns a 16-bit single-channel image (PNG; read by OpenCV) into an organised cloud in the camera
 /// frame (x right, y down, z forward), NaN where the count is 0 or out of range.
-/// @throws Error (bad_file) if the file is not such an image; (bad_input) if an intrinsic is out of
-/// range
+/// @throws Error (bad_file) if the file is not such an image or of another size than the intrinsics
+/// hold for; (bad_input) if an intrinsic is out of range
 Cloud depth_image_to_cloud(const std::string& image_path, const DepthIntrinsics& intrinsics);
 
 /// Several frames of one view in one cloud.
@@ -57,14 +61,8 @@ AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
 Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrinsics, double u,
                                double v);
 
-/// Points of a scan whose places in the site are known, pair by pair.
-struct KnownPoints {
-  std::vector<Eigen::Vector3d> in_camera;  ///< [m]
-  std::vector<Eigen::Vector3d> in_site;    ///< the same points [m]
-};
-
-/// Reads them from a CSV file with the columns x_m, y_m, z_m of the site and either u_px, v_px,
-/// looked up by point_at_pixel(), or camera_x_m, camera_y_m, camera_z_m. For pose_of_points().
+/// Reads known points of a depth image from a CSV file with the columns x_m, y_m, z_m of the site
+/// and either u_px, v_px, looked up by point_at_pixel(), or those of the other read_known_points().
 /// @throws Error (bad_file) naming file, line or column and rule; (bad_input) as point_at_pixel()
 KnownPoints read_known_points(const std::string& path, const Cloud& cloud,
                               const DepthIntrinsics& intrinsics);

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <excavplan/survey/cloud.hpp>
+#include <excavplan/survey/scan_surface.hpp>
 
 /// @file
 /// Pose of a sensor from its own scan: tilt and height from the ground plane, or all six degrees
@@ -17,25 +19,45 @@ namespace excavplan {
 
 /// A pose of which only tilt and height are determined.
 struct LevelPose {
-  /// Origin on the ground below the sensor, z up from the ground, x along the view direction (its z
-  /// axis; within 5 deg of straight down, the upper side of its image, -y).
+  /// Origin on the ground below the sensor, z up from the ground, x forward: of a camera, whose z
+  /// axis points forward or down, along that axis (within 5 deg of straight down, towards the upper
+  /// side of its image, -y); of a sensor whose z axis is within 45 deg of up, as a lidar's, along
+  /// its x axis.
   Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();
   double height = 0.0;        ///< of the sensor above the ground [m]
-  double tilt = 0.0;          ///< between the sensor's axis and straight down [rad]
+  double tilt = 0.0;          ///< between the sensor's z axis and straight down [rad]
   double residual_sd = 0.0;   ///< of the ground about its plane [m]
   double ground_share = 0.0;  ///< of the finite points, on the plane [-]
 };
 
 /// Levels a scan by its largest plane, which must be the ground: RANSAC within 1 % of the median
 /// range, then least squares over the points within 2.5 robust sd until they stay the same. Points
-/// count with 1 / range^4, as stereo errs. Same seed, same pose.
+/// count with 1 / range^4, as stereo errs. The sensor stood at Cloud::sensor_origin, or else at the
+/// origin. Same seed, same pose.
 ///
 /// Ground that slopes is levelled too: volumes between two scans in one such frame stay right, but
 /// the direction of "down" is that of the plane, not of gravity.
 ///
-/// @throws Error (bad_input) with fewer than 100 finite points, if under a fifth of them lie on
+/// @throws Error (bad_input) with fewer than 100 finite points, if under a tenth of them lie on
 /// one plane, or if that plane passes the sensor within 5 cm
 LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed = 1);
+
+/// The same of a scan of any size, from a random choice of 32768 to 65536 of its points that is the
+/// same every time; the pose follows Scan::site_from_scan. The sensor stood where the scan or its
+/// files say, if they agree, or else at the origin of the files.
+/// @throws Error (bad_file) as read_cloud(); (bad_input) as above
+LevelPose level_on_ground(const Scan& scan, std::uint64_t seed = 1);
+
+/// Points of a scan whose places in the site are known, pair by pair.
+struct KnownPoints {
+  std::vector<Eigen::Vector3d> in_scan;  ///< [m]
+  std::vector<Eigen::Vector3d> in_site;  ///< the same points [m]
+};
+
+/// Reads them from a CSV file with the columns x_m, y_m, z_m of the site and scan_x_m, scan_y_m,
+/// scan_z_m (or camera_x_m, camera_y_m, camera_z_m) of the scan.
+/// @throws Error (bad_file) naming file, line or column and rule
+KnownPoints read_known_points(const std::string& path);
 
 /// A pose found from known points.
 struct PointPose {
@@ -51,5 +73,11 @@ struct PointPose {
 /// that is not finite, or points on one line
 PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
                          const std::vector<Eigen::Vector3d>& in_site);
+
+/// The rigid motion of a translation [m] and a quaternion (x, y, z, w), in the order of ROS. The
+/// quaternion is normalised.
+/// @throws Error (bad_input) if a number is not finite or the quaternion's norm is not 1 to 1e-3
+Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
+                                   const Eigen::Vector4d& quaternion);
 
 }  // namespace excavplan

@@ -20,6 +20,8 @@
 
 namespace excavplan {
 
+class MachineFront;
+
 /// What was seen at one time of one piece of ground: files, clouds in memory, or both.
 struct Scan {
   std::vector<std::string> files;                                ///< each as read_cloud() reads it
@@ -30,6 +32,9 @@ struct Scan {
   /// Where the sensor stood, in the frame and unit of the files; unset: where files and clouds say
   /// themselves, if they all do, at up to four places.
   std::optional<Eigen::Vector3d> sensor_origin = {};
+  bool z_is_up = false;   ///< is known, so that no frame of a camera is suspected
+  std::string name = {};  ///< for messages; empty: that of its first file
+  std::shared_ptr<const MachineFront> machine = {};  ///< points that it holds are left out
 };
 
 /// The error (bad_file) of scans outside the expected area, mostly because `site_from_scan` does

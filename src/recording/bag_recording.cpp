@@ -1,0 +1,303 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <optional>
+
+#include "recording/chunked_container.hpp"
+#include "recording/compression.hpp"
+
+// The format is that of http://wiki.ros.org/Bags/Format/2.0.
+
+namespace excavplan {
+namespace {
+
+constexpr std::string_view magic = "#ROSBAG V2.0\n";
+constexpr std::uint64_t longest_header = 1 << 16;  // of a chunk or a bag; ours [byte]
+
+constexpr std::size_t most_fields = 100;  // of a header; ours
+
+enum Op : std::uint8_t {
+  message = 2,
+  bag = 3,
+  index = 4,
+  chunk = 5,
+  chunk_info = 6,
+  connection = 7
+};
+
+/// The fields "name=value" of a header.
+class Fields {
+ public:
+  explicit Fields(ByteReader reader) : before_(reader) {
+    while (reader.left() > 0) {
+      ByteReader field = reader.part("field of a header");
+      const std::string_view text = field.take(field.left(), "field");
+      const std::size_t equals = text.find('=');
+      if (equals == text.npos) reader.fail("the field " + in_quotes(text), "one with '='");
+      values_.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+      if (values_.size() > most_fields) before_.fail("a header of more fields", "at most 100");
+    }
+  }
+
+  bool has(std::string_view name) const { return find(name).has_value(); }
+  std::string_view text(std::string_view name) const {
+    const auto value = find(name);
+    if (!value) before_.fail("a header without " + in_quotes(name), "one with it");
+    return *value;
+  }
+  std::uint64_t number(std::string_view name, std::size_t size) const {
+    const std::string_view value = text(name);
+    if (value.size() != size) {
+      before_.fail(in_quotes(name) + " of " + std::to_string(value.size()) + " bytes",
+                   std::to_string(size));
+    }
+    std::uint64_t out = 0;
+    for (std::size_t i = size; i-- > 0;) out = out << 8 | static_cast<unsigned char>(value[i]);
+    return out;
+  }
+  std::uint32_t u32(std::string_view name) const {
+    return static_cast<std::uint32_t>(number(name, 4));
+  }
+  void require_op(Op op) const {
+    const std::uint64_t found = number("op", 1);
+    if (found == op) return;
+    before_.fail("a record of op " + std::to_string(found), "op " + std::to_string(op));
+  }
+  [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
+    before_.fail(found, expected);
+  }
+
+ private:
+  std::optional<std::string_view> find(std::string_view name) const {
+    for (const auto& [field, value] : values_) {
+      if (field == name) return value;
+    }
+    return std::nullopt;
+  }
+
+  ByteReader before_;
+  std::vector<std::pair<std::string_view, std::string_view>> values_;
+};
+
+constexpr std::int64_t time_of(std::uint64_t seconds, std::uint64_t nanoseconds) {
+  return static_cast<std::int64_t>(seconds * 1'000'000'000 + nanoseconds);
+}
+
+/// A time as a header has it, the seconds first.
+std::int64_t time_field(const Fields& fields, std::string_view name) {
+  const std::uint64_t both = fields.number(name, 8);
+  return time_of(both & 0xFFFFFFFF, both >> 32);
+}
+
+/// The header of a Chunk record and where its data lie.
+struct ChunkHead {
+  std::string compression;
+  std::uint64_t uncompressed = 0;  // [byte]
+  std::uint64_t data = 0;          // where in the file
+  std::uint64_t length = 0;        // [byte]
+};
+
+class BagRecording : public ChunkedContainer {
+ public:
+  explicit BagRecording(const std::string& path) : ChunkedContainer(path) {
+    read_bag_header();
+    finish();
+  }
+
+ private:
+  void list(std::uint32_t chunk, const std::vector<bool>& wanted,
+            std::vector<MessagePlace>& places) const override;
+  Bytes load(const RecordedChunk& chunk) const override;
+  std::string_view message_at(const MessagePlace& place) override;
+
+  void read_bag_header();
+  void read_index(std::uint64_t start, std::uint32_t connections, std::uint32_t chunks);
+  void read_connection(ByteReader& records);
+  void read_chunk_info(ByteReader& records, std::uint64_t end);
+  void bound_chunks(std::uint64_t end);
+  Bytes header_at(std::uint64_t offset) const;
+  ChunkHead head_of(const RecordedChunk& chunk) const;
+};
+
+void BagRecording::read_bag_header() {
+  const Bytes start = file_.read(0, std::min<std::uint64_t>(file_.size(), magic.size()), "magic");
+  if (start.view() != magic) {
+    file_.fail(0, in_quotes(start.view()),
+               "'#ROSBAG V2.0'; 'rosbag fix' converts bags of earlier versions");
+  }
+  const Bytes bytes = header_at(magic.size());
+  const Fields fields(ByteReader({file_, magic.size() + 4}, bytes.view()));
+  fields.require_op(Op::bag);
+  const std::uint64_t index = fields.number("index_pos", 8);
+  if (index == 0) {
+    file_.refuse("is not indexed, as its recording was cut off; run 'rosbag reindex " +
+                 file_.path() + "'");
+  }
+  if (fields.has("encryptor") && !fields.text("encryptor").empty()) {
+    file_.refuse("is encrypted by " + in_quotes(fields.text("encryptor")) +
+                 ", which is not supported");
+  }
+  read_index(index, fields.u32("conn_count"), fields.u32("chunk_count"));
+}
+
+/// The header of a record, without its length before it.
+Bytes BagRecording::header_at(std::uint64_t offset) const {
+  const Bytes bytes = file_.read(offset, 4, "length of a header");
+  const std::uint32_t length = ByteReader({file_, offset}, bytes.view()).u32("length of a header");
+  if (length > longest_header) {
+    file_.fail(offset, "a header of " + std::to_string(length) + " bytes",
+               "at most " + std::to_string(longest_header));
+  }
+  return file_.read(offset + 4, length, "header of a record");
+}
+
+void BagRecording::read_index(std::uint64_t start, std::uint32_t connections,
+                              std::uint32_t chunks) {
+  if (start > file_.size() || file_.size() - start > most_index_bytes) {
+    file_.fail(magic.size(), "an index at byte " + std::to_string(start),
+               "one of at most " + std::to_string(most_index_bytes) + " bytes in the " +
+                   std::to_string(file_.size()) + " of the file");
+  }
+  const Bytes bytes = file_.read(start, file_.size() - start, "index");
+  ByteReader records({file_, start}, bytes.view());
+  for (std::uint32_t i = 0; i < connections; ++i) read_connection(records);
+  for (std::uint32_t i = 0; i < chunks; ++i) read_chunk_info(records, start);
+  bound_chunks(start);
+}
+
+void BagRecording::read_connection(ByteReader& records) {
+  const Fields fields(records.part("header of a connection"));
+  fields.require_op(Op::connection);
+  const Fields about(records.part("connection"));
+  RecordedChannel channel;
+  channel.id = fields.u32("conn");
+  channel.topic = fields.text("topic");
+  channel.type = ros2_type(about.text("type"));
+  channel.serialization = Serialization::ros1;
+  add_channel(std::move(channel), records);
+}
+
+void BagRecording::read_chunk_info(ByteReader& records, std::uint64_t end) {
+  const Fields fields(records.part("header of a chunk's info"));
+  fields.require_op(Op::chunk_info);
+  RecordedChunk chunk;
+  chunk.offset = fields.number("chunk_pos", 8);
+  chunk.start = time_field(fields, "start_time");
+  chunk.end = time_field(fields, "end_time");
+  if (chunk.offset < magic.size() || chunk.offset >= end) {
+    fields.fail("a chunk at byte " + std::to_string(chunk.offset),
+                "one before the index at byte " + std::to_string(end));
+  }
+  ByteReader counts = records.part("counts of a chunk");
+  for (std::uint32_t i = fields.u32("count"); i > 0; --i) {
+    const std::uint32_t id = counts.u32("connection");
+    const std::uint32_t number = channel_of(id);
+    if (number == channels_.size()) {
+      counts.fail("messages of connection " + std::to_string(id), "a connection of the index");
+    }
+    channels_[number].messages += counts.u32("count of messages");
+    chunk.channels.emplace_back(number, 0);
+  }
+  chunks_.push_back(std::move(chunk));
+}
+
+/// A chunk and its index end where the next one begins, so that no part of a file is read twice.
+void BagRecording::bound_chunks(std::uint64_t end) {
+  std::sort(chunks_.begin(), chunks_.end(),
+            [](const RecordedChunk& a, const RecordedChunk& b) { return a.offset < b.offset; });
+  for (std::size_t i = 0; i < chunks_.size(); ++i) {
+    const std::uint64_t next = i + 1 < chunks_.size() ? chunks_[i + 1].offset : end;
+    chunks_[i].length = next - chunks_[i].offset;
+    if (chunks_[i].length > 0) continue;
+    file_.fail(next, "two chunks at this place, by the index", "one");
+  }
+}
+
+ChunkHead BagRecording::head_of(const RecordedChunk& chunk) const {
+  const Bytes bytes = header_at(chunk.offset);
+  const Fields fields(ByteReader({file_, chunk.offset + 4}, bytes.view()));
+  fields.require_op(Op::chunk);
+  const std::uint64_t after = chunk.offset + 4 + bytes.size();
+  const Bytes length = file_.read(after, 4, "length of a chunk");
+  ChunkHead head;
+  head.compression = fields.text("compression");
+  head.uncompressed = fields.u32("size");
+  head.length = ByteReader({file_, after}, length.view()).u32("length of a chunk");
+  head.data = after + 4;
+  const std::uint64_t end = chunk.offset + chunk.length;
+  if (head.data > end || head.length > end - head.data) {
+    file_.fail(after, "a chunk of " + std::to_string(head.length) + " bytes",
+               "one that ends before byte " + std::to_string(end) + ", where the next one begins");
+  }
+  return head;
+}
+
+void BagRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
+                        std::vector<MessagePlace>& places) const {
+  const RecordedChunk& listed = chunks_[chunk];
+  const ChunkHead head = head_of(listed);
+  const std::uint64_t start = head.data + head.length;
+  const std::uint64_t length = listed.offset + listed.length - start;
+  if (length > most_index_bytes) {
+    file_.fail(start, "an index of " + std::to_string(length) + " bytes",
+               "at most " + std::to_string(most_index_bytes));
+  }
+  const Bytes bytes = file_.read(start, length, "index of a chunk");
+  ByteReader records({file_, start}, bytes.view());
+  for (std::size_t i = 0; i < listed.channels.size(); ++i) {
+    const Fields fields(records.part("header of an index"));
+    fields.require_op(Op::index);
+    const std::uint32_t channel = channel_of(fields.u32("conn"));
+    ByteReader entries = records.part("index of a chunk");
+    if (channel == channels_.size())
+      fields.fail("an index of no connection", "one of a connection");
+    if (!wanted[channel]) continue;
+    for (std::uint32_t k = fields.u32("count"); k > 0; --k) {
+      const std::uint32_t seconds = entries.u32("time of a message");
+      const std::uint32_t nanoseconds = entries.u32("time of a message");
+      const std::uint32_t offset = entries.u32("offset of a message");
+      places.push_back({time_of(seconds, nanoseconds), offset, chunk, channel});
+    }
+  }
+}
+
+Bytes BagRecording::load(const RecordedChunk& chunk) const {
+  const ChunkHead head = head_of(chunk);
+  Bytes bytes = file_.read(head.data, head.length, "a chunk");
+  if (head.compression == "lz4" || head.compression == "bz2") {
+    const auto compression = head.compression == "lz4" ? Compression::lz4 : Compression::bz2;
+    bytes = decompress({compression, bytes.view(), head.uncompressed, file_.path(),
+                        "byte " + std::to_string(head.data)});
+  } else if (head.compression != "none" || head.length != head.uncompressed) {
+    file_.fail(chunk.offset,
+               "a chunk of compression " + in_quotes(head.compression) + ", " +
+                   std::to_string(head.length) + " bytes and " + std::to_string(head.uncompressed) +
+                   " uncompressed",
+               "compression lz4, bz2, or none and as many bytes");
+  }
+  return bytes;
+}
+
+std::string_view BagRecording::message_at(const MessagePlace& place) {
+  std::string_view bytes = chunk_of(place);
+  bytes.remove_prefix(std::min<std::uint64_t>(place.offset, bytes.size()));
+  ByteReader record({file_, place.offset, chunks_[place.chunk].offset}, bytes);
+  const Fields fields(record.part("header of a message"));
+  fields.require_op(Op::message);
+  const std::int64_t time = time_field(fields, "time");
+  if (channel_of(fields.u32("conn")) != place.channel || time != place.time) {
+    fields.fail("a message of connection " + std::to_string(fields.u32("conn")) + " at " +
+                    std::to_string(time) + " ns",
+                "one of " + channels_[place.channel].topic + " at " + std::to_string(place.time) +
+                    " ns, as the index says");
+  }
+  return record.text("message");
+}
+
+}  // namespace
+
+std::unique_ptr<Container> open_bag_recording(const std::string& path) {
+  return std::make_unique<BagRecording>(path);
+}
+
+}  // namespace excavplan

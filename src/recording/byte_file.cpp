@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/byte_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+
+#include <excavplan/error.hpp>
+
+namespace excavplan {
+namespace {
+
+std::string place_of(const Origin& origin) {
+  const std::string byte = "byte " + std::to_string(origin.offset);
+  if (origin.chunk == Origin::in_file) return byte;
+  return byte + " of the chunk at byte " + std::to_string(origin.chunk);
+}
+
+}  // namespace
+
+std::string in_quotes(std::string_view text) {
+  std::string out(text.substr(0, 40));
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return c < 32 || c == 127; }, '?');
+  return "'" + out + (text.size() > 40 ? "...'" : "'");
+}
+
+void fail_at(const std::string& file, const std::string& place, const std::string& found,
+             const std::string& expected) {
+  throw Error(ErrorKind::bad_file,
+              file + ": " + place + ": found " + found + ", expected " + expected);
+}
+
+ByteFile::ByteFile(std::string path) : path_(std::move(path)) {
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor_ < 0) refuse(std::string("cannot be opened: ") + std::strerror(errno));
+  struct stat status {};
+  const bool is_known = ::fstat(descriptor_, &status) == 0;
+  if (!is_known || !S_ISREG(status.st_mode)) {
+    ::close(descriptor_);
+    refuse(is_known ? "is not a regular file" : "cannot be examined");
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+ByteFile::~ByteFile() { ::close(descriptor_); }
+
+Bytes ByteFile::read(std::uint64_t offset, std::uint64_t count, const std::string& what) const {
+  if (offset > size_ || count > size_ - offset) {
+    fail(offset, std::to_string(offset > size_ ? 0 : size_ - offset) + " bytes left",
+         std::to_string(count) + " of " + what);
+  }
+  if (count > most_bytes) {
+    fail(offset, what + " of " + std::to_string(count) + " bytes",
+         "at most " + std::to_string(most_bytes));
+  }
+  Bytes bytes(count);
+  for (std::size_t filled = 0; filled < count;) {
+    const ssize_t got = ::pread(descriptor_, bytes.data() + filled, count - filled,
+                                static_cast<off_t>(offset + filled));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(std::string("cannot be read: ") + std::strerror(errno));
+    if (got == 0) refuse("became shorter while it was read");
+    filled += static_cast<std::size_t>(got);
+  }
+  return bytes;
+}
+
+void ByteFile::fail(std::uint64_t offset, const std::string& found,
+                    const std::string& expected) const {
+  fail_at(path_, "byte " + std::to_string(offset), found, expected);
+}
+
+void ByteFile::refuse(const std::string& why) const {
+  throw Error(ErrorKind::bad_file, path_ + ": " + why);
+}
+
+std::uint64_t ByteReader::number(std::size_t size, const char* what) {
+  const std::string_view bytes = take(size, what);
+  std::uint64_t value = 0;
+  for (std::size_t i = size; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
+}
+
+std::int64_t ByteReader::nanoseconds(const char* what) {
+  const Origin before = origin_;
+  const std::uint64_t value = u64(what);
+  if (value > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+    fail_at(before.file.path(), place_of(before), std::string(what) + " " + std::to_string(value),
+            "below 2^63");
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+std::string_view ByteReader::take(std::uint64_t count, const char* what) {
+  if (count > left()) {
+    fail(std::to_string(left()) + " bytes left", std::to_string(count) + " of " + what);
+  }
+  const std::string_view out = bytes_.substr(0, count);
+  bytes_.remove_prefix(count);
+  origin_.offset += count;
+  return out;
+}
+
+ByteReader ByteReader::part(const char* what) { return part(u32(what), what); }
+
+ByteReader ByteReader::part(std::uint64_t count, const char* what) {
+  const Origin origin = origin_;
+  return {origin, take(count, what)};
+}
+
+void ByteReader::fail(const std::string& found, const std::string& expected) const {
+  fail_at(origin_.file.path(), place_of(origin_), found, expected);
+}
+
+}  // namespace excavplan

@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "recording/chunked_container.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <queue>
+#include <tuple>
+
+namespace excavplan {
+namespace {
+
+// Of chunks that overlap in time [byte]; ours.
+constexpr std::uint64_t kept_bytes = std::uint64_t{1} << 28;
+constexpr int most_loads = 16;  // of one chunk, by one cursor; ours
+
+bool is_later(const MessagePlace& a, const MessagePlace& b) {
+  return std::tie(a.time, a.chunk, a.offset) > std::tie(b.time, b.chunk, b.offset);
+}
+
+bool has_any(const RecordedChunk& chunk, const std::vector<bool>& wanted) {
+  return std::any_of(chunk.channels.begin(), chunk.channels.end(),
+                     [&](const auto& channel) { return wanted[channel.first]; });
+}
+
+}  // namespace
+
+/// Opens chunks in the order of their starts, each when the messages before it are through.
+class ChunkedCursor : public MessageCursor {
+ public:
+  ChunkedCursor(ChunkedContainer& container, std::vector<bool> wanted, std::int64_t from,
+                std::int64_t to)
+      : container_(container), wanted_(std::move(wanted)), from_(from), to_(to) {}
+
+  bool next() override {
+    if (!ahead_.empty()) ahead_.pop();
+    const auto& chunks = container_.chunks_;
+    while (chunk_ < chunks.size() && chunks[chunk_].start <= to_ &&
+           (ahead_.empty() || chunks[chunk_].start <= ahead_.top().time)) {
+      open(chunk_++);
+    }
+    return !ahead_.empty();
+  }
+  std::int64_t time() const override { return ahead_.top().time; }
+  StoredMessage read() override {
+    const RecordedChannel& channel = container_.channels_[ahead_.top().channel];
+    if (!channel.unreadable.empty()) {
+      container_.file_.refuse("topic " + channel.topic + ": " + channel.unreadable);
+    }
+    return {channel.topic_index, channel.serialization, container_.message_at(ahead_.top())};
+  }
+
+ private:
+  void open(std::uint32_t chunk) {
+    const RecordedChunk& opened = container_.chunks_[chunk];
+    if (opened.end < from_ || !has_any(opened, wanted_)) return;
+    for (const MessagePlace& place : container_.places_of(chunk, wanted_)) {
+      if (place.time >= from_ && place.time <= to_) ahead_.push(place);
+    }
+    if (ahead_.size() > most_places) {
+      container_.file_.refuse("has more than " + std::to_string(most_places) +
+                              " messages in chunks that overlap in time");
+    }
+  }
+
+  ChunkedContainer& container_;
+  std::vector<bool> wanted_;  // by channel
+  std::int64_t from_;
+  std::int64_t to_;
+  std::uint32_t chunk_ = 0;  // the next one to open
+  std::priority_queue<MessagePlace, std::vector<MessagePlace>, decltype(&is_later)> ahead_{
+      &is_later};
+};
+
+std::unique_ptr<MessageCursor> ChunkedContainer::messages(const std::vector<std::size_t>& topics,
+                                                          std::int64_t from, std::int64_t to) {
+  loads_.clear();
+  std::vector<bool> is_asked_for(topics_.size());
+  for (const std::size_t topic : topics) is_asked_for[topic] = true;
+  std::vector<bool> wanted;
+  for (const auto& channel : channels_) wanted.push_back(is_asked_for[channel.topic_index]);
+  return std::make_unique<ChunkedCursor>(*this, std::move(wanted), from, to);
+}
+
+std::vector<MessagePlace> ChunkedContainer::places_of(std::uint32_t chunk,
+                                                      const std::vector<bool>& wanted) const {
+  const RecordedChunk& listed = chunks_[chunk];
+  std::vector<MessagePlace> places = listed.places;
+  if (places.empty()) list(chunk, wanted, places);
+  const auto is_unwanted = [&](const MessagePlace& place) { return !wanted[place.channel]; };
+  places.erase(std::remove_if(places.begin(), places.end(), is_unwanted), places.end());
+  for (MessagePlace& place : places) {
+    place.chunk = chunk;
+    if (place.time >= listed.start && place.time <= listed.end) continue;
+    file_.fail(listed.offset, "a chunk with a message at " + std::to_string(place.time) + " ns",
+               "messages at " + std::to_string(listed.start) + " to " + std::to_string(listed.end) +
+                   " ns, as the index of the file says");
+  }
+  return places;
+}
+
+std::uint32_t ChunkedContainer::channel_of(std::uint32_t id) const {
+  const auto found = channel_of_id_.find(id);
+  return found == channel_of_id_.end() ? static_cast<std::uint32_t>(channels_.size())
+                                       : found->second;
+}
+
+void ChunkedContainer::add_channel(RecordedChannel channel, const ByteReader& reader) {
+  const auto number = static_cast<std::uint32_t>(channels_.size());
+  const auto [entry, is_new] = channel_of_id_.try_emplace(channel.id, number);
+  if (is_new) {
+    channels_.push_back(std::move(channel));
+    return;
+  }
+  const RecordedChannel& known = channels_[entry->second];
+  if (known.topic != channel.topic || known.type != channel.type) {
+    reader.fail("channel " + std::to_string(channel.id) + " of " + in_quotes(channel.topic) +
+                    " and of " + in_quotes(known.topic),
+                "one topic and one type a channel");
+  }
+}
+
+std::string_view ChunkedContainer::chunk_of(const MessagePlace& place) {
+  const auto found = std::find_if(kept_.begin(), kept_.end(),
+                                  [&](const auto& kept) { return kept.first == place.chunk; });
+  if (found != kept_.end()) {
+    kept_.splice(kept_.begin(), kept_, found);
+    return kept_.front().second.view();
+  }
+  if (++loads_[place.chunk] > most_loads) {
+    file_.fail(chunks_[place.chunk].offset,
+               "a chunk that overlaps in time with more than can be kept in memory",
+               "chunks that follow each other");
+  }
+  // Messages come in the order of their times.
+  kept_.remove_if([&](const auto& kept) { return chunks_[kept.first].end < place.time; });
+  std::uint64_t held = 0;
+  for (const auto& kept : kept_) held += kept.second.size();
+  while (!kept_.empty() && held > kept_bytes) {
+    held -= kept_.back().second.size();
+    kept_.pop_back();
+  }
+  kept_.emplace_front(place.chunk, load(chunks_[place.chunk]));
+  return kept_.front().second.view();
+}
+
+void ChunkedContainer::finish() {
+  const auto is_earlier = [](const RecordedChunk& a, const RecordedChunk& b) {
+    return std::tie(a.start, a.offset) < std::tie(b.start, b.offset);
+  };
+  std::sort(chunks_.begin(), chunks_.end(), is_earlier);
+  make_topics();
+  date_topics();
+}
+
+void ChunkedContainer::make_topics() {
+  std::map<std::string, std::size_t> numbers;
+  for (RecordedChannel& channel : channels_) {
+    const auto [entry, is_new] = numbers.try_emplace(channel.topic, topics_.size());
+    channel.topic_index = entry->second;
+    if (is_new) topics_.push_back({channel.topic, channel.type});
+    RecordedTopic& topic = topics_[channel.topic_index];
+    topic.messages += channel.messages;
+    if (topic.type != channel.type) {
+      channel.unreadable = "found messages of " + in_quotes(channel.type) + " and of " +
+                           in_quotes(topic.type) + ", expected one type";
+    }
+  }
+}
+
+/// The search for the first or the last message of each topic.
+struct ChunkedContainer::Dating {
+  bool first;
+  std::vector<bool> dated;   // by topic
+  std::vector<bool> wanted;  // by channel; all false between chunks
+};
+
+void ChunkedContainer::date_topics() {
+  std::vector<std::uint32_t> order(chunks_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const std::vector<bool> none(topics_.size()), no_channel(channels_.size());
+  Dating first{true, none, no_channel};
+  for (const std::uint32_t chunk : order) date_by(chunk, first);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(chunks_[a].end, a) > std::tie(chunks_[b].end, b);
+  });
+  Dating last{false, none, no_channel};
+  for (const std::uint32_t chunk : order) date_by(chunk, last);
+}
+
+// Lists a chunk only if it may hold a first (last) message of a topic.
+void ChunkedContainer::date_by(std::uint32_t chunk, Dating& dating) {
+  const RecordedChunk& asked = chunks_[chunk];
+  std::vector<std::uint32_t> open;
+  for (const auto& [channel, offset] : asked.channels) {
+    const std::size_t index = channels_[channel].topic_index;
+    const RecordedTopic& topic = topics_[index];
+    const bool may_extend = dating.first ? asked.start < topic.first : asked.end > topic.last;
+    if (!dating.dated[index] || may_extend) open.push_back(channel);
+  }
+  if (open.empty()) return;
+  for (const std::uint32_t channel : open) dating.wanted[channel] = true;
+  for (const MessagePlace& place : places_of(chunk, dating.wanted)) {
+    const std::size_t index = channels_[place.channel].topic_index;
+    std::int64_t& time = dating.first ? topics_[index].first : topics_[index].last;
+    const bool extends = dating.first ? place.time < time : place.time > time;
+    if (!dating.dated[index] || extends) time = place.time;
+    dating.dated[index] = true;
+  }
+  for (const std::uint32_t channel : open) dating.wanted[channel] = false;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/recording_file.hpp"
+
+/// @file One file of a recording. Private to the library.
+
+namespace excavplan {
+
+/// A message as it lies in its file.
+struct StoredMessage {
+  std::size_t topic = 0;  ///< of Container::topics
+  Serialization serialization = Serialization::cdr;
+  std::string_view bytes;  ///< good until the next call of the cursor
+};
+
+/// Goes through messages in the order of their times.
+class MessageCursor {
+ public:
+  virtual ~MessageCursor() = default;
+  virtual bool next() = 0;  ///< to the next message, at first to the first; false at the end
+  virtual std::int64_t time() const = 0;  ///< of the message [ns since 1970]
+  virtual StoredMessage read() = 0;
+};
+
+/// One file. All its functions throw Error (bad_file) where it is damaged.
+class Container {
+ public:
+  virtual ~Container() = default;
+  /// A topic's name once only, in any order.
+  const std::vector<RecordedTopic>& topics() const { return topics_; }
+  /// The messages of these topics recorded at `from` to `to`, both included. Good as long as the
+  /// container.
+  virtual std::unique_ptr<MessageCursor> messages(const std::vector<std::size_t>& topics,
+                                                  std::int64_t from, std::int64_t to) = 0;
+
+ protected:
+  std::vector<RecordedTopic> topics_;
+};
+
+std::unique_ptr<Container> open_sqlite_recording(const std::string& path);
+std::unique_ptr<Container> open_mcap_recording(const std::string& path);
+std::unique_ptr<Container> open_bag_recording(const std::string& path);
+
+/// How the file of each kind begins.
+constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);
+constexpr std::string_view mcap_magic = "\x89MCAP";
+constexpr std::string_view bag_magic = "#ROSBAG V";
+
+/// "sensor_msgs/PointCloud2" of ROS 1 as ROS 2 spells it, "sensor_msgs/msg/PointCloud2".
+std::string ros2_type(std::string_view type);
+
+}  // namespace excavplan

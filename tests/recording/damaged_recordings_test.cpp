@@ -1,0 +1,388 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <sys/resource.h>
+
+#include <functional>
+
+#include "base/random.hpp"
+#include "support/errors.hpp"
+#include "support/recording_files.hpp"
+
+namespace excavplan {
+namespace {
+
+using std::string;
+using test::all_messages;
+using test::content_of;
+using test::error_about;
+using test::recording;
+using test::TempFolder;
+
+void put(string& bytes, std::size_t at, std::uint64_t value, std::size_t size) {
+  ASSERT_LE(at + size, bytes.size());
+  for (std::size_t k = 0; k < size; ++k) bytes[at + k] = static_cast<char>(value >> 8 * k);
+}
+
+std::uint64_t get(const string& bytes, std::size_t at, std::size_t size) {
+  std::uint64_t value = 0;
+  for (std::size_t k = size; k-- > 0;)
+    value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+  return value;
+}
+
+/// A way to spoil a file, and how the error about it goes on after the place.
+struct Damage {
+  const char* name;
+  std::function<void(string& bytes)> spoil;
+  const char* expected;
+};
+
+void expect_errors(const string& name, const std::vector<Damage>& damages) {
+  const TempFolder folder;
+  for (const Damage& damage : damages) {
+    string content = content_of(recording(name));
+    damage.spoil(content);
+    const string path = folder.write("damaged", content);
+    const string found = error_about([&] { all_messages(*open_recording(path)); }, path);
+    EXPECT_NE(found.find(damage.expected), string::npos) << damage.name << ": " << found;
+  }
+}
+
+constexpr std::uint64_t huge = std::uint64_t{1} << 62;
+
+// ---- MCAP, by https://mcap.dev/spec
+
+/// Where the k-th record of this opcode begins.
+std::size_t mcap_record(const string& bytes, int opcode, int k = 0) {
+  for (std::size_t at = 8; at + 9 <= bytes.size(); at += 9 + get(bytes, at + 1, 8)) {
+    if (bytes[at] == opcode && k-- == 0) return at;
+  }
+  ADD_FAILURE() << "no record " << opcode;
+  return 0;
+}
+
+/// Without the checksum of the summary, so that what follows it is looked at.
+void drop_summary_crc(string& bytes) { put(bytes, bytes.size() - 12, 0, 4); }
+
+/// Spoils a field of the k-th record of this opcode.
+std::function<void(string&)> in_mcap(int opcode, int k, std::size_t field, std::uint64_t value,
+                                     std::size_t size) {
+  return [=](string& bytes) {
+    drop_summary_crc(bytes);
+    put(bytes, mcap_record(bytes, opcode, k) + field, value, size);
+  };
+}
+
+// Places in a record: 0 opcode, 1 length, 9 the first field.
+TEST(DamagedRecordings, OfMcapSayWhatIsWrong) {
+  const std::size_t footer = 29 + 8;
+  expect_errors(
+      "scene_none.mcap",
+      {{"magic", [](string& b) { b[1] = 'm'; }, "byte 0: found '"},
+       {"version", [](string& b) { b[5] = '1'; }, "the magic of MCAP version 0"},
+       {"no header", in_mcap(1, 0, 0, 4, 1), "byte 8: found a record of opcode 4"},
+       {"header length", in_mcap(1, 0, 1, huge, 8), "expected header (opcode 1) that ends before"},
+       {"no footer", in_mcap(2, 0, 0, 3, 1), "expected footer (opcode 2)"},
+       {"summary after the end", in_mcap(2, 0, 9, huge, 8), "found a summary from byte 46116860"},
+       {"summary in the magic", in_mcap(2, 0, 9, 3, 8), "found a summary from byte 3, expected"},
+       {"summary in the data", in_mcap(2, 0, 9, 60, 8), "byte "},
+       {"summary CRC", [=](string& b) { b[b.size() - footer - 20] ^= 1; }, "a summary of CRC "},
+       {"chunk CRC", in_mcap(6, 0, 9 + 60, 1, 1), "found a chunk of CRC "},
+       {"chunk compression",
+        [](string& b) {
+          const std::size_t chunk = mcap_record(b, 6);
+          put(b, chunk + 1, get(b, chunk + 1, 8) + 3, 8);  // as if three bytes longer
+          b.insert(chunk + 9 + 28 + 4, "lz5");
+          put(b, chunk + 9 + 28, 3, 4);
+          const std::size_t magic_and_footer = b.size() - 37;
+          put(b, magic_and_footer + 9, 0, 8);  // no summary: scanned
+        },
+        "a chunk compressed by 'lz5', expected lz4, zstd or none"},
+       {"chunk's own size", in_mcap(6, 0, 9 + 16, 5, 8), "expected 5, as it says"},
+       {"chunk's data", in_mcap(6, 0, 9 + 32, huge, 8), "found data of 4611686018427387904 bytes"},
+       {"chunk's name", in_mcap(6, 0, 9 + 28, 0xFFFFFFFF, 4), "expected 4294967295 of compression"},
+       {"no chunk", in_mcap(6, 0, 0, 9, 1), "expected chunk (opcode 6)"},
+       {"chunk length", in_mcap(6, 0, 1, huge, 8), "expected chunk (opcode 6) that ends before"}});
+}
+
+TEST(DamagedRecordings, OfMcapWithWrongIndexesSayWhatIsWrong) {
+  expect_errors(
+      "scene_none.mcap",
+      {{"index of a chunk: start", in_mcap(8, 0, 9, ~std::uint64_t{0}, 8),
+        "start of a chunk 18446744073709551615, expected below 2^63"},
+       {"index of a chunk: end", in_mcap(8, 0, 17, 5, 8), "as the index of the file says"},
+       {"index of a chunk: place", in_mcap(8, 0, 25, huge, 8), "none above the size of the file"},
+       {"index of a chunk: length", in_mcap(8, 0, 33, huge, 8), "none above the size of the file"},
+       {"index of a chunk: map", in_mcap(8, 0, 41, 0xFFFFFFF0, 4),
+        "expected 4294967280 of offsets of message indexes"},
+       {"two indexes of one chunk",
+        [](string& b) {
+          drop_summary_crc(b);
+          const std::size_t first = mcap_record(b, 8, 0), second = mcap_record(b, 8, 1);
+          const std::size_t count = get(b, first + 41, 4);
+          if (count == get(b, second + 41, 4)) {
+            b.replace(second, 9 + 44 + count, b.substr(first, 9 + 44 + count));
+          }
+          put(b, second + 25, get(b, first + 25, 8), 8);
+        },
+        "by"},
+       {"channel twice", in_mcap(8, 0, 55, 0, 2), "two message indexes of channel 0"},
+       {"message index elsewhere", in_mcap(8, 0, 47, 8, 8),
+        "found a message index at byte 8, expected one in the"},
+       {"no message index", in_mcap(7, 0, 0, 5, 1), "expected message index (opcode 7)"},
+       {"message index length", in_mcap(7, 0, 1, huge, 8), "expected message index (opcode 7)"},
+       {"message index channel", in_mcap(7, 0, 9, 77, 2), "found a message index of channel 77"},
+       {"message index entries", in_mcap(7, 0, 11, 17, 4), "bytes left, expected "},
+       {"message index time", in_mcap(7, 0, 15, 4, 8), "found a chunk with a message at 4 ns"},
+       {"message index offset", in_mcap(7, 0, 23, huge, 8),
+        "byte 4611686018427387904 of the chunk at byte"},
+       {"message index offset of another record", in_mcap(7, 0, 23, 0, 8), "as the index says"},
+       {"statistics", in_mcap(11, 0, 9 + 42, 0xFFFFFF, 4),
+        "expected 16777215 of counts of messages"},
+       {"record of the summary", in_mcap(8, 1, 1, huge, 8),
+        "bytes left, expected 4611686018427387904 of record"},
+       {"opcode 0", in_mcap(8, 1, 0, 0, 1), "a record of opcode 0, expected one of 1 to 255"}});
+}
+
+TEST(DamagedRecordings, OfMcapWithoutAnIndexSayWhatIsWrong) {
+  expect_errors(
+      "scene_unchunked.mcap",
+      {{"opcode 0", in_mcap(5, 0, 0, 0, 1), "a record of opcode 0"},
+       {"length", in_mcap(5, 0, 1, huge, 8), "a record of opcode 5 and 4611686018427387904 bytes"},
+       {"channel", in_mcap(5, 0, 9, 900, 2), "a message of channel 900, expected a channel that"},
+       {"time", in_mcap(5, 0, 15, ~std::uint64_t{0}, 8), "time of a message 18446744073709551615"},
+       {"short message", in_mcap(5, 0, 1, 5, 8), "bytes"},
+       {"schema of a channel", in_mcap(4, 0, 11, 900, 2), "of schema 900, expected a schema that"},
+       {"channel twice", in_mcap(4, 1, 9, 0, 2), "expected one topic and one type a channel"},
+       {"schema twice", in_mcap(3, 2, 9, 1, 2), "found schema 1 of "},
+       {"topic", in_mcap(4, 0, 13, 0xFFFFFFFF, 4), "expected 4294967295 of topic"}});
+}
+
+// ---- ROS 1 bags, by http://wiki.ros.org/Bags/Format/2.0
+
+/// Where the value of the k-th field of this name begins.
+std::size_t bag_field(const string& bytes, const string& name, int k = 0) {
+  std::size_t at = bytes.find(name + "=");
+  for (; k > 0 && at != bytes.npos; --k) at = bytes.find(name + "=", at + 1);
+  EXPECT_NE(at, bytes.npos) << name;
+  return at + name.size() + 1;
+}
+
+std::function<void(string&)> in_bag(const string& name, int k, std::uint64_t value,
+                                    std::size_t size) {
+  return [=](string& bytes) { put(bytes, bag_field(bytes, name, k), value, size); };
+}
+
+/// The same counted from the index at the end, of which the fields are the last ones.
+std::function<void(string&)> in_bag_index(const string& name, int k, std::uint64_t value,
+                                          std::size_t size) {
+  return [=](string& bytes) {
+    string index = bytes.substr(get(bytes, bag_field(bytes, "index_pos"), 8));
+    const std::size_t start = bytes.size() - index.size();
+    put(index, bag_field(index, name, k), value, size);
+    bytes.replace(start, index.size(), index);
+  };
+}
+
+TEST(DamagedRecordings, OfRos1SayWhatIsWrong) {
+  const std::size_t chunk = 13 + 8 + 4096;  // after the bag's header, which is padded
+  expect_errors(
+      "scene_none.bag",
+      {{"version", [](string& b) { b[9] = '1'; }, "'rosbag fix' converts"},
+       {"header length", [](string& b) { put(b, 13, 0xFFFFFFFF, 4); },
+        "a header of 4294967295 bytes"},
+       {"field length", [](string& b) { put(b, 17, 0xFFFFFF, 4); },
+        "expected 16777215 of field of a header"},
+       {"field without =", [](string& b) { b[23] = ' '; }, "expected one with '='"},
+       {"op of the header", in_bag("op", 0, 9, 1), "a record of op 9, expected op 3"},
+       {"not indexed", in_bag("index_pos", 0, 0, 8),
+        "is not indexed, as its recording was cut off; run 'rosbag reindex "},
+       {"index beyond the end", in_bag("index_pos", 0, huge, 8),
+        "found an index at byte 4611686018427387904"},
+       {"index at the header", in_bag("index_pos", 0, 13, 8), "a record of op 3, expected op 7"},
+       {"index at a chunk", in_bag("index_pos", 0, chunk, 8), "expected op 7"},
+       {"too many connections", in_bag("conn_count", 0, 0xFFFFFFFF, 4),
+        "a record of op 6, expected op 7"},
+       {"too many chunks", in_bag("chunk_count", 0, 0xFFFFFFFF, 4),
+        "found 0 bytes left, expected 4 of header of"},
+       {"too few connections", in_bag("conn_count", 0, 1, 4), "a record of op 7, expected op 6"}});
+}
+
+TEST(DamagedRecordings, OfRos1WithWrongChunksSayWhatIsWrong) {
+  expect_errors(
+      "scene_none.bag",
+      {{"chunk in the index", in_bag_index("chunk_pos", 0, huge, 8),
+        "found a chunk at byte 4611686018427387904, expected one before"},
+       {"chunk in the magic", in_bag_index("chunk_pos", 0, 3, 8), "found a chunk at byte 3"},
+       {"two chunks in one place",
+        [](string& b) {
+          const std::uint64_t index = get(b, bag_field(b, "index_pos"), 8);
+          const string end = b.substr(index);
+          const std::uint64_t second = get(end, bag_field(end, "chunk_pos", 1), 8);
+          in_bag_index("chunk_pos", 0, second, 8)(b);
+        },
+        "found two chunks at this place"},
+       {"chunk elsewhere", in_bag_index("chunk_pos", 1, 4200, 8), "byte 4"},
+       {"counts", in_bag_index("count", 0, 0xFFFFFFFF, 4),
+        "found 0 bytes left, expected 4 of connection"},
+       {"times of a chunk", in_bag_index("end_time", 0, 0, 8), "as the index of the file says"},
+       {"start of a chunk", in_bag_index("start_time", 0, ~std::uint64_t{0}, 8),
+        "as the index of the file says"},
+       {"size of a time",
+        [](string& b) {
+          const std::size_t field = b.rfind("start_time=");
+          b.replace(field, 11, "start=ime0=");
+        },
+        "a header without 'start_time'"},
+       {"op of a chunk", in_bag("op", 1, 2, 1), "a record of op 2, expected op 5"},
+       {"compression", [](string& b) { b.replace(b.find("=none"), 5, "=zstd"); },
+        "compression 'zstd'"},
+       {"size of a chunk", in_bag("size", 0, 0xFFFFFFFF, 4),
+        "4294967295 uncompressed, expected compression lz4"},
+       {"length of a chunk", [](string& b) { put(b, b.find("size=") + 9, 0x7FFFFFFF, 4); },
+        "a chunk of 2147483647 bytes, expected one that ends"}});
+}
+
+TEST(DamagedRecordings, OfRos1WithWrongIndexesSayWhatIsWrong) {
+  // The first index record of the first chunk: its header, 12 bytes an entry.
+  const auto first_index = [](const string& b) { return b.find("ver=\1"); };
+  const auto entry = [=](const string& b) {
+    const std::size_t header_end = std::max(b.find("count=", first_index(b) - 60), first_index(b));
+    for (std::size_t at = header_end - 80; at < b.size(); ++at) {
+      if (get(b, at, 4) == 1'700'000'000 && at > header_end) return at;
+    }
+    return b.size();
+  };
+  expect_errors(
+      "scene_none.bag",
+      {{"time", [=](string& b) { put(b, entry(b), 5, 4); }, "as the index of the file says"},
+       {"place beyond the chunk", [=](string& b) { put(b, entry(b) + 8, 0xFFFFFFF0, 4); },
+        "byte 4294967280 of the chunk at byte"},
+       {"place of another record", [=](string& b) { put(b, entry(b) + 8, 0, 4); },
+        "a record of op 7, expected op 2"},
+       {"place between records",
+        [=](string& b) { put(b, entry(b) + 8, get(b, entry(b) + 8, 4) + 2, 4); },
+        "of the chunk at byte"},
+       {"too many entries", [=](string& b) { put(b, b.find("count=", 4300) + 6, 0xFFFFFF, 4); },
+        "bytes left, expected 4 of"}});
+}
+
+TEST(DamagedRecordings, AreRefusedWhereverTheyAreCutOff) {
+  const TempFolder folder;
+  for (const char* name : {"scene.db3", "scene_none.mcap", "scene_none.bag"}) {
+    const string content = content_of(recording(name));
+    const bool is_mcap = string(name).find("mcap") != string::npos;
+    for (std::size_t part = 1; part < 40; ++part) {
+      const string path = folder.write("cut", content.substr(0, content.size() * part / 40));
+      if (is_mcap) {
+        EXPECT_NO_THROW(all_messages(*open_recording(path)));
+        continue;
+      }
+#ifndef EXCAVPLAN_WITH_SQLITE3
+      if (string(name) == "scene.db3") continue;
+#endif
+      error_about([&] { all_messages(*open_recording(path)); }, path);
+      EXPECT_NE(test::error_of([&] { all_messages(*open_recording(path)); }, ErrorKind::bad_file),
+                "no error")
+          << name << " " << part;
+    }
+  }
+}
+
+// What is changed at random is read or refused, and nothing else.
+TEST(DamagedRecordings, OfAnyKindAreReadOrRefused) {
+  const TempFolder folder;
+  Random random(7);
+  int refused = 0;
+  for (const char* name : {"scene.db3", "scene_zstd.db3", "scene_lz4.mcap", "scene_zstd.mcap",
+                           "scene_unchunked.mcap", "scene_lz4.bag", "scene_bz2.bag"}) {
+    const string content = content_of(recording(name));
+    for (int k = 0; k < 40; ++k) {
+      string spoilt = content;
+      if (string(name).find(".mcap") != string::npos) drop_summary_crc(spoilt);
+      const std::size_t at = random.index(spoilt.size() - 8);
+      const std::size_t size = std::size_t{1} << random.index(4);
+      put(spoilt, at, k % 3 == 0 ? ~std::uint64_t{0} : random.index(huge), size);
+      const string path = folder.write("spoilt", spoilt);
+      try {
+        all_messages(*open_recording(path));
+      } catch (const Error& error) {
+        ++refused;
+        EXPECT_EQ(error.kind(), ErrorKind::bad_file);
+        EXPECT_EQ(string(error.what()).substr(0, path.size() + 2), path + ": ");
+      }
+    }
+  }
+  EXPECT_GT(refused, 100);
+}
+
+// ---- Data that promise or deliver too much
+
+string field(std::uint64_t value, std::size_t size) {
+  string bytes(size, '\0');
+  put(bytes, 0, value, size);
+  return bytes;
+}
+
+string record(int opcode, const string& content) {
+  return string(1, static_cast<char>(opcode)) + field(content.size(), 8) + content;
+}
+
+/// An MCAP file of one chunk without summary.
+string mcap_of_chunk(const string& compression, const string& data, std::uint64_t promised) {
+  const string magic = "\x89MCAP0\r\n";
+  return magic + record(1, field(0, 8)) +
+         record(6, field(0, 16) + field(promised, 8) + field(0, 4) + field(compression.size(), 4) +
+                       compression + field(data.size(), 8) + data) +
+         record(15, field(0, 4)) + record(2, field(0, 20)) + magic;
+}
+
+/// A frame of so many blocks of 128 KiB, each of 4 bytes (RFC 8878, 3.1.1).
+[[maybe_unused]] string zstd_bomb(std::uint64_t blocks) {
+  constexpr std::uint64_t block_size = 1 << 17;
+  string frame = "\x28\xB5\x2F\xFD\xE0" + field(blocks * block_size, 8);  // one segment, its size
+  for (std::uint64_t k = 1; k <= blocks; ++k) {
+    frame += field((k == blocks ? 1 : 0) | 1 << 1 | block_size << 3, 3) + "a";
+  }
+  return frame;
+}
+
+std::uint64_t most_memory() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+TEST(DamagedRecordings, NeverTakeTheMemoryThatTheyPromiseToFill) {
+  const TempFolder folder;
+  const auto error_of = [&](const string& content) {
+    const string path = folder.write("bomb.mcap", content);
+    return error_about([&] { open_recording(path); }, path);
+  };
+  const std::uint64_t before = most_memory();
+  constexpr std::uint64_t limit = 1 << 30;
+  EXPECT_NE(error_of(mcap_of_chunk("lz4", "abc", limit + 1)).find("expected at most 1073741824"),
+            string::npos);
+#ifdef EXCAVPLAN_WITH_LZ4
+  EXPECT_NE(error_of(mcap_of_chunk("lz4", "abc", limit)).find("damaged compressed data"),
+            string::npos);
+  EXPECT_NE(error_of(mcap_of_chunk("lz4", "", limit)).find("found "), string::npos);
+#endif
+#ifdef EXCAVPLAN_WITH_ZSTD
+  const string bomb = zstd_bomb(16);  // 2 MiB
+  EXPECT_NE(error_of(mcap_of_chunk("zstd", bomb, 1000)).find("damaged compressed data"),
+            string::npos);
+  EXPECT_NE(error_of(mcap_of_chunk("zstd", bomb, limit))
+                .find("hold 2097152 bytes, expected the 1073741824 that it says to hold"),
+            string::npos);
+  EXPECT_NE(error_of(mcap_of_chunk("zstd", zstd_bomb(100000), 13107200000)).find("at most"),
+            string::npos);
+  // What it holds are no records: 'a' is an opcode of no meaning, and its length is too large.
+  EXPECT_NE(error_of(mcap_of_chunk("zstd", bomb, 2097152)).find("bytes left, expected"),
+            string::npos);
+#endif
+  EXPECT_LT(most_memory() - before, std::uint64_t{1} << 28);
+}
+
+}  // namespace
+}  // namespace excavplan

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/recordings.hpp"
+
+#include <cmath>
+
+#include <excavplan/error.hpp>
+
+#include "base/text.hpp"
+#include "recording/recording_file.hpp"
+#include "shared/arguments.hpp"
+#include "shared/tool.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+const char* name_of(ScanMerge merge) {
+  switch (merge) {
+    case ScanMerge::single:
+      return "single";
+    case ScanMerge::averaged:
+      return "averaged";
+    case ScanMerge::joined:
+      return "joined";
+  }
+  return "";
+}
+
+/// "2 messages at 0.25 .. 1.15 s, joined, in frame map"
+std::string line_of(const RecordedScan& scan) {
+  std::string line =
+      std::to_string(scan.messages) + (scan.messages == 1 ? " message" : " messages");
+  line += " at " + readable(scan.first, 4);
+  if (scan.last > scan.first) line += " .. " + readable(scan.last, 4);
+  line += " s";
+  if (scan.merge != ScanMerge::single) line += std::string(", ") + name_of(scan.merge);
+  if (scan.frame_sd > 0.0) line += ", one frame to " + readable(1e3 * scan.frame_sd, 2) + " mm";
+  return line + (scan.frame.empty() ? "" : ", in frame " + scan.frame);
+}
+
+nlohmann::ordered_json time_of(double seconds) {
+  return std::isfinite(seconds) ? nlohmann::ordered_json(seconds) : nlohmann::ordered_json();
+}
+
+}  // namespace
+
+std::optional<RecordedInput> recorded_input(const std::string& text, const std::string& tf_frame) {
+  std::optional<RecordingQuery> query = parse_recording_spec(text);
+  if (!query && is_recording(text)) query = RecordingQuery{text, {}, {}, 0.0, {}};
+  if (!query) return std::nullopt;
+  query->frame = tf_frame;
+  RecordedInput input;
+  input.path = query->path;
+  const OptionNames names = {{"name the frame", "--tf-frame: name the frame"}};
+  input.scan = naming_options(names, [&] { return read_recorded_scan(*query); });
+  const RecordedScan& scan = input.scan;
+  input.json = {{"scan", text},
+                {"messages", scan.messages},
+                {"first_s", scan.first},
+                {"last_s", scan.last},
+                {"merge", name_of(scan.merge)},
+                {"frame", scan.frame},
+                {"recorded_frame", scan.recorded_frame},
+                {"frame_sd_m", scan.merge == ScanMerge::averaged ? time_of(scan.frame_sd)
+                                                                 : nlohmann::ordered_json()}};
+  input.line = text + ": " + line_of(scan);
+  return input;
+}
+
+MachinePosture recorded_posture(const RecordedInput& input) {
+  const auto joints = joint_positions(input.path, input.scan.first);
+  const auto angle = [&](const std::vector<std::string>& words) {
+    std::string names;
+    for (const auto& [name, position] : joints) {
+      for (const std::string& word : words) {
+        if (name.find(word) != std::string::npos) return position;
+      }
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    throw Error(ErrorKind::bad_file, input.path + ": joint states: found " + names +
+                                         ", expected a joint whose name holds " + words.front());
+  };
+  MachinePosture posture;
+  posture.swing = angle({"swing"});
+  posture.joints = JointAngles(angle({"boom"}), angle({"arm", "stick"}), angle({"bucket"}));
+  return posture;
+}
+
+std::optional<RecordingListing> recording_listing(const std::string& text) {
+  if (!is_recording(text)) return std::nullopt;
+  const RecordingContents contents = describe_recording(text);
+  RecordingListing listing;
+  auto topics = nlohmann::ordered_json::array();
+  listing.lines = {text + ": " + readable(contents.duration, 4) + " s"};
+  for (const RecordingTopic& topic : contents.topics) {
+    topics.push_back({{"name", topic.name},
+                      {"type", topic.type},
+                      {"messages", topic.messages},
+                      {"first_s", time_of(topic.first)},
+                      {"last_s", time_of(topic.last)},
+                      {"frame", topic.frame},
+                      {"is_scan", topic.is_scan}});
+    std::string line = std::string(topic.is_scan ? "* " : "  ") + topic.name + "  " + topic.type +
+                       ", " + std::to_string(topic.messages);
+    if (topic.messages > 0) {
+      line += " at " + readable(topic.first, 4) + " .. " + readable(topic.last, 4) + " s";
+    }
+    listing.lines.push_back(line + (topic.frame.empty() ? "" : ", frame " + topic.frame));
+  }
+  listing.lines.push_back("* scans: name one as " + text + ":TOPIC@TIME+SPAN");
+  if (!contents.frames.empty()) {
+    std::string frames;
+    for (const std::string& frame : contents.frames) frames += (frames.empty() ? "" : ", ") + frame;
+    listing.lines.push_back("frames for --tf-frame: " + frames);
+  }
+  listing.json = {{"file", text},
+                  {"start_s", contents.start},
+                  {"duration_s", contents.duration},
+                  {"topics", std::move(topics)},
+                  {"frames", contents.frames}};
+  return listing;
+}
+
+}  // namespace excavplan::tools
