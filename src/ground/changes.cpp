@@ -28,8 +28,9 @@ constexpr double doubtful = 0.3;       // what the error of its volume explains
 constexpr double lone_track = 0.25;    // or a scrape that is as narrow and as shallow
 constexpr double shallow_fall = 0.15;  // ground that sank by far less than the hole is deep
 constexpr double pair_of_tracks = 0.04;
-constexpr double thing = 0.04;    // steep, with a level top
-constexpr double stirred = 0.04;  // by tracks or a blade
+constexpr double thing = 0.04;           // steep, with a level top
+constexpr double thing_in_swing = 0.25;  // small: clods that fell together look alike
+constexpr double stirred = 0.04;         // by tracks or a blade
 }  // namespace prior
 
 constexpr double lasting_edge = 0.6;      // a tail that keeps this share of its depth is no edge
@@ -265,7 +266,9 @@ class ChangeReader {
   Meaning meaning_of_upright(Place p, const Meaning& soil) const {
     const double level =
         std::clamp((shape(p).fullness - round_top) / (level_top - round_top), 0.0, 1.0);
-    const double probability = soil.prior + level * (prior::thing - soil.prior);
+    const bool could_be_clods = zone(p).volume < 2.0 * small_share * hole_volume() && in_swing(p);
+    const double thing = could_be_clods ? prior::thing_in_swing : prior::thing;
+    const double probability = soil.prior + level * (thing - soil.prior);
     if (probability < prior::anywhere) {
       return {ChangeKind::thing, "a thing that is no soil", probability, false};
     }

@@ -48,7 +48,7 @@ inline const std::vector<Family>& families() {
       {"churned", churned, {"stirred_ground"}, {K::stirred}},
       {"crate-on-heap", crate_on_heap, things, {K::thing, K::lump}},
       {"crate-in-pit", crate_in_pit, things, {K::thing, K::lump}},
-      {"clods", clods, open, {K::clods, K::lump, K::small_rises}},
+      {"clods", clods, open, {K::clods, K::lump, K::thing, K::small_rises}},
       {"water", water, {"flat_water"}, {K::water}},
       {"water-even", water_even, {"flat_water"}, {K::water}},
       {"lawn", lawn, {"grass"}},
