@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -35,6 +36,9 @@ struct Settings {
   bool summary = false;
 };
 
+/// Why the answer of a survey holds; `none` where it does not.
+enum class Held { none, interval, reading, untrusted };
+
 /// What came of one survey; figures are NaN where there is none.
 struct Record {
   std::string family;
@@ -43,10 +47,12 @@ struct Record {
   double k = nan;
   double sd = nan;
   double sd_scans = nan;
+  std::array<double, 2> interval = {nan, nan};
   Volumes found{nan, nan, nan};
   double shift = nan;  ///< of k in its sd, by an offset of both scans
   bool trusted = false;
-  bool in_a_reading = false;
+  bool has_reason = false;    ///< it is not, by a warning that is right in this family
+  bool in_a_reading = false;  ///< of what the family brings
   bool refused = false;
   std::string codes;
 
@@ -54,41 +60,54 @@ struct Record {
 
   double error() const { return 100.0 * (k / truth.bulking() - 1.0); }
   double z() const { return (k - truth.bulking()) / sd; }
-  bool inside() const { return std::abs(z()) <= 1.96; }
+  bool inside() const { return truth.bulking() >= interval[0] && truth.bulking() <= interval[1]; }
+  /// Of the interval, as a share of k and as the sd of a normal distribution.
+  double width() const { return (interval[1] - interval[0]) / (2.0 * 1.96); }
   /// Volumes in another unit are wrong even if their ratio is right.
   bool of_right_size() const {
     const double size = found.hole / truth.hole;
     return size > 0.67 && size < 1.5;
   }
   bool wrong() const { return trusted && (std::abs(z()) > 3.0 || !of_right_size()); }
-  bool held() const {
-    return refused || !trusted || (of_right_size() && (inside() || in_a_reading));
+  Held held() const {
+    if (!refused && of_right_size() && inside()) return Held::interval;
+    if (!refused && in_a_reading) return Held::reading;
+    return !trusted && has_reason ? Held::untrusted : Held::none;
   }
 };
 
 double percent(double found, double truth) { return 100.0 * (found / truth - 1.0); }
 
-/// Within 2 of a reading's own sd and half a per cent.
-bool in_a_reading(const VolumeChange& change, double truth) {
+/// Within 2 sd of a reading of what the family brings.
+bool in_a_reading(const Family& family, const VolumeChange& change, double truth) {
+  const auto is_cause = [&](ChangeKind kind) {
+    return std::count(family.causes.begin(), family.causes.end(), kind) > 0;
+  };
   return std::any_of(change.readings.begin(), change.readings.end(), [&](const Reading& reading) {
-    const Measured& k = reading.bulking;
-    return std::abs(k.value - truth) <= 2.0 * k.sd + 0.005 * k.value;
+    return std::any_of(reading.kinds.begin(), reading.kinds.end(), is_cause) &&
+           std::abs(reading.bulking.value - truth) <= 2.0 * reading.bulking.sd;
   });
 }
 
-void take(const DensityEstimate& estimate, Record& record) {
+bool is_reason(const Family& family, const std::string& code) {
+  return std::count(family.reasons.begin(), family.reasons.end(), code) > 0;
+}
+
+void take(const Family& family, const DensityEstimate& estimate, Record& record) {
   const VolumeChange& change = estimate.change;
   record.refused = !estimate.bulking;
   record.found = {change.excavated.value, change.spilled.value, change.dumped.value};
   record.trusted = estimate.trustworthy;
   for (const Warning& warning : estimate.warnings) {
     record.codes += (record.codes.empty() ? "" : "+") + warning.code;
+    record.has_reason = record.has_reason || is_reason(family, warning.code);
   }
   if (!estimate.bulking) return;
   record.k = estimate.bulking->value;
   record.sd = estimate.bulking->sd;
   record.sd_scans = bulking_errors(change).scans;
-  record.in_a_reading = in_a_reading(change, record.truth.bulking());
+  if (const auto interval = bulking_interval(change)) record.interval = *interval;
+  record.in_a_reading = in_a_reading(family, change, record.truth.bulking());
 }
 
 Record surveyed(const Family& family, std::uint64_t seed, const Settings& settings,
@@ -101,7 +120,7 @@ Record surveyed(const Family& family, std::uint64_t seed, const Settings& settin
   DensityOptions options;
   options.threads = 1;
   try {
-    take(estimate_density(scans_of(scene, seed), law, options), record);
+    take(family, estimate_density(scans_of(scene, seed), law, options), record);
     if (scene.offset_pair) {
       scene.frame_before = scene.frame_after = nullptr;
       const DensityEstimate unmoved = estimate_density(scans_of(scene, seed), law, options);
@@ -109,6 +128,7 @@ Record surveyed(const Family& family, std::uint64_t seed, const Settings& settin
     }
   } catch (const Error& error) {
     record.refused = true;
+    record.has_reason = is_reason(family, "refused");
     record.codes = std::string("refused: ") + error.what();
     std::replace(record.codes.begin(), record.codes.end(), ',', ';');
   }
@@ -116,16 +136,32 @@ Record surveyed(const Family& family, std::uint64_t seed, const Settings& settin
 }
 
 constexpr const char* header =
-    "family,seed,k_true,k,k_sd,k_sd_scans,error_percent,z,trusted,inside,in_a_reading,refused,"
-    "held,wrong,hole_percent,spill_percent,heap_percent,shift,codes\n";
+    "family,seed,k_true,k,k_sd,k_sd_scans,k_low,k_high,error_percent,z,trusted,has_reason,inside,"
+    "in_a_reading,refused,held,wrong,hole_percent,spill_percent,heap_percent,shift,codes\n";
+
+const char* name(Held held) {
+  switch (held) {
+    case Held::interval:
+      return "interval";
+    case Held::reading:
+      return "reading";
+    case Held::untrusted:
+      return "untrusted";
+    case Held::none:
+      break;
+  }
+  return "none";
+}
 
 void print(const Record& r) {
-  std::printf("%s,%llu,%.5f,%.5f,%.5f,%.5f,%.3f,%.2f,%d,%d,%d,%d,%d,%d,%.3f,%.3f,%.3f,%.3f,%s\n",
+  std::printf("%s,%llu,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f,%.3f,%.2f,%d,%d,%d,%d,%d,%s,%d,",
               r.family.c_str(), static_cast<unsigned long long>(r.seed), r.truth.bulking(), r.k,
-              r.sd, r.sd_scans, r.error(), r.z(), r.trusted ? 1 : 0, r.inside() ? 1 : 0,
-              r.in_a_reading ? 1 : 0, r.refused ? 1 : 0, r.held() ? 1 : 0, r.wrong() ? 1 : 0,
-              percent(r.found.hole, r.truth.hole), percent(r.found.spill, r.truth.spill),
-              percent(r.found.heap, r.truth.heap), r.shift, r.codes.c_str());
+              r.sd, r.sd_scans, r.interval[0], r.interval[1], r.error(), r.z(), r.trusted ? 1 : 0,
+              r.has_reason ? 1 : 0, r.inside() ? 1 : 0, r.in_a_reading ? 1 : 0, r.refused ? 1 : 0,
+              name(r.held()), r.wrong() ? 1 : 0);
+  std::printf("%.3f,%.3f,%.3f,%.3f,%s\n", percent(r.found.hole, r.truth.hole),
+              percent(r.found.spill, r.truth.spill), percent(r.found.heap, r.truth.heap), r.shift,
+              r.codes.c_str());
 }
 
 /// A share of the records [%].
@@ -147,22 +183,27 @@ void print_summary(const std::vector<Record>& records) {
   double squares = 0.0;
   double worst_shift = Record::nan;
   std::vector<double> sds;
+  std::vector<double> widths;
   for (const Record& r : records) {
     if (r.refused) continue;
     sum += r.error();
     squares += r.error() * r.error();
     sds.push_back(100.0 * r.sd / r.truth.bulking());
+    widths.push_back(100.0 * r.width() / r.truth.bulking());
     if (!(r.shift <= worst_shift)) worst_shift = std::fmax(r.shift, worst_shift);
   }
   const double answers = static_cast<double>(sds.size());
-  const auto wrong_alone = [](const Record& r) { return r.wrong() && !r.in_a_reading; };
-  std::printf("%-22s %4zu %9.2f %+9.2f %6.1f %6.1f %6.1f %6.1f %6.1f %8.3f",
-              records.front().family.c_str(), records.size(), std::sqrt(squares / answers),
-              sum / answers, share(records, [](const Record& r) { return r.held(); }),
-              share(records, [](const Record& r) { return r.wrong(); }),
-              share(records, wrong_alone),
+  const auto held_by = [&](Held how) {
+    return share(records, [&](const Record& r) { return r.held() == how; });
+  };
+  std::printf("%-18s %4zu %7.2f %+7.2f %7.3f %7.3f", records.front().family.c_str(), records.size(),
+              std::sqrt(squares / answers), sum / answers, median(sds), median(widths));
+  std::printf(" %6.1f %6.1f %6.1f %6.1f %6.1f", 100.0 - held_by(Held::none),
+              held_by(Held::interval), held_by(Held::reading), held_by(Held::untrusted),
+              share(records, [](const Record& r) { return r.wrong(); }));
+  std::printf(" %6.1f %6.1f",
               share(records, [](const Record& r) { return !r.refused && !r.trusted; }),
-              share(records, [](const Record& r) { return r.refused; }), median(sds));
+              share(records, [](const Record& r) { return r.refused; }));
   if (!std::isnan(worst_shift)) std::printf("  worst shift %.2f sd", worst_shift);
   std::printf("\n");
 }
@@ -182,8 +223,9 @@ std::vector<Family> chosen(const Settings& settings) {
 void work(const Settings& settings) {
   const DensityLaw law = load_density_law(find_data_file("laws/paper.json"));
   if (settings.summary) {
-    std::printf("%-22s %4s %9s %9s %6s %6s %6s %6s %6s %8s\n", "family", "n", "rms k %", "bias %",
-                "held", "wrong", "alone", "untr.", "refus.", "sd %");
+    std::printf("%-18s %4s %7s %7s %7s %7s %6s %6s %6s %6s %6s %6s %6s\n", "family", "n", "rms k %",
+                "bias %", "sd %", "width %", "held", "by int", "by rdg", "by unt", "wrong", "untr.",
+                "refus.");
   } else {
     std::fputs(header, stdout);
   }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/check.hpp"
+#include "base/normal_mixture.hpp"
 
 namespace excavplan {
 
@@ -39,6 +41,34 @@ BulkingErrors bulking_errors(const VolumeChange& change) {
   return {sd(change.errors.noise),  sd(change.errors.correlated), sd(change.errors.datum),
           sd(change.errors.holes),  sd(change.errors.faces),      sd(change.errors.attribution),
           sd(change.errors.scans())};
+}
+
+double variance_by_readings(const VolumeChange& change) {
+  if (change.readings.empty()) return 0.0;
+  double sum = 0.0;
+  double weights = 0.0;
+  for (const Reading& reading : change.readings) {
+    if (is_unseen(reading)) continue;
+    const double off = reading.bulking.value - change.readings.front().bulking.value;
+    sum += reading.weight * off * off;
+    weights += reading.weight;
+  }
+  return std::min(sum / weights, std::pow(bulking_errors(change).attribution, 2));
+}
+
+std::optional<std::array<double, 2>> bulking_interval(const VolumeChange& change) {
+  const auto k = bulking_factor(change);
+  if (!k || std::isnan(k->sd)) return std::nullopt;
+  const double rest = std::sqrt(std::max(0.0, k->sd * k->sd - variance_by_readings(change)));
+  std::vector<NormalPart> parts;
+  for (const Reading& reading : change.readings) {
+    if (!is_unseen(reading)) parts.push_back({reading.weight, reading.bulking.value, rest});
+  }
+  if (parts.size() < 2 || !(rest > 0.0)) {
+    return std::array<double, 2>{k->value - two_sided_95_percent * k->sd,
+                                 k->value + two_sided_95_percent * k->sd};
+  }
+  return std::array<double, 2>{quantile_of(parts, 0.025), quantile_of(parts, 0.975)};
 }
 
 double free_of_fallback(double bulking_measured, double fallback_fraction) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -249,34 +250,38 @@ Warning flat_water(const LevelFloor& floor) {
 }
 
 /// Volume of the hole below a level floor, if water hides this share of its depth: the area of the
-/// hole goes on shrinking with depth as above the floor.
+/// hole goes on shrinking with depth as above the floor, to nothing.
 double hidden_volume(const LevelFloor& floor, double hole, double share) {
-  const double deeper = floor.depth * share / (1.0 - share);
   const double flare =
       2.0 * std::max(0.0, hole - floor.area * floor.depth) / std::pow(floor.depth, 2);
-  return std::max(0.0, floor.area * deeper - 0.5 * flare * deeper * deeper);
+  const double bottom = flare > 0.0 ? floor.area / flare : std::numeric_limits<double>::infinity();
+  const double deeper = std::min(floor.depth * share / (1.0 - share), bottom);
+  return floor.area * deeper - 0.5 * flare * deeper * deeper;
 }
 
-/// The reading that a level floor on even ground is water.
+/// The reading that a level floor on even ground is water, of any depth.
 void add_water(const LevelFloor& floor, VolumeChange& change) {
   constexpr double least_share = 0.2;  // ours: of the hole; less hides little
   constexpr double weight = 0.03;      // ours
-  constexpr double water = 0.15;       // ours: share of the depth of the hole
-  constexpr double deepest = 0.20;     // ours, at 2 sd
+  constexpr double shallowest = 0.05;  // ours: share of the depth of the hole
+  constexpr double deepest = 0.60;     // ours, likewise
   const auto k = bulking_factor(change);
   if (!k || change.readings.empty() || floor.share < least_share || !(floor.depth > 0.0)) return;
   const double hole = change.before.value;
-  const double hidden = hidden_volume(floor, hole, water);
-  const double sd = 0.5 * (hidden_volume(floor, hole, deepest) - hidden);
-  const double factor = k->value * hole / (hole + hidden);
+  const double least = hidden_volume(floor, hole, shallowest);
+  const double most = hidden_volume(floor, hole, deepest);
+  const double highest = k->value * hole / (hole + least);
+  const double lowest = k->value * hole / (hole + most);
   const std::string what =
-      "water over the lowest 10 to 20 % of the hole, as level as its floor: no scan tells";
-  change.attribution.push_back({what, {-hidden, sd}, false, weight});
+      "water over the lowest 5 to 60 % of the hole, as level as its floor: no scan tells";
+  change.attribution.push_back(
+      {ChangeKind::water, what, {-0.5 * (least + most), 0.25 * (most - least)}, false, weight});
   for (Reading& reading : change.readings) reading.weight *= 1.0 - weight;
-  change.readings.push_back(
-      {"with " + what,
-       weight,
-       {factor, std::hypot(bulking_errors(change).scans, factor * sd / (hole + hidden))}});
+  change.readings.push_back({{ChangeKind::water},
+                             "with " + what,
+                             weight,
+                             {0.5 * (lowest + highest), std::hypot(bulking_errors(change).scans,
+                                                                   0.25 * (highest - lowest))}});
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ std::vector<Warning> check_cover(const std::vector<const SurfacePair*>& pairs,
                                  const VolumeChange& change);
 
 /// States as a reading, not counted, that a floor which is level to within the noise and takes up
-/// 20 % of the hole is water, where the ground before was as even: over 15 % of the depth of the
-/// hole, 10 to 20 % within two standard deviations, with a weight of 0.03 (all ours).
+/// 20 % of the hole is water, where the ground before was as even: over 5 to 60 % of the depth of
+/// the hole, within two standard deviations, with a weight of 0.03 (all ours).
 ///
 /// @param pairs  likewise
 void state_water(const std::vector<const SurfacePair*>& pairs, VolumeChange& change);

@@ -13,6 +13,8 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/attribution.hpp"
+#include "ground/earlier_soil.hpp"
+#include "ground/open_changes.hpp"
 #include "ground/surveyed_area.hpp"
 
 namespace excavplan {
@@ -341,13 +343,21 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
   change.areas.push_back(std::move(result));
 }
 
-VolumeChange result_of(std::vector<Area> areas, const ChangeOptions& options) {
+VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const ChangeOptions& options) {
+  check(options);
+  std::vector<Area> areas;
+  std::vector<const HeightMap*> before;
+  for (const SurfacePair* pair : pairs) {
+    areas.push_back(survey(*pair, options));
+    before.push_back(&pair->before.height);
+  }
   const Attribution attribution = attribute(areas, options);
   VolumeChange change;
   sum_volumes(areas, change);
   set_deviations(change);
   warn_of_balance(change);
   state_open_changes(areas, attribution, change);
+  state_earlier_soil(before, areas, change);
   set_deviations(change);
   warn_of_others(areas, change);
   for (Area& area : areas) report(area, options, change);
@@ -371,19 +381,12 @@ const char* name(ZoneKind kind) {
 }
 
 VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& options) {
-  check(options);
-  std::vector<Area> areas(1);
-  areas[0] = survey(scene, options);
-  return result_of(std::move(areas), options);
+  return result_of({&scene}, options);
 }
 
 VolumeChange measure_change(const SurfacePair& dig, const SurfacePair& dump,
                             const ChangeOptions& options) {
-  check(options);
-  std::vector<Area> areas(2);
-  areas[0] = survey(dig, options);
-  areas[1] = survey(dump, options);
-  return result_of(std::move(areas), options);
+  return result_of({&dig, &dump}, options);
 }
 
 VolumeChange measure_change(const HeightMap& before, const HeightMap& after,

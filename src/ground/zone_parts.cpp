@@ -30,6 +30,7 @@ constexpr double churn_window = 0.6;           // half width of what is looked a
 constexpr double least_churn = 0.005;          // rms of stirred ground [m]
 constexpr double churn_to_noise = 3.0;         // likewise, over the quietest tenth of the ground
 constexpr double largest_lean = 0.6;           // of its mean to its rms: else it rose or fell
+constexpr double least_both_ways = 0.07;       // of its squares, in what rose and in what fell
 constexpr double least_known_window = 0.3;     // share of the cells of a window
 constexpr double least_churned_area = 3.0;     // [m^2]
 constexpr double churn_height = 2.2;           // of its rms, up to which a zone is part of it
@@ -49,11 +50,12 @@ double height_of(const ChangedGround& ground, const std::vector<Cell>& cells) {
   return sum > 0.0 ? squares / sum : 0.0;
 }
 
-/// Mean and mean square of the known cells of a square around each cell.
+/// Means over the known cells of a square around each cell.
 struct Windows {
   Eigen::ArrayXXd mean;
   Eigen::ArrayXXd square;
-  Eigen::ArrayXXd share;  ///< of the window that is known
+  Eigen::ArrayXXd raised;  ///< the part of `square` that is above 0
+  Eigen::ArrayXXd share;   ///< of the window that is known
 };
 
 /// Sums from the first row and column up to each cell, with a margin of zeros.
@@ -72,7 +74,8 @@ Windows windows_of(const Eigen::ArrayXXd& field, Eigen::Index half) {
   const Eigen::ArrayXXd counts = integral_of(known);
   const Eigen::ArrayXXd sums = integral_of(filled);
   const Eigen::ArrayXXd squares = integral_of(filled.square());
-  Windows windows{filled, filled, known};
+  const Eigen::ArrayXXd raised = integral_of(filled.max(0.0).square());
+  Windows windows{filled, filled, filled, known};
   const double whole = std::pow(2.0 * static_cast<double>(half) + 1.0, 2);
   for_each_cell(field, [&](Cell at) {
     const Eigen::Index r0 = std::max<Eigen::Index>(at.row - half, 0);
@@ -85,6 +88,7 @@ Windows windows_of(const Eigen::ArrayXXd& field, Eigen::Index half) {
     const double count = std::max(total(counts), 1.0);
     windows.mean(at.row, at.col) = total(sums) / count;
     windows.square(at.row, at.col) = total(squares) / count;
+    windows.raised(at.row, at.col) = total(raised) / count;
     windows.share(at.row, at.col) = total(counts) / whole;
   });
   return windows;
@@ -262,7 +266,8 @@ class Parter {
     std::nth_element(squares.begin(), tenth, squares.end());
     const double least = std::max(churn_to_noise * std::sqrt(*tenth), least_churn);
     return is_known && !left_out && windows.square > least * least &&
-           windows.mean.square() < largest_lean * largest_lean * windows.square;
+           windows.mean.square() < largest_lean * largest_lean * windows.square &&
+           windows.raised.min(windows.square - windows.raised) > least_both_ways * windows.square;
   }
 
   /// The connected parts of at least the area of stirred ground.

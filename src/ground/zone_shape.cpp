@@ -22,6 +22,14 @@ double slope_at(const Eigen::ArrayXXd& d, Cell at, double cell_size) {
   return std::hypot(along(1, 0), along(0, 1));
 }
 
+/// The value that this share of all exceed. Reorders them, at least one.
+double exceeded_by(double share, std::vector<double>& values) {
+  const auto rank = static_cast<std::ptrdiff_t>((1.0 - share) * static_cast<double>(values.size()));
+  const auto at = values.begin() + std::min(rank, static_cast<std::ptrdiff_t>(values.size()) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 }  // namespace
 
 bool ZoneShape::is_track_wide() const {
@@ -44,6 +52,7 @@ ZoneShape shape_of(const Eigen::ArrayXXd& difference, const std::vector<Cell>& c
   double sum = 0.0;
   double squares = 0.0;
   std::vector<double> slopes;
+  std::vector<double> heights;
   const auto place = [](Cell at) {
     return Eigen::Vector2d(static_cast<double>(at.col), static_cast<double>(at.row));
   };
@@ -53,6 +62,7 @@ ZoneShape shape_of(const Eigen::ArrayXXd& difference, const std::vector<Cell>& c
     squares += d * d;
     centre += d * place(at);
     slopes.push_back(slope_at(difference, at, cell_size));
+    heights.push_back(d);
   }
   if (!(sum > 0.0)) return shape;
   centre /= sum;
@@ -69,9 +79,8 @@ ZoneShape shape_of(const Eigen::ArrayXXd& difference, const std::vector<Cell>& c
   shape.axis = axes.eigenvectors().col(1);
   shape.width = extent(0);
   shape.length = extent(1);
-  const auto tenth = slopes.begin() + static_cast<std::ptrdiff_t>(9 * slopes.size() / 10);
-  std::nth_element(slopes.begin(), tenth, slopes.end());
-  shape.steepest = *tenth;
+  shape.steepest = exceeded_by(0.1, slopes);
+  shape.fullness = shape.height / exceeded_by(0.05, heights);
   return shape;
 }
 

@@ -16,6 +16,9 @@ struct ZoneShape {
   double width = 0.0;     ///< of that strip [m]
   double height = 0.0;    ///< mean of |D| weighted by |D| [m]
   double steepest = 0.0;  ///< slope that a tenth of its cells exceed [-]
+  /// height over the |D| that a twentieth of its cells exceed: 1 of a box, 0.75 of half a ball, 0.5
+  /// of a cone [-]
+  double fullness = 0.0;
 
   Eigen::Vector2d axis = Eigen::Vector2d::UnitX();  ///< along its length
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/json.hpp"
+#include "base/normal_mixture.hpp"
 #include "base/text.hpp"
 #include "soil/density_forms.hpp"
 
@@ -14,7 +15,6 @@ namespace excavplan {
 namespace {
 
 constexpr const char* file_format = "excavplan-density-law";
-constexpr double two_sided_95_percent = 1.96;  // standard deviations
 
 nlohmann::ordered_json to_object(const DensityCalibration::Sample& sample) {
   nlohmann::ordered_json object = {{"density_percent", sample.density_percent},

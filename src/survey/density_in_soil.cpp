@@ -9,12 +9,12 @@
 
 #include <excavplan/ground/bulking.hpp>
 
+#include "base/normal_mixture.hpp"
+
 namespace excavplan {
 namespace {
 
 constexpr double real_weight = 0.05;  // of a soil that the site may have; ours
-
-double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
 struct RawDensity {
   double sd = 0.0;  ///< without the excess over 0 .. 100 %, and without disagreement

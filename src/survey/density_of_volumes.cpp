@@ -9,6 +9,7 @@
 
 #include <excavplan/simulation/calibration.hpp>
 
+#include "base/normal_mixture.hpp"
 #include "base/text.hpp"
 #include "survey/density_in_soil.hpp"
 
@@ -101,6 +102,8 @@ DugVolumes as_read(const Reading& reading, const VolumeChange& change, DugVolume
   constexpr double same = 1e-6;
   const double hole = dig.bulking() * dig.volumes(0) / reading.bulking.value;
   const bool is_hole =
+      std::find(reading.kinds.begin(), reading.kinds.end(), ChangeKind::water) !=
+          reading.kinds.end() ||
       std::any_of(change.attribution.begin(), change.attribution.end(), [&](const auto& open) {
         const double counted = open.counted ? open.volume.value : -open.volume.value;
         return open.volume.value < 0.0 && std::abs(dig.volumes(0) + counted - hole) < same * hole;
@@ -111,6 +114,24 @@ DugVolumes as_read(const Reading& reading, const VolumeChange& change, DugVolume
     dig.volumes(2) += (reading.bulking.value - dig.bulking()) * dig.volumes(0);
   }
   return dig;
+}
+
+/// The interval of the mixture of the likely readings.
+void widen_by_readings(DensityEstimate& estimate) {
+  RelativeDensity& density = *estimate.density;
+  const double explained =
+      variance_by_readings(estimate.change) / std::pow(estimate.bulking->sd, 2);
+  const double rest = std::sqrt(std::pow(density.sd_percent, 2) -
+                                explained * std::pow(density.sd_given_law_percent, 2));
+  std::vector<NormalPart> parts;
+  for (const DensityReading& each : estimate.readings) {
+    if (is_unseen(each.reading)) continue;
+    const double shift = each.density_percent - estimate.readings.front().density_percent;
+    parts.push_back({each.reading.weight, std::clamp(density.percent + shift, 0.0, 100.0), rest});
+  }
+  if (parts.size() < 2 || !(rest > 0.0)) return;
+  density.interval_percent = {std::clamp(quantile_of(parts, 0.025), 0.0, 100.0),
+                              std::clamp(quantile_of(parts, 0.975), 0.0, 100.0)};
 }
 
 /// Finds the density of a dig in what is known of the soil.
@@ -207,6 +228,7 @@ void set_density(DensityEstimate& estimate, const LawsForDig& laws, const Densit
          "scatter of the law"});
   }
   set_densities(DensityReader(laws, options), dig, options.soil.unknown, estimate);
+  if (!options.soil.unknown) widen_by_readings(estimate);
   estimate.trustworthy = known_error && estimate.density->trustworthy;
   for (const Warning& warning : estimate.density->warnings) estimate.warnings.push_back(warning);
   if (estimate.payload && std::abs(estimate.payload->disagreement) > largest_disagreement) {

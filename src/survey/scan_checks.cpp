@@ -211,12 +211,14 @@ double gap_between(const Rectangle& a, const Rectangle& b) {
   return std::hypot(std::max(x, 0.0), std::max(y, 0.0));
 }
 
-/// Volume of other ground that fell beside the heap, as the spill does where scans are swapped.
+/// Volume of other ground that fell beside the heap, as the spill does where scans are swapped, and
+/// deeper than tracks.
 double lost_beside_heap(const VolumeChange& change) {
+  constexpr double track = 0.05;  // ours, mean depth [m]
   const double beside = ChangeOptions{}.spill_distance;
   double lost = 0.0;
   for (const ChangeZone& zone : change.zones) {
-    if (zone.kind != ZoneKind::other || !(zone.volume.value < 0.0)) continue;
+    if (zone.kind != ZoneKind::other || !(zone.volume.value < -track * zone.area)) continue;
     if (std::any_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& heap) {
           return heap.kind == ZoneKind::dump && gap_between(heap.extent, zone.extent) < beside;
         })) {
@@ -231,10 +233,14 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
   constexpr double gentle = 1.0;       // ours: tan 45 degrees
   constexpr double steeper = 1.1;      // ours
   constexpr double least_lost = 0.03;  // ours, of the hole
+  constexpr double much_lost = 0.2;    // ours, of the hole
   const double heap = steepness(change, ZoneKind::dump);
   const double hole = steepness(change, ZoneKind::dig);
-  const bool lost = lost_beside_heap(change) > least_lost * change.excavated.value;
-  if (!(heap > loose && hole < gentle) && !(lost && heap > steeper * hole)) return std::nullopt;
+  const double lost = lost_beside_heap(change) / change.excavated.value;
+  if (!(heap > loose && hole < gentle) && !(lost > least_lost && heap > steeper * hole) &&
+      !(lost > much_lost)) {
+    return std::nullopt;
+  }
   return Warning{
       "looks_swapped",
       "the heap is as steep as " + degrees(std::atan(heap)) + ", the hole " +

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/ground/volume_change.hpp>
@@ -37,8 +38,8 @@ double cone_volume(double radius) {
   return pi / 3.0 * std::pow(radius, 3) * std::tan(35.0 * scenes::degree);
 }
 
-/// Mean heights of 5 cm cells with 2 mm of noise.
-HeightMap scanned(const Shape& shape, std::uint64_t scan) {
+/// Mean heights of 5 cm cells.
+HeightMap scanned(const Shape& shape, std::uint64_t scan, double noise = 0.002) {
   constexpr int fine = 4;
   Random random(5, scan);
   HeightMap map = flat_ground(extent, 0.05);
@@ -49,7 +50,7 @@ HeightMap scanned(const Shape& shape, std::uint64_t scan) {
         sum += shape(map.x(col) + 0.05 * ((i % fine + 0.5) / fine - 0.5),
                      map.y(row) + 0.05 * ((i / fine + 0.5) / fine - 0.5));
       }
-      map.z(row, col) = sum / (fine * fine) + 0.002 * random.normal();
+      map.z(row, col) = sum / (fine * fine) + noise * random.normal();
     }
   }
   return map;
@@ -92,13 +93,36 @@ TEST(Attribution, SceneWithoutDoubtHasTheDeviationOfItsScans) {
 }
 
 TEST(Attribution, GroundThatGaveWayUnderTheHeapIsOneOfTheReadings) {
-  const auto pressed = [](double x, double y) {
-    const double heap = Dig{}.dumped(x - scenes::dump_offset, y);
-    return dug(x, y) - (heap > 0.0 ? std::min(0.01, heap) : 0.0);
+  for (const double depth : {0.005, 0.01, 0.02, 0.03}) {
+    const auto pressed = [&](double x, double y) {
+      const double heap = Dig{}.dumped(x - scenes::dump_offset, y);
+      return dug(x, y) - (heap > 0.0 ? std::min(depth, heap) : 0.0);
+    };
+    const VolumeChange change = change_of(pressed);
+    ASSERT_FALSE(change.readings.empty());
+    const Reading& reading = change.readings.back();
+    ASSERT_EQ(reading.kinds, std::vector<ChangeKind>{ChangeKind::pressed});
+    EXPECT_TRUE(is_unseen(reading));
+    EXPECT_LE(std::abs(reading.bulking.value - 1.25), 2.0 * reading.bulking.sd) << depth;
+    EXPECT_LT(reading.bulking.sd, 0.06);
+  }
+}
+
+TEST(Attribution, HeapThinnerThanACentimetreHasNoReadingOfPressedGround) {
+  constexpr double thickness = 0.006;
+  const Rectangle pit = {-1.5, -0.9, 1.5, 0.9};
+  const Rectangle heap = {3.2, -2.5, 7.7, 2.5};
+  const auto thin = [&](double x, double y) {
+    return box(x, y, pit, -0.02) + box(x, y, heap, thickness);
   };
-  const VolumeChange change = change_of(pressed);
-  EXPECT_LT(bulking_factor(change)->value, 1.22);
-  EXPECT_TRUE(reads(change, 1.25));
+  const auto level = [](double, double) { return 0.0; };
+  const VolumeChange change =
+      measure_change(scanned(level, 1, 0.0005), scanned(thin, 2, 0.0005), {});
+  for (const AttributedChange& open : change.attribution) {
+    EXPECT_EQ(open.what.find("gave way"), std::string::npos);
+  }
+  ASSERT_FALSE(change.readings.empty());
+  EXPECT_NEAR(change.readings.front().bulking.value, 4.5 * 5.0 * thickness / (5.4 * 0.02), 0.1);
 }
 
 TEST(Attribution, SecondHeapIsCountedAndTheOtherReadingStated) {
@@ -109,8 +133,11 @@ TEST(Attribution, SecondHeapIsCountedAndTheOtherReadingStated) {
   EXPECT_NEAR(bulking_factor(change)->value, with_it, 0.005);
   EXPECT_TRUE(open_change(change, "a second heap").counted);
   EXPECT_TRUE(reads(change, 1.25));
-  EXPECT_LT(std::abs(with_it - 1.25), 1.96 * bulking_factor(change)->sd)
-      << "a reading of more than 5 % lies in the interval";
+  const auto interval = bulking_interval(change);
+  ASSERT_TRUE(interval);
+  EXPECT_LT((*interval)[0], 1.25) << "a reading of more than 5 % lies in the interval";
+  EXPECT_GT((*interval)[1], with_it);
+  EXPECT_LT(std::abs(with_it - 1.25), 3.0 * bulking_factor(change)->sd);
   double weights = 0.0;
   for (const Reading& reading : change.readings) weights += reading.weight;
   EXPECT_NEAR(weights, 1.0, 1e-9);
@@ -154,6 +181,110 @@ TEST(Attribution, RutsThatJoinTheHoleAreCutOff) {
     EXPECT_NEAR(change.before.value, hole, 0.015 * hole) << depth;
     EXPECT_FALSE(open_change(change, "ruts").counted) << depth;
   }
+}
+
+TEST(Attribution, StripThatMayBeAScrapeOrARutIsInTheInterval) {
+  for (const double depth : {0.03, 0.04}) {
+    const double fallen = depth * 0.85 * 2.8;
+    Dig dig;
+    dig.bulking = 1.25 * (hole + fallen) / hole;  // its soil lies in the heap
+    const auto scraped = [&](double x, double y) {
+      return scenes::change_at(dig, scenes::Part::whole, x, y) +
+             box(x, y, {2.2, -2.2, 3.05, 0.6}, -depth);
+    };
+    const VolumeChange change = change_of(scraped);
+    const AttributedChange strip = open_change(change, "a lone strip like ruts");
+    EXPECT_EQ(strip.kind, ChangeKind::ruts);
+    EXPECT_GT(strip.probability, 0.1);
+    EXPECT_TRUE(reads(change, 1.25)) << depth;
+    EXPECT_LT((*bulking_interval(change))[0], 1.25) << depth;
+    EXPECT_LT(std::abs(bulking_factor(change)->value - 1.25), 3.0 * bulking_factor(change)->sd);
+  }
+}
+
+TEST(Attribution, RutsAreWeighedToo) {
+  const auto with_ruts = [](double x, double y) {
+    return dug(x, y) + box(x, y, {2.0, -2.2, 2.5, 0.4}, -0.03) +
+           box(x, y, {3.2, -2.2, 3.7, 0.4}, -0.03);
+  };
+  const VolumeChange change = change_of(with_ruts);
+  EXPECT_NEAR(bulking_factor(change)->value, 1.25, 0.01);
+  const double counted = 1.25 * hole / (hole + 2.0 * 0.03 * 0.5 * 2.6);
+  EXPECT_TRUE(reads(change, counted)) << "what moves k by more than its deviation is a reading";
+  EXPECT_FALSE(warns(change, "attribution_open", true));
+}
+
+TEST(Attribution, RoundAndPointedLumpsAreSoilAndBoxesAreNot) {
+  const auto ball = [](double x, double y) {
+    const double radius = std::cbrt(1.5 * 0.04 / pi);
+    const double away = std::hypot(x - 3.2, y + 0.4);
+    return std::sqrt(std::max(0.0, radius * radius - away * away));
+  };
+  const auto steep = [](double x, double y) {
+    const double away = std::hypot(x - 3.2, y + 1.8);
+    return std::max(0.0, (0.38 - away) * std::tan(57.0 * scenes::degree));
+  };
+  const VolumeChange lump = change_of([&](double x, double y) { return dug(x, y) + ball(x, y); });
+  EXPECT_NEAR(bulking_factor(lump)->value, 1.25 + 0.04 / hole, 0.01);
+  EXPECT_LT((*bulking_interval(lump))[0], 1.25) << "it may be a thing";
+  const VolumeChange heap = change_of([&](double x, double y) { return dug(x, y) + steep(x, y); });
+  const double volume = pi / 3.0 * std::pow(0.38, 3) * std::tan(57.0 * scenes::degree);
+  EXPECT_NEAR(bulking_factor(heap)->value, 1.25 + volume / hole, 0.01);
+  EXPECT_LT((*bulking_interval(heap))[0], 1.25);
+}
+
+TEST(Attribution, SecondHeapOfHardGroundIsNotDropped) {
+  Dig dig;
+  dig.bulking = 1.74;
+  const double radius = std::cbrt(0.26 * hole * 3.0 / pi / std::tan(35.0 * scenes::degree));
+  const auto hard = [&](double x, double y) {
+    return scenes::change_at(dig, scenes::Part::whole, x, y) + cone(x, y, {3.0, -1.7}, radius);
+  };
+  const VolumeChange change = change_of(hard);
+  const auto interval = bulking_interval(change);
+  ASSERT_TRUE(interval);
+  EXPECT_GT((*interval)[1], 2.0);
+  EXPECT_TRUE(reads(change, 2.0) && reads(change, 1.74));
+}
+
+TEST(Attribution, WeightFarFromTheAnswerIsInTheDeviation) {
+  const double extra = cone_volume(0.4);
+  const auto two = [](double x, double y) { return dug(x, y) + cone(x, y, {3.2, -1.8}, 0.4); };
+  const VolumeChange change = change_of(two);
+  const double open = 1.0 - open_change(change, "a second heap").probability;
+  const double sd = std::sqrt(open - 0.025) * extra / hole;
+  EXPECT_NEAR(bulking_errors(change).attribution, sd, 0.03 * sd);
+}
+
+TEST(Attribution, LooseSoilOfAnEarlierDigIsAReading) {
+  const auto ridge = [](double x, double y) {
+    return std::abs(x) < 1.5 ? std::max(0.0, 0.2 - 0.65 * std::abs(y + 0.2)) : 0.0;
+  };
+  double loose = 0.0;
+  for (double x = -3.0; x < 3.0; x += 0.01) {
+    for (double y = -2.5; y < 2.5; y += 0.01) loose += dug(x, y) < 0.0 ? 1e-4 * ridge(x, y) : 0.0;
+  }
+  Dig dig;
+  dig.bulking = 1.25 + loose / hole;
+  const auto after = [&](double x, double y) {
+    return scenes::change_at(dig, scenes::Part::whole, x, y) +
+           (dug(x, y) < 0.0 ? 0.0 : ridge(x, y));
+  };
+  const VolumeChange change = measure_change(scanned(ridge, 1), scanned(after, 2));
+  EXPECT_TRUE(warns(change, "earlier_soil", true));
+  EXPECT_TRUE(reads(change, 1.25));
+  EXPECT_LT(std::abs(bulking_factor(change)->value - 1.25), 1.96 * bulking_factor(change)->sd);
+  const VolumeChange level = change_of(dug);
+  EXPECT_FALSE(warns(level, "earlier_soil", false) || warns(level, "earlier_soil", true));
+}
+
+TEST(Attribution, ThinDigIsNotStirredGround) {
+  const auto thin = [](double x, double y) {
+    return box(x, y, {-1.5, -0.9, 1.5, 0.9}, -0.02) + box(x, y, {3.2, -2.0, 7.4, 2.0}, 0.008);
+  };
+  const auto level = [](double, double) { return 0.0; };
+  const VolumeChange change = measure_change(scanned(level, 1, 0.0005), scanned(thin, 2, 0.0005));
+  EXPECT_FALSE(warns(change, "stirred_ground", false) || warns(change, "stirred_ground", true));
 }
 
 TEST(Attribution, UprightThingsAndClodsAreToldApart) {
@@ -206,6 +337,21 @@ TEST(Attribution, GivenAreasLeaveNothingOpenOutside) {
   EXPECT_NEAR(bulking_factor(change)->value, 1.25, 0.005);
   EXPECT_FALSE(open_change(change, "ground outside the given area").counted);
   EXPECT_FALSE(warns(change, "attribution_open", false));
+}
+
+TEST(Attribution, WhatLiesInAGivenAreaBelongsToTheDigWhateverItLooksLike) {
+  const Rectangle like_a_rut = {2.0, -2.4, 2.85, 0.4};
+  const auto with_both = [&](double x, double y) {
+    return dug(x, y) + box(x, y, like_a_rut, -0.04) + box(x, y, {3.6, -2.2, 4.0, -1.8}, 0.3);
+  };
+  ChangeOptions options;
+  options.dig_area = Rectangle{-2.0, -2.6, 3.0, 2.6};
+  options.dump_area = Rectangle{3.2, -2.6, 8.0, 2.6};
+  const VolumeChange change = change_of(with_both, options);
+  EXPECT_NEAR(change.before.value, hole + 0.04 * 0.85 * 2.8, 0.01);
+  EXPECT_NEAR(change.after.value, 1.25 * hole + 0.3 * 0.16, 0.01);
+  EXPECT_FALSE(warns(change, "attribution_open", false));
+  EXPECT_LE(bulking_factor(change)->sd, 1.5 * bulking_errors(change).scans);
 }
 
 }  // namespace

@@ -105,7 +105,10 @@ class Draft {
 
   /// Puts loose soil into a further heap, its foot `gap` away from that of the main one.
   void add_heap(double volume, double gap) {
-    Cone cone{0.0, 0.0, volume, random.uniform(28.0, 38.0) * degree};
+    add_heap(volume, gap, random.uniform(28.0, 38.0) * degree);
+  }
+  void add_heap(double volume, double gap, double slope) {
+    Cone cone{0.0, 0.0, volume, slope};
     elsewhere += volume;
     compose();
     const double reach = scene.dig.heap_radius() + 0.5 * scene.dig.heap_crest + cone.radius() + gap;

@@ -23,15 +23,8 @@ inline void second_heap(Draft& d) {
   d.add_heap(d.random.uniform(0.08, 0.16) * loose, d.random.uniform(0.8, 2.5));
 }
 
-inline void second_scrape(Draft& d) {
-  const double volume = d.random.uniform(0.05, 0.12) * d.scene.truth.hole;
-  Dig scrape;
-  scrape.ridge_height = 1e-9;
-  scrape.pit_depth = d.random.uniform(0.06, 0.12);
-  scrape.pit_width = d.random.uniform(0.5, 0.9);
-  scrape.heading = d.random.uniform(0.0, pi);
-  scrape.pit_length = 0.3;
-  while (scrape.pit_volume() < volume) scrape.pit_length += 0.01;
+/// A shallow dig away from pit and ridge, whose soil lies in the heap.
+inline void add_scrape(Draft& d, Dig scrape) {
   const double reach = 0.5 * std::hypot(d.scene.dig.pit_length, d.scene.dig.pit_width) +
                        0.5 * std::hypot(scrape.pit_length, scrape.pit_width);
   const Eigen::Vector2d pit(d.scene.dig.pit_x, d.scene.dig.pit_y);
@@ -42,6 +35,80 @@ inline void second_scrape(Draft& d) {
   make_room(d.scene.extent, at.x(), at.y(), 0.5 * scrape.pit_length);
   d.more_hole = scrape.pit_volume();
   d.soil.push_back([scrape](double x, double y) { return scrape.dug(x, y); });
+  d.compose();
+}
+
+inline void second_scrape(Draft& d) {
+  const double volume = d.random.uniform(0.05, 0.12) * d.scene.truth.hole;
+  Dig scrape;
+  scrape.ridge_height = 1e-9;
+  scrape.pit_depth = d.random.uniform(0.06, 0.12);
+  scrape.pit_width = d.random.uniform(0.5, 0.9);
+  scrape.heading = d.random.uniform(0.0, pi);
+  scrape.pit_length = 0.3;
+  while (scrape.pit_volume() < volume) scrape.pit_length += 0.01;
+  add_scrape(d, scrape);
+}
+
+/// As narrow and as shallow as the rut of a track.
+inline void scrape_like_rut(Draft& d) {
+  Dig scrape;
+  scrape.ridge_height = 1e-9;
+  scrape.pit_depth = d.random.uniform(0.03, 0.05);
+  scrape.pit_width = d.random.uniform(0.6, 0.9);
+  scrape.heading = d.random.uniform(0.0, pi);
+  scrape.pit_length = d.random.uniform(2.0, 3.2);
+  add_scrape(d, scrape);
+}
+
+/// Steeper than loose soil, as cohesive soil stands.
+inline void steep_heap(Draft& d) {
+  const double volume = d.random.uniform(0.06, 0.16);
+  const double gap = d.random.uniform(0.8, 2.5);
+  d.add_heap(volume, gap, d.random.uniform(50.0, 60.0) * degree);
+}
+
+/// Ground that breaks into blocks.
+inline void hard_second_heap(Draft& d) {
+  d.bulking = d.random.uniform(1.9, 2.2);
+  d.compose();
+  second_heap(d);
+}
+
+/// One lump of soil, along the swing or off it.
+inline void lump(Draft& d) {
+  Clod clod;
+  clod.volume = d.random.uniform(0.01, 0.06);
+  const bool off = d.random.uniform() < 0.5;
+  const double along = d.random.uniform(0.35, 0.65);
+  const double aside = off ? d.random.uniform(1.6, 2.3) : d.random.uniform(0.0, 0.4);
+  clod.x = along * d.scene.heap.x();
+  clod.y = along * d.scene.heap.y() + (d.random.uniform() < 0.5 ? -aside : aside);
+  d.elsewhere += clod.volume;
+  d.soil.emplace_back(clod);
+  d.compose();
+}
+
+/// Across a ridge of loose soil that an earlier dig left; that soil lies in the heap too.
+inline void over_old_spill(Draft& d) {
+  const Dig dig = d.scene.dig;
+  Strip ridge;
+  ridge.height = d.random.uniform(0.08, 0.2);
+  ridge.slope = d.random.uniform(30.0, 38.0) * degree;
+  ridge.width = 2.0 * ridge.height / std::tan(ridge.slope);
+  ridge.length = d.random.uniform(1.5, 2.5);
+  ridge.heading = dig.heading + d.random.uniform(-0.3, 0.3);
+  const Eigen::Vector2d along(std::cos(ridge.heading), std::sin(ridge.heading));
+  const Eigen::Vector2d at =
+      d.at_pit(0.0, d.random.uniform(-0.3, 0.3) * dig.pit_width) - 0.5 * ridge.length * along;
+  ridge.x = at.x();
+  ridge.y = at.y();
+  d.scene.older = ridge;
+  const Height taken = [dig, ridge](double x, double y) {
+    return dig.dug(x, y) < 0.0 ? -ridge(x, y) : 0.0;
+  };
+  d.elsewhere += volume_of(taken, d.scene.extent);  // the heap holds more than the hole's soil
+  d.soil.push_back(taken);
   d.compose();
 }
 
@@ -157,7 +224,7 @@ inline void crate_in_pit(Draft& d) {
 inline void fill_pit(Draft& d) {
   const Dig& dig = d.scene.dig;
   d.scene.water =
-      d.scene.ground(dig.pit_x, dig.pit_y) - (1.0 - d.random.uniform(0.1, 0.2)) * dig.pit_depth;
+      d.scene.ground(dig.pit_x, dig.pit_y) - (1.0 - d.random.uniform(0.05, 0.6)) * dig.pit_depth;
 }
 
 inline void water(Draft& d) {
@@ -180,7 +247,7 @@ inline void grass(Draft& d) {
   d.scene.sampling.grass_height = 0.02;
 }
 
-inline void pressed(Draft& d) { d.scene.pressed = 0.01; }
+inline void pressed(Draft& d) { d.scene.pressed = d.random.uniform(0.0, 0.03); }
 
 /// The wall cuts the foot of the heap off.
 inline void heap_at_wall(Draft& d) {

@@ -385,7 +385,7 @@ const Reading* reading_with_water(const VolumeChange& change) {
 TEST(Cover, WaterOnEvenGroundIsAReading) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Survey survey(seed, true, 0.0, 0.0, points_on_soil);
-    flood(survey, seed % 2 == 0 ? 0.12 : 0.18);
+    flood(survey, seed % 2 == 0 ? 0.12 : 0.4);
     const Answer answer = answer_to(survey.scans());
     ASSERT_TRUE(answer.estimate) << seed;
     const VolumeChange& change = answer.estimate->change;
@@ -393,7 +393,8 @@ TEST(Cover, WaterOnEvenGroundIsAReading) {
     ASSERT_NE(water, nullptr) << seed;
     const Measured& k = water->bulking;
     EXPECT_NEAR(k.value, survey.dig.bulking, 2.0 * k.sd + 0.005 * k.value) << seed;
-    EXPECT_LT(k.sd, 0.04 * k.value) << seed;
+    EXPECT_LT(k.value + 1.5 * k.sd, answer.estimate->bulking->value) << "of any depth, but some";
+    EXPECT_LT(k.sd, 0.2 * k.value) << seed;
     EXPECT_LT(water->weight, 0.05) << "the likeliest reading is a level floor";
     double sum = 0.0;
     for (const Reading& reading : change.readings) sum += reading.weight;

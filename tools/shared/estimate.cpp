@@ -72,7 +72,8 @@ nlohmann::ordered_json zones_json(const VolumeChange& change) {
 nlohmann::ordered_json attribution_json(const VolumeChange& change) {
   auto list = nlohmann::ordered_json::array();
   for (const AttributedChange& open : change.attribution) {
-    list.push_back({{"what", open.what},
+    list.push_back({{"kind", name(open.kind)},
+                    {"what", open.what},
                     {"volume_m3", open.volume.value},
                     {"volume_sd_m3", open.volume.sd},
                     {"counted", open.counted},
@@ -84,7 +85,10 @@ nlohmann::ordered_json attribution_json(const VolumeChange& change) {
 nlohmann::ordered_json readings_json(const DensityEstimate& estimate) {
   auto list = nlohmann::ordered_json::array();
   for (const DensityReading& each : estimate.readings) {
-    list.push_back({{"what", each.reading.what},
+    auto kinds = nlohmann::ordered_json::array();
+    for (const ChangeKind kind : each.reading.kinds) kinds.push_back(name(kind));
+    list.push_back({{"kinds", std::move(kinds)},
+                    {"what", each.reading.what},
                     {"weight", each.reading.weight},
                     {"bulking_factor", each.reading.bulking.value},
                     {"bulking_factor_sd", each.reading.bulking.sd},
@@ -134,16 +138,21 @@ nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
   json["bulking_factor"] = nullptr;
   json["bulking_factor_sd"] = nullptr;
   json["bulking_factor_sd_scans"] = nullptr;
+  json["bulking_factor_interval"] = nullptr;
   json["density_percent"] = nullptr;
   json["density_raw_percent"] = nullptr;
   json["density_sd_given_law_percent"] = nullptr;
   json["density_sd_percent"] = nullptr;
   json["density_interval_percent"] = nullptr;
+  json["density_without_fallback_percent"] = nullptr;
   if (estimate.bulking) {
     json["bulking_factor"] = estimate.bulking->value;
     json["bulking_factor_sd"] = estimate.bulking->sd;
     if (!std::isnan(estimate.bulking->sd)) {
       json["bulking_factor_sd_scans"] = bulking_errors(estimate.change).scans;
+    }
+    if (const auto interval = bulking_interval(estimate.change)) {
+      json["bulking_factor_interval"] = *interval;
     }
     json["density_raw_percent"] = estimate.density->raw_percent;
     json["density_sd_given_law_percent"] = estimate.density->sd_given_law_percent;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include <excavplan/ground/volume_change.hpp>
@@ -15,6 +16,16 @@ namespace excavplan {
 /// @return nothing if no hole was found, no dumped soil is in the scans, or too much of a zone was
 ///         not seen
 std::optional<Measured> bulking_factor(const VolumeChange& change);
+
+/// Interval of 95 % of the bulking factor, which holds each reading of more than 5 %: quantiles of
+/// the mixture of the readings, each with the error that they do not explain. k -+ 1.96 sd where
+/// the scene has one reading. Readings that no scan shows (is_unseen()) are left out.
+///
+/// @return nothing where there is no factor or its error is not known
+std::optional<std::array<double, 2>> bulking_interval(const VolumeChange& change);
+
+/// Variance of the bulking factor that its readings explain [-]: at most that of attribution.
+double variance_by_readings(const VolumeChange& change);
 
 /// Standard deviation of the bulking factor by source [-].
 struct BulkingErrors {

@@ -120,7 +120,7 @@ struct SurfacePair {
 /// fifth of it away from the hole); looks_swapped (after / before below 0.97 beyond its error, or
 /// above 3); attribution_open; stirred_ground; other_change; object_taken_out; zone_at_border;
 /// zone_partly_unseen; zone_unseen (refused: no bulking factor); sensor_place_inferred;
-/// little_stable_ground (under 40 %); scans_do_not_fit (noise above 0.1 m).
+/// little_stable_ground (under 40 %); scans_do_not_fit (noise above 0.1 m); earlier_soil.
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid, share fewer than 100 known cells,
 ///         or an option is out of range
