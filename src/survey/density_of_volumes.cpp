@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include <excavplan/ground/bulking.hpp>
 #include <excavplan/simulation/calibration.hpp>
 
 #include "base/normal_mixture.hpp"

@@ -233,14 +233,10 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
   constexpr double gentle = 1.0;       // ours: tan 45 degrees
   constexpr double steeper = 1.1;      // ours
   constexpr double least_lost = 0.03;  // ours, of the hole
-  constexpr double much_lost = 0.2;    // ours, of the hole
   const double heap = steepness(change, ZoneKind::dump);
   const double hole = steepness(change, ZoneKind::dig);
-  const double lost = lost_beside_heap(change) / change.excavated.value;
-  if (!(heap > loose && hole < gentle) && !(lost > least_lost && heap > steeper * hole) &&
-      !(lost > much_lost)) {
-    return std::nullopt;
-  }
+  const bool lost = lost_beside_heap(change) > least_lost * change.excavated.value;
+  if (!(heap > loose && hole < gentle) && !(lost && heap > steeper * hole)) return std::nullopt;
   return Warning{
       "looks_swapped",
       "the heap is as steep as " + degrees(std::atan(heap)) + ", the hole " +
@@ -321,6 +317,14 @@ void refuse_swapped(const VolumeChange& change, const std::string& names) {
   };
   for (const Warning& warning : change.warnings) {
     if (warning.code == "looks_swapped") refuse(warning.message);
+  }
+  constexpr double much_lost = 0.2;  // ours, of the hole
+  const double lost = lost_beside_heap(change);
+  if (change.excavated.value > 0.0 && lost > much_lost * change.excavated.value) {
+    refuse("before and after are probably swapped: the ground fell by " + readable(lost) +
+           " m^3 beside what would be the heap, and by " + readable(change.excavated.value) +
+           " m^3 where the hole would be; exchange BEFORE and AFTER, or if z points down, " +
+           give_frames);
   }
   constexpr double least = 0.2;  // ours, of what moved at the dig
   if (change.areas.size() != 2) return;

@@ -53,7 +53,7 @@ TEST_F(BadInput, DepthImagesAreRefusedWithTheReason) {
   const Words words = depth_run(folder);
   refused(3, "not a PNG image", "depth-to-cloud",
           {letter, "--intrinsics", words[2], "--out", words[4]});
-  refused(3, "letter.txt: not valid JSON", "depth-to-cloud",
+  refused(3, "letter.txt: line 2: found", "depth-to-cloud",
           {words[0], "--intrinsics", letter, "--out", words[4]});
   refused(3, "letter.txt: ", "depth-to-cloud", words + Words{"--pose", letter});
 }

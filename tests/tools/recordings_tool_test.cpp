@@ -74,7 +74,7 @@ TEST_F(Recordings, OneCommandGivesTheDensityOfARecordedDig) {
 }
 
 TEST_F(Recordings, TheMachineIsWhereItsJointStatesSay) {
-  const std::string lidar = recording("scene.db3") + ":/lidar/points@0s+5s";
+  const std::string lidar = recording("scene.db3") + ":/lidar/points";
   refused(3, "fewer than 100 finite points", "estimate-density",
           {lidar, lidar, "--tf-frame", "map", "--machine-recorded"});
   refused(
