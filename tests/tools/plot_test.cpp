@@ -216,12 +216,13 @@ TEST(HeightChangeFigure, ListsWarningsOpenChangesAndErrors) {
   change.after = {0.266, 0.003};
   change.spilled = {0.01, 0.001};
   change.errors.noise = Eigen::Vector3d(4e-6, 1e-6, 9e-6).asDiagonal();
-  change.attribution = {{"a second heap 2 m off", {0.031, 0.001}, false, 0.35}};
+  change.attribution = {
+      {ChangeKind::second_heap, "a second heap 2 m off", {0.031, 0.001}, false, 0.35}};
   survey.sheet.warnings = {{"other_change", std::string(200, 'x') + " left out"}};
   const std::string svg = height_change_figure(survey.sheet);
   EXPECT_NE(svg.find(">other_change:</text>"), std::string::npos);
   EXPECT_NE(svg.find("left out, open"), std::string::npos);
-  EXPECT_NE(svg.find("a second heap 2 m off (ours: 35 %)"), std::string::npos);
+  EXPECT_NE(svg.find("a second heap 2 m off (of this dig: 35 %)"), std::string::npos);
   EXPECT_NE(svg.find("noise of the cells"), std::string::npos);
   EXPECT_EQ(svg.find("steep faces"), std::string::npos);  // there are none
 }

@@ -303,7 +303,7 @@ void add_open_changes(const VolumeChange& change, std::vector<std::string>& note
     for (const AttributedChange& open : change.attribution) {
       if (open.counted != counted) continue;
       add_wrapped(signed_volume(open.volume) + "  " + open.what +
-                      " (ours: " + rounded(100.0 * open.probability, 1.0) + " %)",
+                      " (of this dig: " + rounded(100.0 * open.probability, 1.0) + " %)",
                   lines);
     }
     if (lines.empty()) continue;
