@@ -53,8 +53,8 @@ struct RecordingQuery {
   std::string frame;           ///< into which the points are put; empty: as they were recorded
 };
 
-/// Reads `FILE:TOPIC@TIME+SPAN`, e.g. "run.db3:/livox/lidar@12.5s+2s", in s, ms or min (s without a
-/// unit); @TIME and +SPAN may be left out. The topic begins with "/".
+/// Reads `FILE:TOPIC\@TIME+SPAN`, e.g. "run.db3:/livox/lidar@12.5s+2s", in s, ms or min (s without
+/// a unit); "\@TIME" and "+SPAN" may be left out. The topic begins with "/".
 ///
 /// @return nothing if the text is no such thing but the name of a file, as it is whenever a file of
 /// that name exists
@@ -74,12 +74,12 @@ struct RecordedScan {
   /// messages, and where the frame of the messages is a leaf of the tree of transforms; not of a
   /// sensor that moved in between.
   Cloud cloud;
-  std::string frame;           ///< of the points
-  std::string recorded_frame;  ///< of the first message
-  std::size_t messages = 0;    ///< that were used
-  double first = 0.0;          ///< time of the first of them [s]
-  double last = 0.0;           ///< time of the last of them [s]
-  ScanMerge merge = ScanMerge::single;
+  std::string frame;                    ///< of the points
+  std::string recorded_frame;           ///< of the first message
+  std::size_t messages = 0;             ///< that were used
+  double first = 0.0;                   ///< time of the first of them [s]
+  double last = 0.0;                    ///< time of the last of them [s]
+  ScanMerge merge = ScanMerge::single;  ///< what became of several messages
   /// Of each averaged point along its ray, from the scatter of the frames [m^2], NaN where fewer
   /// than two agree; empty unless averaged. What all frames have in common is not in it.
   std::vector<double> variance;
