@@ -212,11 +212,12 @@ class ChangeReader {
     if (part(p) == Part::tail) {
       return {ChangeKind::edge, "the low edge of a hole", edge_prior(p), false};
     }
+    if (shape(p).height < std::min(shallow, shallow_share * hole_height())) {
+      return {ChangeKind::settled, "ground that fell a little",
+              beside(p) ? prior::anywhere : prior::shallow_fall, false};
+    }
     if (beside(p)) {
       return {ChangeKind::second_hole, "a hole beside the largest", prior::beside_main, false};
-    }
-    if (shape(p).height < std::min(shallow, shallow_share * hole_height())) {
-      return {ChangeKind::settled, "ground that fell a little", prior::shallow_fall, false};
     }
     if (is_small(p)) return {ChangeKind::small_hole, "a small hole", prior::anywhere, false};
     const bool is_deep = shape(p).height > deep_share * hole_height();

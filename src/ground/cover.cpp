@@ -34,7 +34,7 @@ bool tells_scatter(const SurfacePair& pair) {
 
 /// Variance of the height of a return about the plane of its cell; NaN for few returns.
 Eigen::ArrayXXd scatter_of(const Surface& surface) {
-  constexpr int enough = 6;
+  constexpr int enough = 4;  // ours
   const Eigen::ArrayXXd points = surface.points.cast<double>();
   return (points >= enough).select(points * surface.variance, std::nan(""));
 }
@@ -84,7 +84,7 @@ struct Scatter {
 
 std::optional<Warning> grass(const std::vector<const SurfacePair*>& pairs,
                              const VolumeChange& change) {
-  constexpr std::size_t enough = 30;      // cells, ours
+  constexpr std::size_t enough = 100;     // cells, ours: a ratio of so few returns is off by 2
   constexpr double much_less = 0.75;      // ours: of the variance, in all fresh soil
   constexpr double less = 0.9;            // ours: likewise, in the hole and on the heap
   constexpr double least_scatter = 1e-3;  // ours [m]
