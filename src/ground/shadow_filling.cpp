@@ -426,20 +426,21 @@ class ShadowFiller {
 
   /// The mean of two places of the rim, each of which is even over a cell; where the rim runs along
   /// the grid neighbours share the error. Cells beside a shadow of several places that do not hide
-  /// it are seen in part from one or the other: what was seen of them ends anywhere in the cell.
+  /// it are seen in part from one or the other: it is always their upper side, which ends anywhere
+  /// in the cell, so that all err to the same side by up to a cell.
   double rim_variance(const Shadow& shadow, const Shape& hole) const {
     constexpr double shared = 8.0;  // ours: cells
     constexpr double of_place = 1.0 / 24.0;
-    constexpr double of_cell = 1.0 / 12.0;
+    constexpr double of_cell = 1.0 / 3.0;  // second moment of 0 .. 1
     const auto hiding = static_cast<double>(shadow.hiding.size());
-    double places = of_place * hiding;
+    double places = shared * of_place * hiding;
     if (sight_.are_several()) {
       const auto upper = std::count_if(shadow.rim.begin(), shadow.rim.end(), [&](const Rim& rim) {
         return rim.height > 0.5 * hole.floor;
       });
-      places += of_cell * std::max(0.0, static_cast<double>(upper) - hiding);
+      places += of_cell * std::pow(std::max(0.0, static_cast<double>(upper) - hiding), 2);
     }
-    return hole.floor * hole.floor * shared * places;
+    return hole.floor * hole.floor * places;
   }
 
   /// By the place of the sensor, where only the scan tells it: what a wall hides is as wide as the
