@@ -80,6 +80,7 @@ std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& clo
 Outcome inspect(const Inputs& inputs) {
   if (!inputs.out && !inputs.pose.pose_out) {
     if (auto listing = recording_listing(inputs.file)) {
+      if (!inputs.tf_frame.empty()) usage_error("--tf-frame needs a topic: FILE:TOPIC@TIME+SPAN");
       Outcome outcome;
       outcome.json = std::move(listing->json);
       outcome.lines = std::move(listing->lines);

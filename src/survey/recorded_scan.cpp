@@ -30,10 +30,35 @@ constexpr std::int64_t joints_about = one_second / 2;         // before and afte
 
 // ---- Transforms -------------------------------------------------------------------------------
 
+/// True if a topic of transforms is that of a robot whose namespace another topic is in.
+bool is_of_robot(const std::string& transforms, const std::string& topic) {
+  const std::string space = transforms.substr(0, transforms.rfind('/') + 1);
+  return topic.compare(0, space.size(), space) == 0;
+}
+
+/// For which scan transforms are read.
+struct ForScan {
+  std::string topic;           ///< its namespace's transforms, if there are; "": all
+  std::int64_t time = latest;  ///< static transforms are those that held then
+};
+
 /// The static ones, and those recorded in a time, if any: of a chunked file that reads all chunks
 /// of that time.
-TransformTree read_transforms(RecordingFile& recording, const TimeRange& range) {
+TransformTree read_transforms(RecordingFile& recording, const TimeRange& range,
+                              const ForScan& scan = {}) {
   std::vector<StampedTransform> transforms;
+  const auto is_known = [&](const StampedTransform& one) {
+    return std::any_of(transforms.begin(), transforms.end(), [&](const StampedTransform& other) {
+      return other.child == one.child && other.parent == one.parent;
+    });
+  };
+  const auto take_static = [&](const RecordedMessage& message) {
+    for (StampedTransform& transform : decode_transforms(recording.path(), message)) {
+      if (message.time > scan.time && is_known(transform)) continue;
+      transforms.push_back(std::move(transform));
+    }
+    return true;
+  };
   const auto take = [&](const RecordedMessage& message) {
     for (StampedTransform& transform : decode_transforms(recording.path(), message)) {
       transforms.push_back(std::move(transform));
@@ -42,10 +67,15 @@ TransformTree read_transforms(RecordingFile& recording, const TimeRange& range) 
   };
   std::vector<std::string> statics;
   std::vector<std::string> others;
-  for (const std::string& name : topics_for(recording, MessageUse::transforms)) {
+  std::vector<std::string> names = topics_for(recording, MessageUse::transforms);
+  const auto others_from =
+      std::stable_partition(names.begin(), names.end(),
+                            [&](const std::string& name) { return is_of_robot(name, scan.topic); });
+  if (others_from != names.begin()) names.erase(others_from, names.end());
+  for (const std::string& name : names) {
     (holds_static_transforms(name) ? statics : others).push_back(name);
   }
-  if (!statics.empty()) recording.visit(statics, earliest, latest, take);
+  if (!statics.empty()) recording.visit(statics, earliest, latest, take_static);
   if (!others.empty() && range.from <= range.to)
     recording.visit(others, range.from, range.to, take);
   return {recording.path(), recording.start(), std::move(transforms)};
@@ -145,11 +175,13 @@ class ScanReader {
         topic_(scan_topic(recording, query.topic)),
         target_(frame_name(query.frame)),
         heads_(read_heads(recording, topic_, query)),
-        tree_(read_transforms(recording, target_.empty() && heads_.size() == 1
-                                             ? TimeRange{latest, earliest}
-                                             : around(transforms_about))) {
+        tree_(read_transforms(recording,
+                              target_.empty() && heads_.size() == 1 ? TimeRange{latest, earliest}
+                                                                    : around(transforms_about),
+                              {topic_.name, heads_.back().time})) {
     if (!target_.empty() && !is_target_known()) {
-      tree_ = read_transforms(recording, around(transforms_farther));
+      tree_ =
+          read_transforms(recording, around(transforms_farther), {topic_.name, heads_.back().time});
     }
     require_steady_clock(recording, heads_);
     if (use_of(topic_.type) == MessageUse::depth) {

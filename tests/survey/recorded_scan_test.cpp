@@ -295,6 +295,38 @@ TEST(RecordedScan, AMovingSensorAccumulatesInAFrame) {
             "the points are put, or a span in which it stood; frames: 'base', 'lidar', 'map'");
 }
 
+TEST(RecordedScan, OfSeveralRobotsItsOwnTransformsCount) {
+  RecordingInMemory recording = recording_from_zero();
+  add_transform(recording, 0, {0, "map", "lidar", {1.0, 2.0, 3.0}}, "/r1/tf_static");
+  add_transform(recording, 0, {0, "map", "lidar", {7.0, 8.0, 9.0}}, "/r2/tf_static");
+  for (const char* const robot : {"/r1", "/r2"}) {
+    recording.add(robot + std::string("/points"), cloud_type, 1000 * ms,
+                  cloud_bytes(epoch + 1000 * ms, "lidar", {{1.0, 0.0, 0.0}}, 0));
+  }
+  const auto point = [&](const std::string& topic) {
+    return read_recorded_scan(recording, query_of(topic, {}, 0.0, "map")).cloud.points.at(0);
+  };
+  expect_near(point("/r1/points"), {2.0, 2.0, 3.0});
+  expect_near(point("/r2/points"), {8.0, 8.0, 9.0});
+}
+
+TEST(RecordedScan, AStaticTransformThatWasSentAgainCountsFromThenOn) {
+  RecordingInMemory recording = recording_from_zero();
+  add_transform(recording, 2000 * ms, {0, "map", "lidar", {1.0, 0.0, 0.0}}, "/tf_static");
+  add_transform(recording, 30000 * ms, {0, "map", "lidar", {5.0, 0.0, 0.0}}, "/tf_static");
+  for (const int time : {1000, 10000, 40000}) {
+    add_cloud(recording, time * ms, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
+  }
+  const auto x_at = [&](double time) {
+    return read_recorded_scan(recording, query_of("/points", time, 0.0, "map"))
+        .cloud.points.at(1)
+        .x();
+  };
+  EXPECT_EQ(x_at(1.0), 2.0) << "the first, although it was recorded later";
+  EXPECT_EQ(x_at(10.0), 2.0);
+  EXPECT_EQ(x_at(40.0), 6.0);
+}
+
 TEST(RecordedScan, ASensorThatStoodInTheFrameAskedForIsAveraged) {
   RecordingInMemory recording = recording_from_zero();
   add_transform(recording, 0, {0, "base", "lidar", {0.0, 0.0, 2.0}}, "/tf_static");

@@ -74,14 +74,15 @@ TEST_F(Recordings, OneCommandGivesTheDensityOfARecordedDig) {
 }
 
 TEST_F(Recordings, TheMachineIsWhereItsJointStatesSay) {
+  const std::string tool = "estimate-density";
   const std::string lidar = recording("scene.db3") + ":/lidar/points";
-  refused(3, "fewer than 100 finite points", "estimate-density",
+  refused(2, "the arm of the machine in the scan stands at -1.2 rad, outside its range", tool,
           {lidar, lidar, "--tf-frame", "map", "--machine-recorded"});
-  refused(
-      2, "--machine-recorded needs scans of a recording", "estimate-density",
-      {shipped("quickstart/before.pcd"), shipped("quickstart/after.pcd"), "--machine-recorded"});
-  refused(3, "found no topic of sensor_msgs/JointState", "estimate-density",
-          {dig + ":/merged/points", dig + ":/merged/points@60s", "--machine-recorded"});
+  refused(2, "--machine-recorded needs --tf-frame", tool, {lidar, lidar, "--machine-recorded"});
+  refused(2, "outside its range", tool, {scan, later_scan, "--machine-pose", "0,100,0,0"});
+  refused(3, "found no topic of sensor_msgs/JointState", tool,
+          {dig + ":/merged/points", dig + ":/merged/points@60s", "--machine-recorded", "--tf-frame",
+           "site"});
 }
 
 TEST_F(Recordings, WhatIsNotThereIsSaidWithWhatIs) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/recordings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <excavplan/error.hpp>
@@ -30,12 +31,19 @@ const char* name_of(ScanMerge merge) {
 std::string line_of(const RecordedScan& scan) {
   std::string line =
       std::to_string(scan.messages) + (scan.messages == 1 ? " message" : " messages");
-  line += " at " + readable(scan.first, 4);
-  if (scan.last > scan.first) line += " .. " + readable(scan.last, 4);
+  line += " at " + decimals(scan.first, 3);
+  if (scan.last > scan.first) line += " .. " + decimals(scan.last, 3);
   line += " s";
   if (scan.merge != ScanMerge::single) line += std::string(", ") + name_of(scan.merge);
   if (scan.frame_sd > 0.0) line += ", one frame to " + readable(1e3 * scan.frame_sd, 2) + " mm";
   return line + (scan.frame.empty() ? "" : ", in frame " + scan.frame);
+}
+
+std::string small_letters(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
 }
 
 nlohmann::ordered_json time_of(double seconds) {
@@ -68,21 +76,32 @@ std::optional<RecordedInput> recorded_input(const std::string& text, const std::
 }
 
 MachinePosture recorded_posture(const RecordedInput& input) {
-  const auto joints = joint_positions(input.path, input.scan.first);
+  auto joints = joint_positions(input.path, input.scan.first);
+  std::string names;
+  for (const auto& [name, position] : joints) names += (names.empty() ? "" : ", ") + name;
+  // "arm" last: names such as front_arm_boom hold it too.
   const auto angle = [&](const std::vector<std::string>& words) {
-    std::string names;
-    for (const auto& [name, position] : joints) {
-      for (const std::string& word : words) {
-        if (name.find(word) != std::string::npos) return position;
-      }
-      names += (names.empty() ? "" : ", ") + name;
+    const auto holds = [&](const auto& joint) {
+      const std::string name = small_letters(joint.first);
+      return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+        return name.find(word) != std::string::npos;
+      });
+    };
+    const auto found = std::find_if(joints.begin(), joints.end(), holds);
+    if (std::count_if(joints.begin(), joints.end(), holds) != 1) {
+      throw Error(ErrorKind::bad_file, input.path + ": joint states: found " + names +
+                                           ", expected one joint whose name holds " +
+                                           words.front());
     }
-    throw Error(ErrorKind::bad_file, input.path + ": joint states: found " + names +
-                                         ", expected a joint whose name holds " + words.front());
+    const double position = found->second;
+    joints.erase(found);
+    return position;
   };
   MachinePosture posture;
   posture.swing = angle({"swing"});
-  posture.joints = JointAngles(angle({"boom"}), angle({"arm", "stick"}), angle({"bucket"}));
+  posture.joints(0) = angle({"boom"});
+  posture.joints(2) = angle({"bucket"});
+  posture.joints(1) = angle({"stick", "arm"});
   return posture;
 }
 
@@ -103,11 +122,15 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
     std::string line = std::string(topic.is_scan ? "* " : "  ") + topic.name + "  " + topic.type +
                        ", " + std::to_string(topic.messages);
     if (topic.messages > 0) {
-      line += " at " + readable(topic.first, 4) + " .. " + readable(topic.last, 4) + " s";
+      line += " at " + decimals(topic.first, 3) + " .. " + decimals(topic.last, 3) + " s";
     }
-    listing.lines.push_back(line + (topic.frame.empty() ? "" : ", frame " + topic.frame));
+    listing.lines.push_back(
+        line + (topic.frame.empty() ? "" : ", frame " + excavplan::quoted(topic.frame)));
   }
-  listing.lines.push_back("* scans: name one as " + text + ":TOPIC@TIME+SPAN");
+  const auto is_scan = [](const RecordingTopic& topic) { return topic.is_scan; };
+  const bool has_scans = std::any_of(contents.topics.begin(), contents.topics.end(), is_scan);
+  listing.lines.push_back(has_scans ? "* scans: name one as " + text + ":TOPIC@TIME+SPAN"
+                                    : "no topic holds scans");
   if (!contents.frames.empty()) {
     std::string frames;
     for (const std::string& frame : contents.frames) frames += (frames.empty() ? "" : ", ") + frame;

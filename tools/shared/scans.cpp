@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/scans.hpp"
 
+#include <array>
 #include <map>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "base/text.hpp"
 #include "shared/recordings.hpp"
 #include "shared/tool.hpp"
 
@@ -31,6 +33,20 @@ struct Side {
   const std::optional<MachinePosture>& posture;
 };
 
+/// Angles in degrees, or of another zero, are mostly out of the machine's range.
+void require_within(const Machine& machine, const MachinePosture& posture) {
+  constexpr double play = 0.1;  // ours [rad]
+  constexpr std::array<const char*, 3> names = {"boom", "arm", "bucket"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double angle = posture.joints(static_cast<Eigen::Index>(i));
+    const JointLimits& limits = machine.limits[i];
+    if (angle > limits.lower - play && angle < limits.upper + play) continue;
+    usage_error("the " + std::string(names[i]) + " of the machine in the scan stands at " +
+                number_text(angle) + " rad, outside its range of " + number_text(limits.lower) +
+                " .. " + number_text(limits.upper));
+  }
+}
+
 /// Reads the scan if it is of a recording; a file is left where it is.
 Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
   Scan scan;
@@ -48,8 +64,9 @@ Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
   scan.unit = units().at(side.unit.empty() ? frames.unit : side.unit);
   scan.sensor_origin = side.origin ? side.origin : frames.sensor_origin;
   if (posture) {
-    scan.machine =
-        std::make_shared<const MachineFront>(machine_named(frames.view.machine), *posture);
+    const Machine machine = machine_named(frames.view.machine);
+    require_within(machine, *posture);
+    scan.machine = std::make_shared<const MachineFront>(machine, *posture);
   }
   return scan;
 }
@@ -120,6 +137,12 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
   if (frames.view.both && (frames.view.before || frames.view.after)) {
     usage_error("--machine-pose excludes --before-machine-pose and --after-machine-pose");
   }
+  if (frames.view.recorded && (frames.view.both || frames.view.before || frames.view.after)) {
+    usage_error("--machine-recorded excludes --machine-pose and those of one scan");
+  }
+  if (frames.view.recorded && frames.tf_frame.empty()) {
+    usage_error("--machine-recorded needs --tf-frame, with the swing axis as origin");
+  }
   const auto placed = [&](const Side& side) {
     Scan scan = scan_of(side, frames, report);
     place(side, frames, scan);
@@ -130,9 +153,9 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
   ScanPair pair = {std::move(first),
                    placed({"after", after, frames.after_unit, frames.after, frames.after_pose,
                            frames.after_origin, frames.view.after})};
-  const std::string needs = " needs scans of a recording, FILE:TOPIC@TIME+SPAN";
-  if (!frames.tf_frame.empty() && report.recordings.empty()) usage_error("--tf-frame" + needs);
-  if (frames.view.recorded && report.recordings.empty()) usage_error("--machine-recorded" + needs);
+  if (!frames.tf_frame.empty() && report.recordings.empty()) {
+    usage_error("--tf-frame needs scans of a recording, FILE:TOPIC@TIME+SPAN");
+  }
   if (frames.level) {
     Scan whole = pair.before;
     whole.area.reset();  // is in the levelled frame
