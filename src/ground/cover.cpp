@@ -284,11 +284,57 @@ void add_water(const LevelFloor& floor, VolumeChange& change) {
                                                                    0.25 * (highest - lowest))}});
 }
 
+// ---- Shadows ------------------------------------------------------------------------------------
+
+/// Cells of the hole between points, interpolated as those of a sparse scan, are as many before the
+/// dig as after; shadows of its walls are there after alone (sign test of McNemar 1947).
+std::optional<Warning> shadowed(const SurfacePair& pair, const VolumeChange& change,
+                                const AreaChange& area) {
+  constexpr double significant = 3.0;   // sd, ours
+  constexpr double least_share = 0.01;  // ours, of the hole's cells
+  const bool is_placed =
+      std::any_of(change.warnings.begin(), change.warnings.end(),
+                  [](const Warning& warning) { return warning.code == "sensor_place_inferred"; });
+  if (is_placed || !pair.after.sensors.empty() || !tells_scatter(pair)) return std::nullopt;
+  const auto is_between = [](const Surface& surface, Cell at) {
+    return surface.points(at.row, at.col) == 0 && !std::isnan(surface.height.z(at.row, at.col));
+  };
+  double cells = 0.0;
+  double only_after = 0.0;
+  double only_before = 0.0;
+  for_each_cell(area.zone, [&](Cell at) {
+    const int zone = area.zone(at.row, at.col);
+    if (zone < 0 || kind_of(change, zone) != ZoneKind::dig) return;
+    cells += 1.0;
+    const bool now = is_between(pair.after, at);
+    const bool then = is_between(pair.before, at);
+    only_after += now && !then ? 1.0 : 0.0;
+    only_before += then && !now ? 1.0 : 0.0;
+  });
+  const double more = only_after - only_before;
+  if (!(more > least_share * cells) ||
+      !(more > significant * std::sqrt(only_after + only_before))) {
+    return std::nullopt;
+  }
+  return Warning{
+      "hole_in_shadow",
+      readable(100.0 * more / cells, 2) +
+          " % of the hole's cells hold no point after the dig, but did before: its walls "
+          "hide part of it; tell where the sensor stood by --sensor-origin, or scan it "
+          "from a second standpoint",
+      true};
+}
+
 }  // namespace
 
 std::vector<Warning> check_cover(const std::vector<const SurfacePair*>& pairs,
                                  const VolumeChange& change) {
   std::vector<Warning> found;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (auto warning = shadowed(*pairs[i], change, change.areas[i])) {
+      found.push_back(std::move(*warning));
+    }
+  }
   if (auto warning = grass(pairs, change)) found.push_back(std::move(*warning));
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto floor = level_floor(*pairs[i], change, change.areas[i]);

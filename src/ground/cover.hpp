@@ -12,7 +12,10 @@
 
 namespace excavplan {
 
-/// Looks for what covers the soil; both end trust.
+/// Looks for what covers the soil or hides it; each ends trust.
+///
+/// `hole_in_shadow`: of a scan whose sensor's place is unknown, over 1 % more of the hole's cells
+/// lie between points after the dig than before, by over three standard deviations (ours).
 ///
 /// `grass`: returns scatter in height less on dug and dumped soil than they did before there: their
 /// variance is below 0.75 of that in both together, and below 0.9 in each (ours), by what the

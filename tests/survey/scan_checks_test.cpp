@@ -405,6 +405,30 @@ TEST(Cover, WaterOnEvenGroundIsAReading) {
   }
 }
 
+/// Takes away the points over one wall of the pit.
+void hide_a_wall(const scenes::Dig& dig, Points& points) {
+  const auto is_hidden = [&](const Eigen::Vector3d& point) {
+    const double depth = -dig.dug(point.x(), point.y()) / dig.pit_depth;
+    return point.x() < 0.0 && depth > 0.05 && depth < 0.95;
+  };
+  points.erase(std::remove_if(points.begin(), points.end(), is_hidden), points.end());
+}
+
+TEST(Cover, AWallThatWasSeenBeforeAloneEndsTrust) {
+  constexpr std::size_t sparse = 30000;  // so that cells lie between points anyway
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Survey survey(seed, true, 0.0, 0.0, sparse);
+    EXPECT_EQ(answer_to(survey.scans()).warning("hole_in_shadow"), nullptr) << seed;
+    hide_a_wall(survey.dig, survey.after);
+    const Answer hidden = answer_to(survey.scans());
+    ASSERT_NE(hidden.warning("hole_in_shadow"), nullptr) << seed;
+    EXPECT_TRUE(contains(hidden.warning("hole_in_shadow")->message, "--sensor-origin"));
+    EXPECT_FALSE(hidden.trusted());
+    hide_a_wall(survey.dig, survey.before);
+    EXPECT_EQ(answer_to(survey.scans()).warning("hole_in_shadow"), nullptr) << seed;
+  }
+}
+
 TEST(Cover, AFloorAsRoughAsTheGroundIsNoWater) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Survey survey(seed, true, 0.0, 0.015, points_on_soil);
