@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <limits>
@@ -23,13 +22,6 @@ std::string place_of(const Origin& origin) {
 }
 
 }  // namespace
-
-std::string in_quotes(std::string_view text) {
-  std::string out(text.substr(0, 40));
-  std::replace_if(
-      out.begin(), out.end(), [](char c) { return c < 32 || c == 127; }, '?');
-  return "'" + out + (text.size() > 40 ? "...'" : "'");
-}
 
 void fail_at(const std::string& file, const std::string& place, const std::string& found,
              const std::string& expected) {

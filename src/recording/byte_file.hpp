@@ -32,9 +32,6 @@ class Bytes {
   std::size_t size_ = 0;
 };
 
-/// A text of unknown origin made fit for a message: in quotes, cut, without control characters.
-std::string in_quotes(std::string_view text);
-
 /// @throws Error (bad_file): "file: place: found ..., expected ..."
 [[noreturn]] void fail_at(const std::string& file, const std::string& place,
                           const std::string& found, const std::string& expected);
