@@ -104,7 +104,7 @@ struct Ending {
   double bytes = 0.0;  ///< largest resident memory
 };
 
-constexpr unsigned longest_wait = 60;  // for one file, or 1000 of a sweep [s]
+constexpr unsigned longest_wait = 20;  // for one file, or 1000 of a sweep [s]
 
 Ending run_child(const std::function<void()>& work) {
   const pid_t child = ::fork();

@@ -8,6 +8,7 @@
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
 
+#include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/table.hpp"
 #include "base/yaml.hpp"
@@ -60,7 +61,7 @@ std::string read_entry(const std::string& path) {
                                   {0.0},
                                   {40.0}},
                                  {}};
-  const LibraryAnswer answer = read_answer(job, {0, 0, 0.0, 40.0}, path, content_of_file(path));
+  const LibraryAnswer answer = read_answer(job, {0, 0, 0.0, 40.0}, path, read_file(path));
   return Said()
       .add("rank", answer.rank)
       .add("mass", answer.dig.payload_mass)
@@ -95,7 +96,7 @@ std::string read_path_from(const std::string& path) {
 }
 
 std::string read_yaml(const std::string& path) {
-  return parse_yaml(path, content_of_file(path))
+  return parse_yaml(path, read_file(path))
       .dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

@@ -6,6 +6,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/survey/recording.hpp>
 
+#include "base/files.hpp"
 #include "fuzz/file_readers.hpp"
 #include "recording/recording_file.hpp"
 #include "recording/ros_messages.hpp"
@@ -54,7 +55,7 @@ std::string read_recording(const std::string& path) {
 class MessageFile {
  public:
   MessageFile(const std::string& path, const std::string& type)
-      : path_(path), topic_{"/topic", type, 1, epoch, epoch}, content_(content_of_file(path)) {
+      : path_(path), topic_{"/topic", type, 1, epoch, epoch}, content_(read_file(path)) {
     if (content_.empty()) throw Error(ErrorKind::bad_file, path + ": is empty");
   }
   RecordedMessage message() const {

@@ -29,13 +29,18 @@ std::string read_density_from(const std::string& path) {
       .text();
 }
 
+/// As calibrate-density does.
 std::string read_samples(const std::string& path) {
   const Table table = Table::read(path);
   std::vector<BulkingSample> samples;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     samples.push_back({table.column("bulking_factor")[i], table.column("density_percent")[i]});
   }
-  return to_json(calibrate_density(samples));
+  try {
+    return to_json(calibrate_density(samples));
+  } catch (const Error& error) {
+    throw Error(ErrorKind::bad_file, path + ": " + error.what());
+  }
 }
 
 /// A text of the command line, taken as each of what there is.
