@@ -118,7 +118,7 @@ Outcome work(const Inputs& inputs) {
   const std::string file = to_json(calibration);
   if (inputs.out) write_file(*inputs.out, file);
   Outcome outcome;
-  outcome.json = nlohmann::ordered_json::parse(file);
+  outcome.json = parse_ordered_json("the law", file);
   outcome.json.erase("format");
   outcome.json.erase("version");
   for (const DensityFit& fit : calibration.forms) {

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <random>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -56,6 +57,17 @@ void require_unlike(const std::string& what, const std::vector<Named>& all) {
 bool is_entry_file(const std::string& name) {
   const std::string rest = name.substr(std::min(name.size(), name.find(entry_file_end)));
   return rest == entry_file_end || rest.rfind(entry_file_end + std::string(".part-"), 0) == 0;
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator file(folder, error); !error && file != fs::directory_iterator();
+       file.increment(error)) {
+    names.push_back(file->path().filename());
+  }
+  if (error) throw Error(ErrorKind::bad_file, folder + ": cannot be read: " + error.message());
+  return names;
 }
 
 /// What the user sees of a build, and whether it was stopped.
@@ -219,8 +231,7 @@ class Build {
     std::set<std::string> own;
     for (const auto& [place, entry] : all_) own.insert(entry_file_name(job_, entry.place));
     int others = 0;
-    for (const auto& file : fs::directory_iterator(options_.folder)) {
-      const std::string name = file.path().filename();
+    for (const std::string& name : names_in(options_.folder)) {
       const std::string entry = name.substr(0, name.find(entry_file_end)) + entry_file_end;
       if (is_entry_file(name) && own.count(entry) == 0) ++others;
     }
@@ -231,7 +242,12 @@ class Build {
 
   /// Takes what the folder has of an entry.
   bool kept(const std::string& file, Entry& entry) {
-    if (options_.folder.empty() || !fs::exists(file)) return false;
+    std::error_code none;
+    const bool is_there = fs::exists(fs::symlink_status(file, none));
+    if (options_.folder.empty() || !is_there) return false;
+    if (!fs::is_regular_file(file, none)) {
+      throw Error(ErrorKind::bad_file, file + ": is not a regular file");  // as a pipe, which waits
+    }
     try {
       entry.first = entry.found = read_answer(job_, entry.place, file, read_file(file));
     } catch (const Error& e) {
@@ -408,11 +424,11 @@ LibraryBuild build_path_libraries(const LibraryGrid& grid, const LibraryBuildOpt
 }
 
 void remove_library_entries(const std::string& folder) {
-  if (!fs::is_directory(folder)) return;
-  for (const auto& file : fs::directory_iterator(folder)) {
-    const std::string name = file.path().filename();
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) return;
+  for (const std::string& name : names_in(folder)) {
     std::error_code taken_by_another_run;
-    if (is_entry_file(name)) fs::remove(file.path(), taken_by_another_run);
+    if (is_entry_file(name)) fs::remove(fs::path(folder) / name, taken_by_another_run);
   }
   std::error_code not_empty;
   fs::remove(folder, not_empty);

@@ -92,7 +92,7 @@ DensityLaw load_density_law(const std::string& path) {
   }
   const auto used = forms.find(use);
   if (used == forms.end()) {
-    file.fail("use", "is '" + use + "', must name a form in this file: " + found);
+    file.fail("use", "is " + excavplan::quoted(use) + ", must name a form in this file: " + found);
   }
   law.form = used->second;
   const auto freed = forms.find(use.substr(0, use.find(as_measured)));
@@ -204,7 +204,7 @@ std::string to_json(const DensityCalibration& calibration) {
   for (const DensityCalibration::Sample& sample : calibration.samples) {
     file["samples"].push_back(to_object(sample));
   }
-  return file.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(file, 2) + "\n";
 }
 
 }  // namespace excavplan

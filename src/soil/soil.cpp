@@ -32,7 +32,7 @@ void read_cone_index(JsonObject law, SoilKind& soil) {
     soil.cone_index_rate = law.number("rate", 0.0, 20.0);
     soil.cone_index_stress_exponent = law.number("stress_exponent", 0.0, 2.0);
   } else {
-    law.fail("law", "is '" + name + "', must be 'bulk_density' or 'stress'");
+    law.fail("law", "is " + excavplan::quoted(name) + ", must be 'bulk_density' or 'stress'");
   }
   law.done();
 }

@@ -212,7 +212,7 @@ TEST_F(BadInput, NamesThatAreLoopsOrTooLongAreRefused) {
   const std::string loop = folder.file("loop");
   fs::create_symlink("loop", loop);
   const std::string letters(300, 'a');
-  refused(3, loop + ": no such file, or not readable", "simulate-dig",
+  refused(3, loop + ": cannot be opened: Too many levels of symbolic links", "simulate-dig",
           {"--density", "40", "--soil", loop});
   refused(2, letters + "' is neither a file nor one of the machines", "plan-path",
           {"--density", "40", "--machine", letters});

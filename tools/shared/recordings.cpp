@@ -39,13 +39,6 @@ std::string line_of(const RecordedScan& scan) {
   return line + (scan.frame.empty() ? "" : ", in frame " + scan.frame);
 }
 
-std::string small_letters(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
 nlohmann::ordered_json time_of(double seconds) {
   return std::isfinite(seconds) ? nlohmann::ordered_json(seconds) : nlohmann::ordered_json();
 }
