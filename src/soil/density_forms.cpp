@@ -103,6 +103,11 @@ void check_samples(const std::vector<BulkingSample>& samples) {
                       " %; the factor must be positive and the density in 0 .. 100 %");
     }
   }
+  const auto is_fraction = [](const BulkingSample& s) { return s.density_percent <= 1.0; };
+  if (!samples.empty() && std::all_of(samples.begin(), samples.end(), is_fraction)) {
+    throw Error(ErrorKind::bad_input,
+                "no density of the samples is above 1 %; they must be in percent, not fractions");
+  }
 }
 
 /// Least squares y = offset + slope x by centred sums.

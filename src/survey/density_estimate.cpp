@@ -29,6 +29,10 @@ struct OutlinedScans {
   OutlinedPair dig;
   std::optional<OutlinedPair> dump;
   double cell_size = 0.0;
+
+  std::uint64_t machine_points() const {
+    return dig.machine_points() + (dump ? dump->machine_points() : 0);
+  }
 };
 
 OutlinedScans outline_scans(const DigScans& scans, const DensityOptions& options) {
@@ -208,6 +212,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   const LawsForDig laws = laws_for_dig(law, options, known.fallback);
   known.law = laws.law;
   known.cell_size = seen.cell_size;
+  known.machine_points = seen.machine_points();
   if (options.registered) keep_registration(surfaces, known);
   known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
@@ -219,8 +224,8 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     estimate.method = method;
     // eqs. 3 and 4: volumes before and after
     estimate.change = by_paper ? paper_volumes_of(seen, surface, options) : surface;
-    estimate.warnings = estimate.change.warnings;
-    append(doubts, estimate.warnings);
+    estimate.warnings = doubts;  // the causes first
+    append(estimate.change.warnings, estimate.warnings);
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);

@@ -81,6 +81,11 @@ Warning law_of_other_path(const DensityLaw& law, bool path_is_known) {
                                    ": soil that falls back differs, by several points of density"};
 }
 
+Warning law_of_other_soil(const DensityLaw& law, const SoilKind& soil) {
+  return {"law_of_other_soil",
+          "the law '" + law.name + "' is of " + law.soil + ", the soil is " + soil.name, true};
+}
+
 // ---- The answer -------------------------------------------------------------------------------
 
 Warning disagreement_of(const PayloadDensity& payload, bool unknown_soil) {
@@ -191,6 +196,10 @@ LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
     laws.warnings.push_back({"soil_assumed", "the soil is assumed to be " + law.soil +
                                                  ": --soil says which it is; `soils` has the "
                                                  "density in others"});
+  }
+  const auto& kind = options.soil.kind;
+  if (kind && !law.soil.empty() && law.soil != kind->name) {
+    laws.warnings.push_back(law_of_other_soil(law, *kind));
   }
   const auto calibration = calibrate_dug(options);
   if (calibration && can_be_fitted(law)) laws.law = law_of(*calibration);

@@ -75,9 +75,16 @@ std::optional<Warning> other_units(const OutlinedPair& pair) {
 }
 
 /// The unit that makes a bucket's volume of it; none for a volume that one digs.
-std::optional<Warning> no_dig_of_metres(double hole) {
+std::optional<Warning> no_dig_of_metres(double hole, const std::string& what) {
   constexpr double most = 1000.0;  // [m^3]; ours: five times the largest dragline's bucket, 168 m^3
   constexpr double usual = 1.0;    // [m^3], ours
+  constexpr double least = 0.001;  // [m^3], ours: a tenth of the smallest excavator's bucket
+  if (hole > 0.0 && hole < least) {
+    return Warning{"units",
+                   what + " of " + readable(hole) +
+                       " m^3 is none of a bucket: check --unit, and the depth unit of a camera",
+                   true};
+  }
   if (!(hole > most)) return std::nullopt;
   struct Unit {
     const char* word;
@@ -91,10 +98,30 @@ std::optional<Warning> no_dig_of_metres(double hole) {
     if (miss(unit) < miss(likely)) likely = unit;
   }
   return Warning{"units",
-                 "a hole of " + readable(hole) + " m^3 is none that a bucket digs; in " +
-                     likely.word + " it would be " + readable(hole * std::pow(likely.length, 3)) +
+                 what + " of " + readable(hole) + " m^3 is none of a bucket; in " + likely.word +
+                     " it would be " + readable(hole * std::pow(likely.length, 3)) +
                      " m^3: give the unit of the clouds by --unit, probably --unit " + likely.word,
                  true};
+}
+
+/// Of a machine that takes nothing out of scans, or most of them.
+std::optional<Warning> not_in_view(const OutlinedPair& pair) {
+  constexpr double most = 0.5;  // ours, of a scan
+  const bool is_told = pair.scans.before.machine || pair.scans.after.machine;
+  if (!is_told) return std::nullopt;
+  for (const ScanOutline* seen : {&pair.before, &pair.after}) {
+    const auto of_machine = static_cast<double>(seen->machine_points);
+    if (of_machine > most * (of_machine + static_cast<double>(seen->finite_points))) {
+      return Warning{"machine_pose",
+                     "more than half of the points of a scan lie in the machine as it is said to "
+                     "have stood: its pose or the frame of the scans is wrong",
+                     true};
+    }
+  }
+  if (pair.machine_points() > 0) return std::nullopt;
+  return Warning{"machine_pose",
+                 "no point lies in the machine as it is said to have stood: it is not in view, or "
+                 "its pose or the frame of the scans is wrong, and it is still in them"};
 }
 
 // ---- Frame --------------------------------------------------------------------------------------
@@ -250,7 +277,8 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
 }  // namespace
 
 std::vector<Warning> check_outlines(const OutlinedPair& pair) {
-  std::vector<Warning> found;
+  std::vector<Warning> found = pair.scans.before.doubts;
+  found.insert(found.end(), pair.scans.after.doubts.begin(), pair.scans.after.doubts.end());
   const auto add = [&found](std::optional<Warning> warning) {
     if (warning) found.push_back(std::move(*warning));
   };
@@ -258,6 +286,7 @@ std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   add(other_units(pair));
   const auto before = not_up(pair.before, pair.scans.before);
   add(before ? before : not_up(pair.after, pair.scans.after));
+  add(not_in_view(pair));
   return found;
 }
 
@@ -304,14 +333,17 @@ std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfac
 
 std::vector<Warning> check_volumes(const VolumeChange& change) {
   std::vector<Warning> found;
-  if (auto warning = no_dig_of_metres(change.excavated.value)) found.push_back(std::move(*warning));
+  const bool is_dig = change.excavated.value > 0.0;
+  auto units = is_dig ? no_dig_of_metres(change.excavated.value, "a hole")
+                      : no_dig_of_metres(change.dumped.value, "a heap");
+  if (units) found.push_back(std::move(*units));
   if (auto warning = exchanged(change)) found.push_back(std::move(*warning));
   return found;
 }
 
 void refuse_swapped(const VolumeChange& change, const std::string& names) {
   const auto refuse = [&](const std::string& message) {
-    const auto units = no_dig_of_metres(change.excavated.value);
+    const auto units = no_dig_of_metres(change.excavated.value, "a hole");
     throw Error(ErrorKind::bad_file,
                 names + ": " + message + (units ? "; " + units->message : std::string()));
   };
