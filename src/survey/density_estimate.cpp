@@ -96,8 +96,11 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  with_doubts(check_cover(surfaces.pairs(), change),
-              [&] { refuse_swapped(change, seen.dig.names()); });
+  std::vector<Warning> doubts = check_cover(surfaces.pairs(), change);
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
+  }
+  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names()); });
   state_water(surfaces.pairs(), change);
   return change;
 }
@@ -129,10 +132,12 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen) {
 std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
                                   const VolumeChange& change) {
   std::vector<Warning> doubts = check_volumes(change);
+  append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
                          const AreaChange& area) {
     append(check_registration(pair), doubts);
     append(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
+    append(check_curvature(pair.surfaces, area), doubts);
   };
   check(seen.dig, surfaces.dig, change.areas.front());
   if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());

@@ -86,6 +86,19 @@ Warning law_of_other_soil(const DensityLaw& law, const SoilKind& soil) {
           "the law '" + law.name + "' is of " + law.soil + ", the soil is " + soil.name, true};
 }
 
+/// Water that even the loosest state cannot hold.
+std::optional<Warning> too_wet(const SoilKnowledge& soil) {
+  if (!soil.kind || !soil.water_content) return std::nullopt;
+  const double water = soil.water_content->value;
+  const double saturation = water * soil.kind->specific_gravity / soil.kind->void_ratio_max;
+  if (saturation <= 1.0) return std::nullopt;
+  return Warning{"too_wet",
+                 "a water content of " + readable(water) + " fills the pores of the loosest " +
+                     soil.kind->name + " " + readable(saturation, 2) +
+                     " times over: it must be a share of the dry mass, 12 % is 0.12",
+                 true};
+}
+
 // ---- The answer -------------------------------------------------------------------------------
 
 Warning disagreement_of(const PayloadDensity& payload, bool unknown_soil) {
@@ -201,6 +214,7 @@ LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
   if (kind && !law.soil.empty() && law.soil != kind->name) {
     laws.warnings.push_back(law_of_other_soil(law, *kind));
   }
+  if (auto wet = too_wet(options.soil)) laws.warnings.push_back(std::move(*wet));
   const auto calibration = calibrate_dug(options);
   if (calibration && can_be_fitted(law)) laws.law = law_of(*calibration);
   if (const auto doubt = doubt_of(fallback, calibration)) {
