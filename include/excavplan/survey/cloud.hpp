@@ -23,6 +23,7 @@ struct Cloud {
   std::size_t height = 1;               ///< 1 unless organised
   /// Where the sensor stood, in the frame of the points [m]; unset where unknown.
   std::optional<Eigen::Vector3d> sensor_origin = {};
+  std::size_t left_out = 0;  ///< further points of its file that do not count: those of LAS
 };
 
 /// How a cloud is written.
