@@ -222,6 +222,41 @@ TEST(GroundProperties, FilledHolesLieBetweenTheirRims) {
   });
 }
 
+/// Squared slopes, or squared curvatures and a twentieth of squared slopes.
+double energy_of(const ArrayXXd& z, Filling filling) {
+  const Eigen::Index rows = z.rows(), cols = z.cols();
+  const double slopes = (z.topRows(rows - 1) - z.bottomRows(rows - 1)).square().sum() +
+                        (z.leftCols(cols - 1) - z.rightCols(cols - 1)).square().sum();
+  if (filling == Filling::membrane) return slopes;
+  const ArrayXXd by_row = z.topRows(rows - 1) - z.bottomRows(rows - 1);
+  const ArrayXXd by_col = z.leftCols(cols - 1) - z.rightCols(cols - 1);
+  const auto rises = [](const ArrayXXd& d) {
+    return (d.topRows(d.rows() - 1) - d.bottomRows(d.rows() - 1)).square().sum();
+  };
+  return 0.05 * slopes + rises(by_row) + rises(by_col.transpose()) + 2.0 * rises(by_col);
+}
+
+TEST(GroundProperties, FillingsHaveTheLeastEnergy) {
+  for_cases([](Random& random) {
+    ArrayXXd z = any_map(random, 7, 7).z;
+    std::vector<Cell> hole;
+    const Eigen::Index rows = drawn_int(random, 1, 3), cols = drawn_int(random, 1, 3);
+    for (Eigen::Index row = 2; row < 2 + rows; ++row) {
+      for (Eigen::Index col = 2; col < 2 + cols; ++col) hole.push_back({row, col});
+    }
+    z.block(2, 2, rows, cols).setConstant(std::nan(""));
+    const Filling filling = random.uniform() < 0.5 ? Filling::membrane : Filling::thin_plate;
+    fill(z, hole, filling);
+    const Cell at = hole[random.index(hole.size())];
+    const auto energy = [&](double step) {
+      ArrayXXd moved = z;
+      moved(at.row, at.col) += step;
+      return energy_of(moved, filling);
+    };
+    EXPECT_NEAR(energy(1e-3) - energy(-1e-3), 0.0, 1e-10);
+  });
+}
+
 /// A small rigid motion: the correction takes the points of the scan after back, to the second
 /// order of its angles.
 TEST(GroundProperties, CorrectionsAreRigidAndTakeMotionsBack) {
