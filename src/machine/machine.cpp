@@ -138,10 +138,15 @@ Teeth read_teeth(JsonObject file, double width_outside) {
   return teeth;
 }
 
-Bucket read_bucket(JsonObject file, double bucket_length) {
+Bucket read_bucket(JsonObject file, double bucket_length, double boom_length) {
   Bucket bucket;
   bucket.profile = read_profile(file, bucket_length);
   bucket.width_outside = positive(file, "width_outside_m", longest);
+  if (bucket.width_outside > boom_length) {
+    file.fail("width_outside_m",
+              "is " + number_text(bucket.width_outside) +
+                  ", must not exceed boom_length_m = " + number_text(boom_length));
+  }
   bucket.width_inside = positive(file, "width_inside_m", longest);
   if (bucket.width_inside > bucket.width_outside) {
     file.fail("width_inside_m",
@@ -314,7 +319,7 @@ Machine load_machine(const std::string& path) {
     machine.limits[i] = read_limits(joints.object(key), all_joints[i]);
     machine.links[i] = read_link(links.object(key));
   }
-  machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length);
+  machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length, machine.boom_length);
   if (file.has("cylinders")) read_cylinders(file.object("cylinders"), machine);
   if (file.has("body")) machine.body = read_body(file.object("body"), machine.track_front);
   if (file.has("swing")) machine.swing = read_swing(file.object("swing"));

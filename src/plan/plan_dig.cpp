@@ -49,6 +49,12 @@ void distrust(DigPlan& plan, const char* code, const std::string& message) {
 
 void judge_density(const Task& task, DigPlan& plan) {
   const std::string& soil = task.density.soil;
+  if (task.density.percent > 0.0 && task.density.percent < 1.0 && task.density.sd_percent < 1.0) {
+    distrust(plan, "density_as_fraction",
+             "the density is " + number_text(task.density.percent) +
+                 " %: if that is a fraction, it is " + number_text(100.0 * task.density.percent) +
+                 " %");
+  }
   if (!task.density.trustworthy) {
     distrust(plan, "density_not_trustworthy",
              "the density is not trustworthy, so the path may be wrong for the soil");

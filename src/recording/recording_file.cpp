@@ -109,6 +109,7 @@ class Recording : public RecordingFile {
   const std::string& path() const override { return path_; }
   const std::vector<RecordedTopic>& topics() const override { return topics_; }
   std::int64_t start() const override { return start_; }
+  bool is_cut_off() const override { return is_cut_off_; }
   void visit(const std::vector<std::string>& topics, std::int64_t from, std::int64_t to,
              const MessageVisitor& visitor) override;
 
@@ -135,10 +136,12 @@ class Recording : public RecordingFile {
   std::map<std::string, std::size_t> topic_of_name_;
   std::vector<Part> parts_;  // in the order of their starts
   std::int64_t start_ = 0;
+  bool is_cut_off_ = false;
 };
 
 void Recording::add(const std::string& file, std::unique_ptr<Container> container) {
   Part part{file, std::move(container), std::numeric_limits<std::int64_t>::max(), {}};
+  is_cut_off_ = is_cut_off_ || part.container->is_cut_off();
   bool is_empty = true;
   for (const RecordedTopic& topic : part.container->topics()) {
     part.topics.push_back(add_topic(file, topic));

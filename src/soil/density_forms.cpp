@@ -103,6 +103,19 @@ void check_samples(const std::vector<BulkingSample>& samples) {
                       " %; the factor must be positive and the density in 0 .. 100 %");
     }
   }
+  constexpr double most_bulking = 5.0;  // ours; blocks give about 2
+  const auto all = [&](const auto& holds) {
+    return !samples.empty() && std::all_of(samples.begin(), samples.end(), holds);
+  };
+  if (all([](const BulkingSample& s) { return s.density_percent <= 1.0; })) {
+    throw Error(ErrorKind::bad_input,
+                "no density of the samples is above 1 %; they must be in percent, not fractions");
+  }
+  if (all([](const BulkingSample& s) { return s.bulking_factor > most_bulking; })) {
+    throw Error(ErrorKind::bad_input,
+                "every bulking factor of the samples is above " + number_text(most_bulking) +
+                    "; they must be ratios, not in percent, and not those of the densities");
+  }
 }
 
 /// Least squares y = offset + slope x by centred sums.

@@ -34,6 +34,19 @@ nlohmann::ordered_json to_object(const ScatterDigs& digs) {
           {"loose_density_share", digs.scatter.loose_density}};
 }
 
+/// A law whose density is a fraction, or whose columns were swapped, hardly rises with k.
+void require_percent(const JsonObject& file, const std::string& key, const DensityForm& form) {
+  constexpr double looser = 1.5;  // ours: most soils are dense below this factor
+  constexpr double least = 5.0;   // ours [%]
+  const double loose = bulking_of_density(form, 0.0);
+  const double rise = density_of_bulking(form, looser * loose);
+  if (loose > 0.0 && rise >= least) return;
+  file.fail(key, "gives 0 % at a bulking factor of " + number_text(loose) + " and " +
+                     number_text(rise) + " % at " + number_text(looser) +
+                     " times that, must be a positive factor and 5 % or more: its densities must "
+                     "be in percent, and those of a factor");
+}
+
 /// The growth g of a deviation s (1 + g x) along x in -1 .. 1 from its mean squares q below and
 /// above 0: (q_above - q_below) / (q_above + q_below) = g / (1 + g^2 / 3). It is at most 1, where
 /// the deviation is 0 at one end.
@@ -87,6 +100,7 @@ DensityLaw load_density_law(const std::string& path) {
       const std::string key = form + ending;
       if (!file.has(key)) continue;
       forms[key] = read_density_form(form, file.object(key));
+      require_percent(file, key, forms[key]);
       found += (found.empty() ? "" : ", ") + key;
     }
   }

@@ -110,13 +110,32 @@ double height_span(const Cloud& cloud) {
   return nth(values, values.size() - 1 - beyond) - lowest;
 }
 
-/// Direction of least scatter of finite points, z >= 0.
+/// The box of finite points without the farthest 0.1 % on each side.
+Eigen::AlignedBox3d usual_box(const Cloud& cloud) {
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    Values values = finite_values(cloud, axis);
+    const auto beyond = static_cast<std::size_t>(left_out * static_cast<double>(values.size()));
+    box.min()(axis) = nth(values, beyond);
+    box.max()(axis) = nth(values, values.size() - 1 - beyond);
+  }
+  return box;
+}
+
+/// Direction of least scatter of finite points but the farthest, z >= 0.
 Eigen::Vector3d normal_of(const Cloud& cloud) {
+  const Eigen::AlignedBox3d box = usual_box(cloud);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : cloud.points) sum += point;
-  const Eigen::Vector3d mean = sum / static_cast<double>(cloud.points.size());
+  double count = 0.0;
+  for (const Eigen::Vector3d& point : cloud.points) {
+    if (!box.contains(point)) continue;
+    sum += point;
+    count += 1.0;
+  }
+  const Eigen::Vector3d mean = sum / std::max(count, 1.0);
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& point : cloud.points) {
+    if (!box.contains(point)) continue;
     scatter += (point - mean) * (point - mean).transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);

@@ -104,6 +104,7 @@ Cloud read_cloud(const std::string& path, std::uint64_t memory_limit) {
   cloud.width = shape.width;
   cloud.height = shape.height;
   cloud.sensor_origin = shape.sensor;
+  cloud.left_out = shape.left_out;
   return cloud;
 }
 

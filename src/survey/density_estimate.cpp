@@ -29,6 +29,10 @@ struct OutlinedScans {
   OutlinedPair dig;
   std::optional<OutlinedPair> dump;
   double cell_size = 0.0;
+
+  std::uint64_t machine_points() const {
+    return dig.machine_points() + (dump ? dump->machine_points() : 0);
+  }
 };
 
 OutlinedScans outline_scans(const DigScans& scans, const DensityOptions& options) {
@@ -92,8 +96,11 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  with_doubts(check_cover(surfaces.pairs(), change),
-              [&] { refuse_swapped(change, seen.dig.names()); });
+  std::vector<Warning> doubts = check_cover(surfaces.pairs(), change);
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
+  }
+  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names()); });
   state_water(surfaces.pairs(), change);
   return change;
 }
@@ -125,10 +132,12 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen) {
 std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
                                   const VolumeChange& change) {
   std::vector<Warning> doubts = check_volumes(change);
+  append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
                          const AreaChange& area) {
     append(check_registration(pair), doubts);
     append(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
+    append(check_curvature(pair.surfaces, area), doubts);
   };
   check(seen.dig, surfaces.dig, change.areas.front());
   if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());
@@ -208,6 +217,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   const LawsForDig laws = laws_for_dig(law, options, known.fallback);
   known.law = laws.law;
   known.cell_size = seen.cell_size;
+  known.machine_points = seen.machine_points();
   if (options.registered) keep_registration(surfaces, known);
   known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
@@ -219,8 +229,8 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     estimate.method = method;
     // eqs. 3 and 4: volumes before and after
     estimate.change = by_paper ? paper_volumes_of(seen, surface, options) : surface;
-    estimate.warnings = estimate.change.warnings;
-    append(doubts, estimate.warnings);
+    estimate.warnings = doubts;  // the causes first
+    append(estimate.change.warnings, estimate.warnings);
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);

@@ -40,13 +40,12 @@ void FileStream::fill(std::size_t count) {
 }
 
 void FileStream::skip(std::uint64_t count) {
-  while (count > filled_ - begin_) {
-    count -= filled_ - begin_;
-    offset_ += filled_ - begin_;
+  const std::size_t held = filled_ - begin_;
+  if (count <= held) {
+    begin_ += static_cast<std::size_t>(count);
+  } else {
     begin_ = filled_ = 0;
-    fill(1);
   }
-  begin_ += static_cast<std::size_t>(count);
   offset_ += count;
 }
 

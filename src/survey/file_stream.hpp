@@ -29,6 +29,7 @@ class FileStream {
   /// @throws Error (bad_file) if the file is not regular, not readable or empty
   explicit FileStream(std::string path);
 
+  const std::string& path() const { return file_.path(); }
   std::uint64_t size() const { return file_.size(); }
   std::uint64_t offset() const { return offset_; }  ///< of the byte that comes next
   std::uint64_t left() const { return size() - offset_; }

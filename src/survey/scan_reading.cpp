@@ -135,17 +135,22 @@ bool could_be_elsewhere(const RegisteredPair& pair) {
 
 }  // namespace
 
-void visit_scan(const Scan& scan, const PointVisitor& visit) {
+std::uint64_t visit_scan(const Scan& scan, const PointVisitor& visit) {
   const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity() || scan.unit != 1.0;
   const Eigen::Matrix3d rotation = scan.unit * scan.site_from_scan.topLeftCorner<3, 3>();
   const Eigen::Vector3d shift = scan.site_from_scan.topRightCorner<3, 1>();
   std::vector<Eigen::Vector3d> kept;
+  std::uint64_t of_machine = 0;
   const PointVisitor bring_in = [&](const std::vector<Eigen::Vector3d>& points) {
     kept.clear();
     for (const Eigen::Vector3d& point : points) {
       const Eigen::Vector3d p = is_moved ? Eigen::Vector3d(rotation * point + shift) : point;
       if (scan.area && !scan.area->contains(p.x(), p.y())) continue;
-      if (!scan.machine || !scan.machine->holds(p)) kept.push_back(p);
+      if (scan.machine && scan.machine->holds(p)) {
+        ++of_machine;
+      } else {
+        kept.push_back(p);
+      }
     }
     visit(kept);
   };
@@ -161,6 +166,7 @@ void visit_scan(const Scan& scan, const PointVisitor& visit) {
       visit_parts(cloud->points, bring_in);
     }
   }
+  return of_machine;
 }
 
 std::vector<Standpoint> standpoints_of(const Scan& scan) {
@@ -301,8 +307,11 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
 
 ScanOutline outline(const Scan& scan) {
   CloudOutline found;
-  visit_scan(scan, [&found](const std::vector<Eigen::Vector3d>& points) { found.add(points); });
-  return found.result();
+  const std::uint64_t of_machine =
+      visit_scan(scan, [&found](const std::vector<Eigen::Vector3d>& points) { found.add(points); });
+  ScanOutline result = found.result();
+  result.machine_points = of_machine;
+  return result;
 }
 
 std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threads) {

@@ -57,6 +57,7 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
   const HeightMap map = rasterise(near, plan_extent(near), raster);
   const double widest_gap = std::max(widest_filled, widest_filled_cells * raster.cell_size);
   ScannedTerrain result{undisturbed(resampled(map, extent, cell_size, widest_gap)), {}};
+  result.warnings = scan.doubts;
   if (const double unseen = unseen_area(result.terrain.bank); unseen > 0.0) {
     result.warnings.push_back(
         {"unseen_ground", name_of(scan) + ": the scan does not see " + readable(unseen, 2) +

@@ -314,6 +314,10 @@ TEST(Cylinder, SaysWhyItCannotBeMade) {
   EXPECT_EQ(complaint_of(short_foot, -1.5, 1.0).rfind("is 0.", 0), 0u);
   EXPECT_NE(complaint_of(short_foot, -1.5, 1.0).find("below twice its shortest"),
             std::string::npos);
+  // By the law of cosines 0.52 .. 1.49 m long, and 0.83 .. 1.35 m over less of the range.
+  const CylinderGeometry near = {1, {1.0, pi}, PolarPin{0.5, 0.5 * pi}};
+  EXPECT_NE(complaint_of(near, -1.4, 1.3).find("below twice its shortest"), std::string::npos);
+  EXPECT_EQ(complaint_of(near, -0.6, 0.6), "no error");
   const CylinderGeometry apart = {1, {2.0, pi}, FourBar{{{0.3, pi}, 0.1}, {{0.3, 0.5 * pi}, 0.1}}};
   EXPECT_EQ(complaint_of(apart, -0.5, 0.5),
             "cannot be assembled at joint angle -0.5 rad: its parts do not meet");

@@ -135,6 +135,24 @@ TEST_F(Planner, SpreadIsTheDeviationOverTheSoilsThatDoNotStall) {
   EXPECT_THROW(spread_in({{&light, 0.5}}), Error);
 }
 
+TEST_F(Planner, ExpectationsAreTheMeansOverAllSoils) {
+  const Told light(1000.0, false), middle(2000.0, false), heavy(6000.0, false);
+  const Told hopeless(1e6, true);
+  DigSearchOptions options = small_search(1);
+  options.stop.evaluations = 10;
+  const auto all =
+      search_dig(machine_, {{&light, 0.2}, {&middle, 0.5}, {&heavy, 0.3}}, level_, options);
+  ASSERT_TRUE(all);
+  EXPECT_NEAR(all->expected.dig.energy, 0.2 * 1000.0 + 0.5 * 2000.0 + 0.3 * 6000.0, 1e-9);
+  EXPECT_NEAR(all->expected.worth, 0.2 / 10.0 + 0.5 / 20.0 + 0.3 / 60.0, 1e-12);
+  // of those in which the machine does not stall, each by its share among them
+  const auto some =
+      search_dig(machine_, {{&light, 0.2}, {&hopeless, 0.2}, {&heavy, 0.6}}, level_, options);
+  ASSERT_TRUE(some);
+  EXPECT_NEAR(some->expected.dig.energy, 0.25 * 1000.0 + 0.75 * 6000.0, 1e-9);
+  EXPECT_NEAR(some->expected.worth, 0.2 / 10.0 + 0.6 / 60.0, 1e-12);
+}
+
 TEST_F(Planner, APathOffTheMapIsNoSpreadButAnError) {
   const DigPath path = std::get<DigPath>(
       make_dig_path(machine_, paper_fixed_path(), 6.0, [](double) { return 0.0; }));

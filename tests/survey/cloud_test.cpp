@@ -226,6 +226,7 @@ TEST(Rasterise, RefusesWhatMakesNoMap) {
   EXPECT_EQ(error(area, {0.0}), "rasterise: cell is 0 m, must be > 0");
   EXPECT_EQ(error(area, {nan}), "rasterise: cell is nan m, must be > 0");
   EXPECT_EQ(error(area, {0.05, -1.0}), "rasterise: outlier_distance is -1, must be > 0");
+  EXPECT_EQ(error(area, {0.05, 0.0}), "rasterise: outlier_distance is 0, must be > 0");
   EXPECT_EQ(error({0.0, 0.0, 0.0, 1.0}, {}), "rasterise: extent x 0 .. 0, y 0 .. 1 m is empty");
   EXPECT_NE(error({nan, 0.0, 1.0, 1.0}, {}).find("is empty"), std::string::npos);
   EXPECT_NE(error({0.0, 0.0, 1e4, 1e4}, {0.5}).find("at most 100 million cells"),

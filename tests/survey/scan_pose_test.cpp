@@ -68,6 +68,29 @@ TEST(LevelOnGround, ErrorStaysSmallOverManyNoisyScans) {
   EXPECT_LT(std::sqrt(squares / scans), 0.2 * degree);
 }
 
+/// The plane is that of least squares with weights 1 / range^4, as stereo errs: found here again by
+/// the normal equations of z on x and y. The ground is bent, so that other weights give another.
+TEST(LevelOnGround, CountsPointsByTheFourthPowerOfTheirRange) {
+  Cloud scan;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (double x = 0.5; x < 4.0; x += 0.05) {
+    for (double y = -1.5; y < 1.5; y += 0.05) {
+      const Eigen::Vector3d p(x, y, -2.0 + 3e-4 * x * x);
+      scan.points.push_back(p);
+      const double weight = 1.0 / std::pow(p.norm(), 4);
+      const Eigen::Vector3d terms(1.0, x, y);
+      normal += weight * terms * terms.transpose();
+      right += weight * p.z() * terms;
+    }
+  }
+  const Eigen::Vector3d plane = normal.inverse() * right;
+  const Eigen::Vector3d up = Eigen::Vector3d(-plane(1), -plane(2), 1.0).normalized();
+  const LevelPose pose = level_on_ground(scan);
+  ASSERT_EQ(pose.ground_share, 1.0);
+  EXPECT_LT((pose.site_from_scan.block<1, 3>(2, 0).transpose() - up).norm(), 5e-6);
+}
+
 TEST(LevelOnGround, SameSeedSamePose) {
   const Cloud scan = tilted_view(0.3, 0.01, 5);
   EXPECT_EQ(level_on_ground(scan, 2).site_from_scan, level_on_ground(scan, 2).site_from_scan);

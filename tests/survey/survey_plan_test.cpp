@@ -225,6 +225,21 @@ TEST(SurveyPlan, ErrorGrowsWithTheCubeOfTheRangeOfAStereoCamera) {
   EXPECT_NEAR(plan_survey(plan).bulking_sd / lidar, 2.0, 1e-9);
 }
 
+/// From the same distance, aslant by 45 deg: as many rays fall on 1 / cos times the ground, and an
+/// error along a ray is one of cos of it in height, so that the variance of a volume falls by cos.
+TEST(SurveyPlan, NoiseSeenAslantCountsByTheCosine) {
+  SurveyPlan plan = reference_plan(30.0, 0.0);
+  plan.sensor = sensor_of_word("lidar");
+  plan.sensor.view_across = plan.sensor.view_along = 1.0;
+  const auto white = [](const SurveyPlan& of) {
+    const SurveyForecast forecast = plan_survey(of);
+    return forecast.white_share * std::pow(forecast.bulking_sd, 2);
+  };
+  const double above = white(plan);
+  plan.height = plan.offset = 30.0 / std::sqrt(2.0);
+  EXPECT_NEAR(white(plan) / above, std::sqrt(0.5), 0.01);
+}
+
 TEST(SurveyPlan, LookingFromTheSideHidesTheFloorBehindTheRim) {
   EXPECT_EQ(plan_survey(reference_plan(3.0, 1.0)).hidden_share, 0.0);
   EXPECT_EQ(plan_survey(reference_plan(3.0, 1.0)).occlusion_share, 0.0);

@@ -120,6 +120,7 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
     listing.lines.push_back(
         line + (topic.frame.empty() ? "" : ", frame " + excavplan::quoted(topic.frame)));
   }
+  if (contents.is_cut_off) listing.lines.push_back("its end is missing");
   const auto is_scan = [](const RecordingTopic& topic) { return topic.is_scan; };
   const bool has_scans = std::any_of(contents.topics.begin(), contents.topics.end(), is_scan);
   listing.lines.push_back(has_scans ? "* scans: name one as " + text + ":TOPIC@TIME+SPAN"
@@ -133,7 +134,8 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
                   {"start_s", contents.start},
                   {"duration_s", contents.duration},
                   {"topics", std::move(topics)},
-                  {"frames", contents.frames}};
+                  {"frames", contents.frames},
+                  {"cut_off", contents.is_cut_off}};
   return listing;
 }
 
