@@ -25,7 +25,7 @@ HeightMap map_of(Eigen::Index rows, Eigen::Index cols, double cell, NumbersOfByt
       map.z(row, col) = slope * cell * static_cast<double>(col) + noise * sign;
     }
   }
-  for (std::size_t blocks = numbers.index(8); blocks > 0; --blocks) {
+  for (std::size_t blocks = map.z.size() == 0 ? 0 : numbers.index(8); blocks > 0; --blocks) {
     const auto row = static_cast<Eigen::Index>(numbers.index(static_cast<std::size_t>(rows)));
     const auto col = static_cast<Eigen::Index>(numbers.index(static_cast<std::size_t>(cols)));
     const auto high = 1 + static_cast<Eigen::Index>(numbers.index(12));
