@@ -207,11 +207,10 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
   const std::string names = seen.names() + ": ";
   const double cell = dig.cell_size.value_or(seen.cell_size());
   const std::vector<Warning> doubts = check_outlines(seen);
-  const auto measure = [&] {
-    const SurfacePair surfaces = survey_pair(seen, cell, false, dig.threads).surfaces;
-    const HeightMapPair dump{surfaces.before.height, surfaces.after.height};
-    return measure_change(HeightMapPair{dump.before, dump.before}, dump);
-  };
+  const SurfacePair surfaces =
+      with_doubts(doubts, [&] { return survey_pair(seen, cell, false, dig.threads).surfaces; });
+  const HeightMapPair dump{surfaces.before.height, surfaces.after.height};
+  const HeightMapPair no_dig{dump.before, dump.before};
   const auto add = [&](const std::vector<Warning>& warnings) {
     for (const Warning& warning : warnings) {
       if (warning.code == "no_hole_found") continue;
@@ -219,7 +218,7 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
     }
   };
   try {
-    const VolumeChange change = with_doubts(doubts, measure);
+    const VolumeChange change = measure_change(no_dig, dump);
     if (!(change.dumped.value > 0.0)) {
       throw Error(ErrorKind::bad_file, "no ground rose by more than the noise of the scans");
     }
