@@ -16,6 +16,7 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "shared/arguments.hpp"
+#include "shared/signals.hpp"
 
 /// @file
 /// How a command line tool runs: help, output, exit codes. A tool is a struct of inputs with their
@@ -26,8 +27,9 @@
 ///       return tool_main(argc, argv, about, declare, work);
 ///     }
 ///
-/// Exit codes: 0 done; 1 internal; 2 usage, Error bad_input; 3 Error bad_file; 4 not trustworthy,
-/// with --strict; 75 stopped early.
+/// Exit codes: 0 done; 1 internal, or not enough memory; 2 usage, Error bad_input; 3 Error
+/// bad_file; 4 not trustworthy, with --strict; 75 stopped early. How signals end a tool:
+/// signals.hpp.
 
 namespace excavplan::tools {
 
@@ -57,20 +59,22 @@ struct Outcome {
 /// Progress and notes on standard error while a tool works.
 class Console {
  public:
-  Console(bool quiet, bool terminal) : quiet_(quiet), terminal_(terminal) {}
+  Console(bool quiet, bool terminal, const Signals& signals)
+      : quiet_(quiet), terminal_(terminal), signals_(signals) {}
 
   /// One line that is overwritten by the next; only on a terminal. `done` is in 0 .. 1.
   void progress(double done, const std::string& what);
   /// One line of text. Warnings belong in the outcome.
   void note(const std::string& line);
   /// True once the user or the system asked a tool that can stop early to stop.
-  bool stop_requested() const;
+  bool stop_requested() const { return signals_.stop_requested(); }
   /// Removes the progress line.
   void clear();
 
  private:
   bool quiet_;
   bool terminal_;
+  const Signals& signals_;
   bool line_open_ = false;
 };
 
