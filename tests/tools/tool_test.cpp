@@ -226,9 +226,10 @@ TEST(Tool, ErrorsOfTheLibraryHaveTheirCodes) {
 TEST(Tool, WithoutMemoryItSaysSo) {
   const std::array<const char*, 1> words = {"probe"};
   testing::internal::CaptureStderr();
-  const int code = run_tool(
-      1, words.data(), {"probe", "Probes.", {}}, [](Arguments&) {},
-      [](Console&) -> Outcome { throw std::bad_alloc(); });
+  struct None {};
+  const int code = tool_main<None>(
+      1, words.data(), {"probe", "Probes.", {}}, [](Arguments&, None&) {},
+      [](const None&) -> Outcome { throw std::bad_alloc(); });
   EXPECT_EQ(code, 1);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "probe: not enough memory\n");
 }

@@ -115,7 +115,7 @@ std::string source_line(const DigPlan& plan) {
 
 /// An estimate-density with --soil unknown.
 bool is_of_any_soil(const std::string& file) {
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const nlohmann::json json = parse_json(file, read_file(file));
   return json.is_object() && json.value("law", nlohmann::json()) == "any soil";
 }
 

@@ -11,7 +11,11 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <iostream>
+#include <new>
 #include <string>
 #include <system_error>
 
@@ -72,10 +76,35 @@ void remove_unfinished_files() {
   while (true) ::pause();
 }
 
+[[noreturn]] void end_without_memory() {
+  try {
+    remove_unfinished_files();
+  } catch (const std::bad_alloc&) {
+    // They remain.
+  }
+  std::cerr << program_invocation_short_name << ": not enough memory\n";
+  ::_exit(1);
+}
+
+std::terminate_handler terminate_before = nullptr;
+
+/// Also without memory an end in order: some destructors allocate, as nlohmann's of JSON.
+[[noreturn]] void on_terminate() {
+  try {
+    if (const auto exception = std::current_exception()) std::rethrow_exception(exception);
+  } catch (const std::bad_alloc&) {
+    end_without_memory();
+  } catch (...) {
+  }
+  terminate_before();
+  std::abort();
+}
+
 }  // namespace
 
 Signals::Signals(bool can_stop) : can_stop_(can_stop) {
   std::signal(SIGXFSZ, SIG_IGN);
+  terminate_before = std::set_terminate(on_terminate);
   pipe_before = std::signal(SIGPIPE, SIG_IGN);
   last_signal = 0;
   if (::pipe2(waking.data(), O_CLOEXEC) != 0) return;
@@ -92,6 +121,7 @@ Signals::Signals(bool can_stop) : can_stop_(can_stop) {
 }
 
 Signals::~Signals() {
+  std::set_terminate(terminate_before);
   end_at_closed_pipe();
   if (watcher_.joinable()) {
     for (std::size_t i = 0; i < ending.size(); ++i) std::signal(ending[i], before[i]);

@@ -12,6 +12,7 @@ namespace excavplan::tools {
 /// not written to their end. A tool that can stop is first asked to, and given 1.5 s (ours) or
 /// until a second signal. A signal that was ignored when the program began remains so. A limit on
 /// the size of files (XFSZ) and a pipe that its reader closed (PIPE) become errors of the write.
+/// Where memory ends and std::terminate() would abort, the program ends with 1 and says so.
 class Signals {
  public:
   explicit Signals(bool can_stop);

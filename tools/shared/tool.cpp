@@ -369,13 +369,13 @@ int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
              const std::function<Outcome(Console&)>& work) {
   hold_standard_streams();
-  try {
-    StandardInput input;
-    return reported(about, input, [&] { return run(argc, argv, about, declare, work, input); });
-  } catch (const std::bad_alloc&) {
-    std::cerr << about.name << ": not enough memory\n";  // and none for another text
-    return 1;
-  }
+  StandardInput input;
+  return reported(about, input, [&] { return run(argc, argv, about, declare, work, input); });
+}
+
+int without_memory(const About& about) {
+  std::cerr << about.name << ": not enough memory\n";  // and none for another text
+  return 1;
 }
 
 SoilKind soil_named(const std::string& name_or_path) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <new>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -94,26 +95,33 @@ class IgnoredOptions {
   std::string text_;
 };
 
-/// Runs a tool: parses, works, prints. @return the exit code
+/// Runs a tool: parses, works, prints. @return the exit code @throws std::bad_alloc
 int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
              const std::function<Outcome(Console&)>& work);
+
+/// Says so. @return the exit code
+int without_memory(const About& about);
 
 /// The whole main() of a tool: `declare(arguments, inputs)` binds the options to a struct of
 /// inputs, which `work(inputs)` or `work(inputs, console)` then gets.
 template <typename Inputs, typename Work>
 int tool_main(int argc, const char* const* argv, const About& about,
               void (*declare)(Arguments&, Inputs&), const Work& work) {
-  Inputs inputs;
-  return run_tool(
-      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
-      [&](Console& console) -> Outcome {
-        if constexpr (std::is_invocable_v<Work, const Inputs&, Console&>) {
-          return work(inputs, console);
-        } else {
-          return work(inputs);
-        }
-      });
+  try {
+    Inputs inputs;
+    return run_tool(
+        argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
+        [&](Console& console) -> Outcome {
+          if constexpr (std::is_invocable_v<Work, const Inputs&, Console&>) {
+            return work(inputs, console);
+          } else {
+            return work(inputs);
+          }
+        });
+  } catch (const std::bad_alloc&) {
+    return without_memory(about);
+  }
 }
 
 /// Reads the soil or machine that a name or path means. @throws Error (bad_input) or (bad_file)
