@@ -147,6 +147,13 @@ FAIL_NTH("write", ENOSPC, -1, ssize_t, pwrite, (int a, const void* b, size_t c, 
 FAIL_NTH("write", ENOSPC, -1, ssize_t, pwrite64, (int a, const void* b, size_t c, off64_t d),
          (a, b, c, d))
 
+// The names by which _FORTIFY_SOURCE calls them.
+ssize_t __read_chk(int a, void* b, size_t c, size_t) { return read(a, b, c); }
+ssize_t __pread_chk(int a, void* b, size_t c, off_t d, size_t) { return pread(a, b, c, d); }
+ssize_t __pread64_chk(int a, void* b, size_t c, off64_t d, size_t) { return pread64(a, b, c, d); }
+int __open_2(const char* a, int b) { return open(a, b); }
+int __open64_2(const char* a, int b) { return open64(a, b); }
+
 FAIL_NTH("fsync", EIO, -1, int, fsync, (int a), (a))
 FAIL_NTH("fsync", EIO, -1, int, fdatasync, (int a), (a))
 FAIL_NTH("rename", EACCES, -1, int, rename, (const char* a, const char* b), (a, b))
