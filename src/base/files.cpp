@@ -113,12 +113,13 @@ class OutputFile {
     const int open = std::exchange(descriptor_, -1);
     return open < 0 || ::close(open) == 0 || errno == EINTR;
   }
-  /// Takes the place of the file that is there, with its mode whatever the umask.
+  /// Takes the place of the file that is there, with its mode whatever the umask. It is open as long
+  /// as it has its own name: a program that ends at a signal finds it by that.
   bool replace(const Place& place) {
     if (place.mode) ::fchmod(descriptor_, *place.mode);
-    if (!flush() || !close() || std::rename(path_.c_str(), place.path.c_str()) != 0) return false;
+    if (!flush() || std::rename(path_.c_str(), place.path.c_str()) != 0) return false;
     is_removed_ = false;
-    return true;
+    return close();
   }
 
  private:

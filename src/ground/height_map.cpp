@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 
 #include "ground/grid_cells.hpp"
@@ -17,7 +18,6 @@ namespace excavplan {
 namespace {
 
 constexpr double grid_tolerance = 1e-9;  // of a cell
-constexpr double most_cells = 1e8;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The two cell centres around a place on one axis and the weight of the second.

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
@@ -27,8 +28,6 @@ namespace excavplan {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int most_points = 1000000;  // of a first generation; ours
 
 void require_rising(const std::string& what, const std::vector<double>& values, double lowest,
                     double highest) {
@@ -401,11 +400,15 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
   require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
   require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
   for (const Machine& machine : grid.machines) check(search.objective, machine);
+  const double entries = static_cast<double>(grid.machines.size() * grid.soils.size()) *
+                         static_cast<double>(grid.slopes.size() * grid.densities_percent.size());
+  require(entries <= most_library_entries, "machines x soils x slopes x densities of a library",
+          entries, "at most " + std::to_string(most_library_entries));
   require(search.seed <= most_exact, "seed of a library", static_cast<double>(search.seed),
           "at most " + std::to_string(most_exact) + ", which its file keeps");
   if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
-    require(anchored->points <= most_points, "points of a library search", anchored->points,
-            "at most " + std::to_string(most_points));
+    require(anchored->points <= most_evaluations, "points of a library search", anchored->points,
+            "at most " + std::to_string(most_evaluations));
   }
   require(search.cell_size >= finest_cell && search.cell_size <= coarsest_cell,
           "cell size of a library's ground [m]", search.cell_size,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 #include <excavplan/optimisation/search.hpp>
 
@@ -19,6 +20,11 @@ void require(bool holds, const std::string& rule, double value) {
   if (!holds) {
     throw Error(ErrorKind::bad_input, "search: " + rule + ", got " + number_text(value));
   }
+}
+
+void require_evaluations(const std::string& what, double count) {
+  require(count <= most_evaluations, what + " must be <= " + std::to_string(most_evaluations),
+          count);
 }
 
 void check(const SearchProblem& problem) {
@@ -43,6 +49,7 @@ void check(const SearchProblem& problem) {
 void check(const GeneticAlgorithm& method, const SearchTask&) {
   require(method.population >= 2, "population must be >= 2", method.population);
   require(method.generations >= 1, "generations must be >= 1", method.generations);
+  require_evaluations("population x generations", 1.0 * method.population * method.generations);
   require(method.tournament >= 1, "tournament must be >= 1", method.tournament);
   require(method.crossover >= 0.0 && method.crossover <= 1.0, "crossover must be in 0 .. 1",
           method.crossover);
@@ -57,6 +64,10 @@ void check(const MemeticSearch& method, const SearchTask& task) {
           method.first_generation);
   require(method.generations >= 0, "generations must be >= 0", method.generations);
   require(method.generation_size >= 1, "generation_size must be >= 1", method.generation_size);
+  require_evaluations("first_generation", method.first_generation);
+  require_evaluations("generations x generation_size",
+                      1.0 * method.generations * method.generation_size);
+  require_evaluations("polish_evaluations", method.polish_evaluations);
   require(method.immigrants >= 0.0 && method.immigrants <= 1.0, "immigrants must be in 0 .. 1",
           method.immigrants);
   require(method.basins >= 0, "basins must be >= 0", method.basins);
@@ -67,6 +78,7 @@ void check(const MemeticSearch& method, const SearchTask& task) {
 
 void check(const SearchOptions& options) {
   require(options.stop.evaluations >= 0, "stop.evaluations must be >= 0", options.stop.evaluations);
+  require_evaluations("stop.evaluations", options.stop.evaluations);
   require(options.stop.stall >= 0, "stop.stall must be >= 0", options.stop.stall);
   require(options.stop.seconds >= 0.0, "stop.seconds must be >= 0", options.stop.seconds);
   require(!options.stop.target || std::isfinite(*options.stop.target), "stop.target must be finite",

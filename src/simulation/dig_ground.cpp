@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/check.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -41,7 +43,14 @@ Rectangle planning_extent(const Machine& machine) {
           machine.boom_pin.x() + machine.full_length() + 0.5, half_width};
 }
 
+void require_simulated_cell(double cell_size) {
+  require(cell_size >= finest_cell && cell_size <= coarsest_cell,
+          "the cell size is " + number_text(cell_size) + " m, must be in " +
+              number_text(finest_cell) + " .. " + number_text(coarsest_cell) + " m");
+}
+
 Terrain level_planning_ground(const Machine& machine, double cell_size) {
+  require_simulated_cell(cell_size);
   return undisturbed(flat_ground(planning_extent(machine), cell_size));
 }
 
@@ -118,6 +127,7 @@ double boom_plane_slope(const Terrain& terrain, double from_x) {
 }
 
 Terrain sloped_planning_ground(const Machine& machine, double slope, double cell_size) {
+  require_simulated_cell(cell_size);
   HeightMap ground = flat_ground(planning_extent(machine), cell_size);
   for (Eigen::Index col = 0; col < ground.z.cols(); ++col) {
     const double x = ground.x(col);

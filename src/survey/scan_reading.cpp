@@ -254,11 +254,27 @@ bool leaves_difference(const SurfacePair& pair) {
   return pair.alignment.residual_sd > std::max(least, explained * expected);
 }
 
+void require_memory(const OutlinedPair& pair, const Rectangle& extent, double cell_size) {
+  constexpr double of_cell = 160.0;     // measured [byte]
+  constexpr double of_unseen = 1500.0;  // more of a cell without points, measured [byte]
+  const double width = extent.x_max - extent.x_min;
+  const double depth = extent.y_max - extent.y_min;
+  const double cells = width / cell_size * (depth / cell_size);
+  const auto points =
+      static_cast<double>(std::min(pair.before.finite_points, pair.after.finite_points));
+  const double needed = of_cell * cells + of_unseen * std::max(0.0, cells - points);
+  require(!(cell_size > 0.0 && needed > most_survey_memory),
+          "a survey of " + readable(width) + " m x " + readable(depth) + " m in cells of " +
+              number_text(cell_size) + " m needs about " + readable(needed / 1e9) +
+              " GB of memory, most are " + number_text(most_survey_memory / 1e9) + " GB");
+}
+
 RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,
                            unsigned threads) {
   RasterOptions raster;
   raster.cell_size = cell_size;
   const Rectangle extent = overlap(pair);
+  require_memory(pair, extent, cell_size);
   raster.node = {extent.x_min, extent.y_min};  // cells move with the scans
   if (registered) {
     return survey_registered(pair.scans, extent, raster, pair.registration_cell(), threads);

@@ -522,5 +522,14 @@ TEST_F(RealScans, OfASiteAreGroundToPlanOn) {
   expect_figure(plot, {"scoop"});
 }
 
+TEST_F(Tools, ADensityOfAnySoilIsNamed) {
+  const auto planned = [&](const std::string& law) {
+    const json estimate = {{"density_percent", 58.0}, {"density_sd_percent", 0.0}, {"law", law}};
+    return answer("plan-path", {"--density-from", folder.write("estimate.json", estimate.dump())});
+  };
+  EXPECT_TRUE(warns(planned("any soil"), "density_of_unknown_soil"));
+  EXPECT_FALSE(warns(planned("zx120-loam"), "density_of_unknown_soil"));
+}
+
 }  // namespace
 }  // namespace excavplan::test
