@@ -58,6 +58,16 @@ bool is_entry_file(const std::string& name) {
   return rest == entry_file_end || rest.rfind(entry_file_end + std::string(".part-"), 0) == 0;
 }
 
+/// @throws Error (bad_file) if the folder cannot be read
+std::vector<fs::directory_entry> files_in(const std::string& folder) {
+  try {
+    return {fs::directory_iterator(folder), fs::directory_iterator()};
+  } catch (const fs::filesystem_error& error) {
+    throw Error(ErrorKind::bad_file,
+                excavplan::quoted(folder) + ": cannot be read: " + error.code().message());
+  }
+}
+
 /// What the user sees of a build, and whether it was stopped.
 class Watch {
  public:
@@ -219,7 +229,7 @@ class Build {
     std::set<std::string> own;
     for (const auto& [place, entry] : all_) own.insert(entry_file_name(job_, entry.place));
     int others = 0;
-    for (const auto& file : fs::directory_iterator(options_.folder)) {
+    for (const auto& file : files_in(options_.folder)) {
       const std::string name = file.path().filename();
       const std::string entry = name.substr(0, name.find(entry_file_end)) + entry_file_end;
       if (is_entry_file(name) && own.count(entry) == 0) ++others;
@@ -231,7 +241,8 @@ class Build {
 
   /// Takes what the folder has of an entry.
   bool kept(const std::string& file, Entry& entry) {
-    if (options_.folder.empty() || !fs::exists(file)) return false;
+    std::error_code unreadable;
+    if (options_.folder.empty() || !fs::exists(file, unreadable)) return false;
     try {
       entry.first = entry.found = read_answer(job_, entry.place, file, read_file(file));
     } catch (const Error& e) {
@@ -311,6 +322,8 @@ class Build {
                 [=, &below, &above](const std::string& text) {
                   const DigObjective& goal = job_.search.objective;
                   const LibraryAnswer answer = read_answer(job_, middle, "task", text);
+                  require(answer.measured.size() == 3, "digs measured by a library worker",
+                          static_cast<double>(answer.measured.size()), "3");
                   std::vector<std::pair<double, double>> known;
                   for (const Entry* entry : around) {
                     if (!entry->found.feasible) continue;
@@ -384,12 +397,24 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
   require_unlike("soil", grid.soils);
   require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
   require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
-  for (const Machine& machine : grid.machines) check(search.objective, machine);
+  for (const Machine& machine : grid.machines) {
+    require_machine(machine);
+    check(search.objective, machine);
+  }
+  for (const SoilKind& soil : grid.soils) require_soil(soil);
+  if (!search.simulator.make) {
+    refuse("library: simulator " + excavplan::quoted(search.simulator.name) +
+           " has no function that makes one");
+  }
   require(search.seed <= most_exact, "seed of a library", static_cast<double>(search.seed),
           "at most " + std::to_string(most_exact) + ", which its file keeps");
   if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
-    require(anchored->points <= most_points, "points of a library search", anchored->points,
-            "at most " + std::to_string(most_points));
+    require_in("points of a library search", anchored->points, 1, most_points);
+    require_in("basins of a library search", anchored->basins, 0, most_points);
+    require_in("polish evaluations of a library search", anchored->polish_evaluations, 0,
+               most_points);
+    require_in("inherited evaluations of a library search", anchored->inherited_evaluations, 0,
+               most_points);
   }
   require(search.cell_size >= finest_cell && search.cell_size <= coarsest_cell,
           "cell size of a library's ground [m]", search.cell_size,
@@ -397,6 +422,7 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
 }
 
 LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {
+  require_buildable(grid, search);
   return [job = LibraryJob{std::move(grid), std::move(search)}](const std::string& task) {
     return do_task(job, task, {});
   };
@@ -404,12 +430,16 @@ LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {
 
 LibraryBuild build_path_libraries(const LibraryGrid& grid, const LibraryBuildOptions& options) {
   require_buildable(grid, options.search);
+  for (const LibraryWorker& worker : options.other_workers) {
+    require(static_cast<bool>(worker), "library: one of its other_workers is an empty function");
+  }
   return Build(grid, options).run();
 }
 
 void remove_library_entries(const std::string& folder) {
-  if (!fs::is_directory(folder)) return;
-  for (const auto& file : fs::directory_iterator(folder)) {
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) return;
+  for (const auto& file : files_in(folder)) {
     const std::string name = file.path().filename();
     std::error_code taken_by_another_run;
     if (is_entry_file(name)) fs::remove(file.path(), taken_by_another_run);

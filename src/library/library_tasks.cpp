@@ -8,12 +8,14 @@
 
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "optimisation/search_checkpoint.hpp"
 #include "planning/dig_attempts.hpp"
 #include "planning/planned_digs.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 
@@ -119,6 +121,18 @@ class EntrySearch {
   DigAttempts& attempts_;
 };
 
+LibraryTask read_task(const LibraryJob& job, const std::string& text) {
+  LibraryTask task;
+  try {
+    task = nlohmann::json::parse(text).get<LibraryTask>();
+  } catch (const nlohmann::json::exception&) {
+    refuse("library worker: " + excavplan::quoted(text) + " is no task of a build");
+  }
+  require(task.place.machine < job.grid.machines.size() && task.place.soil < job.grid.soils.size(),
+          "library worker: the task is one of another grid");
+  return task;
+}
+
 LibraryAnswer answer(const LibraryJob& job, const LibraryTask& task, DigAttempts& attempts) {
   LibraryAnswer answer;
   EntrySearch search(job.search, checksum(identity(job, task.place)), attempts);
@@ -200,13 +214,14 @@ std::string to_text(const LibraryTask& task) { return nlohmann::json(task).dump(
 
 std::string do_task(const LibraryJob& job, const std::string& text,
                     const std::function<bool(int digs, double best)>& progress) {
-  const auto task = nlohmann::json::parse(text).get<LibraryTask>();
+  const LibraryTask task = read_task(job, text);
   const LibraryPlace& place = task.place;
   const Machine& machine = job.grid.machines[place.machine];
-  DigAttempts attempts(
-      machine, job.search.objective,
-      job.search.simulator.make(machine, job.grid.soils[place.soil], place.density_percent),
-      sloped_planning_ground(machine, place.slope, job.search.cell_size), progress);
+  DigAttempts attempts(machine, job.search.objective,
+                       make_simulator(job.search.simulator, machine, job.grid.soils[place.soil],
+                                      place.density_percent),
+                       sloped_planning_ground(machine, place.slope, job.search.cell_size),
+                       progress);
   const LibraryAnswer found = answer(job, task, attempts);
   if (attempts.stopped()) return {};
   return sealed_text({{"format", format},

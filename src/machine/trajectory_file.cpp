@@ -102,6 +102,7 @@ std::string to_csv(const Trajectory& trajectory) {
 
 std::string to_json(const Trajectory& trajectory) {
   const bool with_cylinders = states_cylinders(trajectory);
+  require_writable({{"machine", trajectory.machine}}, "trajectory");
   std::string json =
       "{\n \"format\": \"" + std::string(format) +
       "\",\n \"version\": 1,\n \"machine\": " + nlohmann::json(trajectory.machine).dump() +
@@ -118,6 +119,7 @@ std::string to_json(const Trajectory& trajectory) {
       object["cylinders_m"] = list(point.cylinders);
       object["cylinder_speeds_m_per_s"] = list(point.cylinder_speeds);
     }
+    require_writable(object, "trajectory");
     json += std::exchange(separator, ",\n  ") + object.dump();
   }
   return json + "\n ]\n}\n";

@@ -30,6 +30,8 @@ void check(const SearchProblem& problem) {
     require(
         std::isfinite(box.lower(i)) && std::isfinite(box.upper(i)) && box.lower(i) <= box.upper(i),
         "bounds must be finite and lower <= upper", box.lower(i));
+    require(std::isfinite(box.upper(i) - box.lower(i)), "bounds must be a finite distance apart",
+            box.lower(i));
   }
   require(problem.step.size() == 0 || problem.step.size() == box.lower.size(),
           "there must be as many steps as bounds or none",
@@ -40,10 +42,18 @@ void check(const SearchProblem& problem) {
   if (!problem.objective) throw Error(ErrorKind::bad_input, "search: the objective is empty");
 }
 
+/// Points that are held or drawn at once; ours.
+constexpr int most_points = 1000000;
+
+void require_points(int count, int least, const std::string& what) {
+  require(count >= least, what + " must be >= " + std::to_string(least), count);
+  require(count <= most_points, what + " must be at most " + std::to_string(most_points), count);
+}
+
 void check(const GeneticAlgorithm& method, const SearchTask&) {
-  require(method.population >= 2, "population must be >= 2", method.population);
+  require_points(method.population, 2, "population");
   require(method.generations >= 1, "generations must be >= 1", method.generations);
-  require(method.tournament >= 1, "tournament must be >= 1", method.tournament);
+  require_points(method.tournament, 1, "tournament");
   require(method.crossover >= 0.0 && method.crossover <= 1.0, "crossover must be in 0 .. 1",
           method.crossover);
   require(method.mutation >= 0.0 && method.mutation <= 1.0, "mutation must be in 0 .. 1",
@@ -55,8 +65,9 @@ void check(const MemeticSearch& method, const SearchTask& task) {
           task.start.empty() ? "first_generation must be >= 1 without given points"
                              : "first_generation must be >= 0",
           method.first_generation);
+  require_points(method.first_generation, 0, "first_generation");
   require(method.generations >= 0, "generations must be >= 0", method.generations);
-  require(method.generation_size >= 1, "generation_size must be >= 1", method.generation_size);
+  require_points(method.generation_size, 1, "generation_size");
   require(method.immigrants >= 0.0 && method.immigrants <= 1.0, "immigrants must be in 0 .. 1",
           method.immigrants);
   require(method.basins >= 0, "basins must be >= 0", method.basins);

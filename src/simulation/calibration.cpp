@@ -106,7 +106,13 @@ Machine that_never_stalls(Machine machine) {
 
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
                                      const CalibrationOptions& options) {
+  constexpr int most_draws = 100000;  // ours
   require(options.draws >= 0, "the number of draws", options.draws, "at least 0");
+  require(options.draws <= most_draws, "the number of draws", options.draws,
+          "at most " + number_text(most_draws));
+  require_machine(machine);
+  require_soil(soil);
+  require_in("cell size of the ground [m]", options.cell_size, finest_cell, coarsest_cell);
   std::vector<double> densities = options.densities_percent;
   if (densities.empty()) {
     for (int i = 0; i <= 20; ++i) densities.push_back(5.0 * i);
