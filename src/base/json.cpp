@@ -273,4 +273,22 @@ void JsonObject::done() const {
   }
 }
 
+void require_storable(const nlohmann::ordered_json& json, const std::string& what) {
+  const nlohmann::ordered_json flat = json.flatten();
+  for (const auto& [place, value] : flat.items()) {
+    const auto refuse = [&, &key = place](const std::string& found) {
+      throw Error(ErrorKind::bad_input, what + ": " + excavplan::quoted(key) + " is " + found);
+    };
+    if (value.is_number_float() && !std::isfinite(value.get<double>())) {
+      refuse(number_text(value.get<double>()) + ", must be finite");
+    }
+    if (!value.is_string()) continue;
+    try {
+      static_cast<void>(value.dump());
+    } catch (const nlohmann::json::type_error&) {
+      refuse("not UTF-8");
+    }
+  }
+}
+
 }  // namespace excavplan

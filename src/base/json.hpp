@@ -87,6 +87,10 @@ class JsonObject {
   std::set<std::string> read_;
 };
 
+/// What is to be written can be read again.
+/// @throws Error (bad_input) "WHAT: KEY is ...": a number that is not finite, a text not UTF-8
+void require_storable(const nlohmann::ordered_json& json, const std::string& what);
+
 /// A JSON object without its closing brace, with its own checksum as the last key.
 std::string sealed(const std::string& content);
 /// An object as text, with its checksum as the last key.

@@ -42,6 +42,7 @@ void parallel_for(std::size_t count, unsigned threads, const Task& task) {
     }
   };
   std::vector<std::thread> others;
+  others.reserve(threads);
   try {
     for (std::size_t t = 1; t < std::min<std::size_t>(threads, count); ++t) {
       others.emplace_back(work);

@@ -123,8 +123,13 @@ class SearchLog::Strand {
 
  private:
   friend class SearchLog;
-  Strand(SearchLog& log, int generation, int limit)
-      : log_(log), generation_(generation), number_(++log.strand_count_), limit_(limit) {}
+  /// @param patience  evaluations after which it ends if all of them failed
+  Strand(SearchLog& log, int generation, int limit, int patience)
+      : log_(log),
+        generation_(generation),
+        number_(++log.strand_count_),
+        limit_(limit),
+        patience_(patience) {}
 
   const Evaluation* remembered(const PointKey& key) const;
 
@@ -132,7 +137,9 @@ class SearchLog::Strand {
   int generation_;
   int number_;
   int limit_;
+  int patience_;
   int evaluations_ = 0;
+  int failed_ = 0;
   bool reached_ = false;
   std::map<PointKey, Evaluation> seen_;
   std::vector<SearchRecord> records_;

@@ -107,6 +107,8 @@ Machine that_never_stalls(Machine machine) {
 
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
                                      const CalibrationOptions& options) {
+  require_machine(machine);
+  require_soil(soil);
   require(options.draws >= 0 && options.draws <= most_draws, "the number of draws", options.draws,
           "in 0 .. " + std::to_string(most_draws));
   require_simulated_cell(options.cell_size);

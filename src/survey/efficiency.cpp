@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/check.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
 #include "survey/scan_checks.hpp"
@@ -196,8 +197,8 @@ Payload stated(const LoggedDig& dig, const Payload& payload) {
     throw Error(ErrorKind::bad_input, what + ": " + number_text(value) + ", must be " + rule);
   };
   const auto [value, sd] = payload.amount;
-  check(value > 0.0, name, value, "above 0");
-  check(!(sd < 0.0), name + "-sd", sd, "0 or more");
+  check(value > 0.0 && std::isfinite(value), name, value, "above 0");
+  check(!(sd < 0.0) && !std::isinf(sd), name + "-sd", sd, "0 or more");
   return payload;
 }
 
@@ -309,6 +310,10 @@ Measured efficiency_gain(const DigEfficiency& first, const DigEfficiency& second
   }
   const Measured a = first.value();
   const Measured b = second.value();
+  for (const Measured& value : {a, b}) {
+    require(value.value > 0.0 && std::isfinite(value.value), "payload per cost of a run",
+            value.value, "above 0 and finite");
+  }
   const double ratio = b.value / a.value;
   return {100.0 * (ratio - 1.0), 100.0 * ratio * std::hypot(a.sd / a.value, b.sd / b.value)};
 }
