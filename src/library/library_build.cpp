@@ -210,7 +210,7 @@ class Build {
         {after, [=, &entry] { return kept(file, entry) ? "" : first_task(entry, parents); },
          [=, &entry](const std::string& text) {
            entry.first = entry.found = read_answer(job_, entry.place, "task", text);
-           if (!options_.folder.empty()) write_file(file, text);
+           if (!options_.folder.empty()) write_journal(file, text);
            watch_.tell([](LibraryProgress& now) { ++now.entries_done; });
          }});
     return entry;

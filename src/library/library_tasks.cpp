@@ -255,7 +255,7 @@ LibraryAnswer read_answer(const LibraryJob& job, const LibraryPlace& place, cons
   }
   constexpr double most_evaluations = 1e9;
   file.object("answer").number("evaluations", 0.0, most_evaluations);
-  return value_of<LibraryAnswer>(name, parse_json(name, text)["answer"]);
+  return value_of<LibraryAnswer>(name + ": answer", parse_json(name, text)["answer"]);
 }
 
 }  // namespace excavplan

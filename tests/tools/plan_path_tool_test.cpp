@@ -414,7 +414,9 @@ TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
            {R"({"density_percent": 140})", "it is 140"},
            {R"({"bulking_factor": 1.2})", "it is missing"},
            {"[40]", "it is missing"},
-           {"", "it is missing"}}) {
+           {R"({"density_percent": 40, "density_percent": 80})", "appears twice"},
+           {"{\"zones\": " + std::string(100000, '['), "more than 64 levels"},
+           {"", "not valid JSON"}}) {
     folder.write("result.json", text);
     refused(3, reason, "plan-path", {"--density-from", file, "--plot", plot});
   }
