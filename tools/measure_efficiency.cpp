@@ -88,6 +88,7 @@ Outcome work(const Inputs& inputs) {
     usage_error("SECOND.csv is missing, but options of a second dig are given");
   }
   Outcome outcome;
+  outcome.json["runs"] = nlohmann::ordered_json::array();
   const DigEfficiency first = measure(inputs.first, inputs, outcome);
   Measured better{unknown, unknown};
   if (inputs.second.log) {

@@ -16,7 +16,7 @@ constexpr const char* start_key = "start_x_m";
 }  // namespace
 
 nlohmann::ordered_json path_json(const DigParameters& parameters, double start_x) {
-  nlohmann::ordered_json json;
+  auto json = nlohmann::ordered_json::object();
   for (const DigParameterInfo& info : dig_parameter_table()) {
     json[info.name] = parameters.*info.field;
   }

@@ -257,7 +257,7 @@ DensityForm read_density_form(const std::string& key, JsonObject object) {
 nlohmann::ordered_json density_form_json(const DensityForm& form) {
   return std::visit(
       [](const auto& f) {
-        nlohmann::ordered_json object;
+        auto object = nlohmann::ordered_json::object();
         for (const auto& p : RowOf<decltype(f)>::parameters) object[p.key] = f.*p.value;
         object["r2"] = f.r2;
         object["residual_sd_percent"] = f.residual_sd;

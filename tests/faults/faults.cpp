@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iostream>
 #include <random>
+#include <set>
 
 #include "faults/job_run.hpp"
 
@@ -18,7 +19,7 @@ namespace excavplan::test {
 namespace {
 
 struct Count {
-  int runs = 0, right = 0, refused = 0, findings = 0;
+  int runs = 0, right = 0, refused = 0, foreign = 0, findings = 0;
   double longest = 0.0;  ///< [s]
 };
 
@@ -130,11 +131,20 @@ class Faults {
     report(job, "signals", count);
   }
 
+  /// OpenCV loads GDAL at its first image, which crashes if an allocation fails while it starts.
+  static bool is_of_gdal(const Job& job, const std::string& what, const JobResult& result) {
+    return job.tool == "depth-to-cloud" && what.rfind("malloc", 0) == 0 &&
+           WIFSIGNALED(result.status) && !result.hung;
+  }
+
   void judge(const Job& job, const std::string& what, const JobResult& result, Count& count) {
     ++count.runs;
     ++(exit_code(result.status) == 0 ? count.right : count.refused);
     count.longest = std::max(count.longest, result.seconds);
-    const std::string fault = folder_.fault_in(job, result, whole_);
+    const bool is_foreign = is_of_gdal(job, what, result);
+    count.foreign += is_foreign ? 1 : 0;
+    const std::string fault = is_foreign ? folder_.fault_in_files(job, whole_, false)
+                                         : folder_.fault_in(job, result, whole_);
     if (!fault.empty()) found(job, what, fault, count);
     folder_.clear_leftovers(job);
   }
@@ -154,9 +164,11 @@ class Faults {
   void report(const Job& job, const std::string& kind, const Count& count) {
     runs_ += count.runs;
     if (count.runs == 0) return;
-    std::printf("%-20s %-10s %5d runs: %5d done, %5d refused, %d findings, at most %.2f s\n",
-                job.tool.c_str(), kind.c_str(), count.runs, count.right, count.refused,
-                count.findings, count.longest);
+    std::printf("%-20s %-10s %5d runs: %5d done, %5d refused, %d findings, at most %.2f s",
+                job.tool.c_str(), kind.c_str(), count.runs, count.right,
+                count.refused - count.foreign, count.findings, count.longest);
+    if (count.foreign > 0) std::printf(", %d crashes of GDAL", count.foreign);
+    std::printf("\n");
     std::fflush(stdout);
   }
 
@@ -176,10 +188,14 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   const bool quick = !words.empty() && words.front() == "--quick";
   const std::string only = words.size() > (quick ? 1U : 0U) ? words.back() : "";
+  const std::set<std::string> quick_tools = {"inspect-cloud", "measure-efficiency", "simulate-dig"};
   Faults faults(quick);
   for (const Job& job : jobs()) {
     const bool built = fs::exists(std::string(EXCAVPLAN_BIN) + "/" + job.tool);
-    if (built && (only.empty() || only == job.tool)) faults.run(job);
+    if (built && (only.empty() || only == job.tool) &&
+        (!quick || quick_tools.count(job.tool) > 0)) {
+      faults.run(job);
+    }
   }
   return faults.finish();
 }

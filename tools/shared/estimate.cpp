@@ -133,7 +133,7 @@ nlohmann::ordered_json soils_json(const std::vector<SoilAnswer>& soils) {
 }
 
 nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
-  nlohmann::ordered_json json;
+  auto json = nlohmann::ordered_json::object();
   json["volume"] = volumes_json(estimate.change);
   json["bulking_factor"] = nullptr;
   json["bulking_factor_sd"] = nullptr;

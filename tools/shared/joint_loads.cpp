@@ -59,7 +59,7 @@ JointLoads joint_loads(const Machine& machine, const std::vector<ForceSample>& h
 }
 
 nlohmann::ordered_json to_json(const Machine& machine, const JointLoads& loads) {
-  nlohmann::ordered_json json;
+  auto json = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const auto& use = loads[i].cylinder;
     json[name(all_joints[i])] = {{"peak_torque_kn_m", loads[i].peak_torque / 1000.0},

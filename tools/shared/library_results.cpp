@@ -69,6 +69,7 @@ Outcome written_libraries(const std::vector<PathLibrary>& libraries, const std::
     return outcome;
   }
   make_folder(out);
+  outcome.json["libraries"] = nlohmann::ordered_json::array();
   int evaluations = 0;
   for (const PathLibrary& library : libraries) {
     const std::string file = out + "/" + file_name(library);

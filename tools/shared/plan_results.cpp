@@ -51,7 +51,7 @@ nlohmann::ordered_json expectation_json(const PlanSearch& search, const DigGoalI
 
 /// Energy and time of each part.
 nlohmann::ordered_json parts_json(const DigCycle& cycle) {
-  nlohmann::ordered_json json;
+  auto json = nlohmann::ordered_json::object();
   const auto add = [&](const char* part, const CycleShare& share) {
     json[part] = {{"energy_kj", share.energy / 1000.0}, {"time_s", share.time}};
   };

@@ -78,7 +78,7 @@ PlannedDig dig_of(const Machine& machine, const DigScene& scene) {
 }  // namespace
 
 nlohmann::ordered_json volumes_json(const VolumeChange& change) {
-  nlohmann::ordered_json json;
+  auto json = nlohmann::ordered_json::object();
   const auto add = [&](const char* name, const Measured& volume) {
     json[std::string(name) + "_m3"] = volume.value;
     json[std::string(name) + "_sd_m3"] = volume.sd;
