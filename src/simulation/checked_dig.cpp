@@ -38,7 +38,9 @@ std::string class_of(const SoilSimulator& simulator) {
   int status = 0;
   const std::unique_ptr<char, decltype(&std::free)> name(
       abi::__cxa_demangle(mangled, nullptr, nullptr, &status), &std::free);
-  return status == 0 ? name.get() : mangled;
+  const std::string whole = status == 0 ? name.get() : mangled;
+  const std::size_t scope = whole.rfind("::");
+  return scope == std::string::npos ? whole : whole.substr(scope + 2);
 }
 
 /// Of its identity the part that names it, or its class.
@@ -95,7 +97,7 @@ class Examination {
   void check_numbers() const {
     not_negative("a payload_mass [kg]", result_.payload_mass);
     not_negative("a payload_volume [m^3]", result_.payload_volume);
-    if ((result_.payload_mass > 0.0) != (result_.payload_volume > 0.0)) {
+    if (result_.payload_volume > 0.0 && result_.payload_mass == 0.0) {
       fail("its dig has a payload of " + number_text(result_.payload_mass) + " kg in " +
            number_text(result_.payload_volume) + " m^3");
     }

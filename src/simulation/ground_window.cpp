@@ -76,8 +76,8 @@ void GroundWindow::check(const CellBlock& cells) const {
       for (Index row = cells.row_begin; row < cells.row_end; ++row) {
         const double value = layer(row, col);
         const double height = whole_.bank.z(row, col);
-        if (std::isnan(height)) continue;
         if (value >= low && value <= high && std::abs(height) <= farthest_height) continue;
+        if (std::isnan(height)) continue;
         require_in("dig: the bank [m]", height, -farthest_height, farthest_height);
         require(false,
                 std::string("dig: ") + what +

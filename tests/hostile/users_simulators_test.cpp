@@ -119,7 +119,7 @@ std::vector<Case> spoilt_results() {
   const auto add = [&](const char* text, std::function<void(const DigPath&, DigResult&)> spoil) {
     cases.push_back({text, std::move(spoil)});
   };
-  add("kg in 0 m^3", [](const DigPath&, DigResult& r) { r.payload_volume = 0.0; });
+  add("a payload of 0 kg in", [](const DigPath&, DigResult& r) { r.payload_mass = 0.0; });
   add("torques between", [](const DigPath& p, DigResult& r) { r.torques.resize(p.poses.size()); });
   add("torque that is not", [](const DigPath&, DigResult& r) { r.torques.at(0)[1] = nan; });
   add("with 0 J, less than", [](const DigPath&, DigResult& r) { r.energy.total = 0.0; });
@@ -148,7 +148,7 @@ TEST(UsersSimulator, WithoutIdentityItsClassNamesIt) {
     const Spoilt simulator(
         40.0, [](const DigPath&, DigResult& r) { r.payload_mass = nan; }, identity);
     EXPECT_TRUE(refuses([&] { evaluate_dig(zx120(), simulator, ground(), paper_fixed_path()); },
-                        "::Spoilt': "));
+                        "simulator 'Spoilt': "));
   }
 }
 

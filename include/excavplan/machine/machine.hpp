@@ -128,8 +128,8 @@ struct Machine {
 Machine load_machine(const std::string& path);
 
 /// All that lays out, times or digs a path asks of a machine the rules of load_machine(), but that
-/// a torque may be infinite. Functions of one posture (kinematics.hpp) do not ask: what is not
-/// finite in their arguments is not finite in their result.
+/// a torque may be infinite and a link weigh 0. Functions of one posture (kinematics.hpp) do not
+/// ask: what is not finite in their arguments is not finite in their result.
 /// @throws Error (bad_input) naming machine, member, value and rule
 void require_machine(const Machine& machine);
 
