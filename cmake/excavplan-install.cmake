@@ -57,7 +57,7 @@ if(EXCAVPLAN_SURVEY)
     SUMMARY "Density from scans, survey planning and depth images"
     REQUIRES_PUBLIC excavplan-clouds
     REQUIRES pcl_filters pcl_search pcl_octree pcl_common
-    LINKS -lopencv_imgcodecs -lopencv_core)
+    LINKS -lopencv_imgcodecs -lopencv_core -lz)
 endif()
 
 configure_package_config_file(cmake/excavplan-config.cmake.in excavplan-config.cmake

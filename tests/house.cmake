@@ -46,3 +46,14 @@ foreach(file IN LISTS sources)
     endif()
   endforeach()
 endforeach()
+
+# No file, option or environment variable makes excavplan start a program or load code (SECURITY.md).
+foreach(file IN LISTS sources)
+  if(file MATCHES "^(include|src|tools)/")
+    file(STRINGS ${ROOT}/${file} calls
+      REGEX "(^|[^a-z_.>])(system|popen|exec[lv][pe]*|posix_spawnp?|dlopen|fork) *\\(")
+    foreach(line IN LISTS calls)
+      message(SEND_ERROR "${file}: starts a program or loads code: ${line}")
+    endforeach()
+  endif()
+endforeach()

@@ -62,6 +62,10 @@ std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& clo
   }
   std::vector<std::string> lines = {inputs.file + ": " + points + ", " +
                                     std::to_string(summary.finite_points) + " finite"};
+  if (cloud.left_out > 0) {
+    lines.push_back("  " + std::to_string(cloud.left_out) +
+                    " more are withheld or noise: left out");
+  }
   if (summary.finite_points > 0) {
     const char* const axes[] = {"x", "y", "z"};
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -112,6 +116,7 @@ Outcome inspect(const Inputs& inputs) {
                   {"width", cloud.width},
                   {"height", cloud.height},
                   {"finite_points", summary.finite_points},
+                  {"left_out_points", cloud.left_out},
                   {"centroid_m", to_json(summary.centroid)},
                   {"min_m", to_json(summary.min)},
                   {"max_m", to_json(summary.max)},
@@ -121,7 +126,10 @@ Outcome inspect(const Inputs& inputs) {
   if (recorded) outcome.json["recording"] = std::move(recorded->json);
   if (inputs.out) outcome.json["out"] = *inputs.out;
   outcome.lines = lines_for_people(inputs, cloud, summary, pose);
-  if (recorded) outcome.lines.insert(outcome.lines.begin(), recorded->line);
+  if (recorded) {
+    outcome.lines.insert(outcome.lines.begin(), recorded->line);
+    outcome.warnings = recorded->scan.warnings;
+  }
   if (summary.finite_points == 0) {
     outcome.warnings.push_back({"no_finite_points", inputs.file + " has no finite points"});
   }

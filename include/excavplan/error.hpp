@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -18,10 +19,15 @@ enum class ErrorKind {
 /// It reports what the caller could have prevented; the text names what is wrong, where, its value
 /// and the rule. What depends on the site or the machine, such as a pose out of reach or a density
 /// out of range, is a value in the result.
+///
+/// The text is one line that can be shown on a terminal, whatever a file or a name held: control
+/// characters, those that turn the direction of text and what is not UTF-8 are replaced by `?`.
 class Error : public std::runtime_error {
  public:
-  /// An error of this kind with the text of what().
-  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  static constexpr std::size_t longest_message = 1000;  ///< of what() [byte]; ours
+
+  /// An error of this kind with the text of what(), of which a longer one loses its middle.
+  Error(ErrorKind kind, const std::string& message);
   /// What the caller did wrong.
   ErrorKind kind() const noexcept { return kind_; }
 

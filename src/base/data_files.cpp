@@ -57,7 +57,7 @@ std::string find_data_file(const std::string& relative_path, const std::string& 
     const fs::path folder = place.lexically_normal();
     const fs::path file = folder / relative_path;
     if (fs::is_regular_file(file, none)) return file.string();
-    searched += "\n  " + folder.string();
+    searched += (searched.empty() ? " " : ", ") + folder.string();
   }
   throw Error(ErrorKind::bad_file, relative_path + ": not found in any of" + searched);
 }

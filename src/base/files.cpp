@@ -6,16 +6,19 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <optional>
+#include <string_view>
 #include <system_error>
-#include <thread>
+#include <utility>
 
 #include <excavplan/error.hpp>
+
+#include "base/input_file.hpp"
 
 namespace excavplan {
 namespace {
@@ -27,18 +30,124 @@ namespace fs = std::filesystem;
               path + ": cannot be written: " + std::generic_category().message(reason));
 }
 
-/// True of a link, a pipe, a device: what is opened by its name, not replaced.
-bool stays(const std::string& path) {
-  struct stat status {};
-  return ::lstat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
+/// Where that goes which is written to a path.
+struct Place {
+  std::string path;                 ///< behind all links
+  bool is_replaced = true;          ///< else written to: a pipe, a device, /dev/stdout
+  std::optional<mode_t> mode = {};  ///< of the file that is there
+};
+
+bool is_of_process(const fs::path& link) {
+  std::error_code none;
+  return fs::canonical(link.parent_path(), none).string().rfind("/proc/", 0) == 0;
 }
 
+Place place_of(const std::string& path) {
+  constexpr int most_links = 40;  // as Linux follows
+  struct stat status {};
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (!exists && errno != ENOENT) fail_to_write(path, errno);
+  if (exists && !S_ISREG(status.st_mode)) return {path, false};
+  fs::path target = path;
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, error)); ++links) {
+    if (is_of_process(target)) return {path, false};
+    if (links == most_links) fail_to_write(path, ELOOP);
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) fail_to_write(path, error.value());
+  }
+  Place place{target.string()};
+  if (exists) place.mode = status.st_mode & 0777;
+  return place;
+}
+
+/// Cut where it would be too long for a file system.
 std::string name_beside(const std::string& path) {
+  constexpr std::size_t longest = 255;
   char host[65] = {};  // a folder may be shared by machines
   ::gethostname(host, sizeof host - 1);
-  std::ostringstream name;
-  name << path << ".part-" << host << '-' << ::getpid() << '-' << std::this_thread::get_id();
-  return name.str();
+  const std::string end = ".part-" + std::string(host) + '-' + std::to_string(::gettid());
+  const std::size_t name = path.rfind('/') + 1;
+  return path.substr(0, name + std::min(path.size() - name, longest - end.size())) + end;
+}
+
+bool flush(int descriptor) { return ::fsync(descriptor) == 0 || errno == EINVAL; }
+
+/// So that the name of a new file outlasts a loss of power.
+bool flush_folder_of(const std::string& path) {
+  const std::string folder = path.substr(0, path.rfind('/') + 1) + ".";
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return true;  // it may be written to, not read
+  const bool is_flushed = flush(descriptor);
+  const int reason = errno;
+  ::close(descriptor);
+  errno = reason;
+  return is_flushed;
+}
+
+/// An open file, which is removed at the end unless it was renamed. Its functions set errno if they
+/// return false.
+class OutputFile {
+ public:
+  /// @param how  more flags of ::open() for what is not replaced
+  explicit OutputFile(const Place& place, int how = 0)
+      : path_(place.is_replaced ? name_beside(place.path) : place.path),
+        is_removed_(place.is_replaced) {
+    constexpr int flags = O_WRONLY | O_CLOEXEC | O_NOCTTY;
+    if (!is_removed_) {
+      descriptor_ = ::open(path_.c_str(), flags | how);
+      return;
+    }
+    const auto create = [&] {
+      descriptor_ = ::open(path_.c_str(), flags | O_CREAT | O_EXCL, place.mode.value_or(0666));
+      return descriptor_ >= 0;
+    };
+    const bool is_left_over = !create() && errno == EEXIST && ::unlink(path_.c_str()) == 0;
+    if (is_left_over) create();
+    is_removed_ = descriptor_ >= 0;
+  }
+  ~OutputFile() {
+    close();
+    if (is_removed_) ::unlink(path_.c_str());
+  }
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  bool is_open() const { return descriptor_ >= 0; }
+  bool write(std::string_view content) const {
+    do {
+      const ssize_t written = ::write(descriptor_, content.data(), content.size());
+      if (written < 0 && errno != EINTR) return false;
+      content.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
+    } while (!content.empty());
+    return true;
+  }
+  bool close() {
+    const int open = std::exchange(descriptor_, -1);
+    return open < 0 || ::close(open) == 0 || errno == EINTR;
+  }
+  /// Takes the place of the file that is there, with its mode whatever the umask. It is open as long
+  /// as it has its own name: a program that ends at a signal finds it by that.
+  bool replace(const Place& place, bool is_flushed) {
+    if (place.mode) ::fchmod(descriptor_, *place.mode);
+    if (is_flushed && !flush(descriptor_)) return false;
+    if (std::rename(path_.c_str(), place.path.c_str()) != 0) return false;
+    is_removed_ = false;
+    return close() && (!is_flushed || flush_folder_of(place.path));
+  }
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+  bool is_removed_ = false;
+};
+
+void write(const std::string& path, const std::string& content, bool is_flushed) {
+  const Place place = place_of(path);
+  OutputFile file(place, O_TRUNC);
+  const bool is_done = file.is_open() && file.write(content) &&
+                       (place.is_replaced ? file.replace(place, is_flushed) : file.close());
+  if (!is_done) fail_to_write(path, errno);
 }
 
 void require_folder_of(const std::string& path) {
@@ -49,47 +158,36 @@ void require_folder_of(const std::string& path) {
   throw Error(ErrorKind::bad_file, path + ": there is no folder " + folder.string());
 }
 
+bool is_pipe(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
+}
+
 }  // namespace
 
-void write_file(const std::string& path, const std::string& content) {
-  const bool in_place = stays(path);
-  const std::string written = in_place ? path : name_beside(path);
-  std::ofstream out(written, std::ios::binary);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  if (!out || (!in_place && std::rename(written.c_str(), path.c_str()) != 0)) {
-    if (!in_place) std::remove(written.c_str());
-    throw Error(ErrorKind::bad_file, path + ": cannot be written");
+std::string read_file(const std::string& path, std::uint64_t most_bytes) {
+  const InputFile file(path);
+  if (file.size() > most_bytes) {
+    file.refuse("found " + std::to_string(file.size()) + " bytes, expected at most " +
+                std::to_string(most_bytes));
   }
+  std::string content(file.size(), '\0');
+  file.read(0, content.data(), content.size());
+  file.require_end();
+  return content;
 }
+
+void write_journal(const std::string& path, const std::string& content) {
+  write(path, content, false);
+}
+
+void write_file(const std::string& path, const std::string& content) { write(path, content, true); }
 
 void require_writable(const std::string& path) {
   require_folder_of(path);
-  struct stat status {};
-  const bool exists = ::stat(path.c_str(), &status) == 0;
-  if (exists && S_ISFIFO(status.st_mode)) return;  // to open it would wait for its reader
-  const bool in_place = stays(path);
-  const std::string written = in_place ? path : name_beside(path);
-  const int file = ::open(written.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  const bool writable = file >= 0 && ::write(file, "", 0) == 0;  // fails on a device that is full
-  const int reason = errno;
-  if (file >= 0) ::close(file);
-  std::error_code none;
-  if (file >= 0 && !(in_place && exists)) fs::remove(fs::canonical(written, none), none);
-  if (!writable) fail_to_write(path, reason);
-}
-
-std::string read_file(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    throw Error(ErrorKind::bad_file, path + ": no such file, or not readable");
-  }
-  if (!S_ISREG(status.st_mode)) throw Error(ErrorKind::bad_file, path + ": is not a regular file");
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in) throw Error(ErrorKind::bad_file, path + ": cannot be read");
-  return content.str();
+  if (is_pipe(path)) return;  // to open it would wait for its reader
+  const OutputFile file(place_of(path));
+  if (!file.is_open() || !file.write("")) fail_to_write(path, errno);  // a full device fails
 }
 
 void make_folder(const std::string& path) {

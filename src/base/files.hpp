@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 /// @file
@@ -9,17 +10,29 @@
 
 namespace excavplan {
 
-/// Writes a file whole or not at all: beside it first, then renamed over it. A link, a pipe or a
-/// device is written to.
-/// @throws Error (bad_file) if that fails; the old file then remains
+// The largest files that are read whole, by what they hold [byte]; ours.
+constexpr std::uint64_t most_settings_bytes = std::uint64_t{1} << 26;  ///< JSON of ours
+constexpr std::uint64_t most_foreign_bytes = std::uint64_t{1} << 20;   ///< JSON, YAML of others
+constexpr std::uint64_t most_table_bytes = std::uint64_t{1} << 28;     ///< logs and samples
+constexpr std::uint64_t most_image_bytes = std::uint64_t{1} << 26;
+constexpr std::uint64_t most_journal_bytes = std::uint64_t{1} << 30;  ///< digs of a search
+
+/// The whole content of a regular file of at most so many bytes.
+/// @throws Error (bad_file) if it is larger, changes its size or cannot be read to its end
+std::string read_file(const std::string& path, std::uint64_t most_bytes = most_settings_bytes);
+
+/// Writes a file whole or not at all: beside it first, to the disk, then renamed over it. A file
+/// that a link leads to is replaced where it lies, its mode stays; a pipe or a device is written
+/// to.
+/// @throws Error (bad_file) with the reason if that fails; the old file then remains and no other
 void write_file(const std::string& path, const std::string& content);
+/// The same for what is written again and again or can be computed again: it is not flushed, so a
+/// loss of power, unlike a kill, may cost it.
+void write_journal(const std::string& path, const std::string& content);
 
 /// For a check before long work: leaves the file as it is.
 /// @throws Error (bad_file) if write_file() would fail, a full disk apart
 void require_writable(const std::string& path);
-
-/// The whole content of a regular file. @throws Error (bad_file)
-std::string read_file(const std::string& path);
 
 /// Makes a folder and those above it. @throws Error (bad_file) unless it is there then
 void make_folder(const std::string& path);

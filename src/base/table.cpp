@@ -5,28 +5,47 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include <excavplan/error.hpp>
 
 #include "base/files.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
-std::string trimmed(const std::string& text) {
-  const char* const blanks = " \t\r\"";
-  const auto first = text.find_first_not_of(blanks);
-  if (first == std::string::npos) return "";
+using std::string_view;
+
+constexpr std::size_t most_columns = 1000;  // ours
+constexpr std::size_t longest_name = 40;    // that a message shows [byte]
+
+string_view trimmed(string_view text) {
+  constexpr string_view blanks = " \t\r\"";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == text.npos) return {};
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-std::vector<std::string> fields(const std::string& line) {
-  std::vector<std::string> list;
-  std::istringstream in(line);
-  for (std::string field; std::getline(in, field, ',');) list.push_back(trimmed(field));
-  if (!line.empty() && line.back() == ',') list.emplace_back();
-  return list;
+/// What stands before the next `end`, which is taken off with it.
+string_view taken(string_view& text, char end) {
+  const string_view before = text.substr(0, text.find(end));
+  text.remove_prefix(std::min(text.size(), before.size() + 1));
+  return before;
+}
+
+/// Of a line that is not empty, up to one more than there may be columns.
+void split(string_view line, std::vector<string_view>& fields) {
+  fields.clear();
+  bool goes_on = true;
+  while (goes_on && fields.size() <= most_columns) {
+    const string_view field = taken(line, ',');
+    goes_on = field.data() + field.size() != line.data();
+    fields.push_back(trimmed(field));
+  }
+}
+
+[[noreturn]] void refuse_line(const std::string& path, std::size_t line, const std::string& why) {
+  throw Error(ErrorKind::bad_file, path + ": line " + std::to_string(line) + ": " + why);
 }
 
 }  // namespace
@@ -34,39 +53,22 @@ std::vector<std::string> fields(const std::string& line) {
 Table Table::read(const std::string& path) {
   Table table;
   table.path_ = path;
-  std::istringstream in(read_file(path));
-  int number = 0;
-  for (std::string line; std::getline(in, line);) {
+  const std::string content = read_file(path, most_table_bytes);
+  const auto lines = static_cast<std::size_t>(std::count(content.begin(), content.end(), '\n')) + 1;
+  std::vector<string_view> fields;
+  std::size_t number = 0;
+  for (string_view rest = content; !rest.empty();) {
     ++number;
+    string_view line = taken(rest, '\n');
     line = trimmed(line.substr(0, line.find('#')));
     if (line.empty()) continue;
-    const std::vector<std::string> words = fields(line);
-    const std::string place = path + ": line " + std::to_string(number) + ": ";
+    split(line, fields);
     if (table.names_.empty()) {
-      table.names_ = words;
-      for (std::size_t i = 0; i < words.size(); ++i) {
-        if (std::find(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(i), words[i]) !=
-            words.begin() + static_cast<std::ptrdiff_t>(i)) {
-          throw Error(ErrorKind::bad_file, place + "column '" + words[i] + "' appears twice");
-        }
-      }
-      table.columns_.resize(words.size());
-      continue;
-    }
-    if (words.size() != table.names_.size()) {
-      throw Error(ErrorKind::bad_file, place + "found " + std::to_string(words.size()) +
-                                           " fields, expected " +
-                                           std::to_string(table.names_.size()));
-    }
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      double value = 0.0;
-      const char* const end = words[i].data() + words[i].size();
-      const auto [stop, error] = std::from_chars(words[i].data(), end, value);
-      if (error != std::errc{} || stop != end || !std::isfinite(value)) {
-        throw Error(ErrorKind::bad_file,
-                    place + table.names_[i] + " is '" + words[i] + "', expected a number");
-      }
-      table.columns_[i].push_back(value);
+      table.add_names(fields, number);
+      const std::size_t most_rows = content.size() / (2 * fields.size());
+      for (auto& column : table.columns_) column.reserve(std::min(lines, most_rows));
+    } else {
+      table.add_row(fields, number);
     }
   }
   if (table.rows() == 0) {
@@ -76,15 +78,50 @@ Table Table::read(const std::string& path) {
   return table;
 }
 
+void Table::add_names(const std::vector<string_view>& names, std::size_t line) {
+  if (names.size() > most_columns) {
+    refuse_line(
+        path_, line,
+        "found more than " + std::to_string(most_columns) + " columns, expected at most that");
+  }
+  for (const string_view name : names) {
+    if (index(name))
+      refuse_line(path_, line, "column " + excavplan::quoted(name) + " appears twice");
+    names_.emplace_back(name);
+  }
+  columns_.resize(names.size());
+}
+
+void Table::add_row(const std::vector<string_view>& fields, std::size_t line) {
+  if (fields.size() != names_.size()) {
+    refuse_line(path_, line,
+                "found " + std::to_string(fields.size()) + " fields, expected " +
+                    std::to_string(names_.size()));
+  }
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    double value = 0.0;
+    const char* const end = fields[i].data() + fields[i].size();
+    const auto [stop, error] = std::from_chars(fields[i].data(), end, value);
+    if (error != std::errc{} || stop != end || !std::isfinite(value)) {
+      refuse_line(path_, line,
+                  safe_text(names_[i], longest_name) + " is " + excavplan::quoted(fields[i]) +
+                      ", expected a number");
+    }
+    columns_[i].push_back(value);
+  }
+}
+
 const std::vector<double>& Table::column(const std::string& name) const {
   if (const auto at = index(name)) return columns_[*at];
   std::string found;
-  for (const std::string& other : names_) found += (found.empty() ? "" : ", ") + other;
+  for (const std::string& other : names_) {
+    found += (found.empty() ? "" : ", ") + safe_text(other, longest_name);
+  }
   throw Error(ErrorKind::bad_file,
               path_ + ": has no column '" + name + "', its columns are: " + found);
 }
 
-std::optional<std::size_t> Table::index(const std::string& name) const {
+std::optional<std::size_t> Table::index(string_view name) const {
   const auto at = std::find(names_.begin(), names_.end(), name);
   if (at == names_.end()) return std::nullopt;
   return static_cast<std::size_t>(at - names_.begin());

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// @file
@@ -24,7 +25,9 @@ class Table {
   const std::vector<std::string>& names() const { return names_; }
 
  private:
-  std::optional<std::size_t> index(const std::string& name) const;
+  std::optional<std::size_t> index(std::string_view name) const;
+  void add_names(const std::vector<std::string_view>& names, std::size_t line);
+  void add_row(const std::vector<std::string_view>& fields, std::size_t line);
 
   std::string path_;
   std::vector<std::string> names_;

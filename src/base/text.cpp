@@ -29,6 +29,59 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
+struct Character {
+  std::uint32_t code = 0;
+  std::size_t size = 0;  ///< [byte]; 0: it is not UTF-8
+};
+
+/// What a text that is not empty begins with.
+Character character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const std::uint32_t first = byte(0);
+  if (first < 0x80) return {first, 1};
+  const std::size_t size = first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+  if (first < 0xC2 || first > 0xF4 || size > text.size()) return {};
+  std::uint32_t code = first & (0x7FU >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80) return {};
+    code = code << 6U | (byte(i) & 0x3FU);
+  }
+  constexpr std::uint32_t lowest[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
+  if (code < lowest[size] || code > 0x10FFFF || is_surrogate) return {};
+  return {code, size};
+}
+
+bool is_harmless(std::uint32_t code) {
+  const bool is_control = code < 0x20 || (code >= 0x7F && code < 0xA0);
+  const bool turns = code == 0x61C || code == 0x200E || code == 0x200F ||
+                     (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+  return !is_control && !turns;
+}
+
+std::string safe(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const Character next = character(text);
+    const std::size_t size = std::max<std::size_t>(next.size, 1);
+    if (next.size > 0 && is_harmless(next.code)) {
+      out.append(text.substr(0, size));
+    } else {
+      out += '?';
+    }
+    text.remove_prefix(size);
+  }
+  return out;
+}
+
+/// The first `most` bytes, or fewer where they would cut a character.
+std::string_view whole_characters(std::string_view text, std::size_t most) {
+  const auto continues = [&] { return (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80; };
+  for (int i = 0; i < 3 && most > 0 && continues(); ++i) --most;
+  return text.substr(0, most);
+}
+
 }  // namespace
 
 std::string number_text(double value) {
@@ -63,11 +116,36 @@ std::string readable(double value, double sd) {
   return decimals(value, places) + " ± " + deviation;
 }
 
+std::optional<std::size_t> first_not_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = character(text.substr(at)).size;
+    if (size == 0) return at;
+    at += size;
+  }
+  return std::nullopt;
+}
+
+std::string safe_text(std::string_view text, std::size_t most) {
+  constexpr std::string_view gap = " ... ";
+  if (text.size() <= most) return safe(text);
+  const std::size_t kept = most - gap.size();
+  const std::size_t end = kept / 3;
+  return safe(whole_characters(text, kept - end)).append(gap) +
+         safe(text.substr(text.size() - end));
+}
+
 std::string quoted(std::string_view text) {
-  std::string out(text.substr(0, 40));
-  std::replace_if(
-      out.begin(), out.end(), [](char c) { return c < 32 || c == 127; }, '?');
-  return "'" + out + (text.size() > 40 ? "...'" : "'");
+  constexpr std::size_t longest = 40;
+  if (text.size() <= longest) return "'" + safe(text) + "'";
+  return "'" + safe(whole_characters(text, longest)) + "...'";
+}
+
+std::string small_letters(std::string_view text) {
+  std::string small(text);
+  for (char& c : small) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return small;
 }
 
 std::optional<std::string> nearest_word(const std::string& word,

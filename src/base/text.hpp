@@ -9,7 +9,8 @@
 #include <vector>
 
 /// @file
-/// Numbers as text, for files and for messages, and checksums of text. Private to the project.
+/// Numbers as text, for files and for messages, text of unknown origin, and checksums of text.
+/// Private to the project.
 
 namespace excavplan {
 
@@ -26,8 +27,17 @@ std::string readable(double value, int digits = 3);
 /// "0.451 ± 0.012": the standard deviation with two digits, the value with as many decimals.
 std::string readable(double value, double sd);
 
-/// A text of unknown origin made fit for a message: in quotes, cut, without control characters.
+/// The first byte that is no part of a UTF-8 character (RFC 3629), if there is one.
+std::optional<std::size_t> first_not_utf8(std::string_view text);
+/// A text of unknown origin made fit for a terminal, for JSON and for a message: `?` for every
+/// control character, also C1, for what turns the direction of text (U+202A .. U+202E, U+2066 ..
+/// U+2069, U+200E, U+200F, U+061C) or ends a line (U+2028, U+2029), and for every byte that is not
+/// UTF-8. What is longer than `most` bytes loses its middle.
+std::string safe_text(std::string_view text, std::size_t most);
+/// The same in quotes, of which the first 40 bytes are shown.
 std::string quoted(std::string_view text);
+/// A to Z made small; all else stays.
+std::string small_letters(std::string_view text);
 /// Of some words that which was probably meant, if one of them is near.
 std::optional<std::string> nearest_word(const std::string& word,
                                         const std::vector<std::string>& words);

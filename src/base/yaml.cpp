@@ -11,6 +11,8 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/text.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -27,12 +29,8 @@ struct Line {
 
 [[noreturn]] void refuse(const std::string& name, std::size_t line, string_view found,
                          const std::string& expected) {
-  std::string shown(found.substr(0, 40));
-  for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
-  }
-  throw Error(ErrorKind::bad_file, name + ": line " + std::to_string(line) + ": found '" + shown +
-                                       "', expected " + expected);
+  throw Error(ErrorKind::bad_file, name + ": line " + std::to_string(line) + ": found " +
+                                       excavplan::quoted(found) + ", expected " + expected);
 }
 
 string_view trimmed(string_view text) {

@@ -223,6 +223,22 @@ double SensorPlace::tangent_sd(const Eigen::Vector3d& point) const {
                     of_model * length);
 }
 
+double SensorPlace::misfit(const Eigen::Vector3d& place, const Rectangle& area) const {
+  const Eigen::Vector3d from = place - middle_;
+  if (!(from.z() > 0.0)) return HUGE_VAL;
+  const Eigen::Vector3d inverse = Eigen::Vector3d(from.x(), from.y(), 1.0) / from.z();
+  double most = 0.0;
+  for (const double x : {area.x_min, 0.5 * (area.x_min + area.x_max), area.x_max}) {
+    for (const double y : {area.y_min, 0.5 * (area.y_min + area.y_max), area.y_max}) {
+      const Eigen::Vector3d point(x, y, middle_.z());
+      const Eigen::Vector3d offset = point - middle_;
+      const double apart = (tangent_to(offset, inverse) - tangent_to(offset, inverse_)).norm();
+      most = std::max(most, apart / tangent_sd(point));
+    }
+  }
+  return most;
+}
+
 std::optional<SensorPlace> infer_sensor(const Surface& surface) {
   constexpr std::size_t fewest = 150;   // ours: blocks
   constexpr double significant = 50.0;  // ours: by chance 1e-10, but patterns are not random
@@ -241,6 +257,28 @@ std::optional<SensorPlace> infer_sensor(const Surface& surface) {
   // Thinned points, and those of cameras that look down, are even and thin out little with range.
   if (regression.scatter() < 1.0 && regression.power_of_range() < least_power) return std::nullopt;
   return SensorPlace(blocks.middle, inverse, covariance);
+}
+
+std::optional<PlaceDoubt> doubt_of_place(const Surface& surface) {
+  constexpr double most = 6.0;          // ours [sd]; right places: up to 3, 2 m off: 7 and more
+  constexpr double least_level = 0.01;  // ours: of the heights
+  if (surface.sensors.size() != 1) return std::nullopt;
+  const Eigen::Vector3d& told = surface.sensors.front();
+  const Rectangle extent = surface.height.extent();
+  if (const auto inferred = infer_sensor(surface)) {
+    if (!(inferred->misfit(told, extent) > most)) return std::nullopt;
+    return PlaceDoubt{told, inferred->place()};
+  }
+  std::vector<double> heights;
+  for (const double z : surface.height.z.reshaped()) {
+    if (!std::isnan(z)) heights.push_back(z);
+  }
+  if (heights.empty()) return std::nullopt;
+  const auto low = heights.begin() +
+                   static_cast<std::ptrdiff_t>(least_level * static_cast<double>(heights.size()));
+  std::nth_element(heights.begin(), low, heights.end());
+  if (told.z() > *low) return std::nullopt;
+  return PlaceDoubt{told, std::nullopt};
 }
 
 }  // namespace excavplan

@@ -24,6 +24,9 @@ class SensorPlace {
   Eigen::Vector3d place() const;
   /// Standard deviation of the level way of a ray to a point per unit of its fall, along the way.
   double tangent_sd(const Eigen::Vector3d& point) const;
+  /// By how many standard deviations the ways of the rays from another place differ from those from
+  /// this one, where they differ most over an area; infinite for a place below the ground [-].
+  double misfit(const Eigen::Vector3d& place, const Rectangle& area) const;
 
  private:
   Eigen::Vector3d middle_;
@@ -39,5 +42,13 @@ class SensorPlace {
 /// function of the place, so that they need no pattern of rays. @return nothing where the relief
 /// tells no place: points even in plan, thinned clouds, level ground, few points
 std::optional<SensorPlace> infer_sensor(const Surface& surface);
+
+/// What speaks against the one place where the sensor of a scan is said to have stood.
+struct PlaceDoubt {
+  Eigen::Vector3d told;
+  std::optional<Eigen::Vector3d> inferred;  ///< where it was; none: below the ground it was not
+};
+/// Nothing where the scan tells no place, or more than one is said.
+std::optional<PlaceDoubt> doubt_of_place(const Surface& surface);
 
 }  // namespace excavplan

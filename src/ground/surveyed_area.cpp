@@ -251,6 +251,8 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
 Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   Area area;
   Scans scans = prepared(pair, options, area.objects);
+  area.place_before = doubt_of_place(pair.before);
+  area.place_after = doubt_of_place(pair.after);
   area.grid.origin = scans.before.origin;
   area.grid.cell_size = scans.before.cell_size;
   Eigen::ArrayXXd difference = scans.after.z - scans.before.z;

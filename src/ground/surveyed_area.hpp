@@ -41,7 +41,9 @@ struct Area {
   std::vector<ZoneKind> kinds;
   ZoneErrors errors;
   std::vector<Object> objects;
-  std::optional<SensorPlace> inferred;  // of the scan after, where nothing says it
+  std::optional<SensorPlace> inferred;     // of the scan after, where nothing says it
+  std::optional<PlaceDoubt> place_before;  // of the place that is said, of each scan
+  std::optional<PlaceDoubt> place_after;
 };
 
 /// Surveys one area: corrects for motion, removes objects, finds, fills and sums zones, and

@@ -14,6 +14,7 @@
 #include "base/text.hpp"
 #include "ground/attribution.hpp"
 #include "ground/earlier_soil.hpp"
+#include "ground/map_check.hpp"
 #include "ground/open_changes.hpp"
 #include "ground/surveyed_area.hpp"
 
@@ -41,12 +42,16 @@ void check(const std::optional<Rectangle>& area, const std::string& name) {
 void check(const ChangeOptions& options) {
   check(options.dig_area, "dig_area");
   check(options.dump_area, "dump_area");
+  constexpr double farthest = 1e6;  // [m]
   require(options.detection > 0.0, "detection", options.detection, "positive");
   require(options.growth > 0.0 && options.growth <= options.detection, "growth", options.growth,
           "positive and not above detection (" + number_text(options.detection) + ")");
   require(options.min_zone_area >= 0.0, "min_zone_area", options.min_zone_area, "0 or more");
-  require(options.margin >= 0.0, "margin", options.margin, "0 or more");
-  require(options.spill_distance >= 0.0, "spill_distance", options.spill_distance, "0 or more");
+  for (const auto& [name, value] :
+       {std::pair("margin", options.margin), std::pair("spill_distance", options.spill_distance)}) {
+    require(value >= 0.0, name, value, "0 or more");
+    require(value <= farthest, name, value, "at most " + number_text(farthest) + " m");
+  }
   require(options.max_unknown_share >= 0.0 && options.max_unknown_share <= 1.0, "max_unknown_share",
           options.max_unknown_share, "in 0 .. 1");
   require(options.refused_unknown_share >= options.max_unknown_share, "refused_unknown_share",
@@ -134,32 +139,104 @@ void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
   change.warnings.push_back({"other_change", message});
 }
 
-void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& options,
-                  std::vector<Warning>& warnings) {
-  const std::string what = text_of(zone);
-  if (zone.is_cut) {
+/// Volume of all zones of a kind; infinite for the kind `other`.
+double total_of(const VolumeChange& change, ZoneKind kind) {
+  switch (kind) {
+    case ZoneKind::dig:
+      return change.excavated.value;
+    case ZoneKind::spill:
+      return change.spilled.value;
+    case ZoneKind::dump:
+      return change.dumped.value;
+    case ZoneKind::other:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Zones of which the same is said.
+struct SuchZones {
+  const ZoneSum* largest = nullptr;
+  int count = 0;
+  double volume = 0.0;
+
+  void add(const ZoneSum& zone) {
+    if (largest == nullptr || std::abs(zone.volume) > std::abs(largest->volume)) largest = &zone;
+    volume += std::abs(zone.volume);
+    ++count;
+  }
+  std::string unseen_share() const {
+    return hundredths(100.0 * largest->unknown / largest->area) + " %";
+  }
+  /// "; with 3 more such zones 0.4 m^3 in total"
+  std::string rest() const {
+    if (count == 1) return "";
+    return "; with " + std::to_string(count - 1) + " more such zones " + litres_as_m3(volume) +
+           " in total";
+  }
+};
+
+/// Zones that are cut off or were not seen, of all areas.
+struct DoubtfulZones {
+  SuchZones cut;
+  SuchZones unseen;
+  SuchZones partly_unseen;
+
+  void add(const ZoneSum& zone, bool matters, const ChangeOptions& options) {
+    if (zone.is_cut) cut.add(zone);
+    const double share = zone.unknown / zone.area;
+    const double guessed = zone.volume > 0.0 || share > most_in_shadow
+                               ? share
+                               : (zone.unknown - zone.shadow) / zone.area;
+    if (share > options.refused_unknown_share && matters) {
+      unseen.add(zone);
+    } else if (guessed > options.max_unknown_share) {
+      partly_unseen.add(zone);
+    }
+  }
+};
+
+DoubtfulZones doubtful_zones(const std::vector<Area>& areas, const ChangeOptions& options,
+                             const VolumeChange& change) {
+  DoubtfulZones doubtful;
+  for (const Area& area : areas) {
+    for (std::size_t i = 0; i < area.zones.size(); ++i) {
+      const double total = total_of(change, area.kinds[i]);
+      const double volume = std::abs(area.zones[i].volume);
+      if (!(volume > least_warned_share * total)) continue;
+      doubtful.add(area.zones[i], volume > least_refused_share * total, options);
+    }
+  }
+  return doubtful;
+}
+
+void warn_of_zones(const DoubtfulZones& zones, const ChangeOptions& options,
+                   std::vector<Warning>& warnings) {
+  const auto limit = [](double share) { return hundredths(100.0 * share) + " %"; };
+  if (const SuchZones& cut = zones.cut; cut.count > 0) {
     warnings.push_back({"zone_at_border",
-                        what + " reaches the edge of the surveyed ground: its "
-                               "volume may be incomplete; scan farther around it, or widen --area",
+                        text_of(*cut.largest) +
+                            " reaches the edge of the surveyed ground: its volume may be "
+                            "incomplete; scan farther around it, or widen --area" +
+                            cut.rest(),
                         true});
   }
-  const double share = zone.unknown / zone.area;
-  const double guessed = zone.volume > 0.0 || share > most_in_shadow
-                             ? share
-                             : (zone.unknown - zone.shadow) / zone.area;
-  if (share > options.refused_unknown_share && matters) {
-    warnings.push_back({"zone_unseen", what + " was seen by no scan in " +
-                                           hundredths(100.0 * share) +
-                                           " % of its cells, more than " +
-                                           hundredths(100.0 * options.refused_unknown_share) +
-                                           " %: its volume is not trustworthy, so the bulking "
-                                           "factor is unknown; scan it from a second standpoint"});
-  } else if (guessed > options.max_unknown_share) {
+  if (const SuchZones& unseen = zones.unseen; unseen.count > 0) {
+    warnings.push_back(
+        {"zone_unseen", text_of(*unseen.largest) + " was seen by no scan in " +
+                            unseen.unseen_share() + " of its cells, more than " +
+                            limit(options.refused_unknown_share) +
+                            ": its volume is not trustworthy, so the bulking factor is unknown; "
+                            "scan it from a second standpoint" +
+                            unseen.rest()});
+  }
+  if (const SuchZones& partly = zones.partly_unseen; partly.count > 0) {
     warnings.push_back({"zone_partly_unseen",
-                        what + " was seen by no scan in " + hundredths(100.0 * share) +
-                            " % of its cells, which were interpolated; the limit is " +
-                            hundredths(100.0 * options.max_unknown_share) +
-                            " %: scan it from a second standpoint",
+                        text_of(*partly.largest) + " was seen by no scan in " +
+                            partly.unseen_share() +
+                            " of its cells, which were interpolated; the limit is " +
+                            limit(options.max_unknown_share) +
+                            ": scan it from a second standpoint" + partly.rest(),
                         true});
   }
 }
@@ -167,6 +244,21 @@ void warn_of_zone(const ZoneSum& zone, bool matters, const ChangeOptions& option
 std::string text_of(const Eigen::Vector3d& place) {
   return "(" + hundredths(place.x()) + ", " + hundredths(place.y()) + ", " + hundredths(place.z()) +
          ") m";
+}
+
+/// Of a place that the scan contradicts.
+void warn_of_doubt(const std::optional<PlaceDoubt>& doubt, const std::string& which,
+                   std::vector<Warning>& warnings) {
+  if (!doubt) return;
+  warnings.push_back(
+      {"sensor_place_doubtful",
+       "the sensor of the scan " + which + " is said to have stood at " + text_of(doubt->told) +
+           (doubt->inferred ? ", but by the number of its points on slopes it was at about " +
+                                  text_of(*doubt->inferred)
+                            : ", which is below the ground") +
+           ": ground that it did not see is filled wrongly; check --sensor-origin, its frame and "
+           "unit, or the VIEWPOINT of the file",
+       true});
 }
 
 /// Of a place that no one told.
@@ -243,21 +335,6 @@ void warn_of_balance(VolumeChange& change) {
   }
 }
 
-/// Volume of all zones of a kind; infinite for the kind `other`.
-double total_of(const VolumeChange& change, ZoneKind kind) {
-  switch (kind) {
-    case ZoneKind::dig:
-      return change.excavated.value;
-    case ZoneKind::spill:
-      return change.spilled.value;
-    case ZoneKind::dump:
-      return change.dumped.value;
-    case ZoneKind::other:
-      break;
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
 /// The warning of the largest of some objects.
 Warning object_warning(const ChangeZone& zone, const Object& object, std::size_t count) {
   const Eigen::Vector2d centre(0.5 * (zone.extent.x_min + zone.extent.x_max),
@@ -310,7 +387,7 @@ void report_objects(const Area& area, bool are_low, VolumeChange& change, AreaCh
 }
 
 /// Enters the zones of one area into the result.
-void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
+void report(Area& area, VolumeChange& change) {
   const int first = static_cast<int>(change.zones.size());
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
     const ZoneSum& sum = area.zones[i];
@@ -324,14 +401,11 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
     zone.unknown_share = sum.unknown / sum.area;
     zone.extent = sum.extent;
     change.zones.push_back(zone);
-    const double total = total_of(change, zone.kind);
-    if (std::abs(sum.volume) > least_warned_share * total) {
-      warn_of_zone(sum, std::abs(sum.volume) > least_refused_share * total, options,
-                   change.warnings);
-    }
   }
   warn_of_ground(area.ground, change.warnings);
   warn_of_place(area, change.warnings);
+  warn_of_doubt(area.place_before, "before", change.warnings);
+  warn_of_doubt(area.place_after, "after", change.warnings);
   AreaChange result;
   result.difference = std::move(area.grid);
   result.difference.z =
@@ -345,6 +419,11 @@ void report(Area& area, const ChangeOptions& options, VolumeChange& change) {
 
 VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const ChangeOptions& options) {
   check(options);
+  for (const SurfacePair* pair : pairs) {
+    require_surface(pair->before, "surface before");
+    require_surface(pair->after, "surface after");
+    require_alignment(pair->alignment, "change of the ground");
+  }
   std::vector<Area> areas;
   std::vector<const HeightMap*> before;
   for (const SurfacePair* pair : pairs) {
@@ -360,7 +439,8 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   state_earlier_soil(before, areas, change);
   set_deviations(change);
   warn_of_others(areas, change);
-  for (Area& area : areas) report(area, options, change);
+  warn_of_zones(doubtful_zones(areas, options, change), options, change.warnings);
+  for (Area& area : areas) report(area, change);
   return change;
 }
 

@@ -10,8 +10,10 @@
 #include <mutex>
 #include <random>
 #include <set>
+#include <system_error>
 #include <utility>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
@@ -26,8 +28,6 @@ namespace excavplan {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int most_points = 1000000;  // of a first generation; ours
 
 void require_rising(const std::string& what, const std::vector<double>& values, double lowest,
                     double highest) {
@@ -56,6 +56,17 @@ void require_unlike(const std::string& what, const std::vector<Named>& all) {
 bool is_entry_file(const std::string& name) {
   const std::string rest = name.substr(std::min(name.size(), name.find(entry_file_end)));
   return rest == entry_file_end || rest.rfind(entry_file_end + std::string(".part-"), 0) == 0;
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator file(folder, error); !error && file != fs::directory_iterator();
+       file.increment(error)) {
+    names.push_back(file->path().filename());
+  }
+  if (error) throw Error(ErrorKind::bad_file, folder + ": cannot be read: " + error.message());
+  return names;
 }
 
 /// What the user sees of a build, and whether it was stopped.
@@ -199,7 +210,7 @@ class Build {
         {after, [=, &entry] { return kept(file, entry) ? "" : first_task(entry, parents); },
          [=, &entry](const std::string& text) {
            entry.first = entry.found = read_answer(job_, entry.place, "task", text);
-           if (!options_.folder.empty()) write_file(file, text);
+           if (!options_.folder.empty()) write_journal(file, text);
            watch_.tell([](LibraryProgress& now) { ++now.entries_done; });
          }});
     return entry;
@@ -219,8 +230,7 @@ class Build {
     std::set<std::string> own;
     for (const auto& [place, entry] : all_) own.insert(entry_file_name(job_, entry.place));
     int others = 0;
-    for (const auto& file : fs::directory_iterator(options_.folder)) {
-      const std::string name = file.path().filename();
+    for (const std::string& name : names_in(options_.folder)) {
       const std::string entry = name.substr(0, name.find(entry_file_end)) + entry_file_end;
       if (is_entry_file(name) && own.count(entry) == 0) ++others;
     }
@@ -231,7 +241,12 @@ class Build {
 
   /// Takes what the folder has of an entry.
   bool kept(const std::string& file, Entry& entry) {
-    if (options_.folder.empty() || !fs::exists(file)) return false;
+    std::error_code none;
+    const bool is_there = fs::exists(fs::symlink_status(file, none));
+    if (options_.folder.empty() || !is_there) return false;
+    if (!fs::is_regular_file(file, none)) {
+      throw Error(ErrorKind::bad_file, file + ": is not a regular file");  // as a pipe, which waits
+    }
     try {
       entry.first = entry.found = read_answer(job_, entry.place, file, read_file(file));
     } catch (const Error& e) {
@@ -311,6 +326,8 @@ class Build {
                 [=, &below, &above](const std::string& text) {
                   const DigObjective& goal = job_.search.objective;
                   const LibraryAnswer answer = read_answer(job_, middle, "task", text);
+                  require(answer.measured.size() == 3, "digs measured by a library worker",
+                          static_cast<double>(answer.measured.size()), "3");
                   std::vector<std::pair<double, double>> known;
                   for (const Entry* entry : around) {
                     if (!entry->found.feasible) continue;
@@ -384,12 +401,28 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
   require_unlike("soil", grid.soils);
   require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
   require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
-  for (const Machine& machine : grid.machines) check(search.objective, machine);
+  for (const Machine& machine : grid.machines) {
+    require_machine(machine);
+    check(search.objective, machine);
+  }
+  for (const SoilKind& soil : grid.soils) require_soil(soil);
+  if (!search.simulator.make) {
+    refuse("library: simulator " + excavplan::quoted(search.simulator.name) +
+           " has no function that makes one");
+  }
+  const double entries = static_cast<double>(grid.machines.size() * grid.soils.size()) *
+                         static_cast<double>(grid.slopes.size() * grid.densities_percent.size());
+  require(entries <= most_library_entries, "machines x soils x slopes x densities of a library",
+          entries, "at most " + std::to_string(most_library_entries));
   require(search.seed <= most_exact, "seed of a library", static_cast<double>(search.seed),
           "at most " + std::to_string(most_exact) + ", which its file keeps");
   if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
-    require(anchored->points <= most_points, "points of a library search", anchored->points,
-            "at most " + std::to_string(most_points));
+    require_in("points of a library search", anchored->points, 1, most_evaluations);
+    require_in("basins of a library search", anchored->basins, 0, most_evaluations);
+    require_in("polish evaluations of a library search", anchored->polish_evaluations, 0,
+               most_evaluations);
+    require_in("inherited evaluations of a library search", anchored->inherited_evaluations, 0,
+               most_evaluations);
   }
   require(search.cell_size >= finest_cell && search.cell_size <= coarsest_cell,
           "cell size of a library's ground [m]", search.cell_size,
@@ -397,6 +430,7 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
 }
 
 LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {
+  require_buildable(grid, search);
   return [job = LibraryJob{std::move(grid), std::move(search)}](const std::string& task) {
     return do_task(job, task, {});
   };
@@ -404,15 +438,18 @@ LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {
 
 LibraryBuild build_path_libraries(const LibraryGrid& grid, const LibraryBuildOptions& options) {
   require_buildable(grid, options.search);
+  for (const LibraryWorker& worker : options.other_workers) {
+    require(static_cast<bool>(worker), "library: one of its other_workers is an empty function");
+  }
   return Build(grid, options).run();
 }
 
 void remove_library_entries(const std::string& folder) {
-  if (!fs::is_directory(folder)) return;
-  for (const auto& file : fs::directory_iterator(folder)) {
-    const std::string name = file.path().filename();
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) return;
+  for (const std::string& name : names_in(folder)) {
     std::error_code taken_by_another_run;
-    if (is_entry_file(name)) fs::remove(file.path(), taken_by_another_run);
+    if (is_entry_file(name)) fs::remove(fs::path(folder) / name, taken_by_another_run);
   }
   std::error_code not_empty;
   fs::remove(folder, not_empty);

@@ -6,14 +6,17 @@
 #include <cmath>
 #include <iterator>
 
+#include <excavplan/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "optimisation/search_checkpoint.hpp"
 #include "planning/dig_attempts.hpp"
 #include "planning/planned_digs.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 
@@ -25,6 +28,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LibraryAnswer, feasible, dig, rank, evaluatio
 namespace {
 
 constexpr const char* format = "excavplan-library-entry";
+constexpr std::size_t longest_identity = 65536;  // [byte]; ours
+constexpr std::size_t longest_shown = 400;       // of one in a message [byte]
 
 // Searched from nothing, and how far apart densities are that start from one another [%]; ours,
 // after docs/methods.md#library.
@@ -119,6 +124,29 @@ class EntrySearch {
   DigAttempts& attempts_;
 };
 
+template <typename Value>
+Value value_of(const std::string& name, const nlohmann::json& json) {
+  try {
+    return json.get<Value>();
+  } catch (const nlohmann::json::exception& e) {
+    throw Error(ErrorKind::bad_file, name + ": " + e.what());
+  }
+}
+
+LibraryTask read_task(const LibraryJob& job, const std::string& text) {
+  const auto read = [&] {
+    try {
+      return value_of<LibraryTask>("task", parse_json("task", text));
+    } catch (const Error&) {
+      refuse("library worker: " + excavplan::quoted(text) + " is no task of a build");
+    }
+  };
+  const LibraryTask task = read();
+  require(task.place.machine < job.grid.machines.size() && task.place.soil < job.grid.soils.size(),
+          "library worker: the task is one of another grid");
+  return task;
+}
+
 LibraryAnswer answer(const LibraryJob& job, const LibraryTask& task, DigAttempts& attempts) {
   LibraryAnswer answer;
   EntrySearch search(job.search, checksum(identity(job, task.place)), attempts);
@@ -200,13 +228,14 @@ std::string to_text(const LibraryTask& task) { return nlohmann::json(task).dump(
 
 std::string do_task(const LibraryJob& job, const std::string& text,
                     const std::function<bool(int digs, double best)>& progress) {
-  const auto task = nlohmann::json::parse(text).get<LibraryTask>();
+  const LibraryTask task = read_task(job, text);
   const LibraryPlace& place = task.place;
   const Machine& machine = job.grid.machines[place.machine];
-  DigAttempts attempts(
-      machine, job.search.objective,
-      job.search.simulator.make(machine, job.grid.soils[place.soil], place.density_percent),
-      sloped_planning_ground(machine, place.slope, job.search.cell_size), progress);
+  DigAttempts attempts(machine, job.search.objective,
+                       make_simulator(job.search.simulator, machine, job.grid.soils[place.soil],
+                                      place.density_percent),
+                       sloped_planning_ground(machine, place.slope, job.search.cell_size),
+                       progress);
   const LibraryAnswer found = answer(job, task, attempts);
   if (attempts.stopped()) return {};
   return sealed_text({{"format", format},
@@ -218,15 +247,15 @@ std::string do_task(const LibraryJob& job, const std::string& text,
 LibraryAnswer read_answer(const LibraryJob& job, const LibraryPlace& place, const std::string& name,
                           const std::string& text) {
   JsonObject file = JsonObject::open_sealed(name, text, format);
-  if (const std::string own = file.text("identity"); own != identity(job, place)) {
-    file.fail("identity",
-              "is '" + own + "', which is another entry than '" + identity(job, place) + "'");
+  const std::string wanted = identity(job, place);
+  if (const std::string own = file.text("identity", longest_identity); own != wanted) {
+    file.fail("identity", "is '" + safe_text(own, longest_shown) +
+                              "', which is another entry than '" +
+                              safe_text(wanted, longest_shown) + "'");
   }
-  try {
-    return nlohmann::json::parse(text).at("answer").get<LibraryAnswer>();
-  } catch (const nlohmann::json::exception& e) {
-    file.fail("answer", e.what());
-  }
+  constexpr double most_evaluations = 1e9;
+  file.object("answer").number("evaluations", 0.0, most_evaluations);
+  return value_of<LibraryAnswer>(name + ": answer", parse_json(name, text)["answer"]);
 }
 
 }  // namespace excavplan

@@ -38,13 +38,13 @@ std::pair<DigParameters, double> read_path(JsonObject path) {
 }
 
 std::pair<DigParameters, double> read_planned_path(const std::string& file) {
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const nlohmann::json json = parse_json(file, read_file(file));
   const auto number = [&](const std::string& key) {
     const nlohmann::json::json_pointer place("/path/" + key);
     const bool there = json.is_object() && json.contains(place);
     if (there && json.at(place).is_number()) return json.at(place).get<double>();
     throw Error(ErrorKind::bad_file, file + ": path." + key + " must be a number, it is " +
-                                         (there ? json.at(place).dump() : "missing") +
+                                         (there ? shown(json.at(place)) : "missing") +
                                          "; expected a result of plan-path --json");
   };
   DigParameters parameters;

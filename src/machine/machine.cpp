@@ -8,6 +8,7 @@
 #include <excavplan/error.hpp>
 
 #include "base/angles.hpp"
+#include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "machine/plane.hpp"
@@ -77,19 +78,6 @@ LinkMass read_link(JsonObject file) {
   return link;
 }
 
-/// Every corner lies to the left of every side that it is not on: then a polygon is convex,
-/// counter-clockwise and without crossings.
-bool is_convex(const std::vector<Vector2d>& profile) {
-  const std::size_t n = profile.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vector2d side = profile[(i + 1) % n] - profile[i];
-    for (std::size_t k = 2; k < n; ++k) {
-      if (cross(side, profile[(i + k) % n] - profile[i]) <= 0.0) return false;
-    }
-  }
-  return true;
-}
-
 std::vector<Vector2d> read_profile(JsonObject& file, double bucket_length) {
   std::vector<Vector2d> profile;
   for (JsonObject& corner : file.objects("profile")) {
@@ -138,10 +126,15 @@ Teeth read_teeth(JsonObject file, double width_outside) {
   return teeth;
 }
 
-Bucket read_bucket(JsonObject file, double bucket_length) {
+Bucket read_bucket(JsonObject file, double bucket_length, double boom_length) {
   Bucket bucket;
   bucket.profile = read_profile(file, bucket_length);
   bucket.width_outside = positive(file, "width_outside_m", longest);
+  if (bucket.width_outside > boom_length) {
+    file.fail("width_outside_m",
+              "is " + number_text(bucket.width_outside) +
+                  ", must not exceed boom_length_m = " + number_text(boom_length));
+  }
   bucket.width_inside = positive(file, "width_inside_m", longest);
   if (bucket.width_inside > bucket.width_outside) {
     file.fail("width_inside_m",
@@ -297,6 +290,8 @@ const char* name(Joint joint) {
 }
 
 double Machine::beta() const {
+  require(bucket.profile.size() >= 2, "corners of the bucket's profile",
+          static_cast<double>(bucket.profile.size()), "3 .. 1000");
   const Vector2d floor = bucket.profile[1] - bucket.profile[0];
   return std::atan2(floor.y(), -floor.x());
 }
@@ -314,7 +309,7 @@ Machine load_machine(const std::string& path) {
     machine.limits[i] = read_limits(joints.object(key), all_joints[i]);
     machine.links[i] = read_link(links.object(key));
   }
-  machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length);
+  machine.bucket = read_bucket(file.object("bucket"), machine.bucket_length, machine.boom_length);
   if (file.has("cylinders")) read_cylinders(file.object("cylinders"), machine);
   if (file.has("body")) machine.body = read_body(file.object("body"), machine.track_front);
   if (file.has("swing")) machine.swing = read_swing(file.object("swing"));
@@ -327,15 +322,24 @@ Machine load_machine(const std::string& path) {
 }
 
 double struck_capacity(const Machine& machine) {
-  return 0.5 * double_area(machine.bucket.profile) * machine.bucket.width_inside;
+  require_in("corners of the bucket's profile", static_cast<double>(machine.bucket.profile.size()),
+             3.0, 1000.0);
+  const double volume = 0.5 * double_area(machine.bucket.profile) * machine.bucket.width_inside;
+  require(volume > 0.0 && std::isfinite(volume), "capacity of the bucket", volume,
+          "above 0 m^3 and finite");
+  return volume;
 }
 
 double heaped_capacity(const Machine& machine, double slope) {
+  constexpr double steepest = 1.5;  // [rad]
+  require_in("slope of the heap on the bucket", slope, 0.0, steepest);
+  const double struck = struck_capacity(machine);
   const double mouth = (machine.bucket.profile.front() - machine.bucket.profile.back()).norm();
   const auto [narrow, wide] = std::minmax({mouth, machine.bucket.width_inside});
   const double hipped_roof =
       std::tan(slope) * narrow * narrow * (0.25 * wide - narrow / 12.0);  // ISO 7451 at 1:1
-  return struck_capacity(machine) + hipped_roof;
+  require(std::isfinite(hipped_roof), "heap on the bucket", hipped_roof, "finite");
+  return struck + hipped_roof;
 }
 
 }  // namespace excavplan

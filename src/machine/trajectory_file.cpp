@@ -36,7 +36,8 @@ DigPhase read_phase(JsonObject& object) {
        {DigPhase::approach, DigPhase::penetrate, DigPhase::drag, DigPhase::scoop, DigPhase::lift}) {
     if (text == name(phase)) return phase;
   }
-  object.fail("phase", "is '" + text + "', must be approach, penetrate, drag, scoop or lift");
+  object.fail("phase", "is " + excavplan::quoted(text) +
+                           ", must be approach, penetrate, drag, scoop or lift");
 }
 
 TrajectoryPoint read_point(JsonObject object, bool with_cylinders) {
@@ -102,10 +103,10 @@ std::string to_csv(const Trajectory& trajectory) {
 
 std::string to_json(const Trajectory& trajectory) {
   const bool with_cylinders = states_cylinders(trajectory);
-  std::string json =
-      "{\n \"format\": \"" + std::string(format) +
-      "\",\n \"version\": 1,\n \"machine\": " + nlohmann::json(trajectory.machine).dump() +
-      ",\n \"points\": [";
+  require_storable({{"machine", trajectory.machine}}, "trajectory");
+  std::string json = "{\n \"format\": \"" + std::string(format) +
+                     "\",\n \"version\": 1,\n \"machine\": " + json_text(trajectory.machine) +
+                     ",\n \"points\": [";
   const char* separator = "\n  ";
   for (const TrajectoryPoint& point : trajectory.points) {
     nlohmann::ordered_json object = {{"time_s", point.time},
@@ -118,7 +119,8 @@ std::string to_json(const Trajectory& trajectory) {
       object["cylinders_m"] = list(point.cylinders);
       object["cylinder_speeds_m_per_s"] = list(point.cylinder_speeds);
     }
-    json += std::exchange(separator, ",\n  ") + object.dump();
+    require_storable(object, "trajectory");
+    json += std::exchange(separator, ",\n  ") + json_text(object);
   }
   return json + "\n ]\n}\n";
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 
 #include <excavplan/error.hpp>
 
@@ -17,6 +18,9 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* format = "excavplan-search";
+constexpr std::size_t longest_identity = 65536;  // of a problem or a method [byte]; ours
+constexpr std::size_t longest_shown = 400;       // of one in a message [byte]
+constexpr std::size_t most_values = 100000000;   // of a file that is itself bounded; ours
 
 std::string text_of(const Eigen::VectorXd& numbers) {
   std::string text;
@@ -63,16 +67,14 @@ Evaluation read_outcome(JsonObject& entry) {
   }
   if (status == name(Status::failed)) return Evaluation::failed(reason);
   if (status == name(Status::timed_out)) return Evaluation::timed_out(reason);
-  entry.fail("status", "is '" + status + "', expected ok, infeasible, failed or timed out");
+  entry.fail("status",
+             "is " + excavplan::quoted(status) + ", expected ok, infeasible, failed or timed out");
 }
 
-/// Invalid UTF-8 has no place in JSON; what the file cannot hold, the search must not see.
-std::string sound(std::string reason) {
+/// What the file does not hold, the search must not see.
+std::string sound(const std::string& reason) {
   constexpr std::size_t longest = 500;
-  if (reason.size() > longest) reason = reason.substr(0, longest) + " ...";
-  return ordered_json::parse(
-             ordered_json(reason).dump(-1, ' ', false, ordered_json::error_handler_t::replace))
-      .get<std::string>();
+  return safe_text(reason, longest);
 }
 
 }  // namespace
@@ -107,7 +109,9 @@ SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOpt
                 "search: a checkpoint needs the fingerprint of the problem, it is empty");
   }
   require_writable(file_);
-  if (options.resume && std::filesystem::exists(file_)) {
+  std::error_code unknown;  // of a file that is there but out of reach, which reading it tells
+  const auto status = std::filesystem::status(file_, unknown);
+  if (options.resume && status.type() != std::filesystem::file_type::not_found) {
     load(static_cast<std::size_t>(problem.box.lower.size()));
   }
 }
@@ -126,31 +130,33 @@ void SearchCheckpoint::add(const Eigen::VectorXd& point, const Evaluation& outco
 
 void SearchCheckpoint::save() {
   if (!changed_) return;
-  write_file(file_, text());
+  write_journal(file_, text());
   changed_ = false;
 }
 
 std::string SearchCheckpoint::text() const {
   const ordered_json head = {
       {"format", format}, {"version", 1}, {"problem", problem_}, {"search", search_}};
-  std::string text = head.dump(0);
+  std::string text = json_text(head, 0);
   text.resize(text.size() - 2);  // reopen the object
   text += ",\n\"evaluations\": [";
   Outcomes all = earlier_;
   all.insert(fresh_.begin(), fresh_.end());
   bool first = true;
   for (const auto& [point, outcome] : all) {
-    text += (first ? "\n" : ",\n") + to_json(point, outcome).dump();
+    text += (first ? "\n" : ",\n") + json_text(to_json(point, outcome));
     first = false;
   }
   return sealed(text + "\n]");
 }
 
 void SearchCheckpoint::load(std::size_t dimensions) {
-  JsonObject file = JsonObject::open_sealed(file_, read_file(file_), format);
+  JsonObject file =
+      JsonObject::open_sealed(file_, read_file(file_, most_journal_bytes), format, 1, most_values);
   const auto check = [&file](const char* key, const std::string& own) {
-    if (const std::string text = file.text(key); text != own) {
-      file.fail(key, "is '" + text + "', which differs from '" + own + "'");
+    if (const std::string text = file.text(key, longest_identity); text != own) {
+      file.fail(key, "is '" + safe_text(text, longest_shown) + "', which differs from '" +
+                         safe_text(own, longest_shown) + "'");
     }
   };
   check("problem", problem_);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/text.hpp"
 #include "machine/dig_path_text.hpp"
 
 namespace excavplan {
@@ -65,7 +66,8 @@ DigObjective read_goal(JsonObject& object) {
   const auto& goals = dig_goals();
   const auto goal = std::find_if(goals.begin(), goals.end(),
                                  [&](const DigGoalInfo& info) { return info.word == word; });
-  if (goal == goals.end()) object.fail("goal", "is '" + word + "', which is no goal");
+  if (goal == goals.end())
+    object.fail("goal", "is " + excavplan::quoted(word) + ", which is no goal");
   DigObjective objective(goal->goal);
   JsonObject numbers = object.object("goal_parameters");
   for (const DigObjectiveParameter& parameter : objective_parameters()) {

@@ -2,12 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/byte_file.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <limits>
 
 #include <excavplan/error.hpp>
@@ -29,23 +23,9 @@ void fail_at(const std::string& file, const std::string& place, const std::strin
               file + ": " + place + ": found " + found + ", expected " + expected);
 }
 
-ByteFile::ByteFile(std::string path) : path_(std::move(path)) {
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor_ < 0) refuse(std::string("cannot be opened: ") + std::strerror(errno));
-  struct stat status {};
-  const bool is_known = ::fstat(descriptor_, &status) == 0;
-  if (!is_known || !S_ISREG(status.st_mode)) {
-    ::close(descriptor_);
-    refuse(is_known ? "is not a regular file" : "cannot be examined");
-  }
-  size_ = static_cast<std::uint64_t>(status.st_size);
-}
-
-ByteFile::~ByteFile() { ::close(descriptor_); }
-
 Bytes ByteFile::read(std::uint64_t offset, std::uint64_t count, const std::string& what) const {
-  if (offset > size_ || count > size_ - offset) {
-    fail(offset, std::to_string(offset > size_ ? 0 : size_ - offset) + " bytes left",
+  if (offset > size() || count > size() - offset) {
+    fail(offset, std::to_string(offset > size() ? 0 : size() - offset) + " bytes left",
          std::to_string(count) + " of " + what);
   }
   if (count > most_bytes) {
@@ -53,24 +33,13 @@ Bytes ByteFile::read(std::uint64_t offset, std::uint64_t count, const std::strin
          "at most " + std::to_string(most_bytes));
   }
   Bytes bytes(count);
-  for (std::size_t filled = 0; filled < count;) {
-    const ssize_t got = ::pread(descriptor_, bytes.data() + filled, count - filled,
-                                static_cast<off_t>(offset + filled));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) refuse(std::string("cannot be read: ") + std::strerror(errno));
-    if (got == 0) refuse("became shorter while it was read");
-    filled += static_cast<std::size_t>(got);
-  }
+  file_.read(offset, bytes.data(), bytes.size());
   return bytes;
 }
 
 void ByteFile::fail(std::uint64_t offset, const std::string& found,
                     const std::string& expected) const {
-  fail_at(path_, "byte " + std::to_string(offset), found, expected);
-}
-
-void ByteFile::refuse(const std::string& why) const {
-  throw Error(ErrorKind::bad_file, path_ + ": " + why);
+  fail_at(path(), "byte " + std::to_string(offset), found, expected);
 }
 
 std::uint64_t ByteReader::number(std::size_t size, const char* what) {

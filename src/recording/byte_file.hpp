@@ -7,6 +7,9 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "base/input_file.hpp"
 
 /// @file Parts of a file read where they lie, the fields in them, and errors that name the place.
 /// Private to the library.
@@ -39,27 +42,21 @@ class Bytes {
 /// A regular file, read where it is asked for.
 class ByteFile {
  public:
-  /// Never waits on a pipe or device.
   /// @throws Error (bad_file) if the file is not regular or not readable
-  explicit ByteFile(std::string path);
-  ~ByteFile();
-  ByteFile(const ByteFile&) = delete;
-  ByteFile& operator=(const ByteFile&) = delete;
+  explicit ByteFile(std::string path) : file_(std::move(path)) {}
 
-  const std::string& path() const { return path_; }
-  std::uint64_t size() const { return size_; }
+  const std::string& path() const { return file_.path(); }
+  std::uint64_t size() const { return file_.size(); }
   /// @throws Error (bad_file) unless these bytes are in the file and at most most_bytes
   Bytes read(std::uint64_t offset, std::uint64_t count, const std::string& what) const;
   /// @throws Error (bad_file) naming the byte
   [[noreturn]] void fail(std::uint64_t offset, const std::string& found,
                          const std::string& expected) const;
   /// @throws Error (bad_file): "file: why"
-  [[noreturn]] void refuse(const std::string& why) const;
+  [[noreturn]] void refuse(const std::string& why) const { file_.refuse(why); }
 
  private:
-  std::string path_;
-  int descriptor_ = -1;
-  std::uint64_t size_ = 0;
+  InputFile file_;
 };
 
 /// Where a block of bytes came from: a place in a file, or in what a chunk of it holds.

@@ -37,6 +37,8 @@ class Container {
   virtual ~Container() = default;
   /// A topic's name once only, in any order.
   const std::vector<RecordedTopic>& topics() const { return topics_; }
+  /// True if its end is missing, as that of a recorder that was killed.
+  virtual bool is_cut_off() const { return false; }
   /// The messages of these topics recorded at `from` to `to`, both included. Good as long as the
   /// container.
   virtual std::unique_ptr<MessageCursor> messages(const std::vector<std::size_t>& topics,

@@ -67,6 +67,8 @@ class McapRecording : public ChunkedContainer {
     finish();
   }
 
+  bool is_cut_off() const override { return !is_closed_; }
+
  private:
   void list(std::uint32_t chunk, const std::vector<bool>& wanted,
             std::vector<MessagePlace>& places) const override;

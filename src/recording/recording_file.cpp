@@ -66,12 +66,15 @@ std::unique_ptr<Container> open_file(const std::string& path) {
 std::vector<std::string> files_of(const std::string& folder) {
   std::vector<std::string> files;
   std::vector<std::string> compressed;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().string();
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    const std::string name = entry->path().string();
     if (ends_with(name, ".db3") || ends_with(name, ".mcap")) files.push_back(name);
     if (ends_with(name, ".db3.zstd") || ends_with(name, ".mcap.zstd")) compressed.push_back(name);
     if (files.size() + compressed.size() > most_files) break;
   }
+  if (error) throw Error(ErrorKind::bad_file, folder + ": cannot be read: " + error.message());
   for (const std::string& name : compressed) {
     const std::string plain = name.substr(0, name.size() - std::string(".zstd").size());
     if (std::find(files.begin(), files.end(), plain) == files.end()) files.push_back(name);
@@ -93,7 +96,9 @@ std::vector<std::string> files_of(const std::string& folder) {
 class Recording : public RecordingFile {
  public:
   explicit Recording(const std::string& path) : path_(path) {
-    const auto files = fs::is_directory(path) ? files_of(path) : std::vector<std::string>{path};
+    std::error_code none;
+    const auto files =
+        fs::is_directory(path, none) ? files_of(path) : std::vector<std::string>{path};
     for (const std::string& file : files) add(file, open_file(file));
     sort_topics();
     const auto starts_earlier = [](const Part& a, const Part& b) { return a.start < b.start; };
@@ -104,6 +109,7 @@ class Recording : public RecordingFile {
   const std::string& path() const override { return path_; }
   const std::vector<RecordedTopic>& topics() const override { return topics_; }
   std::int64_t start() const override { return start_; }
+  bool is_cut_off() const override { return is_cut_off_; }
   void visit(const std::vector<std::string>& topics, std::int64_t from, std::int64_t to,
              const MessageVisitor& visitor) override;
 
@@ -130,10 +136,12 @@ class Recording : public RecordingFile {
   std::map<std::string, std::size_t> topic_of_name_;
   std::vector<Part> parts_;  // in the order of their starts
   std::int64_t start_ = 0;
+  bool is_cut_off_ = false;
 };
 
 void Recording::add(const std::string& file, std::unique_ptr<Container> container) {
   Part part{file, std::move(container), std::numeric_limits<std::int64_t>::max(), {}};
+  is_cut_off_ = is_cut_off_ || part.container->is_cut_off();
   bool is_empty = true;
   for (const RecordedTopic& topic : part.container->topics()) {
     part.topics.push_back(add_topic(file, topic));
@@ -146,9 +154,7 @@ void Recording::add(const std::string& file, std::unique_ptr<Container> containe
 
 std::size_t Recording::add_topic(const std::string& file, const RecordedTopic& topic) {
   for (const std::string& name : {topic.name, topic.type}) {
-    const bool is_clean = std::none_of(name.begin(), name.end(),
-                                       [](char c) { return (c >= 0 && c < 32) || c == 127; });
-    if (is_clean && name.size() <= longest_name) continue;
+    if (name.size() <= longest_name && safe_text(name, longest_name) == name) continue;
     fail_at(file, "a topic's name or type", excavplan::quoted(name),
             "at most " + std::to_string(longest_name) + " bytes without control characters");
   }
@@ -240,22 +246,21 @@ std::string ros2_type(std::string_view type) {
 }
 
 bool is_recording(const std::string& path) {
+  std::error_code none;
+  if (fs::is_directory(path, none)) {
+    return fs::is_regular_file(fs::path(path) / "metadata.yaml", none);
+  }
   try {
-    if (fs::is_directory(path)) return fs::is_regular_file(fs::path(path) / "metadata.yaml");
     const std::string start = start_of(path);
     return starts_with(start, sqlite_magic) || starts_with(start, mcap_magic) || is_bag(start) ||
            is_compressed_file(path, start);
-  } catch (const std::exception&) {
+  } catch (const Error&) {
     return false;
   }
 }
 
 std::unique_ptr<RecordingFile> open_recording(const std::string& path) {
-  try {
-    return std::make_unique<Recording>(path);
-  } catch (const fs::filesystem_error& error) {
-    throw Error(ErrorKind::bad_file, path + ": cannot be read: " + error.code().message());
-  }
+  return std::make_unique<Recording>(path);
 }
 
 }  // namespace excavplan

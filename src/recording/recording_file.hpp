@@ -45,7 +45,8 @@ class RecordingFile {
 
   virtual const std::string& path() const = 0;
   virtual const std::vector<RecordedTopic>& topics() const = 0;  ///< sorted by name
-  virtual std::int64_t start() const = 0;  ///< time of the first message of all topics
+  virtual std::int64_t start() const = 0;            ///< time of the first message of all topics
+  virtual bool is_cut_off() const { return false; }  ///< the end of a file of it is missing
   /// The messages of some topics recorded at `from` to `to`, both included, in the order of their
   /// times. @throws Error (bad_file) naming file, place, what was found and what was expected
   virtual void visit(const std::vector<std::string>& topics, std::int64_t from, std::int64_t to,

@@ -81,6 +81,7 @@ struct StampedTransform {
   Eigen::Vector4d rotation = {0.0, 0.0, 0.0, 1.0};  ///< quaternion x, y, z, w as recorded
   Eigen::Vector3d translation = {0.0, 0.0, 0.0};    ///< [m]
   bool is_static = false;
+  std::int64_t delay = 0;  ///< from the stamp to the recording [ns]; set by who reads it
 };
 /// True if the name of a topic ends in "tf_static".
 bool holds_static_transforms(const std::string& topic);

@@ -34,11 +34,18 @@ bool has_bytes(const std::string& path) {
   return ::stat(path.c_str(), &status) == 0 && status.st_size > 0;
 }
 
+std::string absolute(const std::string& path) {
+  std::error_code error;
+  const std::string whole = std::filesystem::absolute(path, error).string();
+  if (error) throw Error(ErrorKind::bad_file, path + ": cannot be opened: " + error.message());
+  return whole;
+}
+
 /// The path as a URI for SQLite: every byte that has a meaning there escaped.
 std::string uri_of(const std::string& path, const std::string& query) {
   constexpr char digits[] = "0123456789ABCDEF";
   std::string uri = "file:";
-  for (const char c : std::filesystem::absolute(path).string()) {
+  for (const char c : absolute(path)) {
     const auto byte = static_cast<unsigned char>(c);
     const bool is_plain = std::isalnum(byte) != 0 || c == '/' || c == '.' || c == '_' || c == '-';
     if (is_plain) {
@@ -122,7 +129,7 @@ void SqliteRecording::open() {
                                          "-journal; repair it by 'sqlite3 " + path_ + " .schema'");
   }
   const bool has_log = has_bytes(path_ + "-wal");
-  const auto folder = std::filesystem::absolute(path_).parent_path().string();
+  const auto folder = std::filesystem::path(absolute(path_)).parent_path().string();
   const bool may_write = ::access(folder.c_str(), W_OK) == 0;
   if (has_log && !may_write && !has_bytes(path_ + "-shm")) {
     throw Error(ErrorKind::bad_file,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <excavplan/error.hpp>
@@ -37,8 +38,13 @@ TransformTree::TransformTree(std::string file, std::int64_t start,
     } else if (link.parent != transform.parent) {
       link.other_parent = std::move(transform.parent);
     }
-    const Sample sample = {transform.stamp, transform.rotation, transform.translation};
-    if (transform.is_static && !link.is_static) continue;
+    const Sample sample = {transform.stamp, transform.rotation, transform.translation,
+                           transform.delay};
+    if (transform.is_static && !link.is_static) {
+      link.overridden = {sample};
+      continue;
+    }
+    if (link.is_static && !transform.is_static) link.overridden = link.samples;
     if (link.is_static) link.samples.clear();
     link.is_static = transform.is_static;
     link.samples.push_back(sample);
@@ -46,6 +52,7 @@ TransformTree::TransformTree(std::string file, std::int64_t start,
   for (auto& [child, link] : links_) {
     std::stable_sort(link.samples.begin(), link.samples.end(),
                      [](const Sample& a, const Sample& b) { return a.stamp < b.stamp; });
+    link.is_disputed = disputed(link);
   }
 }
 
@@ -87,6 +94,28 @@ bool TransformTree::moved(const std::string& target, const std::string& source, 
   return any(between.of_target) || any(between.of_source);
 }
 
+std::optional<std::int64_t> TransformTree::delay(const std::string& target,
+                                                 const std::string& source,
+                                                 std::int64_t near) const {
+  const Chain between = chain(target, source);
+  std::optional<std::int64_t> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto* links : {&between.of_target, &between.of_source}) {
+    for (const auto link : *links) {
+      if (link->second.is_static) continue;
+      std::vector<std::int64_t> delays;
+      for (const Sample& sample : link->second.samples) delays.push_back(sample.delay);
+      const auto middle = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2);
+      std::nth_element(delays.begin(), middle, delays.end());
+      const double away = std::abs(static_cast<double>(*middle) - static_cast<double>(near));
+      if (!(away < least)) continue;
+      least = away;
+      nearest = *middle;
+    }
+  }
+  return nearest;
+}
+
 TransformTree::Climb TransformTree::climb(const std::string& frame,
                                           const std::vector<std::string>& until) const {
   Climb path;
@@ -98,6 +127,12 @@ TransformTree::Climb TransformTree::climb(const std::string& frame,
       path.problem = "found transforms of " + quoted(link->first) + " in " +
                      quoted(link->second.parent) + " and in " + quoted(link->second.other_parent) +
                      ", expected one parent of each frame";
+      break;
+    }
+    if (link->second.is_disputed) {
+      path.problem = "found transforms of " + quoted(link->first) + " in " +
+                     quoted(link->second.parent) +
+                     " that differ at one time, as of two publishers, expected one of each frame";
       break;
     }
     if (path.links.size() == longest_chain) {
@@ -194,6 +229,20 @@ bool TransformTree::apart(const Sample& one, const Sample& other) {
       std::abs(one.rotation.dot(other.rotation)) / (one.rotation.norm() * other.rotation.norm());
   return (one.translation - other.translation).norm() > standing_distance ||
          cosine_of_half < std::cos(0.5 * standing_angle);
+}
+
+/// By a static transform beside others, or by two of one stamp.
+bool TransformTree::disputed(const Link& link) {
+  const auto differs = [&](const Sample& one) {
+    return std::any_of(link.samples.begin(), link.samples.end(),
+                       [&](const Sample& other) { return apart(one, other); });
+  };
+  const auto same_time = [](const Sample& one, const Sample& next) {
+    return one.stamp == next.stamp && apart(one, next);
+  };
+  return std::any_of(link.overridden.begin(), link.overridden.end(), differs) ||
+         std::adjacent_find(link.samples.begin(), link.samples.end(), same_time) !=
+             link.samples.end();
 }
 
 std::string TransformTree::time_text(std::int64_t time) const {

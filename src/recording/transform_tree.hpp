@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ class TransformTree {
   /// A pose holds up to 0.1 s before the first and after the last stamp, and none is interpolated
   /// between stamps more than 1 s apart between which the frame moved (ours).
   /// @throws Error (bad_file) if no chain joins the frames, naming where it breaks; if a frame of
-  /// it has two parents or is its own ancestor; if it is not known at that time, or is no motion
+  /// it has two parents, two publishers that disagree, or is its own ancestor; if it is not known
+  /// at that time, or is no motion
   Eigen::Isometry3d lookup(const std::string& target, const std::string& source,
                            std::int64_t time) const;
 
@@ -42,18 +44,27 @@ class TransformTree {
   bool moved(const std::string& target, const std::string& source, std::int64_t from,
              std::int64_t to) const;
 
+  /// The delay of recording behind stamp which is nearest to a given one [ns]: of each link between
+  /// the frames that is not static the median. None of static links alone. @throws Error (bad_file)
+  /// if no chain joins them
+  std::optional<std::int64_t> delay(const std::string& target, const std::string& source,
+                                    std::int64_t near) const;
+
  private:
   struct Sample {
     std::int64_t stamp = 0;
     Eigen::Vector4d rotation;
     Eigen::Vector3d translation;
+    std::int64_t delay = 0;
   };
   /// From a frame to its parent.
   struct Link {
     std::string parent;
     std::string other_parent;  ///< which must not be
     bool is_static = false;
-    std::vector<Sample> samples;  ///< sorted by stamp; one if static
+    bool is_disputed = false;        ///< two publishers disagree
+    std::vector<Sample> overridden;  ///< static ones of a link that is not
+    std::vector<Sample> samples;     ///< sorted by stamp; one if static
   };
   using Links = std::map<std::string, Link>;
   /// From a frame towards the root.
@@ -74,6 +85,7 @@ class TransformTree {
   Eigen::Isometry3d pose(Links::const_iterator link, const Sample& sample) const;
   static bool moved(const Link& link, std::int64_t from, std::int64_t to);
   static bool apart(const Sample& one, const Sample& other);
+  static bool disputed(const Link& link);
   std::string time_text(std::int64_t time) const;
   std::string frame_list() const;
   void require_frame(const std::string& frame) const;

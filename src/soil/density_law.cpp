@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/normal_mixture.hpp"
 #include "base/text.hpp"
@@ -32,6 +33,19 @@ nlohmann::ordered_json to_object(const ScatterDigs& digs) {
           {"water_content_share", digs.scatter.water_content},
           {"limit_density_share", digs.scatter.limit_density},
           {"loose_density_share", digs.scatter.loose_density}};
+}
+
+/// A law whose density is a fraction, or whose columns were swapped, hardly rises with k.
+void require_percent(const JsonObject& file, const std::string& key, const DensityForm& form) {
+  constexpr double looser = 1.5;  // ours: most soils are dense below this factor
+  constexpr double least = 5.0;   // ours [%]
+  const double loose = bulking_of_density(form, 0.0);
+  const double rise = density_of_bulking(form, looser * loose);
+  if (loose > 0.0 && rise >= least) return;
+  file.fail(key, "gives 0 % at a bulking factor of " + number_text(loose) + " and " +
+                     number_text(rise) + " % at " + number_text(looser) +
+                     " times that, must be a positive factor and 5 % or more: its densities must "
+                     "be in percent, and those of a factor");
 }
 
 /// The growth g of a deviation s (1 + g x) along x in -1 .. 1 from its mean squares q below and
@@ -87,12 +101,13 @@ DensityLaw load_density_law(const std::string& path) {
       const std::string key = form + ending;
       if (!file.has(key)) continue;
       forms[key] = read_density_form(form, file.object(key));
+      require_percent(file, key, forms[key]);
       found += (found.empty() ? "" : ", ") + key;
     }
   }
   const auto used = forms.find(use);
   if (used == forms.end()) {
-    file.fail("use", "is '" + use + "', must name a form in this file: " + found);
+    file.fail("use", "is " + excavplan::quoted(use) + ", must name a form in this file: " + found);
   }
   law.form = used->second;
   const auto freed = forms.find(use.substr(0, use.find(as_measured)));
@@ -102,6 +117,7 @@ DensityLaw load_density_law(const std::string& path) {
 }
 
 DensityLaw density_law_of(const SoilKind& soil) {
+  require_soil(soil);
   DensityClosedForm form;
   form.A = (1.0 + soil.void_ratio_loose) / (1.0 + soil.void_ratio_max);
   form.r = (soil.void_ratio_max - soil.void_ratio_min) / (1.0 + soil.void_ratio_max);
@@ -124,6 +140,7 @@ void set_error(RelativeDensity& estimate, double sd_percent) {
 }
 
 RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_factor) {
+  require_form(law.form);
   const double k = bulking_factor.value;
   if (!(k > 0.0 && std::isfinite(k)) ||
       !(bulking_factor.sd >= 0.0 && std::isfinite(bulking_factor.sd))) {
@@ -164,6 +181,7 @@ DensityLaw law_of(const DensityCalibration& calibration) {
 }
 
 void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
+  require(!digs.empty(), "scatter of a density law: there is no dig");
   std::array<double, 2> squares = {0.0, 0.0};  // of loose and of dense soil
   std::array<int, 2> counts = {0, 0};
   for (const BulkingSample& dig : digs) {
@@ -173,6 +191,7 @@ void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
     ++counts[half];
   }
   const double square = (squares[0] + squares[1]) / static_cast<double>(digs.size());
+  require(std::isfinite(square), "mean square of the scatter of a density law", square, "finite");
   double growth = 0.0;
   if (counts[0] > 0 && counts[1] > 0 && square > 0.0) {
     const double loose = squares[0] / counts[0];
@@ -204,7 +223,8 @@ std::string to_json(const DensityCalibration& calibration) {
   for (const DensityCalibration::Sample& sample : calibration.samples) {
     file["samples"].push_back(to_object(sample));
   }
-  return file.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  require_storable(file, "density calibration");
+  return json_text(file, 2) + "\n";
 }
 
 }  // namespace excavplan

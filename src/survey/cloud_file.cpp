@@ -16,11 +16,7 @@ namespace {
 std::string ending_of(const std::string& path) {
   const std::size_t dot = path.find_last_of("./");
   if (dot == path.npos || path[dot] == '/') return "";
-  std::string ending = path.substr(dot);
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return ending;
+  return small_letters(path.substr(dot));
 }
 
 /// "a, b or c"
@@ -108,6 +104,7 @@ Cloud read_cloud(const std::string& path, std::uint64_t memory_limit) {
   cloud.width = shape.width;
   cloud.height = shape.height;
   cloud.sensor_origin = shape.sensor;
+  cloud.left_out = shape.left_out;
   return cloud;
 }
 
@@ -138,7 +135,7 @@ void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format
   });
   if (known == formats.end()) {
     throw Error(ErrorKind::bad_input,
-                path + ": '" + format.name + "' is not a supported output format");
+                path + ": " + excavplan::quoted(format.name) + " is not a supported output format");
   }
   write_file(path, known->content(cloud, format.text));
 }

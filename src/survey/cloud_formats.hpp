@@ -25,6 +25,7 @@ struct CloudShape {
   std::uint64_t width = 0;
   std::uint64_t height = 1;
   std::optional<Eigen::Vector3d> sensor = {};  ///< Cloud::sensor_origin
+  std::uint64_t left_out = 0;                  ///< Cloud::left_out
 };
 
 /// A format of cloud files.

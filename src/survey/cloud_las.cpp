@@ -222,7 +222,8 @@ CloudShape stream_las(FileStream& file, PointSink& sink) {
   const std::uint64_t records = whole_at(head, number_of_records, 4);
   sink.require_memory(header.count, 0);
   skip_records(file, records, header);
-  return {stream_points(file, header, sink), 1};
+  const std::uint64_t kept = stream_points(file, header, sink);
+  return {kept, 1, {}, header.count - kept};
 }
 
 bool holds_las(FileStream& file) { return file.peek(4) == "LASF"; }

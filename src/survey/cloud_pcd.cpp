@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <optional>
 #include <string>
 
 #include "base/text.hpp"
 #include "survey/cloud_formats.hpp"
+#include "survey/lzf_stream.hpp"
 
 // PCD as the Point Cloud Library documents it (versions 0.5 to 0.7).
 
@@ -292,102 +294,33 @@ void stream_binary(FileStream& file, const Header& header, PointSink& sink) {
   stream_rows(file, header.points, columns_of(header), false, sink);
 }
 
-/// What unpacking makes, of which only the blocks of x, y and z are kept: compressed PCD stores one
-/// field of all points after the other.
-class UnpackedFields {
- public:
-  static constexpr std::size_t farthest_back = 8192;
-
-  explicit UnpackedFields(const Header& header) : window_(16 * farthest_back) {
-    std::size_t size = 0;
+/// Compressed PCD stores one field of all points after the other: x, y and z are unpacked side by
+/// side, each by a reader of its own, so that none has to be held.
+void stream_fields(const FileStream& file, const LzfBlock& block, const Header& header,
+                   PointSink& sink) {
+  std::deque<LzfStream> fields;
+  Columns columns;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Field& field = header.fields[header.xyz[axis]];
+    std::uint64_t begin = 0;
+    for (std::size_t i = 0; i < header.xyz[axis]; ++i) begin += header.fields[i].bytes();
+    fields.emplace_back(file.path(), block).skip(begin * header.points);
+    columns.type[axis] = scalar_type(field);
+    columns.stride[axis] = field.size;
+  }
+  std::string values;
+  for (std::uint64_t first = 0; first < header.points; first += points_at_a_time) {
+    const auto count =
+        static_cast<std::size_t>(std::min<std::uint64_t>(points_at_a_time, header.points - first));
+    values.clear();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Field& field = header.fields[header.xyz[axis]];
-      std::uint64_t begin = 0;
-      for (std::size_t i = 0; i < header.xyz[axis]; ++i) begin += header.fields[i].bytes();
-      columns_.type[axis] = scalar_type(field);
-      columns_.stride[axis] = field.size;
-      columns_.offset[axis] = size;
-      begin_[axis] = begin * header.points;
-      end_[axis] = begin_[axis] + field.size * header.points;
-      size += field.size * header.points;
+      columns.offset[axis] = values.size();
+      values += fields[axis].read(count * columns.stride[axis]);
     }
-    kept_.resize(size);
+    stream_block(values.data(), count, columns, sink);
   }
-
-  void add(char byte) {
-    if (filled_ == window_.size()) slide();
-    window_[filled_++] = byte;
-  }
-  char back(std::size_t distance) const { return window_[filled_ - distance]; }
-  std::uint64_t size() const { return start_ + filled_; }
-
-  /// To be called after the last byte.
-  void finish() { keep(); }
-  const char* data() const { return kept_.data(); }
-  const Columns& columns() const { return columns_; }
-
- private:
-  /// Keeps what the window holds beyond `kept_to_` of x, y and z.
-  void keep() {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::uint64_t from = std::max(begin_[axis], start_ + kept_to_);
-      const std::uint64_t to = std::min(end_[axis], start_ + filled_);
-      if (from >= to) continue;
-      std::copy_n(window_.data() + (from - start_), to - from,
-                  kept_.data() + columns_.offset[axis] + (from - begin_[axis]));
-    }
-    kept_to_ = filled_;
-  }
-  void slide() {
-    keep();
-    const std::size_t passed = filled_ - farthest_back;
-    std::copy(window_.begin() + static_cast<std::ptrdiff_t>(passed), window_.end(),
-              window_.begin());
-    start_ += passed;
-    filled_ = kept_to_ = farthest_back;
-  }
-
-  Columns columns_;  ///< in kept_
-  std::array<std::uint64_t, 3> begin_{};
-  std::array<std::uint64_t, 3> end_{};
-  std::vector<char> kept_;
-  std::vector<char> window_;
-  std::uint64_t start_ = 0;  ///< of the window in all that was made
-  std::size_t filled_ = 0;
-  std::size_t kept_to_ = 0;
-};
-
-/// Marc Lehmann's LZF: a control byte below 32 heads a run of literals, any other repeats what
-/// stands up to 8 KiB back. @return false if the next `packed` bytes do not unpack to exactly
-/// `unpacked`
-bool unpack_lzf(FileStream& file, std::uint64_t packed, std::uint64_t unpacked,
-                UnpackedFields& out) {
-  constexpr std::size_t longest_item = 34;
-  while (packed > 0) {
-    const std::string_view in = file.peek(std::min<std::uint64_t>(packed, longest_item));
-    const auto byte = [&](std::size_t i) {
-      return static_cast<std::size_t>(static_cast<unsigned char>(in[i]));
-    };
-    const std::size_t control = byte(0);
-    std::size_t used = 1;
-    if (control < 32) {
-      const std::size_t run = control + 1;
-      if (run > in.size() - 1 || run > unpacked - out.size()) return false;
-      for (; used <= run; ++used) out.add(in[used]);
-    } else {
-      std::size_t length = control >> 5U;
-      const std::size_t needed = length == 7 ? 3 : 2;
-      if (needed > in.size()) return false;
-      if (length == 7) length += byte(used++);
-      length += 2;
-      const std::size_t back = ((control & 31U) << 8U) + byte(used++) + 1;
-      if (back > out.size() || length > unpacked - out.size()) return false;
-      for (; length > 0; --length) out.add(out.back(back));
-    }
-    file.skip(used);
-    packed -= used;
-  }
-  return out.size() == unpacked;
+  const auto last = std::max_element(header.xyz.begin(), header.xyz.end()) - header.xyz.begin();
+  fields[static_cast<std::size_t>(last)].finish();
 }
 
 void stream_compressed(FileStream& file, const Header& header, PointSink& sink) {
@@ -417,13 +350,8 @@ void stream_compressed(FileStream& file, const Header& header, PointSink& sink) 
               "a compression ratio of at most " + std::to_string(highest_ratio));
   }
   file.require_end(packed);
-  sink.require_memory(header.points, unpacked);
-  UnpackedFields fields(header);
-  if (!unpack_lzf(file, packed, unpacked, fields)) {
-    file.fail(place, "damaged compressed data", std::to_string(unpacked) + " bytes of LZF");
-  }
-  fields.finish();
-  stream_block(fields.data(), header.points, fields.columns(), sink);
+  sink.require_memory(header.points, 0);
+  stream_fields(file, {file.offset(), packed, unpacked}, header, sink);
 }
 
 /// True if the first words of a file are those of a PCD header.

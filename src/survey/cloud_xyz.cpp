@@ -11,6 +11,9 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
+/// Tells a cloud without points from a file that lost them.
+constexpr std::string_view empty_mark = "# 0 points";
+
 bool is_comment(std::string_view line) {
   const std::string_view word = take_word(line);
   return word.front() == '#' || word.substr(0, 2) == "//";
@@ -65,12 +68,16 @@ std::optional<std::array<std::size_t, 3>> columns_by_name(const Words& names) {
 CloudShape stream_xyz(FileStream& file, PointSink& sink) {
   PointBatch batch(sink);
   std::uint64_t points = 0;
+  bool is_empty = false;
   LineReader lines(file);
   char separator = 0;
   std::array<std::size_t, 3> xyz = {0, 1, 2};
   Words columns;
   while (lines.next_filled()) {
-    if (is_comment(lines.line())) continue;
+    if (is_comment(lines.line())) {
+      is_empty = is_empty || lines.line() == empty_mark;
+      continue;
+    }
     const bool is_first = separator == 0;
     if (is_first) separator = separator_of(lines.line());
     split(lines.line(), separator, columns);
@@ -87,7 +94,7 @@ CloudShape stream_xyz(FileStream& file, PointSink& sink) {
                number_of(columns[xyz[2]], lines)});
     ++points;
   }
-  if (points == 0) lines.fail("no row of numbers", "x y z");
+  if (points == 0 && !is_empty) lines.fail("no row of numbers", "x y z");
   batch.hand_on();
   return {points, 1};
 }
@@ -95,7 +102,9 @@ CloudShape stream_xyz(FileStream& file, PointSink& sink) {
 bool holds_xyz(FileStream& file) { return !foreign_content(file); }
 
 std::string xyz_content(const Cloud& cloud, bool) {
-  return "# x y z [m]\n" + text_rows(cloud.points);
+  std::string content = "# x y z [m]\n";
+  if (cloud.points.empty()) content.append(empty_mark).append("\n");
+  return content + text_rows(cloud.points);
 }
 
 }  // namespace

@@ -12,8 +12,10 @@
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/cover.hpp"
+#include "soil/density_forms.hpp"
 #include "survey/density_of_volumes.hpp"
 #include "survey/paper_change.hpp"
 #include "survey/scan_checks.hpp"
@@ -29,6 +31,10 @@ struct OutlinedScans {
   OutlinedPair dig;
   std::optional<OutlinedPair> dump;
   double cell_size = 0.0;
+
+  std::uint64_t machine_points() const {
+    return dig.machine_points() + (dump ? dump->machine_points() : 0);
+  }
 };
 
 OutlinedScans outline_scans(const DigScans& scans, const DensityOptions& options) {
@@ -92,8 +98,11 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  with_doubts(check_cover(surfaces.pairs(), change),
-              [&] { refuse_swapped(change, seen.dig.names()); });
+  std::vector<Warning> doubts = check_cover(surfaces.pairs(), change);
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
+  }
+  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names()); });
   state_water(surfaces.pairs(), change);
   return change;
 }
@@ -125,10 +134,12 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen) {
 std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
                                   const VolumeChange& change) {
   std::vector<Warning> doubts = check_volumes(change);
+  append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
                          const AreaChange& area) {
     append(check_registration(pair), doubts);
     append(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
+    append(check_curvature(pair.surfaces, area), doubts);
   };
   check(seen.dig, surfaces.dig, change.areas.front());
   if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());
@@ -190,10 +201,38 @@ void keep_registration(const Surfaces& surfaces, DensityEstimate& estimate) {
   if (surfaces.dump) estimate.dump_registration = registration(*surfaces.dump);
 }
 
+void require_measured(const std::string& what, const Measured& figure) {
+  require(figure.value > 0.0 && std::isfinite(figure.value), what, figure.value,
+          "above 0 and finite");
+  require(figure.sd >= 0.0 && std::isfinite(figure.sd), what + ", its sd,", figure.sd,
+          "at least 0 and finite");
+}
+
+void check(const DensityLaw& law, const DensityOptions& options) {
+  require_form(law.form);
+  require_form(law.freed_form);
+  const double cell = options.cell_size.value_or(1.0);
+  require(cell > 0.0 && std::isfinite(cell), "cell_size", cell, "above 0 m and finite");
+  if (options.dug_path) require_machine(options.dug_path->machine);
+  if (options.soil.kind) require_soil(*options.soil.kind);
+  for (const SoilLaw& possible : options.soil.possible) {
+    require_soil(possible.soil);
+    require_form(possible.law.form);
+    require_form(possible.law.freed_form);
+    require_in("weight of a soil", possible.weight, 0.0, 1.0);
+  }
+  if (options.payload_mass) require_measured("payload_mass [kg]", *options.payload_mass);
+  if (const auto& water = options.soil.water_content) {
+    require_in("water_content", water->value, 0.0, 10.0);
+    require_in("water_content, its sd,", water->sd, 0.0, 10.0);
+  }
+}
+
 /// The method, in the order of the paper, for each way to find the volumes.
 std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& law,
                                        const DensityOptions& options,
                                        std::initializer_list<VolumeMethod> methods) {
+  check(law, options);
   const OutlinedScans seen = outline_scans(scans, options);  // extent, density of points, cell
   std::vector<Warning> doubts = doubts_about(seen);
   Surfaces surfaces;
@@ -208,6 +247,7 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   const LawsForDig laws = laws_for_dig(law, options, known.fallback);
   known.law = laws.law;
   known.cell_size = seen.cell_size;
+  known.machine_points = seen.machine_points();
   if (options.registered) keep_registration(surfaces, known);
   known.before = surfaces.before();
   known.blocks = assess_blocks(surfaces.after(), surface);
@@ -219,8 +259,8 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
     estimate.method = method;
     // eqs. 3 and 4: volumes before and after
     estimate.change = by_paper ? paper_volumes_of(seen, surface, options) : surface;
-    estimate.warnings = estimate.change.warnings;
-    append(doubts, estimate.warnings);
+    estimate.warnings = doubts;  // the causes first
+    append(estimate.change.warnings, estimate.warnings);
     estimate.bulking = bulking_factor(estimate.change);  // eq. 1
     estimate.trustworthy = estimate.bulking.has_value();
     if (estimate.bulking) set_density(estimate, laws, options);

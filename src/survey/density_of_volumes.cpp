@@ -81,6 +81,24 @@ Warning law_of_other_path(const DensityLaw& law, bool path_is_known) {
                                    ": soil that falls back differs, by several points of density"};
 }
 
+Warning law_of_other_soil(const DensityLaw& law, const SoilKind& soil) {
+  return {"law_of_other_soil",
+          "the law '" + law.name + "' is of " + law.soil + ", the soil is " + soil.name, true};
+}
+
+/// Water that even the loosest state cannot hold.
+std::optional<Warning> too_wet(const SoilKnowledge& soil) {
+  if (!soil.kind || !soil.water_content) return std::nullopt;
+  const double water = soil.water_content->value;
+  const double saturation = water * soil.kind->specific_gravity / soil.kind->void_ratio_max;
+  if (saturation <= 1.0) return std::nullopt;
+  return Warning{"too_wet",
+                 "a water content of " + readable(water) + " fills the pores of the loosest " +
+                     soil.kind->name + " " + readable(saturation, 2) +
+                     " times over: it must be a share of the dry mass, 12 % is 0.12",
+                 true};
+}
+
 // ---- The answer -------------------------------------------------------------------------------
 
 Warning disagreement_of(const PayloadDensity& payload, bool unknown_soil) {
@@ -192,6 +210,11 @@ LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
                                                  ": --soil says which it is; `soils` has the "
                                                  "density in others"});
   }
+  const auto& kind = options.soil.kind;
+  if (kind && !law.soil.empty() && law.soil != kind->name) {
+    laws.warnings.push_back(law_of_other_soil(law, *kind));
+  }
+  if (auto wet = too_wet(options.soil)) laws.warnings.push_back(std::move(*wet));
   const auto calibration = calibrate_dug(options);
   if (calibration && can_be_fitted(law)) laws.law = law_of(*calibration);
   if (const auto doubt = doubt_of(fallback, calibration)) {

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <string_view>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -14,9 +13,9 @@
 #include <excavplan/error.hpp>
 
 #include "base/check.hpp"
-#include "base/files.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
+#include "survey/depth_png.hpp"
 #include "survey/robust_mean.hpp"
 
 namespace excavplan {
@@ -39,84 +38,12 @@ void require_valid(const DepthIntrinsics& intrinsics) {
           "> min_depth");
 }
 
-/// CRC-32 of ISO 3309, as PNG uses it.
-std::uint32_t check_sum(std::string_view bytes) {
-  std::uint32_t sum = 0xFFFFFFFFU;
-  for (const char byte : bytes) {
-    sum ^= static_cast<unsigned char>(byte);
-    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1U) ^ (0xEDB88320U & (0U - (sum & 1U)));
-  }
-  return ~sum;
-}
-
-/// A PNG file as a row of chunks, read before it is decoded: libpng writes to the console when a
-/// file is damaged, and a header can promise any number of pixels.
-class PngChunks {
- public:
-  PngChunks(const std::string& path, const std::string& content) : path_(path), content_(content) {}
-
-  /// @throws Error (bad_file) unless this is a whole 16-bit grey image
-  void require_depth() const {
-    constexpr std::uint64_t most_pixels = 100000000;
-    constexpr std::size_t header_size = 33;
-    if (content_.size() < header_size || content_.compare(0, 8, "\x89PNG\r\n\x1a\n") != 0 ||
-        content_.compare(12, 4, "IHDR") != 0) {
-      refuse("something that is not a PNG image");
-    }
-    const std::uint64_t width = number_at(16);
-    const std::uint64_t height = number_at(20);
-    if (width * height > most_pixels) {
-      refuse(std::to_string(width) + " x " + std::to_string(height) + " pixels");
-    }
-    const int bits = byte_at(24);
-    const int colour_type = byte_at(25);
-    if (bits != 16 || colour_type != 0) {
-      refuse(std::to_string(bits) + " bits of colour type " + std::to_string(colour_type));
-    }
-    require_whole();
-  }
-
- private:
-  [[noreturn]] void refuse(const std::string& found) const {
-    throw Error(ErrorKind::bad_file,
-                path_ + ": found " + found + ", expected a 16-bit single-channel PNG image");
-  }
-  int byte_at(std::size_t at) const { return static_cast<unsigned char>(content_[at]); }
-  std::uint64_t number_at(std::size_t at) const {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      value = value * 256 + static_cast<std::uint64_t>(byte_at(at + i));
-    }
-    return value;
-  }
-  /// A chunk is the length of its data, its name, the data and a check sum of name and data; IEND
-  /// is the last one.
-  void require_whole() const {
-    for (std::size_t at = 8; at + 12 <= content_.size();) {
-      const std::uint64_t length = number_at(at);
-      if (length > content_.size() - at - 12) break;
-      const std::string_view checked = std::string_view(content_).substr(at + 4, 4 + length);
-      if (check_sum(checked) != number_at(at + 8 + length)) {
-        refuse("damage behind byte " + std::to_string(at));
-      }
-      if (checked.substr(0, 4) == "IEND") return;
-      at += 12 + length;
-    }
-    refuse("the end of the file at byte " + std::to_string(content_.size()));
-  }
-
-  const std::string& path_;
-  const std::string& content_;
-};
-
 cv::Mat read_depth_image(const std::string& path) {
-  const std::string content = read_file(path);
-  PngChunks(path, content).require_depth();
+  std::string content = read_depth_png(path);
   cv::Mat image;
   try {
     // not imread(), which writes to the console
-    const cv::Mat bytes(1, static_cast<int>(content.size()), CV_8UC1,
-                        const_cast<char*>(content.data()));
+    const cv::Mat bytes(1, static_cast<int>(content.size()), CV_8UC1, content.data());
     image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception& e) {
     throw Error(ErrorKind::bad_file, path + ": cannot be decoded: " + e.what());
@@ -161,7 +88,7 @@ void require_size(const cv::Mat& image, const std::string& path, const cv::Size&
 std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths,
                                  const DepthIntrinsics& intrinsics) {
   constexpr std::size_t most_frames = 10000;
-  constexpr std::size_t most_pixels = 2000000000;
+  constexpr std::size_t most_pixels = 500000000;  // of all frames, which are held at once; ours
   if (paths.empty() || paths.size() > most_frames) {
     throw Error(ErrorKind::bad_input,
                 "depth images: " + std::to_string(paths.size()) + " frames, must be 1 to 10000");
@@ -173,8 +100,11 @@ std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths,
     if (intrinsics.width > 0) {
       require_size(frames.back(), path, {intrinsics.width, intrinsics.height}, "the intrinsics");
     }
-    if (frames.size() * frames.front().total() > most_pixels) {
-      throw Error(ErrorKind::bad_input, "depth images: more than 2 billion pixels up to " + path);
+    if (paths.size() * frames.front().total() > most_pixels) {
+      throw Error(ErrorKind::bad_input, "depth images: " + std::to_string(paths.size()) +
+                                            " frames of " + std::to_string(frames.front().total()) +
+                                            " pixels, must be at most " +
+                                            std::to_string(most_pixels) + " in all");
     }
   }
   return frames;
@@ -223,6 +153,9 @@ Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrin
   };
   const auto width = static_cast<double>(cloud.width);
   const auto height = static_cast<double>(cloud.height);
+  if (width * height != static_cast<double>(cloud.points.size())) {
+    refuse("is of a cloud whose width x height is not the number of its points");
+  }
   if (!(u >= -0.5 && u < width - 0.5 && v >= -0.5 && v < height - 0.5)) {
     refuse("is outside the image of " + std::to_string(cloud.width) + " x " +
            std::to_string(cloud.height));

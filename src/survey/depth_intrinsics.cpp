@@ -137,9 +137,11 @@ DepthIntrinsics of_flat_keys(JsonObject json) {
 
 DepthIntrinsics load_intrinsics(const std::string& path) {
   const char* const format = "excavplan-depth-intrinsics";
-  const std::string content = read_file(path);
-  JsonObject json = JsonObject::of_others(path, content);
-  if (json.has("format")) return own_intrinsics(JsonObject::open(path, format));
+  JsonObject json = JsonObject::of_others(path, read_file(path, most_foreign_bytes));
+  if (json.has("format")) {
+    json.require_format(format);
+    return own_intrinsics(json);
+  }
   if (json.has("intrinsic")) json = json.object("intrinsic");  // PinholeCameraParameters of Open3D
   if (json.has("intrinsic_matrix")) return of_open3d(json);
   if (json.has("camera_matrix")) return of_calibration(json);

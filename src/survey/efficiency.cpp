@@ -7,8 +7,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/check.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
+#include "survey/scan_checks.hpp"
 #include "survey/scan_reading.hpp"
 
 namespace excavplan {
@@ -132,6 +134,32 @@ std::optional<Warning> gap_in(const std::vector<double>& time, const Interval& d
                                    " s are usual: the consumption during the gap is interpolated"};
 }
 
+/// A rate that no machine has, or one that is higher outside the dig.
+void warn_of_rate(const LoggedDig& dig, const Interval& interval, const Interval& log, double whole,
+                  DigEfficiency& result) {
+  const bool is_fuel = result.spent == Spent::fuel;
+  const double most = is_fuel ? 28.0 : 2000.0;  // [mL/s], 100 L/h; [kW]; ours: of a 100-t machine
+  constexpr double much_less = 0.8;             // ours
+  const double rate = result.cost / result.duration;
+  const std::string unit = is_fuel ? " mL/s" : " kW";
+  if (rate > most) {
+    result.warnings.push_back({is_fuel ? "implausible_fuel" : "implausible_energy",
+                               dig.file + ": " + readable(rate) + unit + " on average is above " +
+                                   readable(most) +
+                                   ", more than a 100-t excavator takes: check the unit"});
+  }
+  const double rest = (log.to - log.from) - result.duration;
+  const double beside = (whole - result.cost) / rest;
+  if (rest >= result.duration && rate < much_less * beside) {
+    result.warnings.push_back(
+        {"dig_below_rest", dig.file + ": " + readable(rate) + unit + " on average from " +
+                               number_text(interval.from) + " to " + number_text(interval.to) +
+                               " s, but " + readable(beside) + unit +
+                               " in the rest of the log: that is no dig, unless the machine works "
+                               "harder before or after; check its times"});
+  }
+}
+
 void read_cost(const LoggedDig& dig, DigEfficiency& result) {
   const Table log = Table::read(dig.file);
   const Meter& meter = meter_of(log, dig.file);
@@ -140,9 +168,14 @@ void read_cost(const LoggedDig& dig, DigEfficiency& result) {
   const Interval interval = interval_of(dig, time);
   result.spent = meter.spent;
   result.duration = interval.to - interval.from;
+  const Interval all{time.front(), time.back()};
+  double whole = 0.0;
   for (const std::string& name : meter.columns) {
-    result.cost +=
-        meter.scale * integral(time, log.column(name), interval, meter.spent == Spent::energy);
+    const auto spent = [&](const Interval& during) {
+      return meter.scale * integral(time, log.column(name), during, meter.spent == Spent::energy);
+    };
+    result.cost += spent(interval);
+    whole += spent(all);
   }
   if (!(result.cost > 0.0)) {
     throw Error(ErrorKind::bad_file, dig.file + ": " + meter.columns.front() + " adds up to " +
@@ -152,6 +185,7 @@ void read_cost(const LoggedDig& dig, DigEfficiency& result) {
                                          number_text(interval.to) + " s, must be above 0");
   }
   if (auto gap = gap_in(time, interval, dig.file)) result.warnings.push_back(std::move(*gap));
+  warn_of_rate(dig, interval, all, whole, result);
 }
 
 // ---- What was lifted --------------------------------------------------------------------------
@@ -163,8 +197,8 @@ Payload stated(const LoggedDig& dig, const Payload& payload) {
     throw Error(ErrorKind::bad_input, what + ": " + number_text(value) + ", must be " + rule);
   };
   const auto [value, sd] = payload.amount;
-  check(value > 0.0, name, value, "above 0");
-  check(!(sd < 0.0), name + "-sd", sd, "0 or more");
+  check(value > 0.0 && std::isfinite(value), name, value, "above 0");
+  check(!(sd < 0.0) && !std::isinf(sd), name + "-sd", sd, "0 or more");
   return payload;
 }
 
@@ -173,18 +207,25 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
   const OutlinedPair seen = outlined(scans, dig.threads);
   const std::string names = seen.names() + ": ";
   const double cell = dig.cell_size.value_or(seen.cell_size());
-  const SurfacePair surfaces = survey_pair(seen, cell, false, dig.threads).surfaces;
+  const std::vector<Warning> doubts = check_outlines(seen);
+  const SurfacePair surfaces =
+      with_doubts(doubts, [&] { return survey_pair(seen, cell, false, dig.threads).surfaces; });
   const HeightMapPair dump{surfaces.before.height, surfaces.after.height};
   const HeightMapPair no_dig{dump.before, dump.before};
+  const auto add = [&](const std::vector<Warning>& warnings) {
+    for (const Warning& warning : warnings) {
+      if (warning.code == "no_hole_found") continue;
+      result.warnings.push_back({warning.code, names + warning.message, warning.ends_trust});
+    }
+  };
   try {
     const VolumeChange change = measure_change(no_dig, dump);
     if (!(change.dumped.value > 0.0)) {
       throw Error(ErrorKind::bad_file, "no ground rose by more than the noise of the scans");
     }
-    for (const Warning& warning : change.warnings) {
-      if (warning.code == "no_hole_found") continue;
-      result.warnings.push_back({warning.code, names + warning.message});
-    }
+    add(doubts);
+    add(check_volumes(change));
+    add(change.warnings);
     return {Lifted::volume, change.dumped};
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, names + error.what());
@@ -193,12 +234,33 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
 
 // ---- Efficiency -------------------------------------------------------------------------------
 
+/// More than the work of lifting it by 0.34 m, and a hundredth of what digs in the simulator reach,
+/// 5 .. 15 kg/kJ; ours.
+std::optional<Warning> implausible_work(const DigEfficiency& dig, double most) {
+  constexpr double span = 6000.0;  // from the least to the most
+  const double efficiency = dig.value().value;
+  if (efficiency <= most && efficiency >= most / span) return std::nullopt;
+  return Warning{"implausible_energy", dig.file + ": " + readable(efficiency) + " " + dig.symbol() +
+                                           " is outside " + readable(most / span) + " .. " +
+                                           readable(most) +
+                                           ": check the units of power, time and payload"};
+}
+
 /// More than a 12-t excavator could lift while it idles: 0.45 m^3 (of 1500 kg/m^3) in 8 s at 2 L/h.
 /// Digging takes 6 .. 10 L/h, which makes 0.02 .. 0.034 m^3/mL. Ours.
 std::optional<Warning> implausible(const DigEfficiency& dig) {
-  if (dig.spent != Spent::fuel) return std::nullopt;
-  const double most = dig.payload.kind == Lifted::volume ? 0.1 : 150.0;
+  const bool is_volume = dig.payload.kind == Lifted::volume;
   const double efficiency = dig.value().value;
+  if (dig.spent == Spent::energy) return implausible_work(dig, is_volume ? 0.2 : 300.0);
+  const double most = is_volume ? 0.1 : 150.0;
+  const double least = is_volume ? 0.0003 : 0.45;
+  if (efficiency < least) {
+    return Warning{"implausible_fuel",
+                   dig.file + ": " + readable(efficiency) + " " + dig.symbol() + " is below " +
+                       readable(least) +
+                       ", a hundredth of what excavators reach: check the units of time and fuel, "
+                       "and the dig's times"};
+  }
   if (!(efficiency > most)) return std::nullopt;
   return Warning{"implausible_fuel",
                  dig.file + ": " + readable(efficiency) + " " + dig.symbol() + " is above " +
@@ -208,9 +270,8 @@ std::optional<Warning> implausible(const DigEfficiency& dig) {
 }
 
 bool casts_doubt(const Warning& warning) {
-  const auto codes = {"implausible_fuel", "gap_in_log", "zone_at_border", "zone_partly_unseen",
-                      "scans_do_not_fit"};
-  return std::find(codes.begin(), codes.end(), warning.code) != codes.end();
+  const auto codes = {"implausible_fuel", "implausible_energy", "gap_in_log", "dig_below_rest"};
+  return warning.ends_trust || std::find(codes.begin(), codes.end(), warning.code) != codes.end();
 }
 
 }  // namespace
@@ -249,6 +310,10 @@ Measured efficiency_gain(const DigEfficiency& first, const DigEfficiency& second
   }
   const Measured a = first.value();
   const Measured b = second.value();
+  for (const Measured& value : {a, b}) {
+    require(value.value > 0.0 && std::isfinite(value.value), "payload per cost of a run",
+            value.value, "above 0 and finite");
+  }
   const double ratio = b.value / a.value;
   return {100.0 * (ratio - 1.0), 100.0 * ratio * std::hypot(a.sd / a.value, b.sd / b.value)};
 }

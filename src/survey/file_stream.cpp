@@ -2,17 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "survey/file_stream.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-
-#include <excavplan/error.hpp>
+#include <utility>
 
 namespace excavplan {
 namespace {
@@ -22,22 +15,9 @@ constexpr std::size_t longest_surplus = 4096;  // blanks or zeros after the last
 
 }  // namespace
 
-FileStream::FileStream(std::string path) : path_(std::move(path)) {
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor_ < 0) refuse(std::string("cannot be opened: ") + std::strerror(errno));
-  try {
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0) refuse("cannot be examined");
-    if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
-    if (status.st_size == 0) refuse("is empty");
-    size_ = static_cast<std::uint64_t>(status.st_size);
-  } catch (...) {
-    ::close(descriptor_);
-    throw;
-  }
+FileStream::FileStream(std::string path) : file_(std::move(path)) {
+  if (size() == 0) refuse("is empty");
 }
-
-FileStream::~FileStream() { ::close(descriptor_); }
 
 void FileStream::fill(std::size_t count) {
   constexpr std::size_t usual_window = std::size_t{1} << 18;
@@ -54,33 +34,27 @@ void FileStream::fill(std::size_t count) {
   begin_ = 0;
   filled_ = kept;
   const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(capacity_, left()));
-  while (filled_ < wanted) {
-    const ssize_t got = ::read(descriptor_, window_.get() + filled_, wanted - filled_);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) refuse(std::string("cannot be read: ") + std::strerror(errno));
-    if (got == 0) refuse("became shorter while it was read");
-    filled_ += static_cast<std::size_t>(got);
-  }
+  file_.read(offset_ + kept, window_.get() + kept, wanted - kept);
+  filled_ = wanted;
+  if (offset_ + filled_ == size()) file_.require_end();
 }
 
 void FileStream::skip(std::uint64_t count) {
-  while (count > filled_ - begin_) {
-    count -= filled_ - begin_;
-    offset_ += filled_ - begin_;
+  const std::size_t held = filled_ - begin_;
+  if (count <= held) {
+    begin_ += static_cast<std::size_t>(count);
+  } else {
     begin_ = filled_ = 0;
-    fill(1);
   }
-  begin_ += static_cast<std::size_t>(count);
   offset_ += count;
 }
 
 void FileStream::require_end(std::uint64_t ahead) const {
   const std::uint64_t end = offset_ + ahead;
-  const std::uint64_t surplus = size_ - end;
+  const std::uint64_t surplus = size() - end;
   std::array<char, longest_surplus> bytes;
   const auto is_padding = [&] {
-    const ssize_t got = ::pread(descriptor_, bytes.data(), surplus, static_cast<off_t>(end));
-    if (got != static_cast<ssize_t>(surplus)) refuse("became shorter while it was read");
+    file_.read(end, bytes.data(), surplus);
     constexpr std::string_view padding(" \t\r\n\0", 5);
     return std::string_view(bytes.data(), surplus).find_first_not_of(padding) ==
            std::string_view::npos;
@@ -98,10 +72,6 @@ void FileStream::fail(const std::string& place, const std::string& found,
 
 void FileStream::fail_here(const std::string& found, const std::string& expected) const {
   fail("byte " + std::to_string(offset_), found, expected);
-}
-
-void FileStream::refuse(const std::string& why) const {
-  throw Error(ErrorKind::bad_file, path_ + ": " + why);
 }
 
 bool LineReader::next() {

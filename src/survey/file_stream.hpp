@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/input_file.hpp"
 #include "base/text.hpp"
 
 /// @file The bytes of a file that may be larger than memory, its lines and the numbers in them, and
@@ -27,13 +28,11 @@ class FileStream {
   /// Never waits on a pipe or device.
   /// @throws Error (bad_file) if the file is not regular, not readable or empty
   explicit FileStream(std::string path);
-  ~FileStream();
-  FileStream(const FileStream&) = delete;
-  FileStream& operator=(const FileStream&) = delete;
 
-  std::uint64_t size() const { return size_; }
+  const std::string& path() const { return file_.path(); }
+  std::uint64_t size() const { return file_.size(); }
   std::uint64_t offset() const { return offset_; }  ///< of the byte that comes next
-  std::uint64_t left() const { return size_ - offset_; }
+  std::uint64_t left() const { return size() - offset_; }
 
   /// The next `count` bytes, or all that are left, without going past them; good until the next
   /// call. @throws Error (bad_file)
@@ -52,14 +51,12 @@ class FileStream {
                          const std::string& expected) const;
   [[noreturn]] void fail_here(const std::string& found, const std::string& expected) const;
   /// @throws Error (bad_file): "file: why"
-  [[noreturn]] void refuse(const std::string& why) const;
+  [[noreturn]] void refuse(const std::string& why) const { file_.refuse(why); }
 
  private:
   void fill(std::size_t count);
 
-  std::string path_;
-  int descriptor_ = -1;
-  std::uint64_t size_ = 0;
+  InputFile file_;
   std::uint64_t offset_ = 0;  ///< of window_[begin_] in the file
   std::unique_ptr<char[]> window_;
   std::size_t begin_ = 0;

@@ -123,11 +123,10 @@ bool holds_matrix(std::string_view text) {
 }  // namespace
 
 Eigen::Matrix4d read_frame(const std::string& path) {
-  constexpr std::uint64_t largest = 1 << 20;
   FileStream file(path);
-  if (file.size() > largest) {
+  if (file.size() > most_foreign_bytes) {
     file.refuse("found " + std::to_string(file.size()) + " bytes, expected at most " +
-                std::to_string(largest) + " for a frame");
+                std::to_string(most_foreign_bytes) + " for a frame");
   }
   const std::string text(file.peek(file.size()));
   if (holds_matrix(text)) return read_matrix(file);

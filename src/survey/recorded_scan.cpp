@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 #include <excavplan/survey/depth_image.hpp>
 
@@ -27,6 +28,7 @@ constexpr std::int64_t transforms_about = one_second;         // before and afte
 constexpr std::int64_t transforms_farther = 10 * one_second;  // where that does not do
 constexpr std::int64_t longest_delay = one_second;            // of a recording behind a stamp
 constexpr std::int64_t joints_about = one_second / 2;         // before and after the time asked for
+constexpr std::int64_t longest_lag = 2 * one_second / 5;      // of a sensor's clock
 
 // ---- Transforms -------------------------------------------------------------------------------
 
@@ -42,9 +44,9 @@ struct ForScan {
   std::int64_t time = latest;  ///< static transforms are those that held then
 };
 
-/// The static ones, and those recorded in a time, if any: of a chunked file that reads all chunks
-/// of that time.
-TransformTree read_transforms(RecordingFile& recording, const TimeRange& range,
+/// The static ones, and those recorded in some times: of a chunked file that reads all chunks of
+/// these times.
+TransformTree read_transforms(RecordingFile& recording, const std::vector<TimeRange>& ranges,
                               const ForScan& scan = {}) {
   std::vector<StampedTransform> transforms;
   const auto is_known = [&](const StampedTransform& one) {
@@ -61,6 +63,7 @@ TransformTree read_transforms(RecordingFile& recording, const TimeRange& range,
   };
   const auto take = [&](const RecordedMessage& message) {
     for (StampedTransform& transform : decode_transforms(recording.path(), message)) {
+      transform.delay = time_between(transform.stamp, message.time);
       transforms.push_back(std::move(transform));
     }
     return true;
@@ -76,8 +79,9 @@ TransformTree read_transforms(RecordingFile& recording, const TimeRange& range,
     (holds_static_transforms(name) ? statics : others).push_back(name);
   }
   if (!statics.empty()) recording.visit(statics, earliest, latest, take_static);
-  if (!others.empty() && range.from <= range.to)
-    recording.visit(others, range.from, range.to, take);
+  for (const TimeRange& range : ranges) {
+    if (!others.empty()) recording.visit(others, range.from, range.to, take);
+  }
   return {recording.path(), recording.start(), std::move(transforms)};
 }
 
@@ -176,12 +180,12 @@ class ScanReader {
         target_(frame_name(query.frame)),
         heads_(read_heads(recording, topic_, query)),
         tree_(read_transforms(recording,
-                              target_.empty() && heads_.size() == 1 ? TimeRange{latest, earliest}
-                                                                    : around(transforms_about),
+                              target_.empty() && heads_.size() == 1
+                                  ? std::vector<TimeRange>()
+                                  : std::vector<TimeRange>{around(transforms_about)},
                               {topic_.name, heads_.back().time})) {
     if (!target_.empty() && !is_target_known()) {
-      tree_ =
-          read_transforms(recording, around(transforms_farther), {topic_.name, heads_.back().time});
+      tree_ = read_transforms(recording, farther(), {topic_.name, heads_.back().time});
     }
     require_steady_clock(recording, heads_);
     if (use_of(topic_.type) == MessageUse::depth) {
@@ -206,6 +210,7 @@ class ScanReader {
     if (stood && is_sensor_frame()) {
       scan.cloud.sensor_origin = Eigen::Vector3d(pose_of(first()).translation());
     }
+    add_doubts(scan.warnings);
     return scan;
   }
 
@@ -216,6 +221,14 @@ class ScanReader {
   const MessageHead& first() const { return heads_.front(); }
   TimeRange around(std::int64_t margin) const {
     return {later(first().time, -margin), later(heads_.back().time, margin)};
+  }
+  /// With the start of the recording, where what is sent once is.
+  std::vector<TimeRange> farther() const {
+    const TimeRange wide = around(transforms_farther);
+    const std::int64_t start = recording_.start();
+    const TimeRange first = {start, std::min(later(start, transforms_about), later(wide.from, -1))};
+    return first.from <= first.to ? std::vector<TimeRange>{first, wide}
+                                  : std::vector<TimeRange>{wide};
   }
   bool is_target_known() const {
     try {
@@ -256,6 +269,51 @@ class ScanReader {
            " of " + topic_.name + (one_frame ? " moved" : " became another") +
            ": name the frame into which the points are put, or a span in which it stood; frames: " +
            name_list(tree_.frames()));
+  }
+  /// From the true time of a message, by the clock of the transforms, to its stamp [ns].
+  std::int64_t lag_of(const MessageHead& head) const {
+    const std::int64_t own = time_between(head.header.stamp, head.time);
+    const auto others = tree_.delay(target_, head.header.frame, own);
+    return others ? time_between(own, *others) : 0;
+  }
+  bool is_misplaced(const MessageHead& head) const {
+    const std::int64_t lag = lag_of(head);
+    if (lag >= -longest_lag && lag <= longest_lag) return false;
+    const std::int64_t stamp = head.header.stamp;
+    const auto [from, to] = std::minmax(stamp, later(stamp, -lag));
+    return tree_.moved(target_, head.header.frame, from, to);
+  }
+  void add_doubts(std::vector<Warning>& warnings) const {
+    const std::string which = topic_.name + " at " + time_text(recording_, first().time) + ": ";
+    const auto misplaced = std::find_if(heads_.begin(), heads_.end(), [&](const MessageHead& head) {
+      return !target_.empty() && is_misplaced(head);
+    });
+    if (misplaced != heads_.end()) {
+      warnings.push_back({"clocks_differ",
+                          which + "its stamps are " + decimals(seconds_of(lag_of(*misplaced)), 3) +
+                              " s later than the clock of the transforms, and " +
+                              quoted(misplaced->header.frame) + " moved in " + quoted(target_) +
+                              " meanwhile: its points may be misplaced; set the clocks of sensor "
+                              "and transforms alike, or take a time when it stood",
+                          true});
+    }
+    if (heads_.size() > 1 && !target_.empty() &&
+        tree_.moved("", target_, first().header.stamp, heads_.back().header.stamp)) {
+      warnings.push_back(
+          {"frame_moved",
+           which + quoted(target_) + " moved in the root of its tree within the " +
+               "span, by which the ground in it is smeared: name a frame that stands "
+               "on the ground, or a span in which it stood",
+           true});
+    }
+    if (recording_.is_cut_off()) {
+      warnings.push_back(
+          {"recording_cut_off", recording_.path() +
+                                    ": its end is missing, as that of a recorder that was "
+                                    "killed: messages from " +
+                                    time_text(recording_, topic_.last) + " of " + topic_.name +
+                                    " on are lost"});
+    }
   }
   bool is_sensor_frame() const {
     const bool by_type = use_of(topic_.type) == MessageUse::depth ||
@@ -328,6 +386,7 @@ class ScanReader {
     return true;
   }
   void join(RecordedScan& scan) {
+    require_points_to_join();
     scan.merge = ScanMerge::joined;
     std::vector<Eigen::Vector3d>& all = scan.cloud.points;
     each_message([&](const MessageHead& head, std::vector<Eigen::Vector3d> points) {
@@ -337,6 +396,14 @@ class ScanReader {
       return true;
     });
     scan.cloud.width = all.size();
+  }
+  void require_points_to_join() const {
+    std::uint64_t points = 0;
+    for (const MessageHead& head : heads_) points += head.size.width * head.size.height;
+    require(points <= most_recorded_points,
+            recording_.path() + ": " + std::to_string(heads_.size()) + " messages of " +
+                topic_.name + " hold " + std::to_string(points) + " points, most of a scan are " +
+                std::to_string(most_recorded_points) + ": take a shorter span");
   }
   void put_in_target(const MessageHead& head, std::vector<Eigen::Vector3d>& points) const {
     if (target_.empty()) return;
@@ -380,7 +447,8 @@ RecordingContents describe_recording(RecordingFile& recording) {
     contents.topics.push_back(std::move(entry));
   }
   const std::int64_t start = recording.start();
-  contents.frames = read_transforms(recording, {start, later(start, transforms_about)}).frames();
+  contents.frames = read_transforms(recording, {{start, later(start, transforms_about)}}).frames();
+  contents.is_cut_off = recording.is_cut_off();
   return contents;
 }
 

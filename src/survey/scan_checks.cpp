@@ -75,9 +75,16 @@ std::optional<Warning> other_units(const OutlinedPair& pair) {
 }
 
 /// The unit that makes a bucket's volume of it; none for a volume that one digs.
-std::optional<Warning> no_dig_of_metres(double hole) {
+std::optional<Warning> no_dig_of_metres(double hole, const std::string& what) {
   constexpr double most = 1000.0;  // [m^3]; ours: five times the largest dragline's bucket, 168 m^3
   constexpr double usual = 1.0;    // [m^3], ours
+  constexpr double least = 0.001;  // [m^3], ours: a tenth of the smallest excavator's bucket
+  if (hole > 0.0 && hole < least) {
+    return Warning{"units",
+                   what + " of " + readable(hole) +
+                       " m^3 is none of a bucket: check --unit, and the depth unit of a camera",
+                   true};
+  }
   if (!(hole > most)) return std::nullopt;
   struct Unit {
     const char* word;
@@ -91,10 +98,30 @@ std::optional<Warning> no_dig_of_metres(double hole) {
     if (miss(unit) < miss(likely)) likely = unit;
   }
   return Warning{"units",
-                 "a hole of " + readable(hole) + " m^3 is none that a bucket digs; in " +
-                     likely.word + " it would be " + readable(hole * std::pow(likely.length, 3)) +
+                 what + " of " + readable(hole) + " m^3 is none of a bucket; in " + likely.word +
+                     " it would be " + readable(hole * std::pow(likely.length, 3)) +
                      " m^3: give the unit of the clouds by --unit, probably --unit " + likely.word,
                  true};
+}
+
+/// Of a machine that takes nothing out of scans, or most of them.
+std::optional<Warning> not_in_view(const OutlinedPair& pair) {
+  constexpr double most = 0.5;  // ours, of a scan
+  const bool is_told = pair.scans.before.machine || pair.scans.after.machine;
+  if (!is_told) return std::nullopt;
+  for (const ScanOutline* seen : {&pair.before, &pair.after}) {
+    const auto of_machine = static_cast<double>(seen->machine_points);
+    if (of_machine > most * (of_machine + static_cast<double>(seen->finite_points))) {
+      return Warning{"machine_pose",
+                     "more than half of the points of a scan lie in the machine as it is said to "
+                     "have stood: its pose or the frame of the scans is wrong",
+                     true};
+    }
+  }
+  if (pair.machine_points() > 0) return std::nullopt;
+  return Warning{"machine_pose",
+                 "no point lies in the machine as it is said to have stood: it is not in view, or "
+                 "its pose or the frame of the scans is wrong, and it is still in them"};
 }
 
 // ---- Frame --------------------------------------------------------------------------------------
@@ -138,6 +165,43 @@ Plane plane_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
   });
   const Eigen::Vector3d plane = normal.ldlt().solve(right);
   return {plane.y(), plane.z()};
+}
+
+/// Ground z = a + b x + c y + d x^2 + e x y + f y^2 that did not change, about its middle.
+struct Bowl {
+  double across = 0.0;   ///< 2 f [1/m]
+  double along = 0.0;    ///< 2 d
+  double twist = 0.0;    ///< e
+  double sagitta = 0.0;  ///< by the curvature, from the middle to the rim [m]
+  double rest_sd = 0.0;  ///< of the ground about it [m]
+};
+
+Bowl bowl_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
+  using Terms = Eigen::Matrix<double, 6, 1>;
+  const Rectangle extent = ground.extent();
+  const Eigen::Vector2d middle(0.5 * (extent.x_min + extent.x_max),
+                               0.5 * (extent.y_min + extent.y_max));
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  Terms right = Terms::Zero();
+  double squares = 0.0;
+  for_each_cell(zone, [&](Cell at) {
+    const double z = ground.z(at.row, at.col);
+    if (zone(at.row, at.col) >= 0 || std::isnan(z)) return;
+    const double x = ground.x(at.col) - middle.x();
+    const double y = ground.y(at.row) - middle.y();
+    Terms terms;
+    terms << 1.0, x, y, x * x, x * y, y * y;
+    normal += terms * terms.transpose();
+    right += z * terms;
+    squares += z * z;
+  });
+  const Terms found = normal.ldlt().solve(right);
+  Bowl bowl{2.0 * found(5), 2.0 * found(3), found(4), 0.0, 0.0};
+  const double half = 0.5 * std::max(extent.x_max - extent.x_min, extent.y_max - extent.y_min);
+  bowl.sagitta = 0.25 * std::abs(bowl.across + bowl.along) * half * half;
+  const double left = squares - found.dot(right);
+  bowl.rest_sd = std::sqrt(std::max(0.0, left) / std::max(1.0, normal(0, 0)));
+  return bowl;
 }
 
 /// Slope of the walls of the hole between neighbouring cells, and whether they are so wide that the
@@ -250,7 +314,8 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
 }  // namespace
 
 std::vector<Warning> check_outlines(const OutlinedPair& pair) {
-  std::vector<Warning> found;
+  std::vector<Warning> found = pair.scans.before.doubts;
+  found.insert(found.end(), pair.scans.after.doubts.begin(), pair.scans.after.doubts.end());
   const auto add = [&found](std::optional<Warning> warning) {
     if (warning) found.push_back(std::move(*warning));
   };
@@ -258,6 +323,7 @@ std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   add(other_units(pair));
   const auto before = not_up(pair.before, pair.scans.before);
   add(before ? before : not_up(pair.after, pair.scans.after));
+  add(not_in_view(pair));
   return found;
 }
 
@@ -302,16 +368,58 @@ std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfac
            ends}};
 }
 
+std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeChange& change) {
+  constexpr double most_hidden = 0.05;  // ours, of a zone's cells: a heap's top is not guessed
+  constexpr double least_volume = 0.1;  // ours, of its kind
+  if (machine_points == 0) return {};
+  for (const ChangeZone& zone : change.zones) {
+    const bool is_dig = zone.kind == ZoneKind::dig;
+    if (!is_dig && zone.kind != ZoneKind::dump) continue;
+    const double all = is_dig ? change.excavated.value : change.dumped.value;
+    if (zone.unknown_share < most_hidden || std::abs(zone.volume.value) < least_volume * all) {
+      continue;
+    }
+    return {{"machine_pose",
+             readable(100.0 * zone.unknown_share, 2) + " % of the " + (is_dig ? "hole" : "heap") +
+                 " are unseen with the machine taken out, " + std::to_string(machine_points) +
+                 " points: its pose is wrong, or it hides what counts; scan with the machine aside",
+             true}};
+  }
+  return {};
+}
+
+std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area) {
+  constexpr double longest = 15.0;  // [m], ours: cameras stand nearer
+  constexpr double round = 0.35;    // ours: of the mean curvature, by which both differ from it
+  constexpr double smooth = 0.15;   // ours: of the sagitta
+  const Bowl bowl = bowl_of_stable(surfaces.before.height, area.zone);
+  const double mean = 0.5 * (bowl.across + bowl.along);
+  const double apart = std::hypot(0.5 * (bowl.across - bowl.along), bowl.twist);
+  if (!(std::abs(mean) * longest > 1.0) || apart > round * std::abs(mean) ||
+      bowl.rest_sd > smooth * bowl.sagitta) {
+    return {};
+  }
+  return {
+      {"curved_ground",
+       "the ground is part of a ball of " + readable(1.0 / std::abs(mean), 2) +
+           " m radius, as where ranges are read as depths or depths as ranges: lengths are wrong "
+           "by another factor in each part of the scan",
+       true}};
+}
+
 std::vector<Warning> check_volumes(const VolumeChange& change) {
   std::vector<Warning> found;
-  if (auto warning = no_dig_of_metres(change.excavated.value)) found.push_back(std::move(*warning));
+  const bool is_dig = change.excavated.value > 0.0;
+  auto units = is_dig ? no_dig_of_metres(change.excavated.value, "a hole")
+                      : no_dig_of_metres(change.dumped.value, "a heap");
+  if (units) found.push_back(std::move(*units));
   if (auto warning = exchanged(change)) found.push_back(std::move(*warning));
   return found;
 }
 
 void refuse_swapped(const VolumeChange& change, const std::string& names) {
   const auto refuse = [&](const std::string& message) {
-    const auto units = no_dig_of_metres(change.excavated.value);
+    const auto units = no_dig_of_metres(change.excavated.value, "a hole");
     throw Error(ErrorKind::bad_file,
                 names + ": " + message + (units ? "; " + units->message : std::string()));
   };

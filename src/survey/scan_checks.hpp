@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,12 @@ std::vector<Warning> check_registration(const RegisteredPair& pair);
 /// @param area of the change that was found in `surfaces`
 std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfaces,
                                 const VolumeChange& change, const AreaChange& area);
+
+/// Of a machine that was taken out of the scans and hid a part of hole or heap.
+std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeChange& change);
+
+/// Of ground that is bent like a ball about the sensor.
+std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area);
 
 /// Code `units`: a hole that no bucket digs. Code `looks_swapped`: a heap steeper than loose soil
 /// stands and a gentle hole, or a heap steeper than the hole and a loss beside it. Both end trust.

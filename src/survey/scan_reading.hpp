@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace excavplan {
 
 /// Passes on the points of a scan in the site frame, without those outside its area or of the
 /// machine; those that are not finite may be among them. The same on every call.
+/// @return how many were of the machine
 /// @throws Error (bad_file)
-void visit_scan(const Scan& scan, const PointVisitor& visit);
+std::uint64_t visit_scan(const Scan& scan, const PointVisitor& visit);
 
 /// What a scan has from one place of the sensor.
 struct Standpoint {
@@ -42,6 +44,7 @@ struct OutlinedPair {
   /// Of the survey: no larger than points allow, as walls and narrow zones are lost in large ones.
   double cell_size() const { return survey_cell({before, after}); }
   double registration_cell() const { return cell_for({before, after}); }
+  std::uint64_t machine_points() const { return before.machine_points + after.machine_points; }
   std::string names() const { return name_of(scans.before) + ", " + name_of(scans.after); }
 };
 

@@ -48,7 +48,8 @@ void require_points(const Scan& scan, std::size_t points, const Rectangle& exten
 }  // namespace
 
 ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
-  require(cell_size > 0.0, "terrain from a scan: cell_size", cell_size, "> 0 m");
+  require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
+          "> 0 m and finite");
   const Cloud near = cropped(scan, extent);
   require_points(scan, near.points.size(), extent);
   const double density = summarise(near).density;
@@ -57,6 +58,7 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
   const HeightMap map = rasterise(near, plan_extent(near), raster);
   const double widest_gap = std::max(widest_filled, widest_filled_cells * raster.cell_size);
   ScannedTerrain result{undisturbed(resampled(map, extent, cell_size, widest_gap)), {}};
+  result.warnings = scan.doubts;
   if (const double unseen = unseen_area(result.terrain.bank); unseen > 0.0) {
     result.warnings.push_back(
         {"unseen_ground", name_of(scan) + ": the scan does not see " + readable(unseen, 2) +

@@ -71,9 +71,8 @@ TEST_F(DataFiles, WhatIsNowhereIsAnErrorThatNamesEveryFolder) {
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_file);
     const std::string text = error.what();
-    EXPECT_EQ(text.rfind("soils/chalk.json: not found in any of\n  " + named + "\n", 0), 0U)
-        << text;
-    EXPECT_NE(text.find("\n  /nowhere/data\n"), std::string::npos) << text;
+    EXPECT_EQ(text.rfind("soils/chalk.json: not found in any of " + named + ", ", 0), 0U) << text;
+    EXPECT_NE(text.find(", /nowhere/data, "), std::string::npos) << text;
     EXPECT_NE(text.find("/share/excavplan"), std::string::npos) << text;
   }
 }

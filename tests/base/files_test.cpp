@@ -4,32 +4,43 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <array>
+#include <csignal>
 #include <filesystem>
 
+#include "base/input_file.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
 /// @file
-/// What is found before long work to be a place that cannot be written to.
+/// Files that are read whole or refused, written whole or not at all, and what is found before long
+/// work to be a place that cannot be written to.
 
 namespace excavplan::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Writable : public testing::Test {
+class Files : public testing::Test {
  protected:
-  std::string reason(const std::string& path) const {
-    return error_about([&] { require_writable(path); }, path);
-  }
   std::size_t files() const {
     const fs::directory_iterator all(folder_.file(""));
     return static_cast<std::size_t>(std::distance(begin(all), end(all)));
   }
 
   const TemporaryFolder folder_;
+};
+
+class Writable : public Files {
+ protected:
+  std::string reason(const std::string& path) const {
+    return error_about([&] { require_writable(path); }, path);
+  }
 };
 
 TEST_F(Writable, PlacesAreLeftAsTheyAre) {
@@ -66,6 +77,177 @@ TEST_F(Writable, AWorkingFolderThatWasDeletedIsRefused) {
   fs::remove(folder_.file("gone"));
   EXPECT_EQ(reason("file"), "cannot be written: No such file or directory");
   fs::current_path(before);
+}
+
+class Reading : public Files {
+ protected:
+  static std::string reason(const std::string& path, std::uint64_t most = most_settings_bytes) {
+    return error_about([&] { read_file(path, most); }, path);
+  }
+};
+
+TEST_F(Reading, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
+  ASSERT_EQ(::mkfifo(folder_.file("pipe").c_str(), 0600), 0);
+  fs::create_symlink("loop", folder_.file("loop"));
+  EXPECT_EQ(reason(folder_.file("pipe")), "is not a regular file");
+  EXPECT_EQ(reason(folder_.file("")), "is not a regular file");
+  EXPECT_EQ(reason("/dev/zero"), "is not a regular file");
+  EXPECT_EQ(reason(folder_.file("none")), "cannot be opened: No such file or directory");
+  EXPECT_EQ(reason(folder_.file("loop")), "cannot be opened: Too many levels of symbolic links");
+  EXPECT_EQ(reason(std::string(300, 'a')), "cannot be opened: File name too long");
+}
+
+TEST_F(Reading, ContentIsWhatWasWritten) {
+  const std::string content = std::string("a\0\r\n\xff", 5) + std::string(1000000, 'b');
+  EXPECT_EQ(read_file(folder_.write("file", content)), content);
+  EXPECT_EQ(read_file(folder_.write("empty", "")), "");
+  fs::create_symlink(folder_.file("file"), folder_.file("link"));
+  EXPECT_EQ(read_file(folder_.file("link")), content);
+}
+
+TEST_F(Reading, AReadErrorIsNoEnd) {
+  EXPECT_EQ(reason("/proc/self/mem"), "cannot be read: Input/output error");
+}
+
+TEST_F(Reading, AFileThatChangesItsSizeIsRefused) {
+  EXPECT_EQ(reason("/proc/self/status"), "became longer while it was read") << "it states 0 bytes";
+  const std::string path = folder_.write("file", "0123456789");
+  const InputFile file(path);
+  std::array<char, 10> bytes{};
+  file.read(0, bytes.data(), bytes.size());
+  EXPECT_NO_THROW(file.require_end());
+  fs::resize_file(path, 11);
+  EXPECT_EQ(error_about([&] { file.require_end(); }, path), "became longer while it was read");
+  fs::resize_file(path, 9);
+  EXPECT_EQ(error_about([&] { file.read(0, bytes.data(), bytes.size()); }, path),
+            "became shorter while it was read");
+}
+
+TEST_F(Reading, FilesAboveTheCeilingAreRefusedBeforeTheyAreRead) {
+  const std::string path = folder_.write("file", "1234");
+  EXPECT_EQ(reason(path, 4), "no error");
+  EXPECT_EQ(reason(path, 3), "found 4 bytes, expected at most 3");
+  fs::resize_file(path, std::uintmax_t{3} << 30);  // with no block on the disk
+  EXPECT_EQ(reason(path), "found 3221225472 bytes, expected at most 67108864");
+}
+
+class Writing : public Files {
+ protected:
+  static mode_t mode(const std::string& path) {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0 ? status.st_mode & 07777U : 0;
+  }
+  static ino_t inode(const std::string& path) {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
+  }
+};
+
+TEST_F(Writing, AFileIsReplacedWholeAndKeepsItsMode) {
+  const std::string path = folder_.write("file", "a longer old content");
+  for (const mode_t kept : {0600U, 0664U, 0640U}) {
+    ASSERT_EQ(::chmod(path.c_str(), kept), 0);
+    const ino_t before = inode(path);
+    write_file(path, "new");
+    EXPECT_EQ(content_of(path), "new");
+    EXPECT_EQ(mode(path), kept);
+    EXPECT_NE(inode(path), before);
+  }
+  const mode_t before = ::umask(027);
+  write_file(folder_.file("fresh"), "");
+  ::umask(before);
+  EXPECT_EQ(mode(folder_.file("fresh")), 0640U);
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(Writing, WhatALinkLeadsToIsReplacedWhereItLies) {
+  fs::create_directory(folder_.file("data"));
+  const std::string target = folder_.write("data/target", "old");
+  fs::create_symlink("data/target", folder_.file("near"));
+  fs::create_symlink("../near", folder_.file("data/far"));
+  const ino_t before = inode(target);
+  write_file(folder_.file("data/far"), "new");
+  EXPECT_EQ(content_of(target), "new");
+  EXPECT_NE(inode(target), before);
+  EXPECT_TRUE(fs::is_symlink(folder_.file("near")));
+  EXPECT_TRUE(fs::is_symlink(folder_.file("data/far")));
+  fs::create_symlink("data/made", folder_.file("dangling"));
+  write_file(folder_.file("dangling"), "made");
+  EXPECT_EQ(content_of(folder_.file("data/made")), "made");
+  EXPECT_TRUE(fs::is_symlink(folder_.file("dangling")));
+  EXPECT_EQ(files(), 3U);
+}
+
+TEST_F(Writing, AFullDiskLeavesTheOldContentAndNothingElse) {
+  const std::string path = folder_.write("file", "old");
+  fs::create_symlink("file", folder_.file("link"));
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  struct rlimit limit = before;
+  limit.rlim_cur = 8192;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  std::array<std::string, 2> reasons;
+  const std::string content(10000, 'x');
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string name = folder_.file(i == 0 ? "file" : "link");
+    reasons[i] = error_about([&] { write_file(name, content); }, name);
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  for (const std::string& reason : reasons) EXPECT_EQ(reason, "cannot be written: File too large");
+  EXPECT_EQ(content_of(path), "old");
+  EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(Writing, PlacesThatCannotBeWrittenAreNamedWithTheReason) {
+  const auto reason = [](const std::string& path) {
+    return error_about([&] { write_file(path, "x"); }, path);
+  };
+  fs::create_symlink("loop", folder_.file("loop"));
+  EXPECT_EQ(reason(folder_.file("none/file")), "cannot be written: No such file or directory");
+  EXPECT_EQ(reason(folder_.file("loop")), "cannot be written: Too many levels of symbolic links");
+  EXPECT_EQ(reason(folder_.file("")), "cannot be written: Is a directory");
+  EXPECT_EQ(reason("/dev/full"), "cannot be written: No space left on device");
+  EXPECT_EQ(reason(folder_.file(std::string(300, 'a'))), "cannot be written: File name too long");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(Writing, NamesAsLongAsTheyMayBeAreWritten) {
+  const std::string path = folder_.file(std::string(255, 'a'));
+  write_file(path, "x");
+  EXPECT_EQ(content_of(path), "x");
+  EXPECT_NO_THROW(require_writable(path));
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(Writing, WhatAKilledRunLeftIsNoHindrance) {
+  char host[65] = {};
+  ASSERT_EQ(::gethostname(host, sizeof host - 1), 0);
+  const std::string left = "file.part-" + std::string(host) + "-" + std::to_string(::gettid());
+  folder_.write(left, "half of a much longer file");
+  write_file(folder_.file("file"), "whole");
+  EXPECT_EQ(content_of(folder_.file("file")), "whole");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(Writing, PipesAndOpenFilesAreWrittenTo) {
+  const std::string pipe = folder_.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  write_file(pipe, "through");
+  std::array<char, 16> bytes{};
+  EXPECT_EQ(::read(reader, bytes.data(), bytes.size()), 7);
+  ::close(reader);
+  EXPECT_STREQ(bytes.data(), "through");
+  const std::string path = folder_.write("file", "a longer old content");
+  const ino_t before = inode(path);
+  const int open = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  write_file("/dev/fd/" + std::to_string(open), "new");
+  ::close(open);
+  EXPECT_EQ(content_of(path), "new");
+  EXPECT_EQ(inode(path), before);
+  EXPECT_EQ(files(), 2U);
 }
 
 }  // namespace

@@ -65,7 +65,27 @@ TEST(Table, FilesWithoutRowsAreRefused) {
     EXPECT_EQ(refusal(content), "t.csv: expected a line of column names and lines of numbers");
   }
   EXPECT_EQ(error_of([] { Table::read("/no/such.csv"); }, ErrorKind::bad_file),
-            "/no/such.csv: no such file, or not readable");
+            "/no/such.csv: cannot be opened: No such file or directory");
+}
+
+TEST(Table, WhatAFileHoldsIsShownShortAndSafe) {
+  EXPECT_EQ(refusal("k,d\x1b[2J\n1,x\xff\n"), "t.csv: line 2: d?[2J is 'x?', expected a number");
+  EXPECT_EQ(refusal("a\x1b,a\x1b\n"), "t.csv: line 1: column 'a?' appears twice");
+  const std::string huge(10000000, 'k');
+  for (const std::string& content :
+       {huge + "\n1\n", "k\n" + huge, huge + "," + huge, "a," + huge + "\n1,x"}) {
+    EXPECT_LE(refusal(content).size(), Error::longest_message);
+  }
+}
+
+TEST(Table, MoreThan1000ColumnsAreRefused) {
+  std::string names = "k";
+  for (int i = 1; i < 1000; ++i) names += ",c" + std::to_string(i);
+  EXPECT_EQ(refusal(names + "\n1\n"), "t.csv: line 2: found 1 fields, expected 1000");
+  EXPECT_EQ(refusal(names + ",more\n"),
+            "t.csv: line 1: found more than 1000 columns, expected at most that");
+  EXPECT_EQ(refusal("k" + std::string(10000000, ',') + "\n"),
+            "t.csv: line 1: found more than 1000 columns, expected at most that");
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include <sys/stat.h>
+
 #include <atomic>
 #include <cmath>
 #include <filesystem>
@@ -205,6 +207,13 @@ TEST(PathLibrary, BadFilesAreRefusedByName) {
   EXPECT_EQ(with("\"seed\": 7", "\"seed\": 7, \"seed\": 8"), ": key 'seed' appears twice");
   EXPECT_NE(error_in(good.substr(0, good.size() / 2)).find("not valid JSON"), std::string::npos);
   EXPECT_THROW(load_path_library("/nowhere/library.json"), Error);
+}
+
+TEST(PathLibrary, NamesThatAreNotUtf8AreNotWritten) {
+  PathLibrary library = small_library();
+  library.machine = "zx\xff";
+  const std::string text = test::error_of([&] { to_json(library); });
+  EXPECT_NE(text.find("not UTF-8"), std::string::npos) << text;
 }
 
 TEST(PathLibrary, EveryChangedByteIsNoticed) {
@@ -459,6 +468,30 @@ TEST_F(LibraryBuilding, DamagedEntriesAreNamedAndComputedAnew) {
     EXPECT_EQ(note.find(options.folder), 0U) << note;
     EXPECT_NE(note.find("it is computed again"), std::string::npos) << note;
   }
+}
+
+TEST_F(LibraryBuilding, AnEntryThatIsAPipeIsRefusedInsteadOfWaitedFor) {
+  const LibraryGrid cells = grid({0});
+  const TemporaryFolder folder;
+  LibraryBuildOptions options = quick();
+  options.folder = folder.file("cells");
+  build(cells, options);
+  const std::string entry = fs::directory_iterator(options.folder)->path();
+  fs::remove(entry);
+  ASSERT_EQ(::mkfifo(entry.c_str(), 0600), 0);
+  EXPECT_EQ(test::error_about([&] { build(cells, options); }, entry), "is not a regular file");
+}
+
+TEST_F(LibraryBuilding, AWorkerRefusesWhatIsNoTaskOfItsGrid) {
+  const LibraryWorker worker = library_worker(grid({0}), quick().search);
+  const auto refusal = [&](const std::string& task) {
+    return test::error_about([&] { worker(task); }, "task");
+  };
+  EXPECT_EQ(refusal("{").rfind("not valid JSON: ", 0), 0U);
+  EXPECT_NE(refusal("{}").find("'place' not found"), std::string::npos);
+  EXPECT_EQ(refusal(R"({"place": {"machine": 1, "soil": 0, "slope": 0, "density_percent": 0},
+                        "digs": [], "starts": [], "expected": 0, "known": 0})"),
+            "is of another grid than this worker's");
 }
 
 TEST_F(LibraryBuilding, EntriesOfAnotherSearchAreNotTaken) {

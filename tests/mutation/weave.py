@@ -60,7 +60,10 @@ def without_constexpr(text, at):
     """The declaration that ends at `at` as one of a constant that is set at run time."""
     begin = max(text.rfind(mark, 0, at) for mark in ";{}") + 1
     head = text[begin:at]
-    if "=" not in head:  # a body, not a constant
+    if "=" not in head:  # in a table, or in a body
+        table = text.rfind("\nconstexpr ", 0, at)
+        if table >= 0 and ";\n" not in text[table:at]:
+            return text[:table] + text[table:].replace("constexpr", "static const", 1)
         return text
     in_class = re.search(r"\n  static constexpr", head)
     head = head.replace("inline constexpr", "inline const")

@@ -3,56 +3,15 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
+#include "support/png_bytes.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
 /// A depth image and what depth-to-cloud needs with it.
 
 namespace excavplan::test {
-
-inline std::string big_endian(std::uint32_t value) {
-  std::string bytes;
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xffU);
-  return bytes;
-}
-
-inline std::string png_chunk(const std::string& content) {
-  std::uint32_t crc = 0xffffffffU;
-  for (const char c : content) {
-    crc ^= static_cast<unsigned char>(c);
-    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1U ^ (crc & 1U ? 0xedb88320U : 0U);
-  }
-  return big_endian(static_cast<std::uint32_t>(content.size() - 4)) + content + big_endian(~crc);
-}
-
-/// A 16-bit greyscale PNG; the pixels stand in one stored block, so at most 65535 bytes of them.
-inline std::string png_of(std::uint32_t width, const std::vector<std::uint16_t>& pixels) {
-  std::string rows;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (i % width == 0) rows += '\0';  // no filter
-    rows += static_cast<char>(pixels[i] >> 8U);
-    rows += static_cast<char>(pixels[i] & 0xffU);
-  }
-  std::uint32_t a = 1;
-  std::uint32_t b = 0;
-  for (const char c : rows) {
-    a = (a + static_cast<unsigned char>(c)) % 65521U;
-    b = (b + a) % 65521U;
-  }
-  const auto size = static_cast<std::uint32_t>(rows.size());
-  std::string stored = {'\x78', '\x01', '\x01'};
-  for (const std::uint32_t n : {size, ~size}) {
-    stored += static_cast<char>(n & 0xffU);
-    stored += static_cast<char>(n >> 8U & 0xffU);
-  }
-  const auto height = static_cast<std::uint32_t>(pixels.size()) / width;
-  const std::string kind = {16, 0, 0, 0, 0};
-  return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR" + big_endian(width) + big_endian(height) + kind) +
-         png_chunk("IDAT" + stored + rows + big_endian(b << 16U | a)) + png_chunk("IEND");
-}
 
 inline const char* const intrinsics =
     R"({"format": "excavplan-depth-intrinsics", "version": 1, "fx": 40, "fy": 50, "cx": 8, "cy": 6})";

@@ -740,6 +740,16 @@ TEST(WriteCloud, RoundTripIsExact) {
   }
 }
 
+TEST(WriteCloud, ACloudWithoutPointsIsReadBack) {
+  for (const CloudFormat& format : all_formats) {
+    const TempFile file;
+    write_cloud(file.path(), Cloud{}, format);
+    const Cloud back = read_cloud(file.path());
+    EXPECT_TRUE(back.points.empty()) << format.name;
+    EXPECT_EQ(back.width * back.height, 0U) << format.name;
+  }
+}
+
 TEST(WriteCloud, TextKeepsEveryDigit) {
   const Cloud cloud = sample_cloud(1.0, true);
   for (const auto& format :
@@ -787,7 +797,7 @@ TEST(WriteCloud, AFileThatCannotBeWrittenIsAnError) {
   const string path = "/no/such/folder/a.pcd";
   EXPECT_EQ(
       error_about([&] { write_cloud(path, sample_cloud(1.0, false), CloudFormat{"xyz"}); }, path),
-      "cannot be written");
+      "cannot be written: No such file or directory");
 }
 
 TEST(WriteCloud, AFormatThatIsNoneIsAnError) {

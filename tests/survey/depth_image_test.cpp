@@ -22,6 +22,7 @@
 #include <excavplan/error.hpp>
 #include "base/random.hpp"
 
+#include "support/depth_png.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
@@ -172,7 +173,7 @@ TEST_F(DepthFrames, PointAtAPixelIsTheMedianOfItsNeighboursOnItsRay) {
 }
 
 TEST_F(DepthImage, OtherFilesAreRefused) {
-  EXPECT_EQ(image_error(), "no such file, or not readable");
+  EXPECT_EQ(image_error(), "cannot be opened: No such file or directory");
   write(cv::Mat(2, 3, CV_8UC1, cv::Scalar(7)));
   EXPECT_EQ(image_error(),
             "found 8 bits of colour type 0, expected a 16-bit single-channel PNG image");
@@ -205,6 +206,91 @@ TEST_F(DepthImage, DamagedFilesAreRefused) {
   huge[16] = huge[20] = '\x7f';
   write(huge);
   EXPECT_NE(image_error().find("pixels, expected"), string::npos);
+}
+
+/// With its sums right, whatever stands in it.
+string png_with(const string& header, const string& packed, const string& between = "") {
+  return "\x89PNG\r\n\x1a\n" + test::png_chunk("IHDR" + header) + between +
+         test::png_chunk("IDAT" + packed) + test::png_chunk("IEND");
+}
+
+string header_of(std::uint32_t width, std::uint32_t height, const string& kind) {
+  return test::big_endian(width) + test::big_endian(height) + kind;
+}
+
+/// Packed data of a whole image.
+string packed_of(const string& png) {
+  const auto at = png.find("IDAT");
+  const auto byte = [&](std::size_t i) {
+    return static_cast<std::size_t>(static_cast<unsigned char>(png[at - 4 + i]));
+  };
+  return png.substr(at + 4, byte(0) << 24U | byte(1) << 16U | byte(2) << 8U | byte(3));
+}
+
+class DepthPng : public DepthImage {
+ protected:
+  /// What is said of a file, here and on the console.
+  string said(const string& content) {
+    write(content);
+    testing::internal::CaptureStderr();
+    const string error = image_error();
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    const string expected = ", expected a 16-bit single-channel PNG image";
+    const auto at = error.rfind(expected);
+    return at == string::npos ? error : error.substr(0, at);
+  }
+
+  const string kind_ = {16, 0, 0, 0, 0};
+  const string whole_ = test::png_of(3, {1, 2, 3, 4, 5, 6});
+};
+
+TEST_F(DepthPng, WhatIsWrongWithRightSumsIsRefusedInSilence) {
+  const string packed = packed_of(whole_);
+  const string header = header_of(3, 2, kind_);
+  EXPECT_EQ(said(png_with(header, packed)), "no error");
+  for (std::size_t i = 0; i < packed.size(); ++i) {
+    string flipped = packed;
+    flipped[i] = static_cast<char>(flipped[i] ^ 1);
+    EXPECT_EQ(said(png_with(header, flipped)), "found damaged pixels") << i;
+    EXPECT_EQ(said(png_with(header, packed.substr(0, i))), "found damaged pixels") << i;
+  }
+  EXPECT_EQ(said(png_with(header, packed + "x")), "found damaged pixels");
+  EXPECT_EQ(said(png_with(header_of(3, 3, kind_), packed)), "found damaged pixels");
+  EXPECT_EQ(said(png_with(header_of(2, 2, kind_), packed)), "found damaged pixels");
+  EXPECT_EQ(said(png_with(header_of(3, 0, kind_), packed)), "found a damaged header");
+  EXPECT_EQ(said(png_with(header_of(3, 2, {16, 0, 1, 0, 0}), packed)), "found a damaged header");
+  EXPECT_EQ(said(png_with(header_of(3, 2, {16, 0, 0, 0, 2}), packed)), "found a damaged header");
+  const string palette = test::png_chunk("PLTE" + string(6, 'x'));
+  EXPECT_EQ(said(png_with(header, packed, palette)), "found a chunk 'PLTE'");
+}
+
+TEST_F(DepthPng, ChunksThatAreNotNeededDoNotMatter) {
+  const string odd = test::png_chunk("gAMAxx") + test::png_chunk("iCCPz\x01") +
+                     test::png_chunk("tRNS") + test::png_chunk("sBITtoo many");
+  EXPECT_EQ(said(png_with(header_of(3, 2, kind_), packed_of(whole_), odd)), "no error");
+  EXPECT_EQ(depth_image_to_cloud(path_, DepthIntrinsics{1.0, 1.0, 0.0, 0.0, 1.0}).points[4].z(),
+            5.0);
+}
+
+TEST_F(DepthPng, InterlacedImagesAreRead) {
+  // 3 x 2 in the passes of Adam7: (0, 0); (2, 0); (1, 0); row 1.
+  const string rows = {0, 0, 1, 0, 0, 3, 0, 0, 2, 0, 0, 4, 0, 5, 0, 6};
+  EXPECT_EQ(said(png_with(header_of(3, 2, {16, 0, 0, 0, 1}), test::zlib_stored(rows))), "no error");
+  const auto points = depth_image_to_cloud(path_, {1.0, 1.0, 0.0, 0.0, 1.0}).points;
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(points[i].z(), static_cast<double>(i + 1));
+}
+
+TEST_F(DepthPng, PixelsBeyondTheCeilingAreRefusedBeforeTheyAreUnpacked) {
+  const string limit = " pixels, expected at most 65535 a side and 16777216 in all";
+  EXPECT_EQ(said(png_with(header_of(4097, 4096, kind_), "")), "found 4097 x 4096" + limit);
+  EXPECT_EQ(said(png_with(header_of(65536, 1, kind_), "")), "found 65536 x 1" + limit);
+  EXPECT_EQ(said(png_with(header_of(4096, 4096, kind_), "")), "found damaged pixels");
+  write(whole_);
+  const std::vector<string> many(10000, path_);
+  EXPECT_NO_THROW(average_depth_images({path_, path_}, camera_));
+  write(cv::Mat(250, 201, CV_16UC1, cv::Scalar(0)));
+  EXPECT_EQ(error_of([&] { average_depth_images(many, camera_); }, ErrorKind::bad_input),
+            "depth images: 10000 frames of 50250 pixels, must be at most 500000000 in all");
 }
 
 TEST_F(DepthImage, IntrinsicsOutOfRangeAreRefused) {

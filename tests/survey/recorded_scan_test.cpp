@@ -351,7 +351,7 @@ TEST(RecordedScan, AMissingTransformNamesTheFrames) {
   add_cloud(recording, 20000 * ms, {{1.0, 0.0, 0.0}});
   EXPECT_EQ(
       error_of_read(recording, query_of("/points", 19.0, 0.0, "map")),
-      "transform of 'base' in 'map' at 20.000 s: found it from 10.000 s to 10.000 s, expected "
+      "transform of 'base' in 'map' at 20.000 s: found it from 0.000 s to 10.000 s, expected "
       "it at that time");
 }
 

@@ -306,7 +306,7 @@ TEST_F(MeasureEfficiency, RunsOfTwoKindsAreNotCompared) {
 
 TEST_F(MeasureEfficiency, MissingAndForeignFilesAreNamed) {
   EXPECT_EQ(refusal(3, {folder.file("no.csv"), "--mass", "1"}),
-            "no.csv: no such file, or not readable");
+            "no.csv: cannot be opened: No such file or directory");
   const std::string a = log("a.csv", "power_w", "0,1\n1,1\n");
   EXPECT_EQ(refusal(3, {a, "--dump-before", a, "--dump-after", a}),
             "a.csv: line 1: found 'time_s,power_w', expected numbers, or names of columns with x, "

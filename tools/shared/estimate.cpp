@@ -181,7 +181,9 @@ nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
 }
 
 nlohmann::ordered_json survey_json(const DensityEstimate& estimate) {
-  nlohmann::ordered_json json = {{"cell_m", estimate.cell_size}, {"registration", nullptr}};
+  nlohmann::ordered_json json = {{"cell_m", estimate.cell_size},
+                                 {"machine_points", estimate.machine_points},
+                                 {"registration", nullptr}};
   if (estimate.registration) {
     json["registration"] = {{"dig", registration_json(estimate.registration)},
                             {"dump", registration_json(estimate.dump_registration)}};

@@ -7,6 +7,7 @@
 #include <excavplan/error.hpp>
 
 #include "base/files.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 nlohmann::ordered_json library_json(const PathLibrary& library) {
-  auto json = nlohmann::ordered_json::parse(to_json(library));
+  auto json = parse_ordered_json("the library", to_json(library));
   for (const char* key : {"format", "version", "checksum"}) json.erase(key);
   return json;
 }
@@ -67,7 +68,7 @@ Outcome written_libraries(const std::vector<PathLibrary>& libraries, const std::
     add_lines(library, out, outcome);
     return outcome;
   }
-  fs::create_directories(out);
+  make_folder(out);
   int evaluations = 0;
   for (const PathLibrary& library : libraries) {
     const std::string file = out + "/" + file_name(library);

@@ -9,6 +9,7 @@
 #include <excavplan/error.hpp>
 
 #include "base/files.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "shared/arguments.hpp"
 #include "shared/goal_inputs.hpp"
@@ -25,7 +26,7 @@ double sd_in(const nlohmann::json& result, const std::string& file) {
   if (field == result.end() || field->is_null()) return 0.0;
   if (field->is_number() && field->get<double>() >= 0.0) return field->get<double>();
   throw Error(ErrorKind::bad_file,
-              file + ": density_sd_percent must be a number of at least 0, it is " + field->dump());
+              file + ": density_sd_percent must be a number of at least 0, it is " + shown(*field));
 }
 
 nlohmann::ordered_json search_json(const PlanSearch& search, const DigGoalInfo& goal) {
@@ -112,16 +113,23 @@ std::string source_line(const DigPlan& plan) {
   return "source       " + std::string(name(plan.method)) + digs + "; start: " + plan.start_rule;
 }
 
+/// An estimate-density with --soil unknown.
+bool is_of_any_soil(const std::string& file) {
+  const nlohmann::json json = parse_json(file, read_file(file));
+  return json.is_object() && json.value("law", nlohmann::json()) == "any soil";
+}
+
 /// From (x, 0) to the nearest hole of an estimate [m]; 0 if it states none.
 double distance_to_hole(double x, const std::string& file) {
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const nlohmann::json json = parse_json(file, read_file(file));
   double least = std::numeric_limits<double>::infinity();
+  if (!json.is_object()) return 0.0;
   for (const auto& zone : json.value("zones", nlohmann::json())) {
     if (!zone.is_object() || zone.value("kind", nlohmann::json()) != "dig") continue;
     const nlohmann::json extent = zone.value("extent_m", nlohmann::json());
     const bool numbers = std::all_of(extent.begin(), extent.end(),
                                      [](const nlohmann::json& edge) { return edge.is_number(); });
-    if (extent.size() != 4 || !numbers) continue;
+    if (!extent.is_array() || extent.size() != 4 || !numbers) continue;
     const double y = std::max({extent[1].get<double>(), -extent[3].get<double>(), 0.0});
     const double beyond = std::max({extent[0].get<double>() - x, x - extent[2].get<double>(), 0.0});
     least = std::min(least, std::hypot(beyond, y));
@@ -130,13 +138,13 @@ double distance_to_hole(double x, const std::string& file) {
 }
 
 GroundDensity read_density(const std::string& file) {
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const nlohmann::json json = parse_json(file, read_file(file));
   const auto field = json.is_object() ? json.find("density_percent") : json.end();
   const bool there = json.is_object() && field != json.end();
   if (!there || !field->is_number() ||
       !(field->get<double>() >= 0.0 && field->get<double>() <= 100.0)) {
     throw Error(ErrorKind::bad_file, file + ": density_percent must be a number in 0 .. 100" +
-                                         (there ? ", it is " + field->dump() : ", it is missing") +
+                                         (there ? ", it is " + shown(*field) : ", it is missing") +
                                          "; expected a result of estimate-density --json");
   }
   GroundDensity density(field->get<double>(), sd_in(json, file));
@@ -178,6 +186,12 @@ std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& inpu
                         *input.file + ": the density was measured " + readable(away) +
                             " m from where this dig begins; it holds for ground near its hole that "
                             "is of the same soil"});
+  }
+  if (input.file && is_of_any_soil(*input.file)) {
+    warnings.push_back({"density_of_unknown_soil",
+                        *input.file +
+                            ": the soil was not known: its density is the mean over all shipped "
+                            "soils, the dig is planned in one of them"});
   }
   if (!plan.reason.empty()) warnings.push_back({"no_dig", reason_of(plan)});
   for (Warning& warning : warnings) {

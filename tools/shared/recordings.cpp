@@ -15,6 +15,8 @@
 namespace excavplan::tools {
 namespace {
 
+constexpr std::size_t longest_name = 100;  // of a frame in a line [byte]
+
 const char* name_of(ScanMerge merge) {
   switch (merge) {
     case ScanMerge::single:
@@ -36,14 +38,7 @@ std::string line_of(const RecordedScan& scan) {
   line += " s";
   if (scan.merge != ScanMerge::single) line += std::string(", ") + name_of(scan.merge);
   if (scan.frame_sd > 0.0) line += ", one frame to " + readable(1e3 * scan.frame_sd, 2) + " mm";
-  return line + (scan.frame.empty() ? "" : ", in frame " + scan.frame);
-}
-
-std::string small_letters(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
+  return line + (scan.frame.empty() ? "" : ", in frame " + safe_text(scan.frame, longest_name));
 }
 
 nlohmann::ordered_json time_of(double seconds) {
@@ -127,20 +122,24 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
     listing.lines.push_back(
         line + (topic.frame.empty() ? "" : ", frame " + excavplan::quoted(topic.frame)));
   }
+  if (contents.is_cut_off) listing.lines.push_back("its end is missing");
   const auto is_scan = [](const RecordingTopic& topic) { return topic.is_scan; };
   const bool has_scans = std::any_of(contents.topics.begin(), contents.topics.end(), is_scan);
   listing.lines.push_back(has_scans ? "* scans: name one as " + text + ":TOPIC@TIME+SPAN"
                                     : "no topic holds scans");
   if (!contents.frames.empty()) {
     std::string frames;
-    for (const std::string& frame : contents.frames) frames += (frames.empty() ? "" : ", ") + frame;
+    for (const std::string& frame : contents.frames) {
+      frames += (frames.empty() ? "" : ", ") + safe_text(frame, longest_name);
+    }
     listing.lines.push_back("frames for --tf-frame: " + frames);
   }
   listing.json = {{"file", text},
                   {"start_s", contents.start},
                   {"duration_s", contents.duration},
                   {"topics", std::move(topics)},
-                  {"frames", contents.frames}};
+                  {"frames", contents.frames},
+                  {"cut_off", contents.is_cut_off}};
   return listing;
 }
 

@@ -55,6 +55,7 @@ Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
     scan.name = side.text;
     if (frames.view.recorded) posture = recorded_posture(*input);
     scan.clouds = {std::make_shared<const Cloud>(std::move(input->scan.cloud))};
+    scan.doubts = std::move(input->scan.warnings);
     report.recordings.push_back(std::move(input->json));
     report.lines.push_back("recorded   " + input->line);
   } else {

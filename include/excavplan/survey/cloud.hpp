@@ -23,6 +23,7 @@ struct Cloud {
   std::size_t height = 1;               ///< 1 unless organised
   /// Where the sensor stood, in the frame of the points [m]; unset where unknown.
   std::optional<Eigen::Vector3d> sensor_origin = {};
+  std::size_t left_out = 0;  ///< further points of its file that do not count: those of LAS
 };
 
 /// How a cloud is written.
@@ -50,8 +51,7 @@ using PointVisitor = std::function<void(const std::vector<Eigen::Vector3d>& poin
 
 /// Reads what read_cloud() reads, with the same errors, but hands the points on some thousand at a
 /// time in the order of the file and keeps none, so that a file may be of any size. Points that
-/// came before an error was found have been handed on. Of binary_compressed PCD x, y and z are
-/// held, 4 GiB of uncompressed data at most.
+/// came before an error was found have been handed on.
 ///
 /// @throws Error (bad_file) as read_cloud()
 void stream_cloud(const std::string& path, const PointVisitor& visit);
@@ -80,6 +80,7 @@ Eigen::Matrix4d read_frame(const std::string& path);
 void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan);
 
 /// Moves the points, and the sensor's place with them.
+/// @throws Error (bad_input) if a number of the matrix is not finite
 void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);
 
 /// What is in a cloud.

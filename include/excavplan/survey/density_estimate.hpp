@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -92,6 +93,7 @@ struct DensityEstimate {
   bool trustworthy = true;                       ///< false: see the warnings
   std::vector<Warning> warnings;                 ///< of volumes, density and blocks, each once
   double cell_size = 0.0;                        ///< [m]
+  std::uint64_t machine_points = 0;              ///< of the machine, left out of all scans
   std::optional<ScanRegistration> registration;  ///< none without a registration
   std::optional<ScanRegistration> dump_registration;  ///< if the dump area has scans of its own
 

@@ -56,8 +56,10 @@ struct DigEfficiency {
 /// Integrates the log by the trapezoid rule over the dig, negative power of a joint counted as 0,
 /// and divides the payload by it. The volume of scans is that of the heap which rose between them.
 ///
-/// Warnings: gap_in_log (a pause of more than 10 usual steps), implausible_fuel (more than a 12-t
-/// excavator could lift while it idles), and those of measure_change() for scans.
+/// Warnings, after each of which it is not trustworthy: gap_in_log (a pause of more than 10 usual
+/// steps), implausible_fuel and implausible_energy (a payload or a rate far beyond those of
+/// excavators), dig_below_rest (the machine took less per second in the dig than in the rest of the
+/// log, which is at least as long). Of scans also those of measure_change(), units and frame.
 ///
 /// @throws Error (bad_file) naming file, line and rule if the log is no such table, its time does
 /// not rise or it adds up to nothing, or as estimate_density() for scans; (bad_input) if the dig
@@ -66,7 +68,7 @@ DigEfficiency measure_efficiency(const LoggedDig& dig);
 
 /// Gain of the second dig over the first [%]. An error that both share, as that of one meter, and
 /// the soil's density if it is the same, cancel.
-/// @throws Error (bad_input) if they are in different units
+/// @throws Error (bad_input) if they are in different units, or a payload per cost is not positive
 Measured efficiency_gain(const DigEfficiency& first, const DigEfficiency& second);
 
 }  // namespace excavplan

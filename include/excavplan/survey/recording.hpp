@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/error.hpp>
 #include <excavplan/survey/cloud.hpp>
 
 /// @file
@@ -38,6 +39,7 @@ struct RecordingContents {
   std::vector<RecordingTopic> topics;  ///< sorted by name
   /// Between which there are transforms: of /tf_static, and of the first second of /tf; sorted.
   std::vector<std::string> frames;
+  bool is_cut_off = false;  ///< its end is missing, as that of a recorder that was killed
 };
 
 /// Reads the index of a recording and the first message of each topic.
@@ -84,12 +86,16 @@ struct RecordedScan {
   /// than two agree; empty unless averaged. What all frames have in common is not in it.
   std::vector<double> variance;
   double frame_sd = 0.0;  ///< median over the points of the sd of one frame [m]; 0 unless averaged
+  /// clocks_differ, frame_moved, recording_cut_off: for Scan::doubts.
+  std::vector<Warning> warnings;
 };
 
 /// Reads points of PointCloud2, of Livox's CustomMsg, or of depth images (16UC1, mono16, 32FC1)
 /// with the CameraInfo of the topic camera_info beside.
 ///
-/// With a frame every message is transformed at its own stamp, by /tf and /tf_static. Several
+/// With a frame every message is transformed at its own stamp, by /tf and /tf_static. Where the
+/// stamps are over 0.4 s (ours) off the clock of the transforms and the sensor moved meanwhile, or
+/// the frame moved in the root of its tree during a span, a warning says so. Several
 /// messages of a sensor that stood still are averaged pixel by pixel if they are organised, of one
 /// size, and their rays coincide, as average_depth_images() does along the rays; else their finite
 /// points are joined. Without transforms a sensor is taken to have stood still. Points at exactly

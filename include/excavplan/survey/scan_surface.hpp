@@ -35,6 +35,9 @@ struct Scan {
   bool z_is_up = false;   ///< is known, so that no frame of a camera is suspected
   std::string name = {};  ///< for messages; empty: that of its first file
   std::shared_ptr<const MachineFront> machine = {};  ///< points that it holds are left out
+  /// What is doubtful about its points, as who made them knows (RecordedScan::warnings): becomes
+  /// part of every result.
+  std::vector<Warning> doubts = {};
 };
 
 /// The error (bad_file) of scans outside the expected area, mostly because `site_from_scan` does
@@ -47,11 +50,12 @@ class FrameError : public Error {
 
 /// Summary of the points of a scan inside the area, from a first pass.
 struct ScanOutline {
-  std::uint64_t points = 0;         ///< finite or not
-  std::uint64_t finite_points = 0;  ///< inside the area
-  std::optional<Rectangle> extent;  ///< as plan_extent(); none without finite points
-  double density = 0.0;             ///< points per m^2 of occupied ground; NaN if they have no area
-  double height = 0.0;  ///< from the lowest to the highest point but 0.1 % on either side [m]
+  std::uint64_t points = 0;          ///< finite or not
+  std::uint64_t finite_points = 0;   ///< inside the area
+  std::uint64_t machine_points = 0;  ///< that Scan::machine held, left out
+  std::optional<Rectangle> extent;   ///< as plan_extent(); none without finite points
+  double density = 0.0;  ///< points per m^2 of occupied ground; NaN if they have no area
+  double height = 0.0;   ///< from the lowest to the highest point but 0.1 % on either side [m]
   /// Share of the points that lie as a depth camera sees them from the origin: within 60 degrees of
   /// the z axis, at 0.1 to 20 m along it [-].
   double seen_along_z = 0.0;

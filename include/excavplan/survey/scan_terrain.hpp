@@ -13,7 +13,7 @@ namespace excavplan {
 /// Ground to dig on as a scan shows it.
 struct ScannedTerrain {
   Terrain terrain;                ///< undisturbed; unknown where the scan does not see
-  std::vector<Warning> warnings;  ///< unseen_ground, sparse_terrain
+  std::vector<Warning> warnings;  ///< Scan::doubts, unseen_ground, sparse_terrain
 };
 
 /// The ground of `extent` on cells of `cell_size` [m], in the site frame (origin on the machine's

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/data_files.hpp>
+#include <excavplan/error.hpp>
+#include <excavplan/library/path_library.hpp>
+#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/trajectory.hpp>
+#include <excavplan/soil/density_law.hpp>
+#include <excavplan/soil/soil.hpp>
+
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/table.hpp"
+#include "base/yaml.hpp"
+#include "fuzz/file_readers.hpp"
+#include "library/library_tasks.hpp"
+#include "machine/dig_path_text.hpp"
+#include "optimisation/search_checkpoint.hpp"
+
+namespace excavplan::test {
+namespace {
+
+std::string read_machine(const std::string& path) {
+  const Machine machine = load_machine(path);
+  return Said()
+      .add("name", machine.name)
+      .add("numbers", fingerprint(machine))
+      .add("capacity", heaped_capacity(machine))
+      .text();
+}
+
+std::string read_soil(const std::string& path) {
+  const SoilKind soil = load_soil(path);
+  Said said;
+  said.add("name", soil.name).add("numbers", fingerprint(soil));
+  for (const double density : {0.0, 50.0, 100.0}) {
+    const SoilState state = bank_state(soil, density);
+    said.add("weight", state.unit_weight).add("cone", cone_index(soil, state, 0.3));
+  }
+  return said.text();
+}
+
+std::string read_law(const std::string& path) {
+  const DensityLaw law = load_density_law(path);
+  Said said;
+  said.add("name", law.name).add("soil", law.soil).add("machine", law.machine);
+  for (const DensityForm& form : {law.form, law.freed_form}) {
+    said.add("form", formula(form) + ' ' + number_text(density_of_bulking(form, 1.2)) + ' ' +
+                         number_text(residual_sd_at(form, 20.0)));
+  }
+  if (law.path) said.all("path", *law.path);
+  return said.text();
+}
+
+std::string read_library(const std::string& path) { return to_json(load_path_library(path)); }
+
+/// The entry of a build of one machine, soil, slope and density.
+std::string read_entry(const std::string& path) {
+  static const LibraryJob job = {{{load_machine(find_data_file("machines/zx120.json"))},
+                                  {load_soil(find_data_file("soils/loam.json"))},
+                                  {0.0},
+                                  {40.0}},
+                                 {}};
+  const LibraryAnswer answer = read_answer(job, {0, 0, 0.0, 40.0}, path, read_file(path));
+  return Said()
+      .add("rank", answer.rank)
+      .add("mass", answer.dig.payload_mass)
+      .add("evaluations", answer.evaluations)
+      .all("measured", answer.measured)
+      .text();
+}
+
+std::string read_checkpoint(const std::string& path) {
+  SearchProblem problem;
+  problem.box = {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(1.0, 1.0)};
+  problem.fingerprint = "parabola";
+  SearchOptions options;
+  options.checkpoint = path;
+  options.resume = true;
+  const SearchCheckpoint checkpoint(problem, options);
+  Said said;
+  for (const Eigen::Vector2d& point : {Eigen::Vector2d(0.25, 0.5), Eigen::Vector2d(0.5, 0.5)}) {
+    const Evaluation* outcome = checkpoint.find(point);
+    said.add("outcome", outcome == nullptr ? "none"
+                                           : std::string(name(outcome->status)) + ' ' +
+                                                 number_text(outcome->fitness));
+  }
+  return said.text();
+}
+
+std::string read_trajectory(const std::string& path) { return to_json(load_trajectory(path)); }
+
+std::string read_path_from(const std::string& path) {
+  const auto [parameters, start] = read_planned_path(path);
+  return Said().all("number", to_vector(parameters)).add("start", start).text();
+}
+
+std::string read_yaml(const std::string& path) {
+  return parse_yaml(path, read_file(path))
+      .dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string read_table(const std::string& path) {
+  const Table table = Table::read(path);
+  Said said;
+  for (const std::string& name : table.names()) said.all(name, table.column(name));
+  return said.text();
+}
+
+}  // namespace
+
+std::vector<FileReader> planning_readers() {
+  return {{"machine", read_machine},
+          {"soil", read_soil},
+          {"law", read_law},
+          {"library", read_library, true},
+          {"entry", read_entry, true},
+          {"checkpoint", read_checkpoint, true},
+          {"trajectory", read_trajectory},
+          {"path_from", read_path_from},
+          {"yaml", read_yaml},
+          {"table", read_table}};
+}
+
+}  // namespace excavplan::test

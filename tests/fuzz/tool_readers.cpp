@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <functional>
+
+#include <excavplan/error.hpp>
+#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/survey/recording.hpp>
+
+#include "base/table.hpp"
+#include "fuzz/file_readers.hpp"
+#include "shared/plan_results.hpp"
+#include "shared/quantity.hpp"
+
+namespace excavplan::test {
+namespace {
+
+std::string read_density_from(const std::string& path) {
+  const tools::DensityInput input{{}, {}, path};
+  const GroundDensity density = tools::density_of(input);
+  DigPlan plan;
+  plan.dig = PlannedDig{};
+  return Said()
+      .add("percent", density.percent)
+      .add("sd", density.sd_percent)
+      .add("soil", density.soil)
+      .add("trustworthy", density.trustworthy)
+      .add("warnings", static_cast<double>(tools::plan_warnings(plan, input, true).size()))
+      .text();
+}
+
+/// As calibrate-density does.
+std::string read_samples(const std::string& path) {
+  const Table table = Table::read(path);
+  std::vector<BulkingSample> samples;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    samples.push_back({table.column("bulking_factor")[i], table.column("density_percent")[i]});
+  }
+  try {
+    return to_json(calibrate_density(samples));
+  } catch (const Error& error) {
+    throw Error(ErrorKind::bad_file, path + ": " + error.what());
+  }
+}
+
+/// A text of the command line, taken as each of what there is.
+std::string read_option(const std::string& path) {
+  using namespace tools;
+  const std::string text = content_of_file(path);
+  Said said;
+  const auto attempt = [&](const char* name, const std::function<double()>& parse) {
+    try {
+      said.add(name, parse());
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::bad_input) throw;
+    }
+  };
+  for (int quantity = 0; quantity <= static_cast<int>(Quantity::ratio); ++quantity) {
+    const auto of = static_cast<Quantity>(quantity);
+    attempt("quantity", [&] { return parse_quantity("--x", text, of); });
+    attempt("series", [&] { return static_cast<double>(parse_series("--x", text, of).size()); });
+  }
+  attempt("path", [&] { return to_vector(parse_dig_path("--x", text)).sum(); });
+  attempt("rectangle", [&] { return parse_rectangle("--x", text).x_max; });
+  attempt("point", [&] { return parse_point("--x", text).sum(); });
+  attempt("place", [&] { return parse_place("--x", text).sum(); });
+  attempt("pose", [&] { return parse_pose("--x", text).sum(); });
+  attempt("posture", [&] { return parse_posture("--x", text).swing; });
+  attempt("recording", [&] {
+    const auto query = parse_recording_spec(text);
+    return query ? query->time.value_or(0.0) + query->span : -1.0;
+  });
+  return said.text();
+}
+
+}  // namespace
+
+std::vector<FileReader> tool_readers() {
+  return {{"density_from", read_density_from}, {"samples", read_samples}, {"option", read_option}};
+}
+
+}  // namespace excavplan::test
