@@ -149,7 +149,7 @@ MidwayError scaled(const MidwayError& midway, Between between, double share) {
                       : between == Between::upper  ? 2.0 * (1.0 - share)
                       : between == Between::lower  ? 2.0 * share
                                                    : 4.0 * share * (1.0 - share);
-  return {std::min(1.0, size * midway.loss), size * midway.expectation};
+  return {size * midway.loss, size * midway.expectation};
 }
 
 MidwayError larger(const MidwayError& a, const MidwayError& b) {

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/text.hpp"
 #include "support/cases.hpp"
 #include "support/las_file.hpp"
 #include "support/run_program.hpp"
@@ -109,6 +110,34 @@ TEST(CloudProperties, LasPointsAreTheirCountsTimesTheScalePlusTheOffset) {
         for (std::size_t i = 0; i < expected.size(); ++i) {
           EXPECT_LT((read.points[i] - expected[i]).norm(), 1e-6);
         }
+      },
+      300);
+}
+
+/// Numbers between commas may have blanks and tabs around them; names of columns too.
+TEST(CloudProperties, BlanksAndTabsDoNotMatterInText) {
+  const TemporaryFolder folder;
+  for_cases(
+      [&](Random& random) {
+        const std::string blanks[] = {"", " ", "\t", " \t", "\t "};
+        const auto blank = [&] { return blanks[random.index(std::size(blanks))]; };
+        std::string text;
+        for (const char* name : {"x", "y", "z"}) {
+          text += text.empty() ? "" : ",";
+          text += blank();
+          text += name;
+          text += blank();
+        }
+        const Points points = any_points(random, 1 + random.index(3), false);
+        for (const Eigen::Vector3d& p : points) {
+          text += "\n" + number_text(p.x());
+          for (const double number : {p.y(), p.z()}) {
+            text += blank() + ",";
+            text += blank() + number_text(number);
+          }
+        }
+        const std::string path = folder.write(std::to_string(random.bits()), text + "\n");
+        EXPECT_TRUE(equal(read_cloud(path).points, points)) << text;
       },
       300);
 }

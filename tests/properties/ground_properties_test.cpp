@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/error.hpp>
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/simulation/terrain.hpp>
 
@@ -276,6 +277,42 @@ TEST(GroundProperties, CorrectionsAreRigidAndTakeMotionsBack) {
     const double angle = alignment.motion.tail<3>().norm();
     EXPECT_LT((found - p).norm(), 2.0 * angle * angle * (arm.norm() + 1.0) + angle * 0.2 + 1e-12);
   });
+}
+
+/// A plane that was shifted and raised comes back to itself, up to its border and beside unknown
+/// cells, where the slope is known from one side alone.
+TEST(GroundProperties, ShiftedPlanesAreTakenBack) {
+  for_cases([](Random& random) {
+    HeightMap map = any_map(random, 5, 5);
+    const Plane plane = any_plane(random);
+    lay(plane, map);
+    Alignment alignment;
+    alignment.motion.head<3>() = drawn_vector(random, 3, -0.01, 0.01);
+    HeightMap moved = map;
+    const Motion& by = alignment.motion;
+    moved.z += by(2) - plane.by_x * by(0) - plane.by_y * by(1);
+    const Cell hole = {2, 2};
+    moved.z(hole.row, hole.col) = std::nan("");
+    const HeightMap back = realigned(moved, alignment);
+    for_each_cell(map.z, [&](Cell at) {
+      if (at.row == hole.row && at.col == hole.col) return;
+      EXPECT_NEAR(back.z(at.row, at.col), map.z(at.row, at.col), 1e-9);
+    });
+  });
+}
+
+TEST(GroundProperties, GrowthIsAcceptedUpToDetection) {
+  const HeightMap ground = flat_ground({0.0, 0.0, 0.6, 0.6}, 0.05);
+  for_cases(
+      [&](Random& random) {
+        ChangeOptions options;
+        options.detection = random.uniform(0.5, 9.0);
+        options.growth = options.detection;
+        EXPECT_NO_THROW(measure_change(ground, ground, options));
+        options.growth *= 1.0 + 1e-9;
+        EXPECT_THROW(measure_change(ground, ground, options), Error);
+      },
+      200);
 }
 
 TEST(GroundProperties, MediansHaveHalfOfTheValuesOnEachSide) {

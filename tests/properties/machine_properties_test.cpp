@@ -5,8 +5,12 @@
 
 #include <algorithm>
 
-#include "machine/plane.hpp"
+#include <nlohmann/json.hpp>
+
+#include <excavplan/error.hpp>
+
 #include "support/cases.hpp"
+#include "support/run_program.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -129,6 +133,45 @@ TEST(MachineProperties, CylindersAreInverseAndTheirLeversTheirSlopes) {
       EXPECT_NEAR(cylinder.count() * forces(row) * states[i].lever, torque(row), 1e-6 * 1e5);
     }
   });
+}
+
+/// Of a mining shovel: a lip of 0.3 m is one, of 1.1 m none.
+TEST(MachineProperties, LipsMayBeThick) {
+  const TemporaryFolder folder;
+  nlohmann::json file = nlohmann::json::parse(content_of(find_data_file("machines/zx120.json")));
+  for (const double thickness : {0.05, 0.3, 1.0, 1.1}) {
+    file["bucket"]["edge_thickness_m"] = thickness;
+    const std::string path = folder.write("machine" + std::to_string(thickness), file.dump());
+    if (thickness > 1.0) {
+      EXPECT_THROW(load_machine(path), Error);
+    } else {
+      EXPECT_EQ(load_machine(path).bucket.edge_thickness, thickness);
+    }
+  }
+}
+
+/// The same cylinder with the zero of its joint anywhere, the pin on the link turned with it, and
+/// with both pins turned.
+TEST(MachineProperties, CylindersDoNotDependOnTheZeroOfTheirJoint) {
+  for_cases(
+      [](Random& random) {
+        const double zero = random.uniform(-7.0, 7.0);
+        const double both = random.uniform(-7.0, 7.0);
+        const auto cylinder = [&](double turned) {
+          const double straight = 3.141592653589793 + both;
+          const CylinderGeometry geometry = {
+              1, {1.0, straight}, PolarPin{0.5, straight - 0.5 * 3.141592653589793 + turned}};
+          return Cylinder(geometry, turned - 0.6, turned + 0.6);
+        };
+        const Cylinder plain = cylinder(0.0);
+        const Cylinder turned = cylinder(zero);
+        const double joint = random.uniform(-0.59, 0.59);
+        EXPECT_NEAR(turned.at(joint + zero).length, plain.at(joint).length, 1e-12);
+        const auto back = turned.joint_angle(plain.at(joint).length);
+        ASSERT_TRUE(back);
+        EXPECT_NEAR(*back, joint + zero, 1e-9);
+      },
+      500);
 }
 
 struct Dig {

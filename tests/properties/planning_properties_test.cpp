@@ -1,10 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/data_files.hpp>
+#include <excavplan/error.hpp>
 #include <excavplan/library/path_library.hpp>
+#include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include <algorithm>
 
+#include "planning/dig_layout.hpp"
 #include "planning/planned_digs.hpp"
 #include "support/cases.hpp"
 #include "support/run_program.hpp"
@@ -172,6 +177,121 @@ TEST(PlanningProperties, EntriesAreLookedUpAsTheyAreAndBetweenThemInBounds) {
       EXPECT_TRUE(low - 1e-9 <= found[i] && found[i] <= high + 1e-9);
     }
   });
+}
+
+/// A density without a dig closes its own gap and no other, on its own slope and no other.
+TEST(PlanningProperties, GapsCloseWhatTheyLieIn) {
+  for_cases([](Random& random) {
+    PathLibrary library = any_library(random);
+    const PathLibraryEntry first = library.entries.front(), last = library.entries.back();
+    PathLibraryGap gap;
+    gap.slope = library.entries[random.index(library.entries.size())].slope;
+    gap.density_percent = 20.0 + 20.0 * static_cast<double>(random.index(3));
+    library.gaps = {gap};
+    const double density = random.uniform(first.density_percent, last.density_percent);
+    const double slope = random.uniform(first.slope, last.slope);
+    if (std::fmod(density, 20.0) == 10.0) return;
+    // the entries around stand at 10, 30, .. % and on slopes a tenth apart
+    const bool same_density = std::abs(density - gap.density_percent) < 10.0 &&
+                              gap.density_percent < last.density_percent;
+    const bool beside = std::abs(slope - gap.slope) < 0.1 - 1e-12;
+    if (first.density_percent == last.density_percent || (slope == gap.slope && !beside)) return;
+    if (same_density && beside) {
+      EXPECT_THROW(look_up(library, density, slope), Error);
+    } else {
+      EXPECT_NO_THROW(look_up(library, density, slope));
+    }
+  });
+}
+
+TEST(PlanningProperties, GoalsWithNumbersOutOfRangeAreRefused) {
+  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  for_cases([&](Random& random) {
+    const auto& parameters = objective_parameters();
+    DigObjective objective(DigObjective::Goal::priced);
+    EXPECT_NO_THROW(check(objective, machine));
+    const DigObjectiveParameter& parameter = parameters[random.index(parameters.size())];
+    objective.*parameter.field =
+        random.uniform() < 0.5 ? random.uniform(-1.0, -1e-9) : 1.001 * parameter.highest;
+    EXPECT_THROW(check(objective, machine), Error);
+  });
+}
+
+/// Lifts 100 kg at a cost of its own.
+class OwnSimulator : public SoilSimulator {
+ public:
+  DigResult dig(const Terrain&, const DigPath& path, const DigOptions&) const override {
+    DigResult result;
+    result.payload_mass = 100.0;
+    result.payload_volume = 0.4;
+    result.energy.total = 1e3 + 1e4 * std::pow(path.parameters.drag_length - 1.2, 2);
+    return result;
+  }
+};
+
+/// Planned paths keep 0.035 rad off the limits of the joints while they dig.
+TEST(PlanningProperties, StartsOfLeastWorkKeepOffTheJointLimits) {
+  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  const Terrain ground = level_planning_ground(machine, 0.5);
+  const DigLayout layout(machine, ground);
+  int laid = 0;
+  for_cases(
+      [&](Random& random) {
+        const auto path = layout.path(any_dig(random).parameters, StartRule::Kind::least_work);
+        const auto* found = std::get_if<DigPath>(&path);
+        if (found == nullptr) return;
+        ++laid;
+        for (const DigPose& pose : found->poses) {
+          if (pose.phase == DigPhase::lift) continue;
+          EXPECT_GE(limit_margin(machine, pose.joints).margin, 0.035 - 1e-9);
+        }
+      },
+      150);
+  EXPECT_GT(laid, 30);
+}
+
+TEST(PlanningProperties, ProbabilitiesThatDoNotAddUpAreRefused) {
+  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  const Terrain ground = level_planning_ground(machine, 0.5);
+  const OwnSimulator soil;
+  const DigPath path = std::get<DigPath>(
+      make_dig_path(machine, paper_fixed_path(), 6.0, [](double) { return 0.0; }));
+  for_cases(
+      [&](Random& random) {
+        const double first = random.uniform(0.1, 0.9), off = random.uniform(1e-6, 0.09);
+        const auto spread = [&](double second) {
+          return dig_spread(machine, {{&soil, first}, {&soil, second}}, ground, {}, path);
+        };
+        EXPECT_THROW(spread(1.0 - first + (random.uniform() < 0.5 ? off : -off)), Error);
+        EXPECT_NO_THROW(spread(1.0 - first));
+      },
+      100);
+}
+
+/// The digs of a plan are counted through all of its searches.
+TEST(PlanningProperties, ProgressOfAPlanNeverFalls) {
+  const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
+  PlanOptions options;
+  options.method = PlanMethod::search;
+  options.simulator = {"own", "own 1", [](const Machine&, const SoilKind&, double) {
+                         return std::make_unique<const OwnSimulator>();
+                       }};
+  options.search.threads = 1;
+  for (const int budget : {150, 300, 600}) {
+    options.search.stop.evaluations = budget;
+    int last = 0;
+    bool fell = false;
+    options.search.progress = [&](const SearchProgress& now) {
+      fell = fell || now.evaluations < last;
+      last = now.evaluations;
+      return true;
+    };
+    const DigPlan plan = plan_dig(machine, soil, 40.0, options);
+    EXPECT_FALSE(fell) << budget;
+    EXPECT_EQ(last, plan.evaluations);
+    EXPECT_LE(plan.evaluations, budget);
+  }
 }
 
 TEST(PlanningProperties, LibrariesReadBack) {

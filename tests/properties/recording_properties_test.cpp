@@ -111,6 +111,24 @@ TEST(RecordingProperties, CamerasAndJointsAreDecodedAsTheyWereWritten) {
   });
 }
 
+/// The number of points of a CustomMsg stands in it twice.
+TEST(RecordingProperties, PointsThatAreMiscountedAreRefused) {
+  for_cases([](Random& random) {
+    const std::size_t said = random.index(5), held = random.index(5);
+    RosBytes message(ros1);
+    message.header(any_stamp(random), any_name(random)).put(std::uint64_t{5});
+    message.u32(said).raw({1, 0, 0, 0}).u32(held);
+    for (std::size_t i = 0; i < held; ++i) message.raw(std::string(19, '\1'));
+    const std::string bytes = message;
+    const RecordedMessage recorded = message_of(livox_topic, bytes, ros1);
+    if (said == held) {
+      EXPECT_EQ(decode_points("f", recorded).points.size(), held);
+    } else {
+      EXPECT_THROW(decode_points("f", recorded), Error);
+    }
+  });
+}
+
 /// A message that ends early is refused, wherever it ends.
 TEST(RecordingProperties, CutMessagesAreRefused) {
   for_cases([](Random& random) {

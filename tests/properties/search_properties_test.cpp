@@ -243,6 +243,32 @@ TEST(SearchProperties, BetterIsAnOrder) {
   });
 }
 
+/// A violation is how far from feasible a point is, never less than nothing.
+TEST(SearchProperties, ViolationsAreNeverNegative) {
+  for_cases([](Random& random) {
+    const double value = drawn_number(random);
+    EXPECT_EQ(Evaluation::infeasible(value).violation, value > 0.0 ? value : 0.0);
+  });
+}
+
+TEST(SearchProperties, SettingsOutsideTheirRangeAreRefused) {
+  for_cases([](Random& random) {
+    AnySearch any = any_search(random);
+    GeneticAlgorithm method;
+    int* const counts[] = {&method.population, &method.generations, &method.tournament};
+    const int least[] = {2, 1, 1};
+    const auto which = random.index(3);
+    *counts[which] = least[which] - drawn_int(random, 1, 5);
+    any.options.method = method;
+    EXPECT_THROW(search(any.problem, any.options), Error);
+    method = GeneticAlgorithm{};
+    (random.uniform() < 0.5 ? method.crossover : method.mutation) =
+        random.uniform() < 0.5 ? random.uniform(-1.0, -1e-9) : random.uniform(1.0 + 1e-9, 2.0);
+    any.options.method = method;
+    EXPECT_THROW(search(any.problem, any.options), Error);
+  });
+}
+
 TEST(SearchProperties, SharesOfABoxAreInverse) {
   for_cases([](Random& random) {
     SearchBox box;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/data_files.hpp>
+#include <excavplan/simulation/depth_camera.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
@@ -9,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "simulation/earthmoving.hpp"
+#include "simulation/section_bucket.hpp"
 #include "simulation/slump.hpp"
 #include "simulation/swath.hpp"
 #include "support/cases.hpp"
@@ -63,6 +65,54 @@ TEST(SimulationProperties, EarthmovingFactorsBalanceTheWedge) {
     const double factors = gamma * t * t * n->gamma + c * t * n->c + q * t * n->q + ca * t * n->ca;
     EXPECT_NEAR(factors / force, 1.0, 1e-9);
   });
+}
+
+/// McKyes and Ali 1977: the crescents beside a blade of this width over depth widen the surface on
+/// which a surcharge lies by 1 + s / w, the weight by 1 + 2 s / (3 w); none beside an infinite one.
+TEST(SimulationProperties, CrescentsWidenWhatIsMoved) {
+  for_cases([](Random& random) {
+    CuttingWedge wedge = any_wedge(random);
+    wedge.slope = 0.0;
+    const double beta = random.uniform(0.3, 0.8), width = random.uniform(0.3, 5.0);
+    if (wedge.rake + wedge.tool_friction + beta + wedge.friction > 3.0) return;
+    const EarthmovingFactors wide = crescent_factors(wedge, beta, 1e12);
+    const EarthmovingFactors narrow = crescent_factors(wedge, beta, width);
+    const double cot_rake = 1.0 / std::tan(wedge.rake), cot_beta = 1.0 / std::tan(beta);
+    const double reach = cot_rake + cot_beta;  // r / t; s^2 = r^2 - (t cot rake)^2
+    const double side = std::sqrt(reach * reach - cot_rake * cot_rake) / width;
+    EXPECT_NEAR(narrow.q / wide.q, 1.0 + side, 1e-9);
+    EXPECT_NEAR(narrow.c / wide.c, 1.0 + side, 1e-9);
+    EXPECT_NEAR(narrow.gamma / wide.gamma, 1.0 + 2.0 / 3.0 * side, 1e-9);
+    EXPECT_NEAR(wide.gamma / wide.q, 0.5, 1e-9);
+  });
+}
+
+/// Points lie within the range of the camera along its ray, however far above the ground it is and
+/// whatever stands on it.
+TEST(SimulationProperties, CamerasSeeAsFarAsTheirRange) {
+  std::size_t points = 0;
+  for_cases(
+      [&](Random& random) {
+        HeightMap ground = flat_ground({-3.0, -3.0, 3.0, 3.0}, 0.25);
+        ground.z.block(2, 2, 3, 3).setConstant(random.uniform(0.5, 2.0));
+        DepthCamera camera;
+        camera.position = {0.3, 0.0, random.uniform(3.0, 6.0)};
+        camera.width = 16;
+        camera.height = 12;
+        camera.noise = camera.dropouts = 0.0;
+        camera.max_range = random.uniform(2.0, 7.0);
+        const auto seen = scan_surface(ground, camera, 1);
+        points += seen.size();
+        const Eigen::Vector3d axis = (camera.target - camera.position).normalized();
+        for (const Eigen::Vector3d& point : seen) {
+          EXPECT_LE((point - camera.position).dot(axis), camera.max_range + 1e-9);
+        }
+        if (camera.max_range > 1.6 * camera.position.z()) {
+          EXPECT_GT(seen.size(), 100U);
+        }
+      },
+      300);
+  EXPECT_GT(points, static_cast<std::size_t>(many));
 }
 
 TEST(SimulationProperties, CriticalFailureAnglesAreTheWeakest) {
@@ -190,6 +240,27 @@ TEST(SimulationProperties, BucketsHoldMoreOfSteeperSoil) {
   });
 }
 
+/// The side plates all under ground: area and centre of the profile by Gauss' formula.
+TEST(SimulationProperties, BuriedBucketsHaveTheirWholeSides) {
+  const std::vector<Eigen::Vector2d>& profile = zx120().bucket.profile;
+  double area = 0.0;
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    const Eigen::Vector2d& a = profile[i];
+    const Eigen::Vector2d& b = profile[(i + 1) % profile.size()];
+    area += 0.5 * (a.x() * b.y() - a.y() * b.x());
+  }
+  for_cases([&](Random& random) {
+    BucketSection bucket(zx120().bucket);
+    bucket.turn_to(random.uniform(-3.2, 0.5));
+    const Below ground = {random.uniform(5.0, 9.0), random.uniform(-0.5, 0.5)};
+    EXPECT_NEAR(bucket.buried(ground).area, area, 1e-12);
+    const double level = random.uniform(-1.0, 1.0);
+    const double below = bucket.buried({level, ground.slope}).area;
+    EXPECT_TRUE(below >= 0.0 && below <= area + 1e-12);
+    EXPECT_GE(bucket.buried({level + 0.01, ground.slope}).area, below - 1e-12);
+  });
+}
+
 TEST(SimulationProperties, HigherFacesStandLessSteep) {
   for_cases([](Random& random) {
     const SoilState soil = bank_state(loam(), random.uniform(0.0, 100.0));
@@ -233,6 +304,7 @@ TEST(SimulationProperties, DigsConserveSolidsAndEnergyOnlyGrows) {
                     dig.soil.payload + dig.soil.spilled + dig.soil.fallen_back, 1e-6);
         EXPECT_NEAR(dig.payload_mass, dig.payload_volume * simulator.loose().bulk_density, 1e-9);
         const EnergyLedger& energy = dig.energy;
+        EXPECT_TRUE(0.0 < energy.edge && energy.edge <= energy.soil * (1.0 + 1e-9));
         EXPECT_NEAR(energy.soil + energy.payload + energy.links, energy.total,
                     1e-9 * energy.total + 1e-9);
         double phases = 0.0, joints = 0.0;

@@ -1,12 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/data_files.hpp>
+#include <excavplan/error.hpp>
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/soil_scatter.hpp>
 
 #include <algorithm>
 
+#include <nlohmann/json.hpp>
+
 #include "support/cases.hpp"
+#include "support/run_program.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -152,6 +157,22 @@ TEST(SoilProperties, DenserSoilIsStrongerAndHeavier) {
   });
 }
 
+/// Void ratios of peat are accepted, those above 20 are not (docs/formats.md).
+TEST(SoilProperties, VoidRatiosMayBeLarge) {
+  const TemporaryFolder folder;
+  nlohmann::json file = nlohmann::json::parse(content_of(find_data_file("soils/loam.json")));
+  for (const double largest : {2.5, 9.0, 19.9, 20.1}) {
+    file["void_ratio_max"] = largest;
+    file["void_ratio_loose"] = largest;
+    const std::string path = folder.write("soil" + std::to_string(largest), file.dump());
+    if (largest > 20.0) {
+      EXPECT_THROW(load_soil(path), Error);
+    } else {
+      EXPECT_EQ(load_soil(path).void_ratio_loose, largest);
+    }
+  }
+}
+
 TEST(SoilProperties, DrawnSoilsAreSoils) {
   for_cases([](Random& random) {
     const SoilKind soil = any_soil(random);
@@ -209,6 +230,18 @@ TEST(SoilProperties, FitsFindTheLawOfExactDigs) {
         }
       },
       1000);
+}
+
+/// Also a line that hardly rises is one.
+TEST(SoilProperties, FitsOfShallowLinesAreFound) {
+  for_cases([](Random& random) {
+    const double slope = random.uniform(0.01, 2.0);
+    std::vector<BulkingSample> samples;
+    for (double k = 1.0; k < 2.0; k += 0.2) samples.push_back({k, 50.0 + slope * (k - 1.5)});
+    EXPECT_NEAR(fit_line(samples).a, slope, 1e-9);
+    for (BulkingSample& sample : samples) sample.density_percent = 100.0 - sample.density_percent;
+    EXPECT_THROW(fit_line(samples), Error);
+  });
 }
 
 /// k = after / before by propagation of errors, with the covariance, against a small change of it.

@@ -150,6 +150,22 @@ TEST(TextProperties, YamlInBlocksAndInBracketsReadsBack) {
   });
 }
 
+/// YAML 1.2.2, 10.3.2 and 6.6: words for true, and comments behind any blank.
+TEST(TextProperties, YamlWordsAndCommentsDoNotDependOnBlanks) {
+  const std::pair<const char*, nlohmann::json> words[] = {
+      {"true", true}, {"True", true}, {"false", false}, {"False", false}, {"~", nullptr}};
+  for_cases([&](Random& random) {
+    const auto& [word, value] = words[random.index(std::size(words))];
+    const std::string blanks[] = {" ", "\t", " \t", "\t\t", "   "};
+    const std::string blank = blanks[random.index(std::size(blanks))];
+    const std::string comment =
+        random.uniform() < 0.5 ? blank + "# " + drawn_word(random, 0, 5) : "";
+    EXPECT_EQ(parse_yaml("name", "a: " + std::string(word) + comment + "\n")["a"], value);
+    EXPECT_EQ(parse_yaml("name", "a: x#" + std::string(word) + comment + "\n")["a"],
+              "x#" + std::string(word));
+  });
+}
+
 TEST(TextProperties, TablesReadBack) {
   const TemporaryFolder folder;
   std::vector<double> written;

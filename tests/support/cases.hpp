@@ -17,8 +17,8 @@
 /// Properties: what must hold for every case, tried on many random ones.
 ///
 /// Not by the packaged rapidcheck: it draws no real numbers from a range, takes its seed from the
-/// environment and grows its numbers from case to case, so that each of our generators would have
-/// to be written anyway. The cases here are the same on every machine.
+/// environment and scales its numbers with the case, so that each of our generators would have to
+/// be written anyway. The cases here are the same on every machine.
 
 namespace excavplan::test {
 

@@ -283,6 +283,20 @@ TEST(SurveyPlan, WhatCannotBeReachedIsSaid) {
   EXPECT_FALSE(needs.noise.has_value());
 }
 
+/// Half of the soil as a ridge of two flanks around a pit with sloped walls: 1.0 m of the pit,
+/// twice 0.48 m of spill and twice 0.10 m of margin are 2.2 m.
+TEST(SurveyPlan, SpillOnBothSidesOfThePitMustFit) {
+  SurveyPlan plan;
+  plan.spill_share = 0.5;
+  plan.height = 3.0;
+  plan.offset = 0.0;
+  plan.sensor.view_across = 2.0;
+  for (const double width : {2.1, 2.3}) {
+    plan.sensor.view_along = 2.0 * std::atan(0.5 * width / plan.height);
+    EXPECT_EQ(plan_survey(plan).in_view, width > 2.2) << width;
+  }
+}
+
 TEST(SurveyPlan, TooNearDoesNotSeeItAll) {
   const SurveyPlan plan = reference_plan(3.0, 1.0);
   EXPECT_TRUE(plan_survey(plan).in_view);
