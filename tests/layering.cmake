@@ -20,7 +20,7 @@ set(recording_may_use "")
 set(survey_may_use ground soil machine simulation recording)
 
 # Public headers that belong to no room; all may include them.
-set(roomless error data_files)
+set(roomless ceilings error data_files)
 
 # Where a third-party header may be included: in no public header any of them, and in every benchmark,
 # which stands beside its peers.

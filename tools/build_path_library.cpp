@@ -69,20 +69,22 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("cell", inputs.search.cell_size, Quantity::length,
                    "cell size of the simulated ground");
   arguments.option("seed", inputs.search.seed, "seed; the same seed gives the same file");
-  arguments.option("threads", inputs.threads, "threads, 0 for one per core; same file for any");
-  arguments.file("cells", inputs.cells,
-                 "folder for the results of each density; kept, reused by later runs and shared "
-                 "by parallel ones (default: beside --out, removed at the end)");
+  arguments.threads(inputs.threads, "; same file for any");
+  arguments.place("cells", inputs.cells,
+                  "folder for the results of each density; kept, reused by later runs and shared "
+                  "by parallel ones (default: beside --out, removed at the end)");
   arguments.flag("resume", inputs.resume, "reuse results of an interrupted run with this --out");
-  arguments.file("out", inputs.out,
-                 "library to write; with several machines or soils a folder for "
-                 "MACHINE-SOIL-GOAL.json of each");
+  arguments.place("out", inputs.out,
+                  "library to write; with several machines or soils a folder for "
+                  "MACHINE-SOIL-GOAL.json of each");
   arguments.require("out");
 }
 
 const OptionNames option_names = {{"library: densities", "--densities"},
                                   {"library: slopes", "--slopes"},
                                   {"cell size of a library's ground [m]", "--cell"},
+                                  {"machines x soils x slopes x densities of a library",
+                                   "--machine x --soil x --slopes x --densities"},
                                   {"points of a library search", "--points"},
                                   {"search: first_generation", "--points"},
                                   {"search: polish_evaluations", "--polish"},

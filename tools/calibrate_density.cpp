@@ -73,7 +73,11 @@ DensityCalibration from_simulator(const Inputs& inputs) {
   options.any_path = !inputs.path;
   options.draws = inputs.draws;
   options.simulator = simulator_of_word(inputs.simulator);
-  return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);
+  OptionNames names = cell_option;
+  names.push_back({"the number of draws", "--draws"});
+  return naming_options(names, [&] {
+    return calibrate_density(machine_named(inputs.machine), soil_named(inputs.soil), options);
+  });
 }
 
 /// The formula of a form with its numbers, which the law file holds under the form's key.

@@ -73,7 +73,9 @@ std::string line(const DigEfficiency& run) {
 DigEfficiency measure(const RunInputs& inputs, const Inputs& all, Outcome& outcome) {
   LoggedDig dig = inputs.dig(all.frames);
   dig.cell_size = all.cell_size;
-  DigEfficiency run = with_frame_hint(pair_frame_hint, [&] { return measure_efficiency(dig); });
+  DigEfficiency run = naming_options(cell_option, [&] {
+    return with_frame_hint(pair_frame_hint, [&] { return measure_efficiency(dig); });
+  });
   outcome.json["runs"].push_back(to_json(run));
   outcome.lines.push_back(line(run));
   outcome.warnings.insert(outcome.warnings.end(), run.warnings.begin(), run.warnings.end());

@@ -103,8 +103,10 @@ Outcome work(const Inputs& inputs, Console& console) {
   const SoilKind soil = soil_named(inputs.soil);
   const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
   const PlanOptions options = options_of(inputs, console);
-  const DigPlan plan = inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
-                                            : plan_dig(machine, soil, density, options);
+  const DigPlan plan = naming_options(search_option_names, [&] {
+    return inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
+                                : plan_dig(machine, soil, density, options);
+  });
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();

@@ -54,7 +54,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.simulator(inputs.simulator);
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   arguments.option("seed", inputs.seed, "seed of the searches");
-  arguments.option("threads", inputs.threads, "threads, 0 for one per core");
+  arguments.threads(inputs.threads, "");
 }
 
 struct Condition {
@@ -110,8 +110,9 @@ Outcome work(const Inputs& inputs, Console& console) {
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     console.progress(static_cast<double>(i) / static_cast<double>(conditions.size()),
                      conditions[i].name);
-    const ExperimentResult result =
-        run_experiment(machine, soil, law, conditions[i].density, options);
+    const ExperimentResult result = naming_options(cell_option, [&] {
+      return run_experiment(machine, soil, law, conditions[i].density, options);
+    });
     outcome.json["conditions"].push_back(experiment_json(conditions[i].name, result));
     outcome.lines.push_back(experiment_line(conditions[i].name, result));
     if (result.held_because.empty()) continue;

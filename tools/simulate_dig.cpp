@@ -89,6 +89,15 @@ SceneOptions options_of(const Inputs& inputs) {
   return options;
 }
 
+/// Of the blocks that the ground does not fall as.
+std::vector<Warning> warnings_of(const Inputs& inputs) {
+  const BlockSettings usual;
+  IgnoredOptions ignored;
+  ignored.add(!inputs.broken && inputs.blocks.size != usual.size, "--block-size");
+  ignored.add(!inputs.broken && inputs.blocks.swell != usual.swell, "--block-swell");
+  return ignored.warnings("there are no blocks without --blocks");
+}
+
 void write_files(const Inputs& inputs, const Machine& machine, const DigScene& scene,
                  const Outcome& outcome) {
   write_scans(inputs.scans, scene, inputs.seed);
@@ -121,6 +130,7 @@ Outcome work(const Inputs& inputs) {
   outcome.warnings = std::move(site.warnings);
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
+  for (const Warning& each : warnings_of(inputs)) outcome.warnings.push_back(each);
   if (scene.dig.stall) outcome.warnings.push_back({"stalled", describe(*scene.dig.stall)});
   write_files(inputs, machine, scene, outcome);
   return outcome;

@@ -31,4 +31,10 @@ inline void require(bool holds, std::string_view what, double value, std::string
               std::string(what) + " is " + number_text(value) + ", must be " + std::string(rule));
 }
 
+/// @throws Error (bad_input) "WHAT is VALUE, must be in LOWEST .. HIGHEST" unless it is; NaN is not
+inline void require_in(std::string_view what, double value, double lowest, double highest) {
+  if (value >= lowest && value <= highest) return;
+  require(false, what, value, "in " + number_text(lowest) + " .. " + number_text(highest));
+}
+
 }  // namespace excavplan

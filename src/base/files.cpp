@@ -71,6 +71,20 @@ std::string name_beside(const std::string& path) {
   return path.substr(0, name + std::min(path.size() - name, longest - end.size())) + end;
 }
 
+bool flush(int descriptor) { return ::fsync(descriptor) == 0 || errno == EINVAL; }
+
+/// So that the name of a new file outlasts a loss of power.
+bool flush_folder_of(const std::string& path) {
+  const std::string folder = path.substr(0, path.rfind('/') + 1) + ".";
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return true;  // it may be written to, not read
+  const bool is_flushed = flush(descriptor);
+  const int reason = errno;
+  ::close(descriptor);
+  errno = reason;
+  return is_flushed;
+}
+
 /// An open file, which is removed at the end unless it was renamed. Its functions set errno if they
 /// return false.
 class OutputFile {
@@ -108,17 +122,18 @@ class OutputFile {
     } while (!content.empty());
     return true;
   }
-  bool flush() const { return ::fsync(descriptor_) == 0 || errno == EINVAL; }
   bool close() {
     const int open = std::exchange(descriptor_, -1);
     return open < 0 || ::close(open) == 0 || errno == EINTR;
   }
-  /// Takes the place of the file that is there, with its mode whatever the umask.
-  bool replace(const Place& place) {
+  /// Takes the place of the file that is there, with its mode whatever the umask. It is open as long
+  /// as it has its own name: a program that ends at a signal finds it by that.
+  bool replace(const Place& place, bool is_flushed) {
     if (place.mode) ::fchmod(descriptor_, *place.mode);
-    if (!flush() || !close() || std::rename(path_.c_str(), place.path.c_str()) != 0) return false;
+    if (is_flushed && !flush(descriptor_)) return false;
+    if (std::rename(path_.c_str(), place.path.c_str()) != 0) return false;
     is_removed_ = false;
-    return true;
+    return close() && (!is_flushed || flush_folder_of(place.path));
   }
 
  private:
@@ -127,16 +142,12 @@ class OutputFile {
   bool is_removed_ = false;
 };
 
-/// So that the name of a new file outlasts a loss of power.
-bool flush_folder_of(const std::string& path) {
-  const std::string folder = path.substr(0, path.rfind('/') + 1) + ".";
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return true;  // it may be written to, not read
-  const bool is_flushed = ::fsync(descriptor) == 0 || errno == EINVAL;
-  const int reason = errno;
-  ::close(descriptor);
-  errno = reason;
-  return is_flushed;
+void write(const std::string& path, const std::string& content, bool is_flushed) {
+  const Place place = place_of(path);
+  OutputFile file(place, O_TRUNC);
+  const bool is_done = file.is_open() && file.write(content) &&
+                       (place.is_replaced ? file.replace(place, is_flushed) : file.close());
+  if (!is_done) fail_to_write(path, errno);
 }
 
 void require_folder_of(const std::string& path) {
@@ -166,15 +177,11 @@ std::string read_file(const std::string& path, std::uint64_t most_bytes) {
   return content;
 }
 
-void write_file(const std::string& path, const std::string& content) {
-  const Place place = place_of(path);
-  OutputFile file(place, O_TRUNC);
-  const bool is_written = file.is_open() && file.write(content);
-  const bool is_done = !is_written          ? false
-                       : !place.is_replaced ? file.close()
-                                            : file.replace(place) && flush_folder_of(place.path);
-  if (!is_done) fail_to_write(path, errno);
+void write_journal(const std::string& path, const std::string& content) {
+  write(path, content, false);
 }
+
+void write_file(const std::string& path, const std::string& content) { write(path, content, true); }
 
 void require_writable(const std::string& path) {
   require_folder_of(path);

@@ -26,6 +26,9 @@ std::string read_file(const std::string& path, std::uint64_t most_bytes = most_s
 /// to.
 /// @throws Error (bad_file) with the reason if that fails; the old file then remains and no other
 void write_file(const std::string& path, const std::string& content);
+/// The same for what is written again and again or can be computed again: it is not flushed, so a
+/// loss of power, unlike a kill, may cost it.
+void write_journal(const std::string& path, const std::string& content);
 
 /// For a check before long work: leaves the file as it is.
 /// @throws Error (bad_file) if write_file() would fail, a full disk apart

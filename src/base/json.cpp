@@ -25,7 +25,8 @@ using nlohmann::json;
 template <typename Json>
 class Builder : public nlohmann::json_sax<Json> {
  public:
-  explicit Builder(const std::string& name) : name_(name) {}
+  Builder(const std::string& name, std::size_t most_values)
+      : name_(name), most_values_(most_values) {}
   Json& value() { return value_; }
 
   bool null() override { return add(nullptr); }
@@ -52,6 +53,10 @@ class Builder : public nlohmann::json_sax<Json> {
  private:
   template <typename Value>
   bool add(Value&& value) {
+    if (++values_ > most_values_) {
+      refuse(name_,
+             "found more than " + std::to_string(most_values_) + " values, expected at most that");
+    }
     if (open_.empty() || open_.back()->is_object()) {
       *place_ = std::forward<Value>(value);
     } else {
@@ -75,6 +80,8 @@ class Builder : public nlohmann::json_sax<Json> {
   }
 
   const std::string& name_;
+  const std::size_t most_values_;
+  std::size_t values_ = 0;
   Json value_;
   Json* place_ = &value_;  ///< of the value that comes next, or came last
   std::vector<Json*> open_;
@@ -91,21 +98,21 @@ void require_utf8(const std::string& name, const std::string& content) {
 }
 
 template <typename Json>
-Json parse(const std::string& name, const std::string& content) {
+Json parse(const std::string& name, const std::string& content, std::size_t most_values) {
   require_utf8(name, content);
-  Builder<Json> builder(name);
+  Builder<Json> builder(name, most_values);
   Json::sax_parse(content, &builder);
   return std::move(builder.value());
 }
 
 }  // namespace
 
-json parse_json(const std::string& name, const std::string& content) {
-  return parse<json>(name, content);
+json parse_json(const std::string& name, const std::string& content, std::size_t most_values) {
+  return parse<json>(name, content, most_values);
 }
 
 nlohmann::ordered_json parse_ordered_json(const std::string& name, const std::string& content) {
-  return parse<nlohmann::ordered_json>(name, content);
+  return parse<nlohmann::ordered_json>(name, content, most_json_values);
 }
 
 std::string json_text(const nlohmann::ordered_json& value, int indent) {
@@ -136,8 +143,9 @@ JsonObject JsonObject::open(const std::string& path, const std::string& format, 
 }
 
 JsonObject JsonObject::open_sealed(const std::string& name, const std::string& content,
-                                   const std::string& format, int version) {
-  JsonObject file = top(name, parse_json(name, content), "a JSON object");
+                                   const std::string& format, int version,
+                                   std::size_t most_values) {
+  JsonObject file = top(name, parse_json(name, content, most_values), "a JSON object");
   file.require_format(format, version);
   const std::size_t seal = sealed("").size();
   if (content.size() < seal || sealed(content.substr(0, content.size() - seal)) != content) {
@@ -270,6 +278,24 @@ std::vector<JsonObject> JsonObject::objects(const std::string& key) {
 void JsonObject::done() const {
   for (const auto& [key, value] : json_->items()) {
     if (read_.count(key) == 0) fail(key, "is not a key of this file");
+  }
+}
+
+void require_storable(const nlohmann::ordered_json& json, const std::string& what) {
+  const nlohmann::ordered_json flat = json.flatten();
+  for (const auto& [place, value] : flat.items()) {
+    const auto refuse = [&, &key = place](const std::string& found) {
+      throw Error(ErrorKind::bad_input, what + ": " + excavplan::quoted(key) + " is " + found);
+    };
+    if (value.is_number_float() && !std::isfinite(value.get<double>())) {
+      refuse(number_text(value.get<double>()) + ", must be finite");
+    }
+    if (!value.is_string()) continue;
+    try {
+      static_cast<void>(value.dump());
+    } catch (const nlohmann::json::type_error&) {
+      refuse("not UTF-8");
+    }
   }
 }
 

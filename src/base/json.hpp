@@ -18,12 +18,15 @@
 
 namespace excavplan {
 
-constexpr std::size_t most_json_levels = 64;  ///< of arrays and objects in one another; ours
+constexpr std::size_t most_json_levels = 64;      ///< of arrays and objects in one another; ours
+constexpr std::size_t most_json_values = 500000;  ///< of a file, each of some 100 bytes; ours
 
-/// The value of a text from anywhere, which must be UTF-8, at most most_json_levels deep, and hold
-/// no key of an object twice. @param name  of the text, for messages
+/// The value of a text from anywhere, which must be UTF-8, at most most_json_levels deep, of no
+/// more values than that, and hold no key of an object twice. @param name  of the text, for
+/// messages
 /// @throws Error (bad_file)
-nlohmann::json parse_json(const std::string& name, const std::string& content);
+nlohmann::json parse_json(const std::string& name, const std::string& content,
+                          std::size_t most_values = most_json_values);
 /// The same with the keys in the order of the text, for few of them.
 nlohmann::ordered_json parse_ordered_json(const std::string& name, const std::string& content);
 
@@ -41,7 +44,8 @@ class JsonObject {
   static JsonObject open(const std::string& path, const std::string& format, int version = 1);
   /// The same of a text that ends in its checksum, as sealed() writes it. `name` is for messages.
   static JsonObject open_sealed(const std::string& name, const std::string& content,
-                                const std::string& format, int version = 1);
+                                const std::string& format, int version = 1,
+                                std::size_t most_values = most_json_values);
 
   /// The content of a file of another program, JSON or YAML (base/yaml.hpp); what is not read of
   /// it is no error. @throws Error (bad_file)
@@ -86,6 +90,10 @@ class JsonObject {
   Value json_;
   std::set<std::string> read_;
 };
+
+/// What is to be written can be read again.
+/// @throws Error (bad_input) "WHAT: KEY is ...": a number that is not finite, a text not UTF-8
+void require_storable(const nlohmann::ordered_json& json, const std::string& what);
 
 /// A JSON object without its closing brace, with its own checksum as the last key.
 std::string sealed(const std::string& content);

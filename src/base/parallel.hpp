@@ -6,14 +6,21 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include <excavplan/ceilings.hpp>
+
+#include "base/check.hpp"
+
 namespace excavplan {
 
-/// Number of threads; 0: one per core.
+/// Number of threads; 0: one per core. @throws Error (bad_input) if it is above most_threads
 inline unsigned thread_count(unsigned threads) {
+  require(threads <= most_threads, "the number of threads", threads,
+          "at most " + std::to_string(most_threads));
   return threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
 }
 
@@ -35,6 +42,7 @@ void parallel_for(std::size_t count, unsigned threads, const Task& task) {
     }
   };
   std::vector<std::thread> others;
+  others.reserve(threads);
   try {
     for (std::size_t t = 1; t < std::min<std::size_t>(threads, count); ++t) {
       others.emplace_back(work);

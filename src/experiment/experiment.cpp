@@ -12,14 +12,19 @@
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/scene.hpp>
 
+#include "base/check.hpp"
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 namespace {
 
 double gain(const DigObjective& objective, const PlannedDig& of, const PlannedDig& over) {
-  return 100.0 * (objective.worth(of) / objective.worth(over) - 1.0);
+  const double worth = objective.worth(over);
+  require(worth > 0.0 && std::isfinite(worth), "worth of the dig compared with", worth,
+          "above 0 and finite");
+  return 100.0 * (objective.worth(of) / worth - 1.0);
 }
 
 /// The digs of one experiment, in soil of one density.
@@ -32,12 +37,12 @@ class Experiment {
         density_(density_percent),
         options_(options),
         ground_(level_planning_ground(machine, options.plan.cell_size)),
-        simulator_(options.plan.simulator.make(machine, soil, density_percent)) {}
+        simulator_(make_simulator(options.plan.simulator, machine, soil, density_percent)) {}
 
   /// Digs with the machine held down from now on.
   void hold_machine() {
     held_.body.reset();
-    simulator_ = options_.plan.simulator.make(held_, soil_, density_);
+    simulator_ = make_simulator(options_.plan.simulator, held_, soil_, density_);
   }
 
   std::variant<PlannedDig, DigFailure> attempt(const DigParameters& parameters,
@@ -124,6 +129,9 @@ double ExperimentResult::start_gain_percent() const { return gain(objective, fix
 
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options) {
+  require_machine(machine);
+  require_soil(soil);
+  require_in("cell size of the ground [m]", options.plan.cell_size, finest_cell, coarsest_cell);
   Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
   result.held_because = what_moves(experiment, options.fixed_path);

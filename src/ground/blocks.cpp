@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/map_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -314,6 +315,16 @@ double depth_of_heap(const VolumeChange& change, const std::vector<AreaMasks>& m
   return sum > 0.0 ? squares / sum : 0.0;
 }
 
+void check(const HeightMap& after, const AreaChange& area, const std::vector<ChangeZone>& zones) {
+  require_map(after, "blocks, map after");
+  require_map(area.difference, "blocks, difference");
+  require(area.noise_sd >= 0.0 && std::isfinite(area.noise_sd), "blocks: noise of an area",
+          area.noise_sd, ">= 0 m");
+  const bool fits = area.zone.rows() == after.z.rows() && area.zone.cols() == after.z.cols() &&
+                    area.zone.maxCoeff() < static_cast<int>(zones.size());
+  if (!fits) refuse("blocks: the zone of an area must have the size of its map and name zones");
+}
+
 void check(const std::vector<HeightMap>& after, const VolumeChange& change,
            const BlockOptions& options) {
   require(options.angle_of_repose > 0.0 && options.angle_of_repose < 1.2, "blocks: angle of repose",
@@ -322,8 +333,9 @@ void check(const std::vector<HeightMap>& after, const VolumeChange& change,
   require(noise >= 0.0 && std::isfinite(noise), "blocks: noise", noise, ">= 0 m");
   require(options.packed_voids > 0.0 && options.packed_voids < 1.0, "blocks: packed voids",
           options.packed_voids, "in 0 .. 1");
-  require(options.packed_voids_sd >= 0.0, "blocks: sd of packed voids", options.packed_voids_sd,
-          ">= 0");
+  require_in("blocks: sd of packed voids", options.packed_voids_sd, 0.0, 1.0);
+  const double loose = change.after.value + change.after.sd;
+  require(std::isfinite(loose), "blocks: volume after and its sd", loose, "finite");
   if (after.empty() || after.size() != change.areas.size()) {
     throw Error(ErrorKind::bad_input, "blocks: there must be one map for each of the " +
                                           std::to_string(change.areas.size()) +
@@ -335,6 +347,7 @@ void check(const std::vector<HeightMap>& after, const VolumeChange& change,
     throw Error(ErrorKind::bad_input, "blocks: each map must be on the grid of its area, map " +
                                           std::to_string(i) + " is not");
   }
+  for (std::size_t i = 0; i < after.size(); ++i) check(after[i], change.areas[i], change.zones);
 }
 
 std::string tenths(double value) { return number_text(std::round(10.0 * value) / 10.0); }

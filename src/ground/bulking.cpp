@@ -16,7 +16,8 @@ std::optional<Measured> bulking_factor(const VolumeChange& change) {
       std::any_of(change.warnings.begin(), change.warnings.end(), [](const Warning& warning) {
         return warning.code == "no_dumped_soil" || warning.code == "zone_unseen";
       });
-  if (volume_is_missing || !(change.before.value > 0.0) || !(change.after.value > 0.0)) {
+  const auto is_volume = [](double value) { return value > 0.0 && std::isfinite(value); };
+  if (volume_is_missing || !is_volume(change.before.value) || !is_volume(change.after.value)) {
     return std::nullopt;
   }
   const double before = change.before.value;
@@ -53,6 +54,7 @@ double variance_by_readings(const VolumeChange& change) {
     sum += reading.weight * off * off;
     weights += reading.weight;
   }
+  if (!(weights > 0.0)) return 0.0;
   return std::min(sum / weights, std::pow(bulking_errors(change).attribution, 2));
 }
 
@@ -74,6 +76,8 @@ std::optional<std::array<double, 2>> bulking_interval(const VolumeChange& change
 double free_of_fallback(double bulking_measured, double fallback_fraction) {
   require(fallback_fraction >= 0.0 && fallback_fraction < 1.0, "fallback fraction",
           fallback_fraction, "at least 0 and below 1");
+  require(bulking_measured > 0.0 && std::isfinite(bulking_measured), "measured bulking factor",
+          bulking_measured, "positive and finite");
   return fallback_fraction + (1.0 - fallback_fraction) * bulking_measured;
 }
 

@@ -6,18 +6,20 @@
 #include <cmath>
 #include <limits>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
+#include "ground/map_check.hpp"
 
+#include "base/check.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double grid_tolerance = 1e-9;  // of a cell
-constexpr double most_cells = 1e8;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The two cell centres around a place on one axis and the weight of the second.
@@ -58,6 +60,9 @@ HeightMap flat_ground(const Rectangle& extent, double cell_size, double height) 
   }
   if (!(cell_size > 0.0 && std::isfinite(cell_size))) {
     throw Error(ErrorKind::bad_input, "cell is " + number_text(cell_size) + " m, must be positive");
+  }
+  if (std::isinf(height)) {
+    throw Error(ErrorKind::bad_input, "height of the map is infinite, must be finite or NaN");
   }
   const double cols = std::max(1.0, std::ceil(width / cell_size - grid_tolerance));
   const double rows = std::max(1.0, std::ceil(depth / cell_size - grid_tolerance));
@@ -102,6 +107,8 @@ bool same_grid(const HeightMap& a, const HeightMap& b) {
 
 HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell_size,
                     double widest_gap) {
+  require_map(map, "resampled");
+  require(widest_gap >= 0.0, "resampled: widest gap", widest_gap, "at least 0 m");
   HeightMap whole = map;
   const double most = std::floor(widest_gap / map.cell_size + grid_tolerance);
   for (const std::vector<Cell>& hole : fill_holes(whole.z).cells) {
@@ -118,6 +125,7 @@ HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell_s
 }
 
 double unseen_area(const HeightMap& map) {
+  require_grid(map, "unseen area");
   Eigen::Index cells = 0;
   for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
     Eigen::Index unknown = 0;

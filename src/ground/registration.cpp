@@ -16,6 +16,7 @@
 #include "base/check.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/map_check.hpp"
 #include "ground/robust.hpp"
 
 namespace excavplan {
@@ -316,17 +317,24 @@ double Alignment::largest_shift(const HeightMap& map) const {
 }
 
 Alignment align(const Surface& before, const Surface& after, const AlignmentOptions& options) {
-  require(options.shift_prior > 0.0, "align: shift_prior", options.shift_prior, "positive");
-  require(options.turn_prior > 0.0, "align: turn_prior", options.turn_prior, "positive");
+  constexpr double smallest = 1e-9;  // the square of a smaller one could not be divided by
+  const auto positive = [](double value) { return value >= smallest && std::isfinite(value); };
+  require(positive(options.shift_prior), "align: shift_prior", options.shift_prior,
+          "positive and finite");
+  require(positive(options.turn_prior), "align: turn_prior", options.turn_prior,
+          "positive and finite");
   require(options.steepest > 0.0, "align: steepest", options.steepest, "positive");
+  require_surface(before, "align, surface before");
+  require_surface(after, "align, surface after");
   if (!same_grid(before.height, after.height)) {
-    throw Error(ErrorKind::bad_input,
-                "align: the surfaces must be on one grid: same origin, cell and size");
+    refuse("align: the surfaces must be on one grid: same origin, cell and size");
   }
   return Aligner(before, after, options).find();
 }
 
 HeightMap realigned(const HeightMap& after, const Alignment& alignment) {
+  require_map(after, "realigned");
+  require_alignment(alignment, "realigned");
   HeightMap map = after;
   if (alignment.motion.isZero()) return map;
   const auto z = [&](Eigen::Index row, Eigen::Index col) {

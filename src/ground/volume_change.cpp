@@ -14,6 +14,7 @@
 #include "base/text.hpp"
 #include "ground/attribution.hpp"
 #include "ground/earlier_soil.hpp"
+#include "ground/map_check.hpp"
 #include "ground/open_changes.hpp"
 #include "ground/surveyed_area.hpp"
 
@@ -41,12 +42,16 @@ void check(const std::optional<Rectangle>& area, const std::string& name) {
 void check(const ChangeOptions& options) {
   check(options.dig_area, "dig_area");
   check(options.dump_area, "dump_area");
+  constexpr double farthest = 1e6;  // [m]
   require(options.detection > 0.0, "detection", options.detection, "positive");
   require(options.growth > 0.0 && options.growth <= options.detection, "growth", options.growth,
           "positive and not above detection (" + number_text(options.detection) + ")");
   require(options.min_zone_area >= 0.0, "min_zone_area", options.min_zone_area, "0 or more");
-  require(options.margin >= 0.0, "margin", options.margin, "0 or more");
-  require(options.spill_distance >= 0.0, "spill_distance", options.spill_distance, "0 or more");
+  for (const auto& [name, value] :
+       {std::pair("margin", options.margin), std::pair("spill_distance", options.spill_distance)}) {
+    require(value >= 0.0, name, value, "0 or more");
+    require(value <= farthest, name, value, "at most " + number_text(farthest) + " m");
+  }
   require(options.max_unknown_share >= 0.0 && options.max_unknown_share <= 1.0, "max_unknown_share",
           options.max_unknown_share, "in 0 .. 1");
   require(options.refused_unknown_share >= options.max_unknown_share, "refused_unknown_share",
@@ -414,6 +419,11 @@ void report(Area& area, VolumeChange& change) {
 
 VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const ChangeOptions& options) {
   check(options);
+  for (const SurfacePair* pair : pairs) {
+    require_surface(pair->before, "surface before");
+    require_surface(pair->after, "surface after");
+    require_alignment(pair->alignment, "change of the ground");
+  }
   std::vector<Area> areas;
   std::vector<const HeightMap*> before;
   for (const SurfacePair* pair : pairs) {

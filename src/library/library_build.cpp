@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
@@ -27,8 +28,6 @@ namespace excavplan {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int most_points = 1000000;  // of a first generation; ours
 
 void require_rising(const std::string& what, const std::vector<double>& values, double lowest,
                     double highest) {
@@ -211,7 +210,7 @@ class Build {
         {after, [=, &entry] { return kept(file, entry) ? "" : first_task(entry, parents); },
          [=, &entry](const std::string& text) {
            entry.first = entry.found = read_answer(job_, entry.place, "task", text);
-           if (!options_.folder.empty()) write_file(file, text);
+           if (!options_.folder.empty()) write_journal(file, text);
            watch_.tell([](LibraryProgress& now) { ++now.entries_done; });
          }});
     return entry;
@@ -327,6 +326,8 @@ class Build {
                 [=, &below, &above](const std::string& text) {
                   const DigObjective& goal = job_.search.objective;
                   const LibraryAnswer answer = read_answer(job_, middle, "task", text);
+                  require(answer.measured.size() == 3, "digs measured by a library worker",
+                          static_cast<double>(answer.measured.size()), "3");
                   std::vector<std::pair<double, double>> known;
                   for (const Entry* entry : around) {
                     if (!entry->found.feasible) continue;
@@ -400,12 +401,28 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
   require_unlike("soil", grid.soils);
   require_rising("densities [%]", grid.densities_percent, 0.0, 100.0);
   require_rising("slopes [rad]", grid.slopes, -1.0, 1.0);
-  for (const Machine& machine : grid.machines) check(search.objective, machine);
+  for (const Machine& machine : grid.machines) {
+    require_machine(machine);
+    check(search.objective, machine);
+  }
+  for (const SoilKind& soil : grid.soils) require_soil(soil);
+  if (!search.simulator.make) {
+    refuse("library: simulator " + excavplan::quoted(search.simulator.name) +
+           " has no function that makes one");
+  }
+  const double entries = static_cast<double>(grid.machines.size() * grid.soils.size()) *
+                         static_cast<double>(grid.slopes.size() * grid.densities_percent.size());
+  require(entries <= most_library_entries, "machines x soils x slopes x densities of a library",
+          entries, "at most " + std::to_string(most_library_entries));
   require(search.seed <= most_exact, "seed of a library", static_cast<double>(search.seed),
           "at most " + std::to_string(most_exact) + ", which its file keeps");
   if (const auto* anchored = std::get_if<AnchoredSearch>(&search.method)) {
-    require(anchored->points <= most_points, "points of a library search", anchored->points,
-            "at most " + std::to_string(most_points));
+    require_in("points of a library search", anchored->points, 1, most_evaluations);
+    require_in("basins of a library search", anchored->basins, 0, most_evaluations);
+    require_in("polish evaluations of a library search", anchored->polish_evaluations, 0,
+               most_evaluations);
+    require_in("inherited evaluations of a library search", anchored->inherited_evaluations, 0,
+               most_evaluations);
   }
   require(search.cell_size >= finest_cell && search.cell_size <= coarsest_cell,
           "cell size of a library's ground [m]", search.cell_size,
@@ -413,6 +430,7 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
 }
 
 LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {
+  require_buildable(grid, search);
   return [job = LibraryJob{std::move(grid), std::move(search)}](const std::string& task) {
     return do_task(job, task, {});
   };
@@ -420,6 +438,9 @@ LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {
 
 LibraryBuild build_path_libraries(const LibraryGrid& grid, const LibraryBuildOptions& options) {
   require_buildable(grid, options.search);
+  for (const LibraryWorker& worker : options.other_workers) {
+    require(static_cast<bool>(worker), "library: one of its other_workers is an empty function");
+  }
   return Build(grid, options).run();
 }
 

@@ -9,12 +9,14 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "optimisation/search_checkpoint.hpp"
 #include "planning/dig_attempts.hpp"
 #include "planning/planned_digs.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 
@@ -132,11 +134,17 @@ Value value_of(const std::string& name, const nlohmann::json& json) {
 }
 
 LibraryTask read_task(const LibraryJob& job, const std::string& text) {
-  const auto task = value_of<LibraryTask>("task", parse_json("task", text));
-  if (task.place.machine < job.grid.machines.size() && task.place.soil < job.grid.soils.size()) {
-    return task;
-  }
-  throw Error(ErrorKind::bad_file, "task: is of another grid than this worker's");
+  const auto read = [&] {
+    try {
+      return value_of<LibraryTask>("task", parse_json("task", text));
+    } catch (const Error&) {
+      refuse("library worker: " + excavplan::quoted(text) + " is no task of a build");
+    }
+  };
+  const LibraryTask task = read();
+  require(task.place.machine < job.grid.machines.size() && task.place.soil < job.grid.soils.size(),
+          "library worker: the task is one of another grid");
+  return task;
 }
 
 LibraryAnswer answer(const LibraryJob& job, const LibraryTask& task, DigAttempts& attempts) {
@@ -223,10 +231,11 @@ std::string do_task(const LibraryJob& job, const std::string& text,
   const LibraryTask task = read_task(job, text);
   const LibraryPlace& place = task.place;
   const Machine& machine = job.grid.machines[place.machine];
-  DigAttempts attempts(
-      machine, job.search.objective,
-      job.search.simulator.make(machine, job.grid.soils[place.soil], place.density_percent),
-      sloped_planning_ground(machine, place.slope, job.search.cell_size), progress);
+  DigAttempts attempts(machine, job.search.objective,
+                       make_simulator(job.search.simulator, machine, job.grid.soils[place.soil],
+                                      place.density_percent),
+                       sloped_planning_ground(machine, place.slope, job.search.cell_size),
+                       progress);
   const LibraryAnswer found = answer(job, task, attempts);
   if (attempts.stopped()) return {};
   return sealed_text({{"format", format},
@@ -246,7 +255,7 @@ LibraryAnswer read_answer(const LibraryJob& job, const LibraryPlace& place, cons
   }
   constexpr double most_evaluations = 1e9;
   file.object("answer").number("evaluations", 0.0, most_evaluations);
-  return value_of<LibraryAnswer>(name, parse_json(name, text)["answer"]);
+  return value_of<LibraryAnswer>(name + ": answer", parse_json(name, text)["answer"]);
 }
 
 }  // namespace excavplan

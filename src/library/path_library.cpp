@@ -231,6 +231,7 @@ std::string to_json(const PathLibrary& library) {
   for (const PathLibraryGap& gap : library.gaps) {
     file["gaps"] += {{"density_percent", gap.density_percent}, {"slope_rad", gap.slope}};
   }
+  require_storable(file, "path library");
   return sealed_text(file);
 }
 
@@ -254,8 +255,12 @@ void require_fit(const PathLibrary& library, const Machine& machine, const SoilK
 
 PlannedDig look_up(const PathLibrary& library, double density_percent, double slope) {
   const Around place = around(library, density_percent, slope);
-  return dig_between(dig_at(place.low), dig_at(place.high), place.share,
-                     place.low.nearest()->to_next_slope.between);
+  PlannedDig dig = dig_between(dig_at(place.low), dig_at(place.high), place.share,
+                               place.low.nearest()->to_next_slope.between);
+  for (double PlannedDig::*figure : dig_figures) {
+    require(std::isfinite(dig.*figure), "library: a figure of its dig", dig.*figure, "finite");
+  }
+  return dig;
 }
 
 MidwayError look_up_error(const PathLibrary& library, double density_percent, double slope) {

@@ -39,6 +39,22 @@ double side_of(const Vector2d& from, const Vector2d& to, const Vector2d& point) 
   return cross(to - from, point - from) < 0.0 ? -1.0 : 1.0;
 }
 
+void require_finite(const CylinderGeometry& geometry) {
+  const auto check = [](const PolarPin& pin, const std::string& what) {
+    if (std::isfinite(pin.distance) && std::isfinite(pin.angle)) return;
+    refuse("has a " + what + " at distance " + number_text(pin.distance) + " and angle " +
+           number_text(pin.angle) + ", must be finite");
+  };
+  check(geometry.foot, "foot");
+  if (const auto* rod = std::get_if<PolarPin>(&geometry.rod)) check(*rod, "rod");
+  if (const auto* bars = std::get_if<FourBar>(&geometry.rod)) {
+    check(bars->rocker.pin, "rocker");
+    check(bars->link.pin, "link");
+    const double lengths = bars->rocker.length + bars->link.length;
+    if (!std::isfinite(lengths)) refuse("has a rocker or link whose length is not finite");
+  }
+}
+
 /// The point this far from both ends, on the left (side +1) or right (-1); NaN if there is none.
 Vector2d apex(const Vector2d& from, const Vector2d& to, double to_from, double to_to, double side) {
   const Vector2d base = to - from;
@@ -57,8 +73,9 @@ Cylinder::Cylinder(const CylinderGeometry& geometry, double lower, double upper)
       lower_(lower),
       upper_(upper) {
   if (const auto* bars = std::get_if<FourBar>(&geometry.rod)) rocker_pin_ = fixed(bars->rocker.pin);
+  require_finite(geometry);
   if (geometry.count < 1) refuse("has count " + std::to_string(geometry.count) + ", must be >= 1");
-  if (!(lower < upper)) {
+  if (!(lower < upper && std::isfinite(upper - lower))) {
     refuse("has a joint range from " + number_text(lower) + " to " + number_text(upper) +
            " rad, must rise");
   }

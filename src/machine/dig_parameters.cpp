@@ -3,6 +3,7 @@
 #include <excavplan/machine/dig_parameters.hpp>
 
 #include "base/angles.hpp"
+#include "base/check.hpp"
 
 namespace excavplan {
 
@@ -30,6 +31,8 @@ Eigen::VectorXd to_vector(const DigParameters& parameters) {
 
 DigParameters to_dig_parameters(const Eigen::VectorXd& numbers) {
   const auto& table = dig_parameter_table();
+  require(numbers.size() >= static_cast<Eigen::Index>(table.size()), "count of numbers of a dig",
+          static_cast<double>(numbers.size()), "that of the table or more");
   DigParameters parameters;
   for (std::size_t i = 0; i < table.size(); ++i) {
     parameters.*table[i].field = numbers[static_cast<Eigen::Index>(i)];

@@ -89,6 +89,12 @@ void check(const DigPathOptions& options) {
           "DigPathOptions::lift_clearance", options.lift_clearance, "at least 0 m and finite");
 }
 
+void check(const Machine& machine, const GroundProfile& ground, const DigPathOptions& options) {
+  require_machine(machine);
+  if (!ground) refuse("dig path: the ground profile is an empty function");
+  check(options);
+}
+
 Infeasible bad_parameter(DigPhase phase, double value, double limit, const std::string& message) {
   Infeasible stop;
   stop.phase = phase;
@@ -505,7 +511,7 @@ std::variant<DigPath, Infeasible> make_dig_path(const Machine& machine,
                                                 const DigParameters& parameters, double start_x,
                                                 const GroundProfile& ground,
                                                 const DigPathOptions& options) {
-  check(options);
+  check(machine, ground, options);
   if (auto bad = find_bad_parameter(parameters, start_x)) return *std::move(bad);
   Layout layout(machine, parameters, ground, options, Sampling::full);
   if (auto stopped = layout.lay_out(start_x)) {
@@ -519,7 +525,7 @@ std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
                                                          const DigParameters& parameters,
                                                          const GroundProfile& ground,
                                                          const DigPathOptions& options) {
-  check(options);
+  check(machine, ground, options);
   if (auto bad = find_bad_parameter(parameters, 0.0)) return *std::move(bad);
   const double reach = machine.full_length();
   const double nearest =
@@ -544,8 +550,13 @@ std::variant<DigPath, Infeasible> make_dig_path_anywhere(const Machine& machine,
 std::variant<std::vector<DigPose>, Infeasible> way_down(const Machine& machine, const DigPath& path,
                                                         const GroundProfile& ground,
                                                         const DigPathOptions& options) {
-  check(options);
-  if (path.poses.empty()) throw Error(ErrorKind::bad_input, "the dig path has no pose to approach");
+  check(machine, ground, options);
+  if (path.poses.empty()) refuse("the dig path has no pose to approach");
+  constexpr double largest_angle = 100.0;  // as for a trajectory [rad]
+  if (!(path.poses.front().joints.array().abs() <= largest_angle).all() ||
+      !std::isfinite(path.ground_z)) {
+    refuse("the dig path has joints of the first pose or a ground_z that are not finite");
+  }
   Layout layout(machine, path.parameters, ground, options, Sampling::full);
   auto outcome = layout.way_up(path);
   if (auto* stopped = std::get_if<Infeasible>(&outcome)) {

@@ -61,14 +61,14 @@ std::variant<JointAngles, Unreachable> within_limits(const Machine& machine, Joi
   for (int i = 0; i < 3; ++i) {
     const JointLimits& limits = machine.limits[static_cast<std::size_t>(i)];
     const double angle = wrap_near(joints[i], 0.5 * (limits.lower + limits.upper));
-    joints[i] = std::clamp(angle, limits.lower, limits.upper);
+    joints[i] = std::min(std::max(angle, limits.lower), limits.upper);
     const double excess = std::abs(angle - joints[i]);
-    if (excess > worst.excess) {
+    if (!(excess <= worst.excess)) {  // NaN is worse than all
       worst = {Unreachable::Reason::joint_limit, all_joints[static_cast<std::size_t>(i)], angle,
                joints[i], excess};
     }
   }
-  if (worst.excess > rounding) return worst;
+  if (!(worst.excess <= rounding)) return worst;
   return joints;
 }
 
@@ -120,6 +120,7 @@ LimitMargin limit_margin(const Machine& machine, const JointAngles& joints) {
     const double angle = joints[static_cast<int>(i)];
     const double margin =
         std::min(angle - machine.limits[i].lower, machine.limits[i].upper - angle);
+    if (std::isnan(margin)) return {margin, all_joints[i]};
     if (margin < smallest.margin) smallest = {margin, all_joints[i]};
   }
   return smallest;

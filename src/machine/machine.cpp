@@ -8,6 +8,7 @@
 #include <excavplan/error.hpp>
 
 #include "base/angles.hpp"
+#include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "machine/plane.hpp"
@@ -75,19 +76,6 @@ LinkMass read_link(JsonObject file) {
   link.across = file.number("center_across_m", -longest, longest);
   file.done();
   return link;
-}
-
-/// Every corner lies to the left of every side that it is not on: then a polygon is convex,
-/// counter-clockwise and without crossings.
-bool is_convex(const std::vector<Vector2d>& profile) {
-  const std::size_t n = profile.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vector2d side = profile[(i + 1) % n] - profile[i];
-    for (std::size_t k = 2; k < n; ++k) {
-      if (cross(side, profile[(i + k) % n] - profile[i]) <= 0.0) return false;
-    }
-  }
-  return true;
 }
 
 std::vector<Vector2d> read_profile(JsonObject& file, double bucket_length) {
@@ -302,6 +290,8 @@ const char* name(Joint joint) {
 }
 
 double Machine::beta() const {
+  require(bucket.profile.size() >= 2, "corners of the bucket's profile",
+          static_cast<double>(bucket.profile.size()), "3 .. 1000");
   const Vector2d floor = bucket.profile[1] - bucket.profile[0];
   return std::atan2(floor.y(), -floor.x());
 }
@@ -332,15 +322,24 @@ Machine load_machine(const std::string& path) {
 }
 
 double struck_capacity(const Machine& machine) {
-  return 0.5 * double_area(machine.bucket.profile) * machine.bucket.width_inside;
+  require_in("corners of the bucket's profile", static_cast<double>(machine.bucket.profile.size()),
+             3.0, 1000.0);
+  const double volume = 0.5 * double_area(machine.bucket.profile) * machine.bucket.width_inside;
+  require(volume > 0.0 && std::isfinite(volume), "capacity of the bucket", volume,
+          "above 0 m^3 and finite");
+  return volume;
 }
 
 double heaped_capacity(const Machine& machine, double slope) {
+  constexpr double steepest = 1.5;  // [rad]
+  require_in("slope of the heap on the bucket", slope, 0.0, steepest);
+  const double struck = struck_capacity(machine);
   const double mouth = (machine.bucket.profile.front() - machine.bucket.profile.back()).norm();
   const auto [narrow, wide] = std::minmax({mouth, machine.bucket.width_inside});
   const double hipped_roof =
       std::tan(slope) * narrow * narrow * (0.25 * wide - narrow / 12.0);  // ISO 7451 at 1:1
-  return struck_capacity(machine) + hipped_roof;
+  require(std::isfinite(hipped_roof), "heap on the bucket", hipped_roof, "finite");
+  return struck + hipped_roof;
 }
 
 }  // namespace excavplan

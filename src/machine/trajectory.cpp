@@ -25,6 +25,18 @@ constexpr double room_share = 0.4;      // of a phase that the rounding of one c
 constexpr double sharpest_turn = -0.5;  // cosine of the turn beyond which the machine stops
 constexpr double at_rest = 1e-9;  // a joint with a smaller share of the motion moves by rounding
 
+/// Larger angles and torques are not those of a machine and could overflow; ours.
+constexpr double largest_angle = 100.0;  // [rad]
+constexpr double largest_torque = 1e12;  // [N m]
+
+bool within(const JointAngles& values, double largest) {
+  return (values.array().abs() <= largest).all();
+}
+
+std::string excess(const JointAngles& values, const std::string& largest) {
+  return values.allFinite() ? "beyond " + largest : "not finite";
+}
+
 void check(const DigPath& path, const TrajectoryOptions& options,
            const std::vector<JointAngles>& torques) {
   require(options.speed_fraction > 0.0 && options.speed_fraction <= 1.0,
@@ -38,9 +50,9 @@ void check(const DigPath& path, const TrajectoryOptions& options,
   }
   const auto check_finite = [](const std::vector<DigPose>& poses, const char* of_what) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (poses[i].joints.allFinite()) continue;
-      throw Error(ErrorKind::bad_input, "pose " + std::to_string(i) + " of the " + of_what +
-                                            " has a joint that is not finite");
+      if (within(poses[i].joints, largest_angle)) continue;
+      refuse("pose " + std::to_string(i) + " of the " + of_what + " has a joint that is " +
+             excess(poses[i].joints, number_text(largest_angle) + " rad"));
     }
   };
   check_finite(path.approach, "approach");
@@ -51,8 +63,9 @@ void check(const DigPath& path, const TrajectoryOptions& options,
                                           " poses, must be fewer");
   }
   for (std::size_t i = 0; i < torques.size(); ++i) {
-    if (torques[i].allFinite()) continue;
-    throw Error(ErrorKind::bad_input, "torque " + std::to_string(i) + " is not finite");
+    if (within(torques[i], largest_torque)) continue;
+    refuse("torque " + std::to_string(i) + " is " +
+           excess(torques[i], number_text(largest_torque) + " N m"));
   }
 }
 
@@ -502,6 +515,7 @@ double Trajectory::dig_duration() const {
 Trajectory time_dig_path(const Machine& machine, const DigPath& path,
                          const TrajectoryOptions& options,
                          const std::vector<JointAngles>& torques) {
+  require_machine(machine);
   check(path, options, torques);
   Route route(machine, path, torques, options.corner_tolerance);
   Trajectory trajectory;
@@ -511,6 +525,8 @@ Trajectory time_dig_path(const Machine& machine, const DigPath& path,
   Pass pass(trajectory.points, route.torques(), machine.cylinders, limits);
   const std::vector<std::size_t>& stops = route.stops();
   for (std::size_t i = 1; i < stops.size(); ++i) pass.run(stops[i - 1], stops[i]);
+  require(std::isfinite(trajectory.duration()), "duration of the trajectory", trajectory.duration(),
+          "finite");
   return trajectory;
 }
 

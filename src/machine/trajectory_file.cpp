@@ -103,6 +103,7 @@ std::string to_csv(const Trajectory& trajectory) {
 
 std::string to_json(const Trajectory& trajectory) {
   const bool with_cylinders = states_cylinders(trajectory);
+  require_storable({{"machine", trajectory.machine}}, "trajectory");
   std::string json = "{\n \"format\": \"" + std::string(format) +
                      "\",\n \"version\": 1,\n \"machine\": " + json_text(trajectory.machine) +
                      ",\n \"points\": [";
@@ -118,6 +119,7 @@ std::string to_json(const Trajectory& trajectory) {
       object["cylinders_m"] = list(point.cylinders);
       object["cylinder_speeds_m_per_s"] = list(point.cylinder_speeds);
     }
+    require_storable(object, "trajectory");
     json += std::exchange(separator, ",\n  ") + json_text(object);
   }
   return json + "\n ]\n}\n";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 #include <excavplan/optimisation/search.hpp>
 
@@ -21,6 +22,16 @@ void require(bool holds, const std::string& rule, double value) {
   }
 }
 
+void require_evaluations(const std::string& what, double count) {
+  require(count <= most_evaluations, what + " must be <= " + std::to_string(most_evaluations),
+          count);
+}
+
+void require_count(const std::string& what, int count, int least) {
+  require(count >= least, what + " must be >= " + std::to_string(least), count);
+  require_evaluations(what, count);
+}
+
 void check(const SearchProblem& problem) {
   const SearchBox& box = problem.box;
   require(box.lower.size() > 0 && box.lower.size() == box.upper.size(),
@@ -30,6 +41,8 @@ void check(const SearchProblem& problem) {
     require(
         std::isfinite(box.lower(i)) && std::isfinite(box.upper(i)) && box.lower(i) <= box.upper(i),
         "bounds must be finite and lower <= upper", box.lower(i));
+    require(std::isfinite(box.upper(i) - box.lower(i)), "bounds must be a finite distance apart",
+            box.lower(i));
   }
   require(problem.step.size() == 0 || problem.step.size() == box.lower.size(),
           "there must be as many steps as bounds or none",
@@ -41,9 +54,10 @@ void check(const SearchProblem& problem) {
 }
 
 void check(const GeneticAlgorithm& method, const SearchTask&) {
-  require(method.population >= 2, "population must be >= 2", method.population);
+  require_count("population", method.population, 2);
   require(method.generations >= 1, "generations must be >= 1", method.generations);
-  require(method.tournament >= 1, "tournament must be >= 1", method.tournament);
+  require_evaluations("population x generations", 1.0 * method.population * method.generations);
+  require_count("tournament", method.tournament, 1);
   require(method.crossover >= 0.0 && method.crossover <= 1.0, "crossover must be in 0 .. 1",
           method.crossover);
   require(method.mutation >= 0.0 && method.mutation <= 1.0, "mutation must be in 0 .. 1",
@@ -55,18 +69,20 @@ void check(const MemeticSearch& method, const SearchTask& task) {
           task.start.empty() ? "first_generation must be >= 1 without given points"
                              : "first_generation must be >= 0",
           method.first_generation);
+  require_count("first_generation", method.first_generation, 0);
   require(method.generations >= 0, "generations must be >= 0", method.generations);
-  require(method.generation_size >= 1, "generation_size must be >= 1", method.generation_size);
+  require_count("generation_size", method.generation_size, 1);
+  require_evaluations("generations x generation_size",
+                      1.0 * method.generations * method.generation_size);
   require(method.immigrants >= 0.0 && method.immigrants <= 1.0, "immigrants must be in 0 .. 1",
           method.immigrants);
   require(method.basins >= 0, "basins must be >= 0", method.basins);
-  require(method.polish_evaluations >= 0, "polish_evaluations must be >= 0",
-          method.polish_evaluations);
+  require_count("polish_evaluations", method.polish_evaluations, 0);
   require(method.basin_radius > 0.0, "basin_radius must be > 0", method.basin_radius);
 }
 
 void check(const SearchOptions& options) {
-  require(options.stop.evaluations >= 0, "stop.evaluations must be >= 0", options.stop.evaluations);
+  require_count("stop.evaluations", options.stop.evaluations, 0);
   require(options.stop.stall >= 0, "stop.stall must be >= 0", options.stop.stall);
   require(options.stop.seconds >= 0.0, "stop.seconds must be >= 0", options.stop.seconds);
   require(!options.stop.target || std::isfinite(*options.stop.target), "stop.target must be finite",

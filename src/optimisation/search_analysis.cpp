@@ -10,6 +10,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "optimisation/search_log.hpp"
@@ -130,7 +131,17 @@ std::vector<ParameterRange> fitted_ranges(const SearchBox& box, const VectorXd& 
   return ranges;
 }
 
-std::string quoted(const std::string& text) {
+/// Every point has as many numbers as the box.
+void check(const SearchBox& box, const SearchResult& result) {
+  const auto fits = [&](const VectorXd& point) {
+    return point.size() == box.lower.size() && point.allFinite();
+  };
+  bool holds = fits(box.lower) && fits(box.upper) && fits(result.best);
+  for (const SearchRecord& record : result.history) holds = holds && fits(record.point);
+  if (!holds) refuse("explain: box, best point and history must be finite and of one dimension");
+}
+
+std::string in_quotes(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
   return result + "\"";
@@ -201,7 +212,7 @@ std::string to_csv(const SearchResult& result) {
            "," + std::to_string(record.polish) + "," + parents + "," + name(record.source) + "," +
            name(record.outcome.status) + "," +
            (record.outcome.ok() ? number_text(record.outcome.fitness) : "") + "," +
-           number_text(record.outcome.violation) + "," + quoted(record.outcome.reason);
+           number_text(record.outcome.violation) + "," + in_quotes(record.outcome.reason);
     for (const double number : record.point) csv += "," + number_text(number);
     csv += "\n";
   }
@@ -211,8 +222,12 @@ std::string to_csv(const SearchResult& result) {
 SearchInsight explain(const SearchBox& box, const SearchResult& result, double share,
                       double radius) {
   SearchInsight insight;
+  if (!result.feasible()) return insight;
+  check(box, result);
+  require_in("explain: share", share, 0.0, 1.0);
+  require(radius > 0.0 && std::isfinite(radius), "explain: radius", radius, "above 0 and finite");
   const std::vector<Point> points = feasible_points(box, result);
-  if (!result.feasible() || points.empty()) return insight;
+  if (points.empty()) return insight;
   const double best = points.front().fitness;
   const double least = best - (1.0 - share) * std::abs(best);
   insight.second_basin = second_basin(points, radius);
@@ -239,6 +254,9 @@ std::vector<RepeatedEvaluation> evaluate_again(const SearchResult& result,
     throw Error(ErrorKind::bad_input, "search: best and repeats must be >= 1, got " +
                                           std::to_string(best) + " and " + std::to_string(repeats));
   }
+  constexpr int most = 1000000;  // ours
+  require_in("search: repeats", repeats, 1, most);
+  if (!objective) refuse("search: the objective is empty");
   std::vector<const SearchRecord*> order;
   for (const SearchRecord& record : result.history) {
     if (record.outcome.ok() && record.source == SearchRecord::Source::simulated) {

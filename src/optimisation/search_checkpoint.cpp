@@ -20,6 +20,7 @@ using nlohmann::ordered_json;
 constexpr const char* format = "excavplan-search";
 constexpr std::size_t longest_identity = 65536;  // of a problem or a method [byte]; ours
 constexpr std::size_t longest_shown = 400;       // of one in a message [byte]
+constexpr std::size_t most_values = 100000000;   // of a file that is itself bounded; ours
 
 std::string text_of(const Eigen::VectorXd& numbers) {
   std::string text;
@@ -129,7 +130,7 @@ void SearchCheckpoint::add(const Eigen::VectorXd& point, const Evaluation& outco
 
 void SearchCheckpoint::save() {
   if (!changed_) return;
-  write_file(file_, text());
+  write_journal(file_, text());
   changed_ = false;
 }
 
@@ -150,7 +151,8 @@ std::string SearchCheckpoint::text() const {
 }
 
 void SearchCheckpoint::load(std::size_t dimensions) {
-  JsonObject file = JsonObject::open_sealed(file_, read_file(file_, most_journal_bytes), format);
+  JsonObject file =
+      JsonObject::open_sealed(file_, read_file(file_, most_journal_bytes), format, 1, most_values);
   const auto check = [&file](const char* key, const std::string& own) {
     if (const std::string text = file.text(key, longest_identity); text != own) {
       file.fail(key, "is '" + safe_text(text, longest_shown) + "', which differs from '" +

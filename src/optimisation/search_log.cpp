@@ -217,17 +217,23 @@ void SearchLog::evaluate_part(Prepared* batch, std::size_t count, std::vector<in
 void SearchLog::run_strands(int generation, int evaluations,
                             const std::vector<std::function<void(Strand&)>>& tasks) {
   if (stop_reason_) return;
+  // As long as all evaluations failed, no more than make that certain.
+  const bool hopeless = failed_ == evaluations_ && evaluations_ < certain;
+  const auto tasks_left = std::max<int>(1, static_cast<int>(tasks.size()));
+  const int patience = hopeless ? std::max(1, (certain - evaluations_) / tasks_left)
+                                : std::numeric_limits<int>::max();
   std::vector<Strand> strands;
   int room_left = room();
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const int limit = std::min(evaluations, room_left);
     room_left -= limit;
-    strands.push_back(Strand(*this, generation, limit));
+    strands.push_back(Strand(*this, generation, limit, patience));
   }
   parallel_for(tasks.size(), options_.threads, [&](std::size_t i) { tasks[i](strands[i]); });
   for (Strand& strand : strands) {
     for (SearchRecord& record : strand.records_) take(std::move(record));
   }
+  refuse_if_all_failed(certain);
   check_rules();
 }
 
@@ -247,10 +253,13 @@ std::optional<Evaluation> SearchLog::Strand::ask(const Candidate& candidate) {
       record.source = SearchRecord::Source::cached;
       record.outcome = *known;
     } else {
-      if (evaluations_ == limit_) return std::nullopt;
+      if (evaluations_ == limit_ || (failed_ >= patience_ && failed_ == evaluations_)) {
+        return std::nullopt;
+      }
       const std::optional<Evaluation> outcome = log_.simulate(record.point);
       if (!outcome) return std::nullopt;
       ++evaluations_;
+      failed_ += failed(*outcome) ? 1 : 0;
       record.outcome = seen_[prepared.key] = *outcome;
     }
   }

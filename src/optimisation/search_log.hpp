@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <new>
 #include <vector>
 
 #include <excavplan/optimisation/search.hpp>
@@ -22,10 +23,14 @@
 namespace excavplan {
 
 /// The outcome of a call; an exception is a failed outcome, with the text of a std::exception.
+/// Memory that is short is none: that would change what is found.
+/// @throws std::bad_alloc
 template <typename Call>
 auto caught(const Call& call) -> decltype(call()) {
   try {
     return call();
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& e) {
     return Evaluation::failed(e.what());
   } catch (...) {
@@ -123,8 +128,13 @@ class SearchLog::Strand {
 
  private:
   friend class SearchLog;
-  Strand(SearchLog& log, int generation, int limit)
-      : log_(log), generation_(generation), number_(++log.strand_count_), limit_(limit) {}
+  /// @param patience  evaluations after which it ends if all of them failed
+  Strand(SearchLog& log, int generation, int limit, int patience)
+      : log_(log),
+        generation_(generation),
+        number_(++log.strand_count_),
+        limit_(limit),
+        patience_(patience) {}
 
   const Evaluation* remembered(const PointKey& key) const;
 
@@ -132,7 +142,9 @@ class SearchLog::Strand {
   int generation_;
   int number_;
   int limit_;
+  int patience_;
   int evaluations_ = 0;
+  int failed_ = 0;
   bool reached_ = false;
   std::map<PointKey, Evaluation> seen_;
   std::vector<SearchRecord> records_;

@@ -11,9 +11,12 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/check.hpp"
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
+#include "simulation/checked_dig.hpp"
+#include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -105,7 +108,8 @@ std::variant<PlannedDig, std::string> known_dig(const PathLibrary& library, cons
 std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayout& layout,
                                                 const DigParameters& parameters, DigPlan& plan) {
   const Machine& machine = task.machine;
-  const auto simulator = task.options.simulator.make(machine, task.soil, task.density.percent);
+  const auto simulator =
+      make_simulator(task.options.simulator, machine, task.soil, task.density.percent);
   std::variant<PlannedDig, DigFailure> best;
   double rank = 0.0;
   const auto compare = [&](const std::variant<DigPath, Infeasible>& laid) {
@@ -150,7 +154,7 @@ std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrar
     return dig;
   }
   plan.evaluations = 1;
-  const auto simulator = kind.make(task.machine, task.soil, task.density.percent);
+  const auto simulator = make_simulator(kind, task.machine, task.soil, task.density.percent);
   return dig_along(task.machine, *simulator, task.ground, plan.path, task.objective());
 }
 
@@ -283,6 +287,11 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
     plan.path = best->path;
     plan.evaluations = found->evaluations;
     plan.search = PlanSearch{best->worth, best->stopped_by, best->refused, best->insight.seen, {}};
+    if (best->failed > 0) {
+      warn(plan, "simulator_failed",
+           std::to_string(best->failed) + " of " + std::to_string(best->evaluations) +
+               " digs failed and were left out, the first: " + best->first_failure);
+    }
     for (const DigParameterInfo* info : best->at_bound) {
       warn(plan, "optimum_at_bound",
            std::string("the best path found lies at an end of the search range of the ") +
@@ -338,8 +347,9 @@ void add_trajectory(const Task& task, DigPlan& plan) {
   }
   DigOptions unsettled;  // what slides afterwards loads no joint
   unsettled.settle = false;
-  const auto simulator = task.options.simulator.make(task.machine, task.soil, task.density.percent);
-  const DigResult dig = simulator->dig(task.ground, plan.path, unsettled);
+  const auto simulator =
+      make_simulator(task.options.simulator, task.machine, task.soil, task.density.percent);
+  const DigResult dig = checked_dig(*simulator, task.machine, task.ground, plan.path, unsettled);
   plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, dig.torques);
 }
 
@@ -364,8 +374,14 @@ void judge_fill(const Task& task, DigPlan& plan) {
 }
 
 DigPlan plan_dig(const Task& task) {
+  require_machine(task.machine);
+  require_soil(task.soil);
+  require_terrain(task.ground, "ground to dig on");
   require_density(task.density);
   check(task.objective(), task.machine);
+  const PlanMethod method = task.options.method;
+  require(method == PlanMethod::library || method == PlanMethod::search, "method of a plan",
+          static_cast<double>(method), "one of PlanMethod");
   DigPlan plan;
   plan.method = task.options.method;
   judge_density(task, plan);
@@ -412,6 +428,7 @@ DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensi
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const PlanOptions& options) {
+  require_in("cell size of the ground [m]", options.cell_size, finest_cell, coarsest_cell);
   const Terrain level = level_planning_ground(machine, options.cell_size);
   return plan_dig(Task{machine, soil, density, level, true, options});
 }

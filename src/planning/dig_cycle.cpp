@@ -11,6 +11,7 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "base/angles.hpp"
+#include "base/check.hpp"
 #include "base/text.hpp"
 #include "machine/plane.hpp"
 
@@ -118,6 +119,11 @@ Way lift_of(const DigPath& path) {
   return {begin, path.poses.end()};
 }
 
+/// Of a path from elsewhere a joint may lie beyond its limits: then the lower bound counts.
+double within(double value, double lowest, double highest) {
+  return std::max(std::min(value, highest), lowest);
+}
+
 double pin_height(const Machine& machine, const JointAngles& joints) {
   return link_positions(machine, joints).bucket_pin.y();
 }
@@ -131,27 +137,40 @@ JointAngles raised(const Machine& machine, const JointAngles& from, double heigh
   JointAngles to = from;
   const Vector2d pin = machine.boom_length * Vector2d(1.0, 0.0) +
                        machine.arm_length * direction(-from[1]);  // with the boom level
-  const double sine = std::min(rise / pin.norm(), 1.0);
-  to[0] = std::clamp(std::atan2(pin.y(), pin.x()) - std::asin(sine), boom.lower, boom.upper);
+  const double sine = within(rise / pin.norm(), -1.0, 1.0);
+  to[0] = within(std::atan2(pin.y(), pin.x()) - std::asin(sine), boom.lower, boom.upper);
   if (pin_height(machine, to) < height - 1e-9) {
     const double of_arm = (rise + machine.boom_length * std::sin(to[0])) / machine.arm_length;
-    to[1] = std::clamp(-to[0] - std::asin(std::min(of_arm, 1.0)), arm.lower, from[1]);
+    to[1] = within(-to[0] - std::asin(within(of_arm, -1.0, 1.0)), arm.lower, from[1]);
   }
-  to[2] = std::clamp(from.sum() - to[0] - to[1], machine.limits[2].lower, machine.limits[2].upper);
+  to[2] = within(from.sum() - to[0] - to[1], machine.limits[2].lower, machine.limits[2].upper);
   return to;
 }
 
 JointAngles opened(const Machine& machine, JointAngles joints) {
   const double attitude = open_floor - pi + machine.beta();
-  joints[2] = std::clamp(-joints[0] - joints[1] - attitude, machine.limits[2].lower, joints[2]);
+  joints[2] = within(-joints[0] - joints[1] - attitude, machine.limits[2].lower, joints[2]);
   return joints;
+}
+
+void check(const DigPath& path, const PlannedDig& dig, const CycleOptions& options) {
+  constexpr double most = 1e9;  // as DigObjective's
+  if (path.poses.empty()) refuse("cycle: the path has no pose");
+  require_in("cycle: payload_mass of the dig [kg]", dig.payload_mass, 0.0, most);
+  require_in("cycle: energy of the dig [J]", dig.energy, 0.0, 1e3 * most);
+  require_in("cycle: duration of the dig [s]", dig.duration, 0.0, most);
+  require_in("cycle: swing [rad]", options.swing, 0.0, 2.0 * pi);
+  require_in("cycle: dump_height [m]", options.dump_height, 0.0, most);
+  require_in("cycle: rest_of_cycle [s]", options.rest_of_cycle, 0.0, most);
 }
 
 }  // namespace
 
 std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, const PlannedDig& dig,
                                  const CycleOptions& options) {
+  require_machine(machine);
   if (!machine.swing || !machine.engine) return std::nullopt;
+  check(path, dig, options);
   const Front loaded{machine, dig.payload_mass}, empty{machine};
   Way lift = lift_of(path);
   const JointAngles clear = lift.back().joints;
@@ -162,6 +181,7 @@ std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, co
   const auto is_clear = std::find_if(up.points.begin(), up.points.end(), [&](const auto& point) {
     return (point.joints - clear).norm() < 1e-6;
   });
+  const double clear_at = is_clear != up.points.end() ? is_clear->time : up.duration();
 
   DigCycle cycle;
   cycle.dig = {dig.energy, dig.duration};
@@ -171,7 +191,7 @@ std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, co
   cycle.back = swing_by(*machine.swing, empty.inertia(open), options.swing);
   cycle.lower = move(empty, open, path.poses.front().joints);
   cycle.rest.time = options.rest_of_cycle;
-  cycle.total.time = cycle.dig.time + std::max(cycle.lift.time, is_clear->time + cycle.swing.time) +
+  cycle.total.time = cycle.dig.time + std::max(cycle.lift.time, clear_at + cycle.swing.time) +
                      cycle.dump.time + std::max(cycle.back.time, cycle.lower.time) +
                      cycle.rest.time;
   cycle.rest.energy = machine.engine->idle_power * cycle.total.time;
@@ -193,6 +213,7 @@ void require_cycle(const Machine& machine, const CycleOptions& options) {
     refuse("its file lacks " + swing + (machine.swing || machine.engine ? "" : " and ") + engine +
            "; the goal energy needs neither");
   }
+  require_machine(machine);
   const double highest =
       pin_height(machine, {machine.limits[0].lower, machine.limits[1].lower, 0.0});
   if (options.dump_height <= highest) return;

@@ -50,8 +50,10 @@ const std::vector<DigGoalInfo>& dig_goals() {
 }
 
 const DigGoalInfo& info_of(DigObjective::Goal goal) {
-  return *std::find_if(dig_goals().begin(), dig_goals().end(),
-                       [&](const DigGoalInfo& info) { return info.goal == goal; });
+  const auto found = std::find_if(dig_goals().begin(), dig_goals().end(),
+                                  [&](const DigGoalInfo& info) { return info.goal == goal; });
+  if (found == dig_goals().end()) refuse("objective: its goal is none of DigObjective::Goal");
+  return *found;
 }
 
 const std::vector<DigObjectiveParameter>& objective_parameters() {

@@ -11,7 +11,9 @@
 #include <excavplan/planning/dig_cycle.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "simulation/checked_dig.hpp"
 #include "simulation/swath.hpp"
+#include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -34,6 +36,11 @@ double rest_of_phase(const Infeasible& stop, const DigParameters& parameters) {
     default:
       return std::clamp(std::abs(stop.value - stop.limit), 0.0, 1.0);
   }
+}
+
+const Machine& required(const Machine& machine) {
+  require_machine(machine);
+  return machine;
 }
 
 double left_to_drive(const Infeasible& stop, const DigParameters& parameters) {
@@ -67,7 +74,7 @@ bool KnownStrip::is_known(double x_min, double x_max) const {
 }
 
 DigLayout::DigLayout(const Machine& machine, const Terrain& terrain)
-    : machine_(machine), ground_(boom_plane_profile(terrain)), strip_(terrain, machine) {}
+    : machine_(required(machine)), ground_(boom_plane_profile(terrain)), strip_(terrain, machine) {}
 
 std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& parameters,
                                                        double start_x,
@@ -122,7 +129,7 @@ std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
                                                const CycleOptions& cycle) {
   DigOptions unsettled;  // what slides after the bucket is out changes neither load nor energy
   unsettled.settle = false;
-  const DigResult result = simulator.dig(terrain, path, unsettled);
+  const DigResult result = checked_dig(simulator, machine, terrain, path, unsettled);
   if (result.stall) return DigFailure(*result.stall);
   PlannedDig dig{
       path.parameters,     path.start_x,

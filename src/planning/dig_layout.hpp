@@ -26,6 +26,7 @@ class KnownStrip {
 /// Lays out digs on one ground, with all checks that need no simulation.
 class DigLayout {
  public:
+  /// @throws Error (bad_input) as require_machine() and require_terrain()
   DigLayout(const Machine& machine, const Terrain& terrain);
 
   /// @throws Error (bad_input) if the start is to be searched

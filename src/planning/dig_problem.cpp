@@ -66,6 +66,18 @@ class Fingerprint {
   std::string bytes_;
 };
 
+/// Why the first dig failed that did; empty if none did.
+std::string first_failure(const SearchResult& found) {
+  for (const SearchRecord& record : found.history) {
+    const auto status = record.outcome.status;
+    if (record.source == SearchRecord::Source::simulated &&
+        (status == Evaluation::Status::failed || status == Evaluation::Status::timed_out)) {
+      return record.outcome.reason;
+    }
+  }
+  return {};
+}
+
 /// SoilSimulator::identity(), or if it has none the checksum of three digs, from the paper's path
 /// down to a quarter of its lengths, which few machines and soils forbid.
 std::string identity_of(const SoilSimulator& simulator, const Machine& machine) {
@@ -146,6 +158,8 @@ DigProblem::Best DigProblem::best_of(const SearchResult& found) const {
   result.evaluations = found.evaluations;
   result.refused = found.repair;
   result.infeasible = found.infeasible;
+  result.failed = found.failed;
+  result.first_failure = first_failure(found);
   result.stopped = found.stopped_by == StopReason::cancelled;
   result.stopped_by = found.stopped_by;
   result.at_bound = at_bound(result.dig.parameters);

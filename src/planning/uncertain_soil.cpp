@@ -13,6 +13,7 @@
 #include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "planning/dig_problem.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 namespace {
@@ -231,7 +232,7 @@ PossibleGround::PossibleGround(const SimulatorKind& simulator, const Machine& ma
     densities = possible_densities(density.percent, density.sd_percent);
   }
   for (const auto& [percent, probability] : densities) {
-    simulators_.push_back(simulator.make(machine, soil, percent));
+    simulators_.push_back(make_simulator(simulator, machine, soil, percent));
     soils_.push_back({simulators_.back().get(), probability});
   }
 }

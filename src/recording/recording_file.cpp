@@ -154,9 +154,7 @@ void Recording::add(const std::string& file, std::unique_ptr<Container> containe
 
 std::size_t Recording::add_topic(const std::string& file, const RecordedTopic& topic) {
   for (const std::string& name : {topic.name, topic.type}) {
-    const bool is_clean = std::none_of(name.begin(), name.end(),
-                                       [](char c) { return (c >= 0 && c < 32) || c == 127; });
-    if (is_clean && name.size() <= longest_name) continue;
+    if (name.size() <= longest_name && safe_text(name, longest_name) == name) continue;
     fail_at(file, "a topic's name or type", excavplan::quoted(name),
             "at most " + std::to_string(longest_name) + " bytes without control characters");
   }

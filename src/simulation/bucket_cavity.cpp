@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/angles.hpp"
+#include "base/check.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -122,12 +123,20 @@ Cavity::Packed Cavity::packed(double volume) const {
 
 double bucket_capacity(const Machine& machine, double phi3, double support,
                        const HoldingSlopes& slopes) {
+  require_machine(machine);
+  for (const double number : {phi3, support, slopes.face, slopes.heap}) {
+    require(std::isfinite(number), "capacity of a bucket: an argument", number, "finite");
+  }
   Cavity cavity(machine.bucket);
   cavity.turn_to(phi3);
   return cavity.capacity(support, slopes);
 }
 
 double stable_slope(const SoilState& soil, double height, double least) {
+  for (const double number :
+       {soil.friction_angle, soil.cohesion, soil.unit_weight, height, least}) {
+    require(std::isfinite(number), "stable slope: an argument", number, "finite");
+  }
   const double phi = soil.friction_angle;
   const auto stands = [&](double angle) {
     return 4.0 * soil.cohesion * std::sin(angle) * std::cos(phi) >=

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/scene.hpp>
@@ -106,7 +107,11 @@ Machine that_never_stalls(Machine machine) {
 
 DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soil,
                                      const CalibrationOptions& options) {
-  require(options.draws >= 0, "the number of draws", options.draws, "at least 0");
+  require_machine(machine);
+  require_soil(soil);
+  require(options.draws >= 0 && options.draws <= most_draws, "the number of draws", options.draws,
+          "in 0 .. " + std::to_string(most_draws));
+  require_simulated_cell(options.cell_size);
   std::vector<double> densities = options.densities_percent;
   if (densities.empty()) {
     for (int i = 0; i <= 20; ++i) densities.push_back(5.0 * i);

@@ -14,12 +14,18 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "ground/map_check.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double edge_share = 0.02;  // ours: neighbours that differ by more lie across an edge [-]
+
+// Ours: beyond them no sensor is.
+constexpr double longest_range = 1e4;  // [m]
+constexpr double largest_error = 1e3;  // [m], [1/m]
+constexpr double farthest = 1e9;       // from the origin [m]
 
 // Streams of a scan beyond those of its rows, which are 0 .. 9999.
 constexpr std::uint64_t pattern_stream = 1000000;
@@ -33,20 +39,34 @@ void require_count(const std::string& what, int value) {
   require(value > 0 && value <= 10000, what, value, "in 1 .. 10000");
 }
 
+void require_range(const std::string& what, double value) {
+  require(value > 0.0 && value <= longest_range, what, value,
+          "above 0 and at most " + number_text(longest_range) + " m");
+}
+
+void require_place(const std::string& what, const Eigen::Vector3d& place) {
+  for (const double number : place) require_in(what + " [m]", number, -farthest, farthest);
+}
+
 void check(const DepthCamera& camera) {
   const std::string of = "depth camera: ";
   require_count(of + "width", camera.width);
   require_count(of + "height", camera.height);
   require_count(of + "frames", camera.frames);
+  constexpr double most_depths = 1e9;  // ours
+  require_in(of + "pixels of all frames", 1.0 * camera.width * camera.height * camera.frames, 1.0,
+             most_depths);
   require(camera.horizontal_view > 0.0 && camera.horizontal_view < 3.0, of + "horizontal view",
           camera.horizontal_view, "in 0 .. 3 rad");
-  require(camera.noise >= 0.0, of + "noise", camera.noise, ">= 0 m");
+  require_place(of + "place", camera.position);
+  require_place(of + "target", camera.target);
+  require_in(of + "noise [m]", camera.noise, 0.0, largest_error);
   require_share(of + "dropouts", camera.dropouts);
-  require(camera.max_range > 0.0, of + "range", camera.max_range, "> 0 m");
-  require(camera.pattern_noise >= 0.0, of + "pattern noise", camera.pattern_noise, ">= 0 m");
+  require_range(of + "range", camera.max_range);
+  require_in(of + "pattern noise [m]", camera.pattern_noise, 0.0, largest_error);
   require(camera.pattern_length >= 0.0 && camera.pattern_length <= 1000.0, of + "pattern length",
           camera.pattern_length, "in 0 .. 1000 pixels");
-  require(camera.disparity_step >= 0.0, of + "disparity step", camera.disparity_step, ">= 0 per m");
+  require_in(of + "disparity step [1/m]", camera.disparity_step, 0.0, largest_error);
   require(camera.flying_pixels >= 0.0 && camera.flying_pixels <= 1.0, of + "flying pixels",
           camera.flying_pixels, "in 0 .. 1");
   const double distance = (camera.target - camera.position).norm();
@@ -88,13 +108,26 @@ double highest(const HeightMap& surface) {
   return surface.z.isNaN().select(-1e300, surface.z).maxCoeff();
 }
 
+/// How far along a ray the map lies, with a cell to spare: it is never met again behind its border.
+double way_over(const HeightMap& surface, const Eigen::Vector3d& from, const Eigen::Vector3d& ray) {
+  const Rectangle map = surface.extent();
+  const double x = (ray.x() > 0.0 ? map.x_max : map.x_min) - from.x();
+  const double y = (ray.y() > 0.0 ? map.y_max : map.y_min) - from.y();
+  constexpr double upright = 1e-12;  // leaves the map on no axis
+  const double along_x = std::abs(ray.x()) > upright ? x / ray.x() : longest_range;
+  const double along_y = std::abs(ray.y()) > upright ? y / ray.y() : longest_range;
+  const double slant = std::max(std::hypot(ray.x(), ray.y()), upright);
+  return std::min(along_x, along_y) + surface.cell_size / slant;
+}
+
 /// The same, skipping what lies above the top of the ground.
 double hit_from_above(const HeightMap& surface, double top, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& ray, double range) {
   if (!(ray.z() < 0.0)) return nan;
   // Nothing can be met before the ray is down at the highest point of the ground.
   const double skipped = std::max(0.0, (top + surface.cell_size - from.z()) / ray.z());
-  return skipped + hit(surface, from + skipped * ray, ray, range - skipped);
+  const double left = std::min(range - skipped, way_over(surface, from + skipped * ray, ray));
+  return skipped + hit(surface, from + skipped * ray, ray, left);
 }
 
 /// The image plane of a camera: one ray (right, down, 1) per pixel.
@@ -213,15 +246,18 @@ void check(const Lidar& lidar) {
   for (const auto* window : {&lidar.azimuth, &lidar.elevation}) {
     const double width = (*window)(1) - (*window)(0);
     require(width >= 0.0, of + "width of a window", width, ">= 0 rad");
+    require(width <= 2.0 * pi, of + "width of a window", width, "at most 2 pi rad");
+    require_in(of + "first angle of a window [rad]", (*window)(0), -2.0 * pi, 2.0 * pi);
   }
   require(lidar.angle_step.minCoeff() > 0.0, of + "angle step", lidar.angle_step.minCoeff(),
           "> 0 rad");
-  require(lidar.range_noise >= 0.0, of + "range noise", lidar.range_noise, ">= 0 m");
+  require_place(of + "place", lidar.position);
+  require_in(of + "range noise [m]", lidar.range_noise, 0.0, largest_error);
   require(lidar.divergence >= 0.0 && lidar.divergence < 0.5, of + "divergence", lidar.divergence,
           "in 0 .. 0.5 rad");
-  require(lidar.pulse_length >= 0.0, of + "pulse length", lidar.pulse_length, ">= 0 m");
+  require_in(of + "pulse length [m]", lidar.pulse_length, 0.0, longest_range);
   require_share(of + "dropouts", lidar.dropouts);
-  require(lidar.max_range > 0.0, of + "range", lidar.max_range, "> 0 m");
+  require_range(of + "range", lidar.max_range);
   const double beams = (1.0 + (lidar.azimuth(1) - lidar.azimuth(0)) / lidar.angle_step(0)) *
                        (1.0 + (lidar.elevation(1) - lidar.elevation(0)) / lidar.angle_step(1));
   require(beams <= 1e8, of + "number of beams", beams, "at most 100 million");
@@ -299,6 +335,7 @@ DepthCamera with_errors_of(const Sensor& sensor, DepthCamera camera) {
 std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const DepthCamera& camera,
                                           std::uint64_t seed) {
   check(camera);
+  require_map(surface, "scan: surface");
   const Eigen::Matrix3d axes = site_from_camera(camera);
   const ImagePlane plane(camera);
   const Eigen::ArrayXXd depth = measured(depths(surface, camera, axes), camera, seed);
@@ -316,6 +353,7 @@ std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const DepthC
 std::vector<Eigen::Vector3d> scan_surface(const HeightMap& surface, const Lidar& lidar,
                                           std::uint64_t seed) {
   check(lidar);
+  require_map(surface, "scan: surface");
   const double top = highest(surface);
   std::vector<Eigen::Vector3d> points;
   for (Eigen::Index row = 0; row < steps(lidar.elevation, lidar.angle_step(1)); ++row) {

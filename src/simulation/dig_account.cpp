@@ -9,11 +9,15 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "ground/map_check.hpp"
 #include "machine/plane.hpp"
 #include "simulation/slump.hpp"
+#include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {
+
+constexpr double largest_angle = 100.0;  // of a joint, as for a trajectory [rad]
 
 /// More than the machine holds: as in Stall.
 struct Excess {
@@ -65,23 +69,17 @@ const char* name(Stall::Cause cause) {
 }
 
 void check_dig(const Terrain& terrain, const DigPath& path) {
-  const HeightMap& map = terrain.bank;
-  if (map.z.size() == 0) refuse("dig: the map is empty");
-  require(map.cell_size > 0.0, "dig: cell size", map.cell_size, "above 0 m");
-  const auto same_size = [&](const Eigen::ArrayXXd& layer) {
-    return layer.rows() == map.z.rows() && layer.cols() == map.z.cols();
-  };
-  if (!same_size(terrain.loose)) refuse("dig: the loose layer must be as large as the map");
-  for (const Eigen::ArrayXXd* layer : {&terrain.bank_void_ratio, &terrain.loose_void_ratio}) {
-    if (layer->size() > 0 && !same_size(*layer))
-      refuse("dig: void ratios must be as large as the map");
-  }
+  require_terrain(terrain, "dig");
   if (path.poses.size() < 2) {
     refuse("dig: a path has at least 2 poses, this one has " + std::to_string(path.poses.size()));
   }
   for (const DigPose& pose : path.poses) {
-    if (std::isfinite(pose.bucket.x) && std::isfinite(pose.bucket.z)) continue;
-    refuse("dig: every pose of the path must be finite");
+    const bool finite = std::isfinite(pose.bucket.x) && std::isfinite(pose.bucket.floor_angle) &&
+                        std::abs(pose.bucket.z) <= farthest_height &&
+                        (pose.joints.array().abs() <= largest_angle).all();
+    if (!finite) refuse("dig: every pose of the path must be finite");
+    if (pose.phase >= DigPhase::penetrate && pose.phase <= DigPhase::lift) continue;
+    refuse("dig: every pose must be of a phase from penetrate to lift");
   }
 }
 

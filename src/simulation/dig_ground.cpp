@@ -6,6 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/check.hpp"
+#include "ground/map_check.hpp"
+#include "simulation/terrain_check.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -37,20 +41,30 @@ GroundProfile profile_of(const HeightMap& map, const Eigen::ArrayXXd& rows, Inde
 }  // namespace
 
 Rectangle planning_extent(const Machine& machine) {
+  require_machine(machine);
   return {machine.track_front - 1.0, -half_width,
           machine.boom_pin.x() + machine.full_length() + 0.5, half_width};
 }
 
+void require_simulated_cell(double cell_size) {
+  require(cell_size >= finest_cell && cell_size <= coarsest_cell,
+          "the cell size is " + number_text(cell_size) + " m, must be in " +
+              number_text(finest_cell) + " .. " + number_text(coarsest_cell) + " m");
+}
+
 Terrain level_planning_ground(const Machine& machine, double cell_size) {
+  require_simulated_cell(cell_size);
   return undisturbed(flat_ground(planning_extent(machine), cell_size));
 }
 
 GroundProfile boom_plane_profile(const HeightMap& surface) {
+  require_grid(surface, "ground profile");
   const BoomPlaneRows rows = rows_at_boom_plane(surface);
   return profile_of(surface, surface.z.middleRows(rows.first, rows.count), rows.first);
 }
 
 GroundProfile boom_plane_profile(const Terrain& terrain) {
+  require_terrain(terrain, "ground profile");
   const BoomPlaneRows rows = rows_at_boom_plane(terrain.bank);
   return profile_of(terrain.bank,
                     terrain.bank.z.middleRows(rows.first, rows.count) +
@@ -59,6 +73,8 @@ GroundProfile boom_plane_profile(const Terrain& terrain) {
 }
 
 GroundProfile profile_under_bucket(const HeightMap& surface, const Machine& machine) {
+  require_grid(surface, "ground profile");
+  require_machine(machine);
   return [&surface, half = 0.5 * machine.bucket.width_outside](double x) {
     double sum = 0.0;
     int count = 0;
@@ -75,6 +91,7 @@ GroundProfile profile_under_bucket(const HeightMap& surface, const Machine& mach
 }
 
 Rectangle swept_strip(const Machine& machine, const DigPath& path) {
+  if (path.poses.empty()) refuse("swept strip: the path has no pose");
   const double half = 0.5 * machine.bucket.width_outside;
   const double start = path.poses.front().bucket.x;
   Rectangle strip{start, -half, start, half};
@@ -100,6 +117,7 @@ double swept_height(const DigPath& path, double x) {
 }
 
 double boom_plane_slope(const Terrain& terrain, double from_x) {
+  require(std::isfinite(from_x), "slope of the ground: from x", from_x, "finite");
   const GroundProfile ground = boom_plane_profile(terrain);
   const HeightMap& bank = terrain.bank;
   double count = 0.0, x_sum = 0.0, z_sum = 0.0, xx = 0.0, xz = 0.0;
@@ -118,6 +136,9 @@ double boom_plane_slope(const Terrain& terrain, double from_x) {
 }
 
 Terrain sloped_planning_ground(const Machine& machine, double slope, double cell_size) {
+  constexpr double steepest = 1.5;  // [rad]
+  require_in("slope of the ground [rad]", slope, -steepest, steepest);
+  require_simulated_cell(cell_size);
   HeightMap ground = flat_ground(planning_extent(machine), cell_size);
   for (Eigen::Index col = 0; col < ground.z.cols(); ++col) {
     const double x = ground.x(col);
@@ -129,6 +150,7 @@ Terrain sloped_planning_ground(const Machine& machine, double slope, double cell
 Eigen::Vector2d default_dump_point() { return {5.5, 4.0}; }
 
 Rectangle scene_extent(const Machine& machine, const Eigen::Vector2d& dump_at) {
+  if (!dump_at.allFinite()) refuse("extent of a scene: the dump point must be finite");
   Rectangle extent = planning_extent(machine);
   extent.x_min = std::min(extent.x_min, dump_at.x() - heap_room);
   extent.x_max = std::max(extent.x_max, dump_at.x() + heap_room);

@@ -9,7 +9,9 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/check.hpp"
 #include "base/text.hpp"
+#include "ground/map_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -68,6 +70,11 @@ Rows rows_between_walls(const HeightMap& map, double half_width) {
 
 Fallback measure_fallback(const Machine& machine, const DigPath& path, const HeightMap& before,
                           const HeightMap& after, double tracking_sd) {
+  require_machine(machine);
+  require_map(before, "fallback, map before");
+  require_map(after, "fallback, map after");
+  require(tracking_sd >= 0.0 && std::isfinite(tracking_sd), "fallback: tracking_sd", tracking_sd,
+          "at least 0 m and finite");
   if (!same_grid(before, after)) {
     throw Error(ErrorKind::bad_input,
                 "fallback: the maps before and after must be on one grid: same origin, cell and "

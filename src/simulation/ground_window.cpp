@@ -9,6 +9,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "ground/map_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -74,7 +75,10 @@ void GroundWindow::check(const CellBlock& cells) const {
     for (Index col = cells.col_begin; col < cells.col_end; ++col) {
       for (Index row = cells.row_begin; row < cells.row_end; ++row) {
         const double value = layer(row, col);
-        if (std::isnan(whole_.bank.z(row, col)) || (value >= low && value <= high)) continue;
+        const double height = whole_.bank.z(row, col);
+        if (std::isnan(height)) continue;
+        if (value >= low && value <= high && std::abs(height) <= farthest_height) continue;
+        require_in("dig: the bank [m]", height, -farthest_height, farthest_height);
         require(false,
                 std::string("dig: ") + what +
                     " in the cell at x = " + number_text(whole_.bank.x(col)) +
@@ -84,8 +88,7 @@ void GroundWindow::check(const CellBlock& cells) const {
     }
   };
   const SoilKind& kind = soil_.kind;
-  constexpr double deepest_layer = 1e6;  // any finite thickness
-  within(whole_.loose, 0.0, deepest_layer, "the loose layer");
+  within(whole_.loose, 0.0, farthest_height, "the loose layer");
   if (whole_.bank_void_ratio.size() > 0) {
     within(whole_.bank_void_ratio, kind.void_ratio_min, kind.void_ratio_max,
            "the void ratio of the bank");

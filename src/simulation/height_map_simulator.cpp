@@ -307,11 +307,17 @@ class Dig {
   CellBlock moving_;
 };
 
+std::shared_ptr<const HeightMapModel> model_of(const Machine& machine, const SoilKind& soil,
+                                               double density_percent) {
+  require_machine(machine);
+  return std::make_shared<const HeightMapModel>(machine, soil, density_percent);
+}
+
 }  // namespace
 
 HeightMapSimulator::HeightMapSimulator(const Machine& machine, const SoilKind& soil,
                                        double density_percent)
-    : model_(std::make_shared<const HeightMapModel>(machine, soil, density_percent)) {}
+    : model_(model_of(machine, soil, density_percent)) {}
 
 std::string HeightMapSimulator::name() {
   return "height-map " + std::to_string(height_map_simulator_version);

@@ -16,6 +16,8 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "simulation/block_heap.hpp"
+#include "simulation/checked_dig.hpp"
+#include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -111,6 +113,10 @@ void break_up(const BlockSettings& blocks, const SoilKind& soil, DigScene& scene
 
 DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
                    const Terrain& ground, const SceneOptions& options) {
+  require_machine(machine);
+  require_soil(soil);
+  require_terrain(ground, "ground of a scene");
+  if (!options.dump_at.allFinite()) refuse("scene: the dump point must be finite");
   DigScene scene;
   scene.soil = soil.name;
   scene.density_percent = density_percent;
@@ -122,7 +128,8 @@ DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_
   DigOptions dig;
   dig.history = options.history;
   dig.dump_at = scene.dump_at;
-  scene.dig = options.simulator.make(machine, soil, density_percent)->dig(ground, scene.path, dig);
+  const auto simulator = make_simulator(options.simulator, machine, soil, density_percent);
+  scene.dig = checked_dig(*simulator, machine, ground, scene.path, dig);
   scene.after = scene.dig.after(ground);
   scene.volumes = height_map_volumes(ground, scene.after, scene.dump_at);
   if (options.blocks) break_up(*options.blocks, soil, scene);

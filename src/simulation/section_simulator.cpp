@@ -229,11 +229,17 @@ class SectionDig {
   double dropped_at_ = 0.0;  ///< sum of area times x
 };
 
+std::shared_ptr<const SectionModel> model_of(const Machine& machine, const SoilKind& soil,
+                                             double density_percent) {
+  require_machine(machine);
+  return std::make_shared<const SectionModel>(machine, soil, density_percent);
+}
+
 }  // namespace
 
 SectionSimulator::SectionSimulator(const Machine& machine, const SoilKind& soil,
                                    double density_percent)
-    : model_(std::make_shared<const SectionModel>(machine, soil, density_percent)) {}
+    : model_(model_of(machine, soil, density_percent)) {}
 
 DigResult SectionSimulator::dig(const Terrain& terrain, const DigPath& path,
                                 const DigOptions& options) const {

@@ -13,6 +13,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/check.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -20,7 +21,8 @@ namespace {
 
 constexpr double lowest_raw_percent = -1000.0;  // instead of minus infinity
 constexpr double smallest_r = 1e-6;
-constexpr double largest_r = 0.95;  // of a fit
+constexpr double largest_r = 0.95;        // of a fit
+constexpr double most_residual_sd = 1e3;  // [%]
 
 // ---- The table of forms -------------------------------------------------------------------------
 
@@ -244,7 +246,7 @@ DensityForm read_density_form(const std::string& key, JsonObject object) {
       form.*p.value = object.number(p.key, p.lowest, p.highest);
     }
     form.r2 = object.number("r2", 0.0, 1.0);
-    form.residual_sd = object.number("residual_sd_percent", 0.0, 1e3);
+    form.residual_sd = object.number("residual_sd_percent", 0.0, most_residual_sd);
     form.residual_growth = object.number_or("residual_growth", 0.0, -1.0, 1.0);
     read = form;
   });
@@ -265,12 +267,29 @@ nlohmann::ordered_json density_form_json(const DensityForm& form) {
       form);
 }
 
+void require_form(const DensityForm& form) {
+  std::visit(
+      [](const auto& f) {
+        using Row = RowOf<decltype(f)>;
+        const auto check = [](const char* key, double value, double lowest, double highest) {
+          if (value >= lowest && value <= highest) return;
+          require_in(std::string("density law, ") + Row::key + ": " + key, value, lowest, highest);
+        };
+        for (const auto& p : Row::parameters) check(p.key, f.*p.value, p.lowest, p.highest);
+        check("residual_sd", f.residual_sd, 0.0, most_residual_sd);
+        check("residual_growth", f.residual_growth, -1.0, 1.0);
+      },
+      form);
+}
+
 double density_of_bulking(const DensityForm& form, double bulking_factor) {
   return std::visit([&](const auto& f) { return RowOf<decltype(f)>::density(f, bulking_factor); },
                     form);
 }
 
 double bulking_of_density(const DensityForm& form, double density_percent) {
+  require_form(form);
+  require(std::isfinite(density_percent), "relative density", density_percent, "finite");
   return std::visit([&](const auto& f) { return RowOf<decltype(f)>::bulking(f, density_percent); },
                     form);
 }

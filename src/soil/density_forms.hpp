@@ -23,6 +23,9 @@ std::vector<std::string> density_form_keys();
 /// Reads the form of this key. @throws Error (bad_file)
 DensityForm read_density_form(const std::string& key, JsonObject object);
 
+/// @throws Error (bad_input) naming a parameter that is out of the range of law files
+void require_form(const DensityForm& form);
+
 nlohmann::ordered_json density_form_json(const DensityForm& form);
 
 }  // namespace excavplan

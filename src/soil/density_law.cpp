@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/normal_mixture.hpp"
 #include "base/text.hpp"
@@ -116,6 +117,7 @@ DensityLaw load_density_law(const std::string& path) {
 }
 
 DensityLaw density_law_of(const SoilKind& soil) {
+  require_soil(soil);
   DensityClosedForm form;
   form.A = (1.0 + soil.void_ratio_loose) / (1.0 + soil.void_ratio_max);
   form.r = (soil.void_ratio_max - soil.void_ratio_min) / (1.0 + soil.void_ratio_max);
@@ -138,6 +140,7 @@ void set_error(RelativeDensity& estimate, double sd_percent) {
 }
 
 RelativeDensity relative_density(const DensityLaw& law, const Measured& bulking_factor) {
+  require_form(law.form);
   const double k = bulking_factor.value;
   if (!(k > 0.0 && std::isfinite(k)) ||
       !(bulking_factor.sd >= 0.0 && std::isfinite(bulking_factor.sd))) {
@@ -178,6 +181,7 @@ DensityLaw law_of(const DensityCalibration& calibration) {
 }
 
 void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
+  require(!digs.empty(), "scatter of a density law: there is no dig");
   std::array<double, 2> squares = {0.0, 0.0};  // of loose and of dense soil
   std::array<int, 2> counts = {0, 0};
   for (const BulkingSample& dig : digs) {
@@ -187,6 +191,7 @@ void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs) {
     ++counts[half];
   }
   const double square = (squares[0] + squares[1]) / static_cast<double>(digs.size());
+  require(std::isfinite(square), "mean square of the scatter of a density law", square, "finite");
   double growth = 0.0;
   if (counts[0] > 0 && counts[1] > 0 && square > 0.0) {
     const double loose = squares[0] / counts[0];
@@ -218,6 +223,7 @@ std::string to_json(const DensityCalibration& calibration) {
   for (const DensityCalibration::Sample& sample : calibration.samples) {
     file["samples"].push_back(to_object(sample));
   }
+  require_storable(file, "density calibration");
   return json_text(file, 2) + "\n";
 }
 

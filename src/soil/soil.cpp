@@ -8,6 +8,7 @@
 #include <excavplan/error.hpp>
 
 #include "base/angles.hpp"
+#include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 
@@ -20,48 +21,86 @@ constexpr double flattest_friction = 0.01;
 constexpr double least_overburden_depth = 0.01;  // the stress law ends here: q -> 0 at the surface
 constexpr double pascal_per_kilopascal = 1000.0;
 
+/// A number of a soil: its key in files, and the range that it is accepted in.
+struct SoilNumber {
+  const char* key;
+  double SoilKind::*value;
+  double lowest;
+  double highest;
+};
+
+constexpr SoilNumber soil_numbers[] = {
+    {"specific_gravity", &SoilKind::specific_gravity, 0.5, 10.0},
+    {"water_content", &SoilKind::water_content, 0.0, 10.0},
+    {"void_ratio_max", &SoilKind::void_ratio_max, 0.01, 20.0},
+    {"void_ratio_min", &SoilKind::void_ratio_min, 0.01, 20.0},
+    {"void_ratio_loose", &SoilKind::void_ratio_loose, 0.01, 20.0},
+    {"cohesion_loosest_pa", &SoilKind::cohesion_loosest, 0.0, 1e6},
+    {"cohesion_growth", &SoilKind::cohesion_growth, 0.0, 10.0},
+    {"friction_loosest_rad", &SoilKind::friction_loosest, flattest_friction, steepest_friction},
+    {"friction_gain_rad", &SoilKind::friction_gain, -steepest_friction, steepest_friction},
+    {"tool_friction_ratio", &SoilKind::tool_friction_ratio, 0.0, 1.0},
+    {"adhesion_ratio", &SoilKind::adhesion_ratio, 0.0, 1.0},
+    {"angle_of_repose_rad", &SoilKind::angle_of_repose, 0.05, steepest_friction}};
+
+constexpr SoilNumber numbers_by_density[] = {
+    {"reference_pa", &SoilKind::cone_index_reference, 1.0, 1e9},
+    {"rate_m3_per_kg", &SoilKind::cone_index_rate, 0.0, 0.1},
+    {"reference_density_kg_m3", &SoilKind::cone_index_reference_density, 1.0, 1e4}};
+
+constexpr SoilNumber numbers_by_stress[] = {
+    {"reference_pa", &SoilKind::cone_index_reference, 1.0, 1e9},
+    {"rate", &SoilKind::cone_index_rate, 0.0, 20.0},
+    {"stress_exponent", &SoilKind::cone_index_stress_exponent, 0.0, 2.0}};
+
+/// Calls visit(number) for the numbers of a law of the cone index.
+template <typename Visit>
+void for_each_number(ConeIndexLaw law, const Visit& visit) {
+  for (const SoilNumber& number :
+       law == ConeIndexLaw::bulk_density ? numbers_by_density : numbers_by_stress) {
+    visit(number);
+  }
+}
+
 void read_cone_index(JsonObject law, SoilKind& soil) {
   const std::string name = law.text("law");
-  soil.cone_index_reference = law.number("reference_pa", 1.0, 1e9);
-  if (name == "bulk_density") {
-    soil.cone_index_law = ConeIndexLaw::bulk_density;
-    soil.cone_index_rate = law.number("rate_m3_per_kg", 0.0, 0.1);
-    soil.cone_index_reference_density = law.number("reference_density_kg_m3", 1.0, 1e4);
-  } else if (name == "stress") {
-    soil.cone_index_law = ConeIndexLaw::stress;
-    soil.cone_index_rate = law.number("rate", 0.0, 20.0);
-    soil.cone_index_stress_exponent = law.number("stress_exponent", 0.0, 2.0);
-  } else {
+  if (name != "bulk_density" && name != "stress") {
     law.fail("law", "is " + excavplan::quoted(name) + ", must be 'bulk_density' or 'stress'");
   }
+  soil.cone_index_law = name == "stress" ? ConeIndexLaw::stress : ConeIndexLaw::bulk_density;
+  for_each_number(soil.cone_index_law, [&](const SoilNumber& number) {
+    soil.*number.value = law.number(number.key, number.lowest, number.highest);
+  });
   law.done();
 }
 
-/// Rules that concern several keys.
-void check_consistency(const JsonObject& file, const SoilKind& soil) {
-  const std::string e_max = number_text(soil.void_ratio_max);
-  const std::string e_min = number_text(soil.void_ratio_min);
+/// Rules that concern several numbers. @param fail  called with key and message of what breaks one
+template <typename Fail>
+void check_consistency(const SoilKind& soil, const Fail& fail) {
+  constexpr double rounding = 1e-9;
+  const auto e_max = [&] { return number_text(soil.void_ratio_max); };
+  const auto e_min = [&] { return number_text(soil.void_ratio_min); };
   if (soil.void_ratio_min >= soil.void_ratio_max) {
-    file.fail("void_ratio_min", "is " + e_min + ", must be below void_ratio_max (" + e_max + ")");
+    fail("void_ratio_min", "is " + e_min() + ", must be below void_ratio_max (" + e_max() + ")");
   }
   if (soil.void_ratio_loose <= soil.void_ratio_min || soil.void_ratio_loose > soil.void_ratio_max) {
-    file.fail("void_ratio_loose", "is " + number_text(soil.void_ratio_loose) +
-                                      ", must be above void_ratio_min (" + e_min +
-                                      ") and not above void_ratio_max (" + e_max + ")");
+    fail("void_ratio_loose", "is " + number_text(soil.void_ratio_loose) +
+                                 ", must be above void_ratio_min (" + e_min() +
+                                 ") and not above void_ratio_max (" + e_max() + ")");
   }
   const double saturation = soil.water_content * soil.specific_gravity / soil.void_ratio_min;
-  if (saturation > 1.0) {
-    file.fail("water_content", "is " + number_text(soil.water_content) +
-                                   ", which fills the pores of the densest state " +
-                                   number_text(saturation) + " times over; must not exceed 1");
+  if (saturation > 1.0 + rounding) {
+    fail("water_content", "is " + number_text(soil.water_content) +
+                              ", which fills the pores of the densest state " +
+                              number_text(saturation) + " times over; must not exceed 1");
   }
   const double densest = soil.friction_loosest + soil.friction_gain;
   if (densest < flattest_friction || densest > steepest_friction) {
-    file.fail("friction_gain_rad", "is " + number_text(soil.friction_gain) +
-                                       ", which makes the friction angle of the densest state " +
-                                       number_text(densest) + " rad; must be in " +
-                                       number_text(flattest_friction) + " .. " +
-                                       number_text(steepest_friction));
+    fail("friction_gain_rad", "is " + number_text(soil.friction_gain) +
+                                  ", which makes the friction angle of the densest state " +
+                                  number_text(densest) + " rad; must be in " +
+                                  number_text(flattest_friction) + " .. " +
+                                  number_text(steepest_friction));
   }
 }
 
@@ -100,22 +139,28 @@ SoilKind load_soil(const std::string& path) {
   file.ignore("sources");
   SoilKind soil;
   soil.name = file.text("name");
-  soil.specific_gravity = file.number("specific_gravity", 0.5, 10.0);
-  soil.water_content = file.number("water_content", 0.0, 10.0);
-  soil.void_ratio_max = file.number("void_ratio_max", 0.01, 20.0);
-  soil.void_ratio_min = file.number("void_ratio_min", 0.01, 20.0);
-  soil.void_ratio_loose = file.number("void_ratio_loose", 0.01, 20.0);
-  soil.cohesion_loosest = file.number("cohesion_loosest_pa", 0.0, 1e6);
-  soil.cohesion_growth = file.number("cohesion_growth", 0.0, 10.0);
-  soil.friction_loosest = file.number("friction_loosest_rad", flattest_friction, steepest_friction);
-  soil.friction_gain = file.number("friction_gain_rad", -steepest_friction, steepest_friction);
-  soil.tool_friction_ratio = file.number("tool_friction_ratio", 0.0, 1.0);
-  soil.adhesion_ratio = file.number("adhesion_ratio", 0.0, 1.0);
-  soil.angle_of_repose = file.number("angle_of_repose_rad", 0.05, steepest_friction);
+  for (const SoilNumber& number : soil_numbers) {
+    soil.*number.value = file.number(number.key, number.lowest, number.highest);
+  }
   read_cone_index(file.object("cone_index"), soil);
   file.done();
-  check_consistency(file, soil);
+  check_consistency(soil, [&](const char* key, const std::string& text) { file.fail(key, text); });
   return soil;
+}
+
+void require_soil(const SoilKind& soil) {
+  const auto of = [&](const char* key) {
+    return "soil " + excavplan::quoted(soil.name) + ": " + key;
+  };
+  const auto check = [&](const SoilNumber& number) {
+    const double value = soil.*number.value;
+    if (value >= number.lowest && value <= number.highest) return;
+    require_in(of(number.key), value, number.lowest, number.highest);
+  };
+  for (const SoilNumber& number : soil_numbers) check(number);
+  for_each_number(soil.cone_index_law, check);
+  check_consistency(
+      soil, [&](const char* key, const std::string& text) { refuse(of(key) + " " + text); });
 }
 
 std::string fingerprint(const SoilKind& soil) {
@@ -132,6 +177,7 @@ std::string fingerprint(const SoilKind& soil) {
 }
 
 SoilState bank_state(const SoilKind& soil, double density_percent) {
+  require_soil(soil);
   SoilState state = state_of_void_ratio(soil, void_ratio(soil, density_percent));
   const double d = density_percent / 100.0;
   set_strength(soil, soil.cohesion_loosest * std::exp(soil.cohesion_growth * d),
@@ -150,6 +196,7 @@ SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio) {
 }
 
 SoilState loose_state(const SoilKind& soil) {
+  require_soil(soil);
   SoilState state = state_of_void_ratio(soil, soil.void_ratio_loose);
   set_strength(soil, 0.0, soil.friction_loosest, state);
   return state;
@@ -168,10 +215,13 @@ double cone_index(const SoilKind& soil, const SoilState& state, double depth) {
 }
 
 double bulking_of_density(const SoilKind& soil, double density_percent) {
+  require_soil(soil);
   return (1.0 + soil.void_ratio_loose) / (1.0 + void_ratio(soil, density_percent));
 }
 
 double critical_height(const SoilState& state) {
+  require(state.unit_weight > 0.0 && std::isfinite(state.unit_weight), "unit weight of a soil",
+          state.unit_weight, "above 0 N/m^3 and finite");
   return 4.0 * state.cohesion / state.unit_weight *
          std::tan(0.25 * pi + 0.5 * state.friction_angle);
 }

@@ -3,9 +3,12 @@
 #include <excavplan/soil/soil_scatter.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "base/check.hpp"
 #include "base/random.hpp"
+#include "soil/density_forms.hpp"
 
 namespace excavplan {
 namespace {
@@ -15,6 +18,10 @@ constexpr double least_void_ratio_range = 0.05;  // between the limits of a draw
 }  // namespace
 
 SoilKind drawn_soil(const SoilKind& soil, const SoilScatter& scatter, std::uint64_t seed) {
+  require_soil(soil);
+  for (const double share : {scatter.water_content, scatter.limit_density, scatter.loose_density}) {
+    require_in("soil scatter: a share", share, 0.0, 1.0);
+  }
   Random random(seed);
   // Dry density is G_s rho_w / (1 + e).
   const auto scaled = [](double void_ratio, double density) {
@@ -26,8 +33,8 @@ SoilKind drawn_soil(const SoilKind& soil, const SoilScatter& scatter, std::uint6
   const double water = 1.0 + scatter.water_content * random.normal();
   SoilKind drawn = soil;
   drawn.void_ratio_max = scaled(soil.void_ratio_max, loosest);
-  drawn.void_ratio_min = std::clamp(scaled(soil.void_ratio_min, densest), 0.01,
-                                    drawn.void_ratio_max - least_void_ratio_range);
+  drawn.void_ratio_min = std::max(0.01, std::min(scaled(soil.void_ratio_min, densest),
+                                                 drawn.void_ratio_max - least_void_ratio_range));
   drawn.void_ratio_loose = std::clamp(scaled(soil.void_ratio_loose, loosest * loose),
                                       drawn.void_ratio_min, drawn.void_ratio_max);
   const double full = drawn.void_ratio_min / drawn.specific_gravity;  // of the densest state
@@ -36,6 +43,9 @@ SoilKind drawn_soil(const SoilKind& soil, const SoilScatter& scatter, std::uint6
 }
 
 double density_of_bulk_density(const SoilKind& soil, double bulk_density) {
+  require_soil(soil);
+  require(bulk_density > 0.0 && std::isfinite(bulk_density), "bulk density", bulk_density,
+          "above 0 kg/m^3 and finite");
   const double void_ratio =
       soil.specific_gravity * water_density * (1.0 + soil.water_content) / bulk_density - 1.0;
   return 100.0 * (soil.void_ratio_max - void_ratio) / (soil.void_ratio_max - soil.void_ratio_min);
@@ -44,6 +54,8 @@ double density_of_bulk_density(const SoilKind& soil, double bulk_density) {
 Eigen::Matrix2d density_scatter(const SoilKind& soil, const DensityForm& freed_form,
                                 double density_percent, const SoilScatter& scatter) {
   constexpr int draws = 400;
+  require_form(freed_form);
+  require(!std::isnan(density_percent), "density", density_percent, "a number");
   const double d = std::clamp(density_percent, 0.0, 100.0);
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (std::uint64_t i = 0; i < draws; ++i) {

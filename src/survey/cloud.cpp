@@ -10,6 +10,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/check.hpp"
 #include "survey/cloud_outline.hpp"
 
 namespace excavplan {
@@ -62,12 +63,16 @@ Occupied occupied_area(const Cloud& cloud, const Rectangle& extent, double cell)
 double points_per_area(const Cloud& cloud, std::size_t finite_points) {
   constexpr double points_per_cell = 10.0;
   constexpr double narrowest = 1e-6;  // [m]; a line of points has no area
+  constexpr double most_cells = 1e8;  // ours
   const Rectangle extent = plan_extent(cloud);
   const double width = extent.x_max - extent.x_min;
   const double length = extent.y_max - extent.y_min;
   if (std::min(width, length) < narrowest) return unknown;
   const auto points = static_cast<double>(finite_points);
-  const double smallest_cell = std::max(width, length) / points;  // bounds the grid's memory
+  if (!std::isfinite(width * length)) return unknown;
+  // Bounds the grid's memory.
+  const double smallest_cell =
+      std::max(std::max(width, length) / points, std::sqrt(width * length / most_cells));
   Occupied occupied{width * length, finite_points};
   for (int pass = 0; pass < 2; ++pass) {
     const double cell = std::sqrt(points_per_cell * occupied.area / points);
@@ -161,6 +166,7 @@ std::string guess_frame(const Cloud& cloud, const CloudSummary& summary) {
 }  // namespace
 
 void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan) {
+  if (!site_from_scan.allFinite()) refuse("transform: a number of site_from_scan is not finite");
   const Eigen::Matrix3d rotation = site_from_scan.topLeftCorner<3, 3>();
   const Eigen::Vector3d shift = site_from_scan.topRightCorner<3, 1>();
   for (Eigen::Vector3d& point : cloud.points) point = rotation * point + shift;
@@ -227,13 +233,14 @@ namespace {
 double cell_of_points(const std::vector<ScanOutline>& outlines, double points) {
   constexpr double widest_fine = 0.05;  // [m]
   constexpr double fewest_cells_along = 100.0;
+  constexpr double sparsest = 1e-9;  // of points that there are [1/m^2]
   double least = widest_fine;
   double density = std::numeric_limits<double>::infinity();
   for (const ScanOutline& outline : outlines) {
     if (!outline.extent) continue;
     const Rectangle& r = *outline.extent;
     least = std::min(least, std::min(r.x_max - r.x_min, r.y_max - r.y_min) / fewest_cells_along);
-    if (outline.density < density) density = outline.density;
+    if (outline.density > sparsest && outline.density < density) density = outline.density;
   }
   return std::max(least, std::sqrt(points / density));
 }

@@ -51,6 +51,7 @@ HeightMap empty_map(const Rectangle& extent, const RasterOptions& options) {
     refuse("outlier_distance is " + number_text(options.outlier_distance) + ", must be > 0");
   }
   const Eigen::Vector2d& node = options.node;
+  if (!node.allFinite()) refuse("node is not finite");
   const Span columns = span_of(extent.x_min - node.x(), extent.x_max - node.x(), options.cell_size);
   const Span rows = span_of(extent.y_min - node.y(), extent.y_max - node.y(), options.cell_size);
   if (!(columns.count > 0.0) || !(rows.count > 0.0)) {

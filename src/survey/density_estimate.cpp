@@ -12,8 +12,10 @@
 #include <excavplan/ground/bulking.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/cover.hpp"
+#include "soil/density_forms.hpp"
 #include "survey/density_of_volumes.hpp"
 #include "survey/paper_change.hpp"
 #include "survey/scan_checks.hpp"
@@ -199,10 +201,38 @@ void keep_registration(const Surfaces& surfaces, DensityEstimate& estimate) {
   if (surfaces.dump) estimate.dump_registration = registration(*surfaces.dump);
 }
 
+void require_measured(const std::string& what, const Measured& figure) {
+  require(figure.value > 0.0 && std::isfinite(figure.value), what, figure.value,
+          "above 0 and finite");
+  require(figure.sd >= 0.0 && std::isfinite(figure.sd), what + ", its sd,", figure.sd,
+          "at least 0 and finite");
+}
+
+void check(const DensityLaw& law, const DensityOptions& options) {
+  require_form(law.form);
+  require_form(law.freed_form);
+  const double cell = options.cell_size.value_or(1.0);
+  require(cell > 0.0 && std::isfinite(cell), "cell_size", cell, "above 0 m and finite");
+  if (options.dug_path) require_machine(options.dug_path->machine);
+  if (options.soil.kind) require_soil(*options.soil.kind);
+  for (const SoilLaw& possible : options.soil.possible) {
+    require_soil(possible.soil);
+    require_form(possible.law.form);
+    require_form(possible.law.freed_form);
+    require_in("weight of a soil", possible.weight, 0.0, 1.0);
+  }
+  if (options.payload_mass) require_measured("payload_mass [kg]", *options.payload_mass);
+  if (const auto& water = options.soil.water_content) {
+    require_in("water_content", water->value, 0.0, 10.0);
+    require_in("water_content, its sd,", water->sd, 0.0, 10.0);
+  }
+}
+
 /// The method, in the order of the paper, for each way to find the volumes.
 std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& law,
                                        const DensityOptions& options,
                                        std::initializer_list<VolumeMethod> methods) {
+  check(law, options);
   const OutlinedScans seen = outline_scans(scans, options);  // extent, density of points, cell
   std::vector<Warning> doubts = doubts_about(seen);
   Surfaces surfaces;

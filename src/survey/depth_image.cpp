@@ -153,6 +153,9 @@ Eigen::Vector3d point_at_pixel(const Cloud& cloud, const DepthIntrinsics& intrin
   };
   const auto width = static_cast<double>(cloud.width);
   const auto height = static_cast<double>(cloud.height);
+  if (width * height != static_cast<double>(cloud.points.size())) {
+    refuse("is of a cloud whose width x height is not the number of its points");
+  }
   if (!(u >= -0.5 && u < width - 0.5 && v >= -0.5 && v < height - 0.5)) {
     refuse("is outside the image of " + std::to_string(cloud.width) + " x " +
            std::to_string(cloud.height));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/check.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
 #include "survey/scan_checks.hpp"
@@ -196,8 +197,8 @@ Payload stated(const LoggedDig& dig, const Payload& payload) {
     throw Error(ErrorKind::bad_input, what + ": " + number_text(value) + ", must be " + rule);
   };
   const auto [value, sd] = payload.amount;
-  check(value > 0.0, name, value, "above 0");
-  check(!(sd < 0.0), name + "-sd", sd, "0 or more");
+  check(value > 0.0 && std::isfinite(value), name, value, "above 0");
+  check(!(sd < 0.0) && !std::isinf(sd), name + "-sd", sd, "0 or more");
   return payload;
 }
 
@@ -207,11 +208,10 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
   const std::string names = seen.names() + ": ";
   const double cell = dig.cell_size.value_or(seen.cell_size());
   const std::vector<Warning> doubts = check_outlines(seen);
-  const auto measure = [&] {
-    const SurfacePair surfaces = survey_pair(seen, cell, false, dig.threads).surfaces;
-    const HeightMapPair dump{surfaces.before.height, surfaces.after.height};
-    return measure_change(HeightMapPair{dump.before, dump.before}, dump);
-  };
+  const SurfacePair surfaces =
+      with_doubts(doubts, [&] { return survey_pair(seen, cell, false, dig.threads).surfaces; });
+  const HeightMapPair dump{surfaces.before.height, surfaces.after.height};
+  const HeightMapPair no_dig{dump.before, dump.before};
   const auto add = [&](const std::vector<Warning>& warnings) {
     for (const Warning& warning : warnings) {
       if (warning.code == "no_hole_found") continue;
@@ -219,7 +219,7 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
     }
   };
   try {
-    const VolumeChange change = with_doubts(doubts, measure);
+    const VolumeChange change = measure_change(no_dig, dump);
     if (!(change.dumped.value > 0.0)) {
       throw Error(ErrorKind::bad_file, "no ground rose by more than the noise of the scans");
     }
@@ -310,6 +310,10 @@ Measured efficiency_gain(const DigEfficiency& first, const DigEfficiency& second
   }
   const Measured a = first.value();
   const Measured b = second.value();
+  for (const Measured& value : {a, b}) {
+    require(value.value > 0.0 && std::isfinite(value.value), "payload per cost of a run",
+            value.value, "above 0 and finite");
+  }
   const double ratio = b.value / a.value;
   return {100.0 * (ratio - 1.0), 100.0 * ratio * std::hypot(a.sd / a.value, b.sd / b.value)};
 }

@@ -52,6 +52,7 @@ MachineFront::MachineFront(const Machine& machine, const MachinePosture& posture
     : ahead_(direction(posture.swing)),
       half_width_(0.5 * machine.bucket.width_outside),
       margin_(margin) {
+  require_machine(machine);
   require(std::isfinite(posture.swing), "swing of the machine", posture.swing, "finite");
   for (const double angle : posture.joints) {
     require(std::isfinite(angle), "joint angle of the machine", angle, "finite");

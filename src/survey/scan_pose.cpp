@@ -163,6 +163,12 @@ void check(const std::vector<Eigen::Vector3d>& in_scan,
     if (!in_scan[i].allFinite() || !in_site[i].allFinite()) {
       refuse("known point " + std::to_string(i + 1) + " has a coordinate that is not finite");
     }
+    const double farthest =
+        std::max(in_scan[i].cwiseAbs().maxCoeff(), in_site[i].cwiseAbs().maxCoeff());
+    if (farthest > 1e9) {
+      refuse("known point " + std::to_string(i + 1) + " is " + number_text(farthest) +
+             " m from the origin, must be within 1e9 m");
+    }
   }
 }
 
@@ -181,6 +187,7 @@ Eigen::Vector3d forward(const Eigen::Vector3d& up) {
 
 LevelPose level(const std::vector<Eigen::Vector3d>& scan, const Eigen::Vector3d& place,
                 std::uint64_t seed) {
+  if (!place.allFinite()) refuse("the place of its sensor is not finite");
   const std::vector<Eigen::Vector3d> points = seen_from(place, scan);
   if (points.size() < fewest_points) {
     refuse(std::to_string(points.size()) + " finite points, must be 100 or more to level it");

@@ -11,6 +11,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/survey/machine_front.hpp>
 
+#include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "ground/coarse_motion.hpp"
@@ -41,6 +42,21 @@ void require_points(const Scan& scan, const ScanOutline& seen) {
 std::string text(const Rectangle& r) {
   return "x " + readable(r.x_min) + " .. " + readable(r.x_max) + ", y " + readable(r.y_min) +
          " .. " + readable(r.y_max) + " m";
+}
+
+void require_scan(const Scan& scan) {
+  const auto require = [](bool holds, const char* rule) {
+    if (!holds) refuse(std::string("scan: ") + rule);
+  };
+  const auto& clouds = scan.clouds;
+  require(std::find(clouds.begin(), clouds.end(), nullptr) == clouds.end(),
+          "one of its clouds is a null pointer");
+  require(scan.site_from_scan.allFinite(), "a number of site_from_scan is not finite");
+  require(scan.unit > 0.0 && std::isfinite(scan.unit), "unit must be above 0 and finite");
+  require(!scan.sensor_origin || scan.sensor_origin->allFinite(), "sensor_origin must be finite");
+  const auto& area = scan.area;
+  require(!area || (area->x_max > area->x_min && area->y_max > area->y_min),
+          "area is empty, its x and y must grow");
 }
 
 Rectangle overlap(const OutlinedPair& pair) {
@@ -136,6 +152,7 @@ bool could_be_elsewhere(const RegisteredPair& pair) {
 }  // namespace
 
 std::uint64_t visit_scan(const Scan& scan, const PointVisitor& visit) {
+  require_scan(scan);
   const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity() || scan.unit != 1.0;
   const Eigen::Matrix3d rotation = scan.unit * scan.site_from_scan.topLeftCorner<3, 3>();
   const Eigen::Vector3d shift = scan.site_from_scan.topRightCorner<3, 1>();
@@ -154,9 +171,6 @@ std::uint64_t visit_scan(const Scan& scan, const PointVisitor& visit) {
     }
     visit(kept);
   };
-  if (std::find(scan.clouds.begin(), scan.clouds.end(), nullptr) != scan.clouds.end()) {
-    throw Error(ErrorKind::bad_input, "scan: one of its clouds is a null pointer");
-  }
   const bool as_it_is = !is_moved && !scan.area && !scan.machine;
   for (const std::string& file : scan.files) stream_cloud(file, as_it_is ? visit : bring_in);
   for (const auto& cloud : scan.clouds) {
@@ -170,6 +184,7 @@ std::uint64_t visit_scan(const Scan& scan, const PointVisitor& visit) {
 }
 
 std::vector<Standpoint> standpoints_of(const Scan& scan) {
+  require_scan(scan);
   constexpr double one_place = 0.05;      // [m], ours
   constexpr std::size_t most_places = 4;  // ours
   Scan none = scan;
@@ -254,11 +269,27 @@ bool leaves_difference(const SurfacePair& pair) {
   return pair.alignment.residual_sd > std::max(least, explained * expected);
 }
 
+void require_memory(const OutlinedPair& pair, const Rectangle& extent, double cell_size) {
+  constexpr double of_cell = 160.0;     // measured [byte]
+  constexpr double of_unseen = 1500.0;  // more of a cell without points, measured [byte]
+  const double width = extent.x_max - extent.x_min;
+  const double depth = extent.y_max - extent.y_min;
+  const double cells = width / cell_size * (depth / cell_size);
+  const auto points =
+      static_cast<double>(std::min(pair.before.finite_points, pair.after.finite_points));
+  const double needed = of_cell * cells + of_unseen * std::max(0.0, cells - points);
+  require(!(cell_size > 0.0 && needed > most_survey_memory),
+          "a survey of " + readable(width) + " m x " + readable(depth) + " m in cells of " +
+              number_text(cell_size) + " m needs about " + readable(needed / 1e9) +
+              " GB of memory, most are " + number_text(most_survey_memory / 1e9) + " GB");
+}
+
 RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,
                            unsigned threads) {
   RasterOptions raster;
   raster.cell_size = cell_size;
   const Rectangle extent = overlap(pair);
+  require_memory(pair, extent, cell_size);
   raster.node = {extent.x_min, extent.y_min};  // cells move with the scans
   if (registered) {
     return survey_registered(pair.scans, extent, raster, pair.registration_cell(), threads);
@@ -282,6 +313,8 @@ std::vector<Surface> survey_surfaces(const std::vector<Scan>& scans, const Recta
 RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
                                  const RasterOptions& options, double registration_cell,
                                  unsigned threads) {
+  require(registration_cell >= 0.0 && std::isfinite(registration_cell), "registration_cell",
+          registration_cell, "at least 0 m and finite");
   RasterOptions coarse = options;
   coarse.cell_size = std::max(options.cell_size, registration_cell);
   const bool is_fine = coarse.cell_size > options.cell_size;

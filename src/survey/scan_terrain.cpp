@@ -48,7 +48,8 @@ void require_points(const Scan& scan, std::size_t points, const Rectangle& exten
 }  // namespace
 
 ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
-  require(cell_size > 0.0, "terrain from a scan: cell_size", cell_size, "> 0 m");
+  require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
+          "> 0 m and finite");
   const Cloud near = cropped(scan, extent);
   require_points(scan, near.points.size(), extent);
   const double density = summarise(near).density;

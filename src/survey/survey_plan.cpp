@@ -273,6 +273,9 @@ SurveyForecast plan_survey(const SurveyPlan& plan) {
   }
   forecast.hidden_share = std::min(1.0, budgets.hidden_area / shapes.changed_area());
   forecast.in_view = fits(view, shapes);
+  require(forecast.datum_sd >= 0.0, "datum", forecast.datum_sd, "finite: a number is too large");
+  require(forecast.density_sd_percent >= 0.0, "sd of the density", forecast.density_sd_percent,
+          "finite: a number is too large");
   return forecast;
 }
 

@@ -234,7 +234,7 @@ TEST(HeightMap, ImpossibleGroundIsRefused) {
   EXPECT_EQ(test::error_of([] {
               flat_ground({0, 0, 1000, 1001}, 0.1);
             }),
-            "a map of 1000 m x 1001 m in cells of 0.1 m holds 100100000 cells, most are 1e+08");
+            "a map of 1000 m x 1001 m in cells of 0.1 m holds 100100000 cells, most are 2e+07");
 }
 
 TEST(HeightMap, HeightBetweenCentresIsExactOnPlanes) {

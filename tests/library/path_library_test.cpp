@@ -213,7 +213,7 @@ TEST(PathLibrary, NamesThatAreNotUtf8AreNotWritten) {
   PathLibrary library = small_library();
   library.machine = "zx\xff";
   const std::string text = test::error_of([&] { to_json(library); });
-  EXPECT_EQ(text.rfind("a name or another text in a file to write is not UTF-8: ", 0), 0U) << text;
+  EXPECT_NE(text.find("not UTF-8"), std::string::npos) << text;
 }
 
 TEST(PathLibrary, EveryChangedByteIsNoticed) {

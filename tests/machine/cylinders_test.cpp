@@ -322,7 +322,7 @@ TEST(Cylinder, SaysWhyItCannotBeMade) {
   EXPECT_EQ(complaint_of(apart, -0.5, 0.5),
             "cannot be assembled at joint angle -0.5 rad: its parts do not meet");
   EXPECT_EQ(complaint_of({1, {nan, 0.0}, plain.rod}, -1.0, 1.0),
-            "cannot be assembled at joint angle -1 rad: its parts do not meet");
+            "has a foot at distance nan and angle 0, must be finite");
 }
 
 TEST(CylindersOfAFile, MayBeLeftOut) {

@@ -37,6 +37,7 @@ Machine without_tracks(double beta = 50 * degree) {
   Machine machine = zx120();
   machine.track_front = -100.0;
   machine.bucket.profile[1] = Vector2d(1.23, 0) + 0.6 * Vector2d(-std::cos(beta), std::sin(beta));
+  if (beta < 45 * degree) machine.bucket.profile[2].y() = 0.6;  // it stays convex
   return machine;
 }
 

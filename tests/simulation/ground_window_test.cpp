@@ -29,6 +29,9 @@ struct Ground {
     kind.void_ratio_min = 0.4;
     kind.void_ratio_loose = 1.4;
     kind.friction_loosest = 35 * degree;
+    kind.angle_of_repose = 35 * degree;
+    kind.cone_index_reference = 1e5;
+    kind.cone_index_reference_density = 1500.0;
     bank = bank_state(kind, 80.0);  // void ratio 0.6: swells by 1.5
     loose = loose_state(kind);
   }

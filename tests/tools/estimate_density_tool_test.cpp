@@ -144,6 +144,17 @@ TEST_F(Tools, APathThatWasNotDugEndsTrust) {
   }
 }
 
+TEST_F(Tools, SettingsOfTheOtherMethodAreReported) {
+  const json usual =
+      answer("estimate-density",
+             quickstart(folder) + Words{"--paper-voxels", "cubes", "--paper-outliers", "none"});
+  EXPECT_TRUE(warns(usual, "options_ignored")) << usual["warnings"];
+  const Words cell = {"--cell", "1e-3"};
+  const ProgramResult fine = run_program("estimate-density", quickstart(folder) + cell);
+  EXPECT_EQ(fine.code, 2);
+  EXPECT_TRUE(contains(fine.err, "m in cells (--cell) of 0.001 m needs about 71")) << fine.err;
+}
+
 TEST_F(Tools, APathWithoutItsStartChoosesTheLaw) {
   const json usual = answer("estimate-density", quickstart(folder) + Words{"--soil", "loam"});
   const json path =

@@ -416,7 +416,9 @@ TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
            {R"({"tool": "estimate-density", "density_percent": 40, "law_soil": null})",
             "density_sd_percent is missing"},
            {"[40]", "it is missing"},
-           {"", "it is missing"}}) {
+           {R"({"density_percent": 40, "density_percent": 80})", "appears twice"},
+           {"{\"zones\": " + std::string(100000, '['), "more than 64 levels"},
+           {"", "not valid JSON"}}) {
     folder.write("result.json", text);
     refused(3, reason, "plan-path", {"--density-from", file, "--plot", plot});
   }
@@ -522,6 +524,15 @@ TEST_F(RealScans, OfASiteAreGroundToPlanOn) {
             number(library, "/cycle/efficiency_kg_per_kj"));
   EXPECT_EQ(content_of(csv).rfind("time_s,phase,", 0), 0U);
   expect_figure(plot, {"scoop"});
+}
+
+TEST_F(Tools, ADensityOfAnySoilIsNamed) {
+  const auto planned = [&](const std::string& law) {
+    const json estimate = {{"density_percent", 58.0}, {"density_sd_percent", 0.0}, {"law", law}};
+    return answer("plan-path", {"--density-from", folder.write("estimate.json", estimate.dump())});
+  };
+  EXPECT_TRUE(warns(planned("any soil"), "density_of_unknown_soil"));
+  EXPECT_FALSE(warns(planned("zx120-loam"), "density_of_unknown_soil"));
 }
 
 }  // namespace

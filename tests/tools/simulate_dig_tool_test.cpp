@@ -319,5 +319,15 @@ TEST_F(BadInput, CamerasThatMakeNoSense) {
           {"--density", "40", "--before", folder.file("b.pcd"), "--camera", "5,3,2,5,3,2"});
 }
 
+TEST_F(Tools, SettingsOfBlocksThatAreNotThereAreReported) {
+  const Words words = {"--density", "85", "--block-size", "0.3", "--block-swell", "0.5"};
+  const ProgramResult result = run_program("simulate-dig", words);
+  EXPECT_TRUE(contains(result.err,
+                       "warning: without effect: --block-size, --block-swell; there are no blocks "
+                       "without --blocks\n"))
+      << result.err;
+  EXPECT_FALSE(warns(answer("simulate-dig", words + Words{"--blocks"}), "options_ignored"));
+}
+
 }  // namespace
 }  // namespace excavplan::test

@@ -223,6 +223,28 @@ TEST(Tool, ErrorsOfTheLibraryHaveTheirCodes) {
   EXPECT_EQ(code_of([] { throw std::filesystem::filesystem_error("", "/no/such", {}); }), 3);
 }
 
+TEST(Tool, WithoutMemoryItSaysSo) {
+  const std::array<const char*, 1> words = {"probe"};
+  testing::internal::CaptureStderr();
+  struct None {};
+  const int code = tool_main<None>(
+      1, words.data(), {"probe", "Probes.", {}}, [](Arguments&, None&) {},
+      [](const None&) -> Outcome { throw std::bad_alloc(); });
+  EXPECT_EQ(code, 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "probe: not enough memory\n");
+}
+
+TEST(Tool, ForeignTextCannotSpeakToATerminal) {
+  Outcome outcome;
+  outcome.lines = {"topic \033]0;owned\007"};
+  outcome.warnings = {{"odd", "frame \033[2J\xc2\x9b and ä"}};
+  const Probe probe = run({"a", "--density", "4"}, outcome);
+  EXPECT_EQ(probe.out, "topic ?]0;owned?\n");
+  EXPECT_EQ(probe.err, "working\nprobe: warning: frame ?[2J? and ä\n");
+  const Probe refused = run({"a", "--density", "4\033[31m"});
+  EXPECT_EQ(refused.err.find('\033'), std::string::npos) << refused.err;
+}
+
 TEST(Tool, PlacesThatCannotBeWrittenAreFoundBeforeTheWork) {
   const Probe probe = run({"a.pcd", "--density", "4", "--plot", "/nowhere/x.svg"});
   EXPECT_EQ(probe.code, 3);

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <array>
+#include <csignal>
 #include <functional>
 #include <ostream>
 
@@ -158,6 +163,189 @@ TEST_P(EveryTool, QuietLeavesOnlyTheJson) {
   const ProgramResult with_json = run_program(tool, words + Words{"--json"});
   EXPECT_EQ(with_json.err, "");
   EXPECT_TRUE(json::parse(with_json.out, nullptr, false).is_object()) << with_json.out;
+}
+
+/// Runs a tool whose standard output, or whatever `prepare` changes, is not as usual.
+ProgramResult run_prepared(const std::string& tool, const Words& words,
+                           const std::function<void()>& prepare) {
+  const TemporaryFolder folder;
+  const std::string err = folder.file("err");
+  const pid_t child = started(tool, words, [&] {
+    ::dup2(::open("/dev/null", O_RDWR), STDIN_FILENO);
+    ::dup2(STDIN_FILENO, STDOUT_FILENO);
+    ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    prepare();
+  });
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return {exit_code(status), "", content_of(err)};
+}
+
+TEST_P(EveryTool, SaysThatItsOutputCannotBeWritten) {
+  const auto full = [] { ::dup2(::open("/dev/full", O_WRONLY), STDOUT_FILENO); };
+  const auto closed = [] { ::close(STDOUT_FILENO); };
+  const std::string reason = tool + ": standard output: cannot be written: ";
+  for (const Words& words : {Words{"--help"}, Words{"--version"}, GetParam().run(folder)}) {
+    const ProgramResult on_full = run_prepared(tool, words, full);
+    EXPECT_EQ(on_full.code, 3) << words[0];
+    EXPECT_EQ(on_full.err.substr(on_full.err.rfind(tool)), reason + "No space left on device\n");
+  }
+  const ProgramResult on_closed = run_prepared(tool, {"--help"}, closed);
+  EXPECT_EQ(on_closed.code, 3);
+  EXPECT_EQ(on_closed.err, reason + "Bad file descriptor\n");
+}
+
+TEST_P(EveryTool, EndsQuietlyWhereNobodyReadsItsOutput) {
+  const ProgramResult result = run_prepared(tool, GetParam().run(folder) + Words{"--json"}, [] {
+    std::array<int, 2> pipe{};
+    if (::pipe(pipe.data()) != 0) ::_exit(126);
+    ::dup2(pipe[1], STDOUT_FILENO);
+    ::close(pipe[0]);
+  });
+  EXPECT_EQ(result.code, 128 + SIGPIPE) << result.err;
+}
+
+TEST_P(EveryTool, NamesWhatItMissesInARemovedFolder) {
+  for (const Words& words : {Words{"x.csv"}, Words{"--density", "40", "--machine", "x.json"},
+                             Words{"--out", "x.json"}, Words{"a.xyz", "b.xyz"}}) {
+    const TemporaryFolder gone;
+    const ProgramResult result = run_prepared(tool, words, [&] {
+      if (::chdir(gone.file("").c_str()) != 0 || ::rmdir(gone.file("").c_str()) != 0) ::_exit(126);
+    });
+    EXPECT_TRUE(result.code == 2 || result.code == 3) << words[0] << result.code << result.err;
+    EXPECT_EQ(result.err.rfind(tool + ": ", 0), 0U) << result.err;
+  }
+}
+
+TEST_P(EveryTool, ALimitOnFileSizesIsAnErrorOfTheWrite) {
+  if (!contains(run_program(tool, {"--help"}).out, "--out FILE")) GTEST_SKIP() << "no --out";
+  const std::string out = folder.write("out.xyz", "old");
+  Words words = GetParam().run(folder);
+  if (tool == "build-path-library" || tool == "depth-to-cloud") {
+    words.back() = out;
+    if (tool == "build-path-library")
+      words = Words{"--densities", "20", "--out", out} + small_library;
+  } else {
+    words = words + Words{"--out", out};
+  }
+  const ProgramResult result = run_prepared(tool, words, [] {
+    const rlimit most = {500, 500};
+    ::setrlimit(RLIMIT_FSIZE, &most);
+  });
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_TRUE(contains(result.err, "cannot be written: File too large")) << result.err;
+  EXPECT_EQ(content_of(out), "old");
+  for (const auto& entry : fs::recursive_directory_iterator(folder.file(""))) {
+    EXPECT_FALSE(contains(entry.path(), ".part-")) << entry.path();
+  }
+}
+
+TEST_P(EveryTool, ATermEndsItWhileItWaits) {
+  std::array<int, 2> silent{};
+  ASSERT_EQ(::pipe(silent.data()), 0);
+  const pid_t child = started(tool, {"--soil", "-", "-"}, [&] {
+    ::dup2(silent[0], STDIN_FILENO);
+    ::close(silent[1]);
+    ::dup2(::open("/dev/null", O_RDWR), STDERR_FILENO);
+    ::dup2(STDERR_FILENO, STDOUT_FILENO);
+  });
+  ::kill(child, SIGTERM);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 2) << status;
+  for (const int end : silent) ::close(end);
+}
+
+TEST_F(BadInput, NumbersAboveACeilingAreRefused) {
+  const std::string log = folder.write("log.csv", "time_s,fuel_flow_ml_per_s\n0,2\n5,2\n");
+  const std::string out = folder.file("out.json");
+  const Words search = {"--density", "40", "--search"};
+  refused(2, "--population x generations must be <= 1000000, got 42949672940", "plan-path",
+          search + Words{"--method", "paper", "--population", "2147483647"});
+  refused(2, "--evaluations must be <= 1000000, got 2147483647", "plan-path",
+          search + Words{"--evaluations", "2147483647"});
+  refused(2, "--generations x generation_size must be <= 1000000, got 25769803764", "plan-path",
+          search + Words{"--generations", "2147483647"});
+  refused(2, "--population x generations must be <= 1000000", "build-path-library",
+          {"--method", "paper", "--population", "2147483647", "--out", out});
+  refused(2, "--points is 2147483647, must be at most 1000000", "build-path-library",
+          {"--points", "2147483647", "--out", out});
+  refused(2, "--machine x --soil x --slopes x --densities is 1.01e+06, must be at most 100000",
+          "build-path-library",
+          {"--densities", "0:0.01:100", "--slopes", "0:0.01:1", "--out", out});
+  for (const char* tool : {"plan-path", "run-experiment"}) {
+    refused(2, "--threads: 1025 must be at most 1024", tool, {"--threads", "1025"});
+  }
+  refused(2, "--threads: 4294967297 must be at most 1024", "build-path-library",
+          {"--threads", "4294967297", "--out", out});
+  refused(2, "--draws is 2147483647, must be in 0 .. 100000",
+          "calibrate-density", {"--draws", "2147483647", "--out", out});
+  const std::string cell = "--cell: the cell size is 0.001 m, must be in 0.005 .. 1 m";
+  refused(2, cell, "calibrate-density", {"--cell", "1e-3", "--out", out});
+  refused(2, cell, "run-experiment", {"--cell", "1e-3"});
+  refused(2, cell, "plan-path", {"--density", "40", "--cell", "1e-3"});
+  refused(2, cell, "simulate-dig", {"--density", "40", "--cell", "1e-3"});
+  refused(2, "in cells (--cell) of 0.05 m holds ", "simulate-dig",
+          {"--density", "40", "--dump-at", "1000,1000"});
+  refused(2, "in cells (--cell) of 0.001 m needs about 71", "measure-efficiency",
+          {log, "--dump-before", scan, "--dump-after", later_scan, "--cell", "1e-3"});
+}
+
+TEST_F(BadInput, OneFileForTwoThingsIsRefused) {
+  const std::string out = folder.write("out.svg", "old");
+  const std::string other = folder.file("./out.svg");
+  const std::string link = folder.file("link.svg");
+  fs::create_symlink("out.svg", link);
+  for (const std::string& name : {out, other, link}) {
+    refused(2, "--plot and --report name the same file, " + out, "simulate-dig",
+            {"--density", "40", "--plot", out, "--report", name});
+  }
+  const std::string nowhere = folder.file("nowhere.svg");
+  fs::create_symlink("none.svg", nowhere);
+  refused(2, "--plot and --report name the same file, " + nowhere, "simulate-dig",
+          {"--density", "40", "--plot", nowhere, "--report", folder.file("none.svg")});
+  const std::string copy = folder.write("scan.pcd", content_of(scan));
+  refused(2, "FILE and --out name the same file, " + copy, "inspect-cloud", {copy, "--out", copy});
+  refused(2, "--before and --after name the same file", "simulate-dig",
+          {"--density", "40", "--before", copy, "--after", copy});
+  refused(2, "--library and --checkpoint name the same file", "plan-path",
+          {"--density", "40", "--search", "--library", copy, "--checkpoint", copy});
+  refused(2, "--out: standard output is no file to write", "calibrate-density", {"--out", "-"});
+  EXPECT_EQ(content_of(out), "old");
+  EXPECT_EQ(content_of(copy), content_of(scan));
+}
+
+TEST_F(Tools, PipesAndDevicesMayBeSharedByOutputs) {
+  EXPECT_EQ(run_program("simulate-dig",
+                        {"--density", "40", "--history", "/dev/null", "--report", "/dev/null"})
+                .code,
+            0);
+}
+
+TEST_F(BadInput, StandardInputIsATransformButNoDatabase) {
+  const std::string frame = folder.write("frame.txt", "1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const Words words = {scan, "--json", "--frame"};
+  const ProgramResult piped = run_program("inspect-cloud", words + Words{"-"}, frame);
+  EXPECT_EQ(piped.code, 0) << piped.err;
+  EXPECT_EQ(piped.out, run_program("inspect-cloud", words + Words{frame}).out);
+  const std::string database = folder.write("run.db3", std::string("SQLite format 3\0...", 19));
+  const ProgramResult refused = run_program("inspect-cloud", {"-"}, database);
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_EQ(refused.err,
+            "inspect-cloud: standard input: found an SQLite recording (.db3), expected another "
+            "format: give this one as a file\n");
+}
+
+TEST_F(BadInput, APipeAmongTheEntriesOfALibraryIsRefused) {
+  const std::string cells = folder.file("cells");
+  const Words words =
+      Words{"--densities", "20", "--out", folder.file("library.json"), "--cells", cells} +
+      small_library;
+  ASSERT_EQ(run_program("build-path-library", words).code, 0);
+  const fs::path entry = fs::directory_iterator(cells)->path();
+  fs::remove(entry);
+  ASSERT_EQ(::mkfifo(entry.c_str(), 0600), 0);
+  refused(3, entry.string() + ": is not a regular file", "build-path-library", words);
 }
 
 TEST_F(BadInput, FilesThatAreNoCloudsAreRefused) {

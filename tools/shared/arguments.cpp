@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <utility>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/simulators.hpp>
 
@@ -32,6 +33,11 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
   return text;
+}
+
+bool names_file(const std::string& placeholder) {
+  return placeholder.find("FILE") != placeholder.npos ||
+         placeholder.find("FRAME") != placeholder.npos;
 }
 
 }  // namespace
@@ -193,22 +199,46 @@ void Arguments::output(const std::string& name, std::optional<std::string>& valu
   entries_.back().output = true;
 }
 
+void Arguments::place(const std::string& name, std::string& value, const std::string& help) {
+  file(name, value, help);
+  entries_.back().input = false;
+  entries_.back().place = true;
+}
+
+void Arguments::place(const std::string& name, std::optional<std::string>& value,
+                      const std::string& help) {
+  file(name, value, help);
+  entries_.back().input = false;
+  entries_.back().place = true;
+}
+
 void Arguments::text(const std::string& name, const std::string& placeholder, std::string& value,
                      const std::string& help) {
   add({name, placeholder, help, value, false, false,
        [&value](const std::string& text) { value = text; }});
-  entries_.back().input = placeholder.find("FILE") != placeholder.npos;
+  entries_.back().input = names_file(placeholder);
 }
 
 void Arguments::text(const std::string& name, const std::string& placeholder,
                      std::optional<std::string>& value, const std::string& help) {
   add({name, placeholder, help, value.value_or(""), false, false,
        [&value](const std::string& text) { value = text; }});
-  entries_.back().input = placeholder.find("FILE") != placeholder.npos;
+  entries_.back().input = names_file(placeholder);
 }
 
 void Arguments::soil(std::string& name) {
   text("soil", "NAME|FILE", name, "soil: loam, sand, clay, gravel, or a soil file");
+}
+
+void Arguments::threads(std::uint64_t& count, const std::string& note) {
+  add({"threads", "N",
+       "threads, 0 for one per core, at most " + std::to_string(most_threads) + note,
+       std::to_string(count), false, false, [&count](const std::string& text) {
+         count = parse_integer<std::uint64_t>("--threads", text);
+         if (count > most_threads) {
+           usage_error("--threads: " + text + " must be at most " + std::to_string(most_threads));
+         }
+       }});
 }
 
 void Arguments::simulator(std::string& word) {

@@ -24,6 +24,10 @@ namespace excavplan::tools {
 /// What the library calls an input in its messages, and the option that sets it.
 using OptionNames = std::vector<std::pair<std::string, std::string>>;
 
+/// Of functions that take the size of cells.
+inline const OptionNames cell_option = {{"the cell size is", "--cell: the cell size is"},
+                                        {"in cells of", "in cells (--cell) of"}};
+
 /// A message of the library with the names of options.
 std::string with_option_names(std::string message, const OptionNames& names);
 
@@ -52,6 +56,7 @@ class Arguments {
     Assign assign;
     bool output = false;    ///< a file to write
     bool input = false;     ///< a file to read, or "-" for standard input
+    bool place = false;     ///< a file or folder to write, which the tool checks
     bool repeated = false;  ///< may be given several times, `assign` is called for each
   };
 
@@ -93,7 +98,10 @@ class Arguments {
   /// A file to write; whether it can be written is checked before the work.
   void output(const std::string& name, std::string& value, const std::string& help);
   void output(const std::string& name, std::optional<std::string>& value, const std::string& help);
-  /// A text of its own syntax; a file to read too if the placeholder has FILE in it.
+  /// A file or folder to write; whether it can be written is for the tool to check.
+  void place(const std::string& name, std::string& value, const std::string& help);
+  void place(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  /// A text of its own syntax; a file to read too if the placeholder has FILE or FRAME in it.
   void text(const std::string& name, const std::string& placeholder, std::string& value,
             const std::string& help);
   void text(const std::string& name, const std::string& placeholder,
@@ -104,6 +112,7 @@ class Arguments {
   void machine(std::string& name);
   void simulator(std::string& word);
   void plot(std::optional<std::string>& path, const std::string& shows);
+  void threads(std::uint64_t& count, const std::string& note);
 
   /// The option must be given.
   void require(const std::string& name);

@@ -11,6 +11,10 @@
 
 namespace excavplan::tools {
 
+/// The options of what estimate_density() names in its messages.
+inline const OptionNames estimate_options = {
+    {"path that was dug", "--dug-path"}, {"inside the area", "inside --area"}, cell_option.back()};
+
 /// @param soil  what was known of it
 Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);
 

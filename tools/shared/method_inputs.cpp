@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "shared/tool.hpp"
+
 namespace excavplan::tools {
 
 namespace {
@@ -42,6 +44,15 @@ void declare_method(Arguments& arguments, MethodInputs& inputs) {
   arguments.text("paper-outliers", "NEIGHBOURS,DEVIATIONS|none", inputs.outliers,
                  "of --method paper: points whose mean distance to their neighbours is this many "
                  "standard deviations above the mean of all are removed");
+}
+
+std::vector<Warning> warnings_of(const MethodInputs& inputs, bool both) {
+  const bool used = both || inputs.method == "paper";
+  const MethodInputs usual;
+  IgnoredOptions ignored;
+  ignored.add(!used && inputs.voxels != usual.voxels, "--paper-voxels");
+  ignored.add(!used && inputs.outliers != usual.outliers, "--paper-outliers");
+  return ignored.warnings("they are of --method paper");
 }
 
 void apply_method(const MethodInputs& inputs, DensityOptions& options) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <excavplan/survey/density_estimate.hpp>
 
@@ -18,6 +19,9 @@ struct MethodInputs {
 };
 
 void declare_method(Arguments& arguments, MethodInputs& inputs);
+
+/// Of options that have no effect. @param both  of the methods are shown
+std::vector<Warning> warnings_of(const MethodInputs& inputs, bool both);
 
 /// Sets the method and its options. @throws Error (bad_input)
 void apply_method(const MethodInputs& inputs, DensityOptions& options);

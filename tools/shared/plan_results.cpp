@@ -113,6 +113,12 @@ std::string source_line(const DigPlan& plan) {
   return "source       " + std::string(name(plan.method)) + digs + "; start: " + plan.start_rule;
 }
 
+/// An estimate-density with --soil unknown.
+bool is_of_any_soil(const std::string& file) {
+  const nlohmann::json json = parse_json(file, read_file(file));
+  return json.is_object() && json.value("law", nlohmann::json()) == "any soil";
+}
+
 /// From (x, 0) to the nearest hole of an estimate [m]; 0 if it states none.
 double distance_to_hole(double x, const std::string& file) {
   const nlohmann::json json = parse_json(file, read_file(file));
@@ -193,6 +199,12 @@ std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& inpu
                         *input.file + ": the density was measured " + readable(away) +
                             " m from where this dig begins; it holds for ground near its hole that "
                             "is of the same soil"});
+  }
+  if (input.file && is_of_any_soil(*input.file)) {
+    warnings.push_back({"density_of_unknown_soil",
+                        *input.file +
+                            ": the soil was not known: its density is the mean over all shipped "
+                            "soils, the dig is planned in one of them"});
   }
   if (!plan.reason.empty()) warnings.push_back({"no_dig", reason_of(plan)});
   for (Warning& warning : warnings) {

@@ -15,6 +15,8 @@
 namespace excavplan::tools {
 namespace {
 
+constexpr std::size_t longest_name = 100;  // of a frame in a line [byte]
+
 const char* name_of(ScanMerge merge) {
   switch (merge) {
     case ScanMerge::single:
@@ -36,7 +38,7 @@ std::string line_of(const RecordedScan& scan) {
   line += " s";
   if (scan.merge != ScanMerge::single) line += std::string(", ") + name_of(scan.merge);
   if (scan.frame_sd > 0.0) line += ", one frame to " + readable(1e3 * scan.frame_sd, 2) + " mm";
-  return line + (scan.frame.empty() ? "" : ", in frame " + scan.frame);
+  return line + (scan.frame.empty() ? "" : ", in frame " + safe_text(scan.frame, longest_name));
 }
 
 nlohmann::ordered_json time_of(double seconds) {
@@ -127,7 +129,9 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
                                     : "no topic holds scans");
   if (!contents.frames.empty()) {
     std::string frames;
-    for (const std::string& frame : contents.frames) frames += (frames.empty() ? "" : ", ") + frame;
+    for (const std::string& frame : contents.frames) {
+      frames += (frames.empty() ? "" : ", ") + safe_text(frame, longest_name);
+    }
     listing.lines.push_back("frames for --tf-frame: " + frames);
   }
   listing.json = {{"file", text},

@@ -40,9 +40,6 @@ void check_scans(const SceneScanInputs& inputs) {
   for (const auto& file : {inputs.before, inputs.after}) {
     if (file) cloud_format_of_name(*file);
   }
-  if (inputs.before && inputs.before == inputs.after) {
-    usage_error("--before and --after name the same file, " + *inputs.before);
-  }
 }
 
 void write_scans(const SceneScanInputs& inputs, const DigScene& scene, std::uint64_t seed) {

@@ -78,13 +78,13 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
       "largest number of simulated digs per search, 0 for the default of the method: 600 "
       "(for each of several densities 100, or 200 without a library dig to start "
       "from), or all generations of the paper");
-  arguments.file("checkpoint", inputs.checkpoint,
-                 "save the simulated digs in this file; for several densities also in FILE.soil1, "
-                 "FILE.soil2, ...");
+  arguments.output(
+      "checkpoint", inputs.checkpoint,
+      "save the simulated digs in this file; for several densities also in FILE.soil1, "
+      "FILE.soil2, ...");
   arguments.flag("resume", inputs.resume, "continue from the checkpoint if it exists");
   arguments.option("seed", inputs.seed, "seed of the search");
-  arguments.option("threads", inputs.threads,
-                   "threads, 0 for one per core; the path does not depend on it");
+  arguments.threads(inputs.threads, "; the path does not depend on it");
 }
 
 StartRule start_rule_of(const SearchInputs& inputs) {

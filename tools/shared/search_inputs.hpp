@@ -33,6 +33,11 @@ struct SearchInputs {
 
 void declare_search(Arguments& arguments, SearchInputs& inputs);
 
+/// What plan_dig() calls them in its messages.
+inline const OptionNames search_option_names = {{"search: population", "--population"},
+                                                {"search: generations", "--generations"},
+                                                {"search: stop.evaluations", "--evaluations"}};
+
 /// Checks made before anything is read. @throws Error (bad_input)
 void check(const SearchInputs& inputs);
 

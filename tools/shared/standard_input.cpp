@@ -40,6 +40,16 @@ void write_all(int file, const char* bytes, std::size_t count) {
   }
 }
 
+/// SQLite opens a file by its name alone.
+void require_not_sqlite(int file) {
+  const std::string sign = "SQLite format 3";
+  std::string begin(sign.size(), ' ');
+  if (::pread(file, begin.data(), begin.size(), 0) < 0 || begin != sign) return;
+  throw Error(ErrorKind::bad_file, std::string(its_name) +
+                                       ": found an SQLite recording (.db3), expected another "
+                                       "format: give this one as a file");
+}
+
 }  // namespace
 
 StandardInput::~StandardInput() {
@@ -55,9 +65,11 @@ std::string StandardInput::path() {
     const ssize_t got = ::read(STDIN_FILENO, bytes.data(), bytes.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) refuse("cannot be read");
-    if (got == 0) return path_;
+    if (got == 0) break;
     write_all(file_, bytes.data(), static_cast<std::size_t>(got));
   }
+  require_not_sqlite(file_);
+  return path_;
 }
 
 std::string StandardInput::named(std::string message) const {

@@ -15,7 +15,8 @@ class StandardInput {
   StandardInput& operator=(const StandardInput&) = delete;
 
   /// Copies standard input to a temporary file without a name. @return a path that opens it
-  /// @throws Error (bad_input) the second time; (bad_file) if it cannot be read or written
+  /// @throws Error (bad_input) the second time; (bad_file) if it cannot be read or
+  /// written, or is an SQLite file
   std::string path();
   /// A message with "standard input" in place of that path.
   std::string named(std::string message) const;

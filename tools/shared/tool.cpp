@@ -2,15 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/tool.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
+#include <system_error>
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/plan/plan_dig.hpp>
@@ -19,6 +21,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "shared/standard_input.hpp"
+#include "shared/used_files.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -86,7 +89,8 @@ std::string help_text(const About& about, const std::vector<Arguments::Entry>& e
     text += "  " + example.command + "\n      " + wrapped(example.meaning, 6) + '\n';
   }
   std::string codes =
-      "Exit codes: 0 done; 1 internal error; 2 wrong usage; 3 a file cannot be read or written, or "
+      "Exit codes: 0 done; 1 internal error, or not enough memory; 2 wrong usage; 3 a file cannot "
+      "be read or written, or "
       "has the wrong format or content";
   if (about.can_be_untrustworthy) codes += "; 4 result not trustworthy, with --strict";
   if (about.can_stop_early) codes += "; 75 stopped early, can be resumed";
@@ -188,8 +192,25 @@ void assign(const Arguments::Entry& entry, const ParsedWords::Given& given, Stan
     if (!entry.positional && text.rfind("--", 0) == 0) {
       usage_error(name + " needs a value, got " + text);
     }
+    if ((entry.output || entry.place) && text == "-") {
+      usage_error(name + ": standard output is no file to write, ./- is one of that name");
+    }
     entry.assign(entry.input && text == "-" ? input.path() : text);
   }
+}
+
+std::vector<UsedFile> used_files(const std::vector<Arguments::Entry>& entries,
+                                 const ParsedWords& words) {
+  std::vector<UsedFile> files;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Arguments::Entry& entry = entries[i];
+    const bool writes = entry.output || entry.place;
+    if (!writes && !entry.input) continue;
+    for (const std::string& text : words.of_entry[i].texts) {
+      files.push_back({shown_name(entry), text, writes});
+    }
+  }
+  return files;
 }
 
 void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words,
@@ -200,6 +221,7 @@ void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& wor
       usage_error(shown_name(entries[i]) + " is missing: " + entries[i].help);
     }
   }
+  refuse_shared_files(used_files(entries, words));
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries[i].output && !words.of_entry[i].texts.empty())
       require_writable(words.of_entry[i].text);
@@ -208,36 +230,55 @@ void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& wor
 
 // ---- Running ----------------------------------------------------------------------------------
 
-volatile std::sig_atomic_t stop_signal = 0;
+/// Opens what is closed of the standard streams, so that no file takes its place. To read or write
+/// them still fails.
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0) continue;
+    ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
 
-void on_stop_signal(int signal) {
-  stop_signal = signal;
-  std::signal(SIGINT, SIG_DFL);  // a second one, of either kind, ends the program at once
-  std::signal(SIGTERM, SIG_DFL);
+constexpr std::size_t longest_line = 4000;  // ours [byte]
+
+/// A text with foreign names in it, as a terminal may get it.
+std::string shown(const StandardInput& input, const std::string& text) {
+  return safe_text(input.named(text), longest_line);
+}
+
+/// On standard output, to its end.
+void print(const std::string& text) {
+  errno = 0;
+  std::cout << text << std::flush;
+  if (std::cout) return;
+  const std::string why = errno == 0 ? "" : ": " + std::generic_category().message(errno);
+  throw Error(ErrorKind::bad_file, "standard output: cannot be written" + why);
+}
+
+std::string json_text(const About& about, const Outcome& outcome) {
+  nlohmann::ordered_json json = {{"tool", about.name}, {"version", EXCAVPLAN_VERSION}};
+  json.update(outcome.json);
+  json["warnings"] = nlohmann::ordered_json::array();
+  for (const Warning& warning : outcome.warnings) {
+    json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
+  }
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
 void print_outcome(const About& about, const Common& common, const Outcome& outcome,
                    const StandardInput& input) {
   if (!common.quiet) {
     for (const Warning& warning : outcome.warnings) {
-      std::cerr << about.name << ": warning: " << input.named(warning.message) << '\n';
+      std::cerr << about.name << ": warning: " << shown(input, warning.message) << '\n';
     }
   }
+  std::string text;
   if (common.json) {
-    nlohmann::ordered_json json = {{"tool", about.name}, {"version", EXCAVPLAN_VERSION}};
-    json.update(outcome.json);
-    json["warnings"] = nlohmann::ordered_json::array();
-    for (const Warning& warning : outcome.warnings) {
-      json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
-    }
-    std::cout << input.named(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace))
-              << '\n';
+    text = input.named(json_text(about, outcome));
   } else if (!common.quiet) {
-    for (const std::string& line : outcome.lines) std::cout << input.named(line) << '\n';
+    for (const std::string& line : outcome.lines) text += shown(input, line) + '\n';
   }
-  if (!std::cout.flush()) {
-    throw Error(ErrorKind::bad_file, "standard output: cannot be written");
-  }
+  print(text);
 }
 
 int run(int argc, const char* const* argv, const About& about,
@@ -256,26 +297,48 @@ int run(int argc, const char* const* argv, const About& about,
     return !words.of_entry[static_cast<std::size_t>(at - entries.begin())].texts.empty();
   };
   if (given("help")) {
-    std::cout << help_text(about, arguments.entries());
+    print(help_text(about, arguments.entries()));
     return 0;
   }
   if (given("version")) {
-    std::cout << about.name << " (excavplan) " << EXCAVPLAN_VERSION << '\n';
+    print(about.name + " (excavplan) " + EXCAVPLAN_VERSION + '\n');
     return 0;
   }
   refuse_left_over(words.left_over, arguments.entries());
+  const Signals signals(about.can_stop_early);
   assign(arguments.entries(), words, input);
-
-  if (about.can_stop_early) {
-    std::signal(SIGINT, on_stop_signal);
-    std::signal(SIGTERM, on_stop_signal);
-  }
-  Console console(common.quiet, ::isatty(STDERR_FILENO) == 1);
+  Console console(common.quiet, ::isatty(STDERR_FILENO) == 1, signals);
   const Outcome outcome = work(console);
   console.clear();
+  signals.end_at_closed_pipe();
   print_outcome(about, common, outcome, input);
   if (outcome.stopped_early) return 75;
   return common.strict && !outcome.trustworthy ? 4 : 0;
+}
+
+/// Runs a tool and says what went wrong. @return its exit code
+template <typename Run>
+int reported(const About& about, const StandardInput& input, const Run& run) {
+  const auto report = [&](const std::string& message) {
+    std::cerr << about.name << ": " << shown(input, message) << '\n';
+  };
+  try {
+    return run();
+  } catch (const Error& error) {
+    report(error.what());
+    if (error.kind() == ErrorKind::bad_file) return 3;
+    std::cerr << "See " << about.name << " --help\n";
+    return 2;
+  } catch (const std::filesystem::filesystem_error& error) {
+    const std::string path = error.path1().string();
+    report((path.empty() ? "the working folder" : path) + ": " + error.code().message());
+    return 3;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    report(std::string("internal error: ") + error.what());
+    return 1;
+  }
 }
 
 }  // namespace
@@ -292,10 +355,8 @@ void Console::progress(double done, const std::string& what) {
 void Console::note(const std::string& line) {
   if (quiet_) return;
   clear();
-  std::cerr << line << '\n';
+  std::cerr << safe_text(line, longest_line) << '\n';
 }
-
-bool Console::stop_requested() const { return stop_signal != 0; }
 
 void Console::clear() {
   if (line_open_) std::cerr << "\r\033[K" << std::flush;
@@ -307,25 +368,13 @@ void Console::clear() {
 int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
              const std::function<Outcome(Console&)>& work) {
+  hold_standard_streams();
   StandardInput input;
-  const auto report = [&](const std::string& message) {
-    std::cerr << about.name << ": " << input.named(message) << '\n';
-  };
-  try {
-    return run(argc, argv, about, declare, work, input);
-  } catch (const Error& error) {
-    report(error.what());
-    if (error.kind() == ErrorKind::bad_file) return 3;
-    std::cerr << "See " << about.name << " --help\n";
-    return 2;
-  } catch (const std::filesystem::filesystem_error& error) {
-    report(error.path1().string() + ": " + error.code().message());
-    return 3;
-  } catch (const std::bad_alloc&) {
-    report("out of memory");
-  } catch (const std::exception& error) {
-    report(std::string("internal error: ") + error.what());
-  }
+  return reported(about, input, [&] { return run(argc, argv, about, declare, work, input); });
+}
+
+int without_memory(const About& about) {
+  std::cerr << about.name << ": not enough memory\n";  // and none for another text
   return 1;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <new>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -16,6 +17,7 @@
 #include <excavplan/soil/soil.hpp>
 
 #include "shared/arguments.hpp"
+#include "shared/signals.hpp"
 
 /// @file
 /// How a command line tool runs: help, output, exit codes. A tool is a struct of inputs with their
@@ -26,8 +28,9 @@
 ///       return tool_main(argc, argv, about, declare, work);
 ///     }
 ///
-/// Exit codes: 0 done; 1 internal; 2 usage, Error bad_input; 3 Error bad_file; 4 not trustworthy,
-/// with --strict; 75 stopped early.
+/// Exit codes: 0 done; 1 internal, or not enough memory; 2 usage, Error bad_input; 3 Error
+/// bad_file; 4 not trustworthy, with --strict; 75 stopped early. How signals end a tool:
+/// signals.hpp.
 
 namespace excavplan::tools {
 
@@ -57,20 +60,22 @@ struct Outcome {
 /// Progress and notes on standard error while a tool works.
 class Console {
  public:
-  Console(bool quiet, bool terminal) : quiet_(quiet), terminal_(terminal) {}
+  Console(bool quiet, bool terminal, const Signals& signals)
+      : quiet_(quiet), terminal_(terminal), signals_(signals) {}
 
   /// One line that is overwritten by the next; only on a terminal. `done` is in 0 .. 1.
   void progress(double done, const std::string& what);
   /// One line of text. Warnings belong in the outcome.
   void note(const std::string& line);
   /// True once the user or the system asked a tool that can stop early to stop.
-  bool stop_requested() const;
+  bool stop_requested() const { return signals_.stop_requested(); }
   /// Removes the progress line.
   void clear();
 
  private:
   bool quiet_;
   bool terminal_;
+  const Signals& signals_;
   bool line_open_ = false;
 };
 
@@ -90,26 +95,33 @@ class IgnoredOptions {
   std::string text_;
 };
 
-/// Runs a tool: parses, works, prints. @return the exit code
+/// Runs a tool: parses, works, prints. @return the exit code @throws std::bad_alloc
 int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
              const std::function<Outcome(Console&)>& work);
+
+/// Says so. @return the exit code
+int without_memory(const About& about);
 
 /// The whole main() of a tool: `declare(arguments, inputs)` binds the options to a struct of
 /// inputs, which `work(inputs)` or `work(inputs, console)` then gets.
 template <typename Inputs, typename Work>
 int tool_main(int argc, const char* const* argv, const About& about,
               void (*declare)(Arguments&, Inputs&), const Work& work) {
-  Inputs inputs;
-  return run_tool(
-      argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
-      [&](Console& console) -> Outcome {
-        if constexpr (std::is_invocable_v<Work, const Inputs&, Console&>) {
-          return work(inputs, console);
-        } else {
-          return work(inputs);
-        }
-      });
+  try {
+    Inputs inputs;
+    return run_tool(
+        argc, argv, about, [&](Arguments& arguments) { declare(arguments, inputs); },
+        [&](Console& console) -> Outcome {
+          if constexpr (std::is_invocable_v<Work, const Inputs&, Console&>) {
+            return work(inputs, console);
+          } else {
+            return work(inputs);
+          }
+        });
+  } catch (const std::bad_alloc&) {
+    return without_memory(about);
+  }
 }
 
 /// Reads the soil or machine that a name or path means. @throws Error (bad_input) or (bad_file)

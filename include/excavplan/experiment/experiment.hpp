@@ -39,6 +39,7 @@ struct ExperimentResult {
 
   /// Of the planned over the fixed dig in worth, by default the efficiency [%]. Its parts, of the
   /// path and of the start: (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
+  /// @throws Error (bad_input) if the dig compared with is worth nothing, as in no result of ours
   double gain_percent() const;
   /// Of the planned path over the fixed one, both begun by start_rule [%].
   double path_gain_percent() const;

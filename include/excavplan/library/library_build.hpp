@@ -63,6 +63,9 @@ using LibraryWorker = std::function<std::string(const std::string& task)>;
 
 /// A worker for the builds of the same grid and search, in this process or another. It may be
 /// called from several threads.
+/// @throws Error (bad_input) as require_buildable(); from the worker, if the task is none of a
+/// build
+///         of this grid
 LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search);
 
 /// How a build is made.

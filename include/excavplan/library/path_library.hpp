@@ -75,6 +75,7 @@ PathLibrary load_path_library(const std::string& path);
 std::string file_name(const PathLibrary& library);
 
 /// The text of a library file; the same library gives the same bytes.
+/// @throws Error (bad_input) naming a number that is not finite or a text that is not UTF-8
 std::string to_json(const PathLibrary& library);
 
 /// Refuses a library that was computed for another machine, soil, objective or simulator.

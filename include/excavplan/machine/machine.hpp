@@ -115,7 +115,8 @@ struct Machine {
 
   /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }
-  double beta() const;  ///< angle between bucket floor and the line from tip to bucket pin [rad]
+  /// Angle between bucket floor and the line from tip to bucket pin [rad]; Error without a profile.
+  double beta() const;
 };
 
 /// Reads a machine file (docs/formats.md); every number in it names its source.
@@ -126,15 +127,23 @@ struct Machine {
 ///         rising or falling over the range of its joint
 Machine load_machine(const std::string& path);
 
+/// All that lays out, times or digs a path asks of a machine the rules of load_machine(), but that
+/// a torque may be infinite. Functions of one posture (kinematics.hpp) do not ask: what is not
+/// finite in their arguments is not finite in their result.
+/// @throws Error (bad_input) naming machine, member, value and rule
+void require_machine(const Machine& machine);
+
 /// 16 hexadecimal digits that depend on every number of a machine that affects a dig, but not on
 /// its name.
 std::string fingerprint(const Machine& machine);
 
 /// Capacity of the bucket with its mouth level, filled to the mouth [m^3].
+/// @throws Error (bad_input) if the profile has fewer than three corners or no area
 double struck_capacity(const Machine& machine);
 
 /// The same with a heap on it that falls by `slope` [rad] to all four sides [m^3]. ISO 7451 rates
 /// excavator buckets at 1:1, slope = pi / 4.
+/// @throws Error (bad_input) likewise, or unless the slope is in 0 .. 1.5
 double heaped_capacity(const Machine& machine, double slope = 0.7853981633974483);
 
 }  // namespace excavplan

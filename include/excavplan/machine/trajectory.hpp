@@ -57,8 +57,9 @@ struct TrajectoryOptions {
 ///
 /// @param torques  DigResult::torques: of the joints from each pose of the path to the next [N m].
 ///                 Where they end, and on the approach, nothing loads the pumps.
-/// @throws Error (bad_input) if an option is out of range, the path has fewer than two poses, or
-///         there are as many torques as poses, or one that is not finite
+/// @throws Error (bad_input) as require_machine(); if an option is out of range, the path has fewer
+///         than two poses or a joint that is not finite, or there are as many torques as poses, or
+///         one that is not finite
 Trajectory time_dig_path(const Machine& machine, const DigPath& path,
                          const TrajectoryOptions& options = {},
                          const std::vector<JointAngles>& torques = {});
@@ -68,6 +69,7 @@ Trajectory time_dig_path(const Machine& machine, const DigPath& path,
 std::string to_csv(const Trajectory& trajectory);
 
 /// The same as JSON, which load_trajectory() reads back exactly (`docs/formats.md#trajectory`).
+/// @throws Error (bad_input) naming a number that is not finite or a text that is not UTF-8
 std::string to_json(const Trajectory& trajectory);
 
 /// Reads what to_json() writes. @throws Error (bad_file) naming file, key, value and rule

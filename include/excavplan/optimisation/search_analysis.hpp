@@ -46,6 +46,7 @@ struct SearchInsight {
 
 /// @param share  of the best fitness; for a negative best, 1 - share of its amount below it
 /// @param radius  of a basin, as a share of the box
+/// @throws Error (bad_input) if share or radius are out of range, or points do not fit the box
 SearchInsight explain(const SearchBox& box, const SearchResult& result, double share = 0.98,
                       double radius = 0.2);
 
@@ -65,7 +66,8 @@ struct RepeatedEvaluation {
 /// Evaluates the best few points of a search again, all points and repeats in parallel; best mean
 /// first. Exceptions count as repeats that are not ok.
 ///
-/// @throws Error (bad_input) if `best` or `repeats` is < 1
+/// @throws Error (bad_input) if `best` or `repeats` is < 1, `repeats` is above a million, or the
+///         objective is empty
 std::vector<RepeatedEvaluation> evaluate_again(const SearchResult& result,
                                                const NoisyObjective& objective, int best = 5,
                                                int repeats = 8, unsigned threads = 0);

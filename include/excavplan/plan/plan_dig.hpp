@@ -91,8 +91,9 @@ struct DigPlan {
   bool stopped = false;     ///< the search was cancelled; the dig is the best until then
   bool trustworthy = true;  ///< false after a warning marked * below
   /// density_as_fraction *, density_not_trustworthy *, law_of_other_soil, library_unreadable (the
-  /// search began with nothing), min_fill_relaxed (no dig was found that fills the bucket as
-  /// asked), slope_outside_library *, ground_unlike_library *, may_stall *, approach_blocked (the
+  /// search began with nothing), simulator_failed (at some digs of the search, which were left
+  /// out), min_fill_relaxed (no dig was found that fills the bucket as asked),
+  /// slope_outside_library *, ground_unlike_library *, may_stall *, approach_blocked (the
   /// trajectory begins on the ground).
   std::vector<Warning> warnings;
 
@@ -107,7 +108,8 @@ struct DigPlan {
 /// What the site decides is in the plan: no feasible dig, a density that the library lacks, a path
 /// that does not suit the ground.
 ///
-/// @throws Error (bad_input) if the density or an option is out of range, a library given does not
+/// @throws Error (bad_input) as require_machine() and require_soil(); if the layers of the terrain
+///         differ in size, the density or an option is out of range, a library given does not
 ///         fit machine and soil or lacks the density of a search, or none is shipped for them and
 ///         the method is `library`
 /// @throws Error (bad_file) if the shipped library cannot be read and the method is `library`, or a

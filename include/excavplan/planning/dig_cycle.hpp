@@ -32,6 +32,8 @@ struct DigCycle {
 
 /// @param dig   along the path: its payload, energy and duration
 /// @return nothing if the machine does not state its swing and its engine
+/// @throws Error (bad_input) as require_machine(); if the path has no pose, or a number of the dig
+///         or an option is negative, not finite or absurd
 std::optional<DigCycle> cycle_of(const Machine& machine, const DigPath& path, const PlannedDig& dig,
                                  const CycleOptions& options = {});
 

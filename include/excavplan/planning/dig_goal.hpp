@@ -26,7 +26,8 @@ struct DigObjective : CycleOptions {
   /// With the goal's usual min_fill.
   DigObjective(Goal of = Goal::energy);  // NOLINT: a goal is an objective
 
-  double worth(const PlannedDig& dig) const;  ///< larger is better; 0 for a dig that costs nothing
+  /// Larger is better; 0 for a dig that costs nothing, NaN for one with a figure that is NaN.
+  double worth(const PlannedDig& dig) const;
   /// What searches maximise: the worth, and of a dig that fills less than min_fill a half of it and
   /// less, by the tenth power of fill / min_fill; ours.
   double rank(double worth, double fill) const;

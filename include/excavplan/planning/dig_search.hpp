@@ -52,6 +52,8 @@ struct DigSearchResult {
   int evaluations = 0;                              ///< digs simulated
   int refused = 0;                                  ///< digs that cannot be driven, not simulated
   int infeasible = 0;                               ///< of the evaluations: the machine stalled
+  int failed = 0;                                   ///< of the evaluations: the simulator failed
+  std::string first_failure = {};                   ///< the reason of the first that failed
   bool stopped = false;                             ///< by `progress`
   StopReason stopped_by = StopReason::generations;  ///< what ended the search
   /// Numbers of the path that lie at an end of their range, where a wider one may hold a better
@@ -85,8 +87,12 @@ struct Found : std::optional<Result> {
 /// simulation: what cannot be driven costs no evaluation. Its violation, how much of the path is
 /// left where it fails, leads the search back to digs that can be driven.
 ///
-/// @throws Error (bad_input) if an option is out of range, or the machine does not state what the
-///         goal needs
+/// A dig that the simulator fails at, or answers with a result that no dig can have
+/// (SoilSimulator), is an evaluation that failed: it is counted and the search goes on.
+///
+/// @throws Error (bad_input) if an argument or an option is out of range, the machine does not
+/// state
+///         what the goal needs, or the first 20 digs all failed (the first reason is quoted)
 /// @throws Error (bad_file) if a checkpoint is of another search, truncated or altered; another
 ///         simulator is known by its identity()
 Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,

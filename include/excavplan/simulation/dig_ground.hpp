@@ -24,7 +24,10 @@ inline constexpr double finest_cell = 0.005;
 /// Largest cell size likewise [m].
 inline constexpr double coarsest_cell = 1.0;
 
-/// planning_extent() as level ground.
+/// @throws Error (bad_input) unless a cell size is in finest_cell .. coarsest_cell
+void require_simulated_cell(double cell_size);
+
+/// planning_extent() as level ground. @throws Error (bad_input) as require_simulated_cell()
 Terrain level_planning_ground(const Machine& machine, double cell_size = 0.05);
 
 /// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the rows
@@ -48,7 +51,7 @@ double swept_height(const DigPath& path, double x);
 double boom_plane_slope(const Terrain& terrain, double from_x);
 
 /// planning_extent() as ground that is level up to the front of the tracks and rises by `slope`
-/// [rad] beyond it.
+/// [rad] beyond it. @throws Error (bad_input) as require_simulated_cell()
 Terrain sloped_planning_ground(const Machine& machine, double slope, double cell_size);
 
 /// Default place for the dug soil, (x, y) [m]; ours: beside the dig, clear of its windrows and

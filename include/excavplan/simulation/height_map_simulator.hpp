@@ -20,11 +20,13 @@ struct HoldingSlopes {
 /// Volume of loose soil that the bucket can hold [m^3], with the line from its pin to its tip at
 /// angle `phi3` [rad] and the soil ahead `support` above the tip [m], 0 if the bucket is clear of
 /// the ground (`docs/methods.md#bucket`).
+/// @throws Error (bad_input) as require_machine(), or if an argument is not finite
 double bucket_capacity(const Machine& machine, double phi3, double support,
                        const HoldingSlopes& slopes);
 
 /// Steepest angle, in `least` .. 80 deg, at which a face of soil of this height stands [rad]
 /// (Culmann 1875: height = 4 c / gamma * sin(angle) cos(phi) / (1 - cos(angle - phi))).
+/// @throws Error (bad_input) if an argument is not finite
 double stable_slope(const SoilState& soil, double height, double least);
 
 /// Rises with every change of the simulator that affects the result of a dig. What was computed
@@ -45,7 +47,7 @@ struct HeightMapModel;
 class HeightMapSimulator : public SoilSimulator {
  public:
   /// For ground of this density [%].
-  /// @throws Error (bad_input) unless 0 <= density_percent <= 100
+  /// @throws Error (bad_input) as require_machine() and bank_state()
   HeightMapSimulator(const Machine& machine, const SoilKind& soil, double density_percent);
 
   DigResult dig(const Terrain& terrain, const DigPath& path,

@@ -119,6 +119,13 @@ struct DigOptions {
 /// threads at once, conserves solids to 1e-9, leaves unknown cells unknown, and reads no more of
 /// the terrain than it digs, so that the size of the map does not matter.
 /// tests/support/soil_simulator_contract.hpp checks this for any implementation.
+///
+/// Whatever plans, searches, calibrates or rehearses with a simulator does not trust it: an
+/// exception, a number that is not finite or is negative, results of a wrong size, and a payload
+/// that was lifted with less energy than its weight takes (docs/methods.md#energy) are refused by
+/// an Error (bad_input) with the simulator's name. A search counts such a dig as failed and goes
+/// on; where one dig is asked for the error is passed on. A simulator that does not return, or ends
+/// the process, cannot be stopped from inside of it.
 class SoilSimulator {
  public:
   virtual ~SoilSimulator() = default;
@@ -133,7 +140,8 @@ class SoilSimulator {
 
   /// All that determines a dig besides its arguments, as text: name and version of the simulator,
   /// fingerprints of machine and soil, density. A search refuses a checkpoint of another identity.
-  /// Empty: a search identifies the simulator by the results of a few digs.
+  /// Empty: a search identifies the simulator by the results of a few digs. Messages name a
+  /// simulator by its identity up to the first comma, or by its class.
   virtual std::string identity() const { return {}; }
 };
 

@@ -24,7 +24,8 @@ struct Terrain {
   /// void_ratio_loose everywhere, to which all soil swells that is dug or slides.
   Eigen::ArrayXXd loose_void_ratio{};
 
-  HeightMap surface() const;  ///< bank + loose
+  /// bank + loose. @throws Error (bad_input) if they differ in size
+  HeightMap surface() const;
 };
 
 /// Undisturbed ground with this surface and no loose soil.
@@ -40,6 +41,9 @@ struct TerrainPatch {
 };
 
 /// Enters a patch into the terrain that it was made for.
+/// @throws Error (bad_input) if the patch does not lie on the terrain, or its layers or those of
+/// the
+///         terrain differ in size
 void apply(const TerrainPatch& patch, Terrain& terrain);
 
 /// Volumes of a dig from the height maps, cell by cell, as the paper does in its simulator.
@@ -51,11 +55,13 @@ struct HeightMapVolumes {
 };
 
 /// The volumes between two states of a terrain. `dump_radius` in [m].
+/// @throws Error (bad_input) if they are not on one grid, or point or radius are not finite
 HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,
                                     const Eigen::Vector2d& dump_at, double dump_radius = 2.0);
 
 /// Slope of the heap that rose at `at` [rad]: mean over 36 directions of its flank between a
 /// quarter and three quarters of its radius. NaN if nothing rose there.
+/// @throws Error (bad_input) as height_map_volumes()
 double heap_slope(const Terrain& before, const Terrain& after, const Eigen::Vector2d& at);
 
 }  // namespace excavplan

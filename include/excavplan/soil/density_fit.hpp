@@ -84,9 +84,11 @@ DensityLaw law_of(const DensityCalibration& calibration);
 /// Sets the scatter of a form so that its mean square below 50 % and above is that of the densities
 /// that the form gives for these digs; at 0 % and at 100 % it is 0 at least, and then twice that at
 /// 50 % at the other end. @param digs  at least one
+/// @throws Error (bad_input) if there is none, or their scatter is not finite
 void set_scatter(DensityForm& form, const std::vector<BulkingSample>& digs);
 
-/// The text of a law file. @throws nothing
+/// The text of a law file.
+/// @throws Error (bad_input) naming a number that is not finite or a text that is not UTF-8
 std::string to_json(const DensityCalibration& calibration);
 
 }  // namespace excavplan

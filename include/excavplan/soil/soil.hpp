@@ -57,10 +57,15 @@ struct SoilState {
 /// @throws Error (bad_file) naming file, key, value and rule
 SoilKind load_soil(const std::string& path);
 
+/// What whatever computes with a soil asks of it, however it was made: the rules of load_soil().
+/// @throws Error (bad_input) naming soil, member, value and rule
+void require_soil(const SoilKind& soil);
+
 /// 16 hexadecimal digits that depend on every number of a soil, but not on its name.
 std::string fingerprint(const SoilKind& soil);
 
-/// State of undisturbed soil. @throws Error (bad_input) unless 0 <= density_percent <= 100
+/// State of undisturbed soil.
+/// @throws Error (bad_input) as require_soil(), or unless 0 <= density_percent <= 100
 SoilState bank_state(const SoilKind& soil, double density_percent);
 
 /// State of undisturbed soil with this void ratio.
@@ -68,20 +73,23 @@ SoilState bank_state(const SoilKind& soil, double density_percent);
 SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio);
 
 /// State of dug soil: void_ratio_loose, no cohesion or adhesion, friction of the loosest state.
+/// @throws Error (bad_input) as require_soil()
 SoilState loose_state(const SoilKind& soil);
 
 /// Penetration resistance (cone index) at a depth below the surface [Pa].
 ///
 /// The stress law takes the overburden (unit weight times depth, which is at least 1 cm) as the
-/// vertical stress, so that the surface resists too.
+/// vertical stress, so that the surface resists too. What is not finite in the arguments is not
+/// finite in the result.
 double cone_index(const SoilKind& soil, const SoilState& state, double depth);
 
 /// Bulking factor if all soil goes from the bank at this density to the loose state:
-/// k = (1 + e_loose) / (1 + e) (solids are conserved).
+/// k = (1 + e_loose) / (1 + e) (solids are conserved). @throws Error (bad_input) as bank_state()
 double bulking_of_density(const SoilKind& soil, double density_percent);
 
 /// Height at which a vertical wall of undisturbed soil just stands [m]:
 /// H_c = 4 c / gamma * tan(45 deg + phi / 2) (Rankine).
+/// @throws Error (bad_input) unless the unit weight is positive and finite
 double critical_height(const SoilState& state);
 
 }  // namespace excavplan

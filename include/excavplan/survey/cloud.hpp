@@ -80,6 +80,7 @@ Eigen::Matrix4d read_frame(const std::string& path);
 void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan);
 
 /// Moves the points, and the sensor's place with them.
+/// @throws Error (bad_input) if a number of the matrix is not finite
 void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);
 
 /// What is in a cloud.

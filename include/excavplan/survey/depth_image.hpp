@@ -31,8 +31,9 @@ struct DepthIntrinsics {
 /// @throws Error (bad_file) naming file, key, value and rule, also if a distortion is not zero
 DepthIntrinsics load_intrinsics(const std::string& path);
 
-/// Turns a 16-bit single-channel image (PNG; read by OpenCV) into an organised cloud in the camera
-/// frame (x right, y down, z forward), NaN where the count is 0 or out of range.
+/// Turns a 16-bit single-channel image (PNG, at most 2^24 pixels; read by OpenCV) into an organised
+/// cloud in the camera frame (x right, y down, z forward), NaN where the count is 0 or out of
+/// range.
 /// @throws Error (bad_file) if the file is not such an image or of another size than the intrinsics
 /// hold for; (bad_input) if an intrinsic is out of range
 Cloud depth_image_to_cloud(const std::string& image_path, const DepthIntrinsics& intrinsics);

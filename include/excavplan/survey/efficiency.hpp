@@ -68,7 +68,7 @@ DigEfficiency measure_efficiency(const LoggedDig& dig);
 
 /// Gain of the second dig over the first [%]. An error that both share, as that of one meter, and
 /// the soil's density if it is the same, cancel.
-/// @throws Error (bad_input) if they are in different units
+/// @throws Error (bad_input) if they are in different units, or a payload per cost is not positive
 Measured efficiency_gain(const DigEfficiency& first, const DigEfficiency& second);
 
 }  // namespace excavplan

@@ -22,7 +22,8 @@ class MachineFront {
  public:
   /// @param margin  around the bodies, for what the machine file does not state: plates, hoses,
   /// linkage, errors of the angles [m], >= 0; the default is ours
-  /// @throws Error (bad_input) if an angle or the margin is not finite, or the margin negative
+  /// @throws Error (bad_input) as require_machine(); if an angle or the margin is not finite, or
+  /// the margin negative
   MachineFront(const Machine& machine, const MachinePosture& posture, double margin = 0.3);
 
   /// True of a point [m] in that space.

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <excavplan/simulation/terrain.hpp>
+
+namespace excavplan {
+
+/// @throws Error (bad_input) "WHAT: ..." unless the bank's grid is one (require_grid()) and all
+///         layers have its size. Heights are checked where a dig reads them.
+void require_terrain(const Terrain& terrain, const char* what);
+
+}  // namespace excavplan

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/used_files.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "shared/arguments.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a file is, or will be; empty of what is no file.
+std::string place_of(const fs::path& name) {
+  std::error_code error;
+  if (fs::exists(name, error) && !fs::is_regular_file(name, error)) return {};
+  fs::path path = fs::absolute(name, error);
+  for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+    path = path.parent_path() / fs::read_symlink(path, error);  // also of one that leads nowhere
+  }
+  const fs::path folder = fs::weakly_canonical(path.parent_path(), error);
+  return error ? std::string() : (folder / path.filename()).string();
+}
+
+/// The files that a text names: it is one, a list of some, or FILE:PLACE.
+std::vector<std::string> places_of(const UsedFile& file) {
+  if (file.output) return {place_of(file.text)};
+  std::vector<std::string> names = split(file.text, ',');
+  names.push_back(file.text);
+  names.push_back(file.text.substr(0, file.text.find(':')));
+  std::vector<std::string> places;
+  for (const std::string& name : names) {
+    std::error_code error;
+    if (fs::is_regular_file(name, error)) places.push_back(place_of(name));
+  }
+  return places;
+}
+
+}  // namespace
+
+void refuse_shared_files(const std::vector<UsedFile>& files) {
+  for (const UsedFile& output : files) {
+    if (!output.output) continue;
+    const std::string place = place_of(output.text);
+    for (const UsedFile& other : files) {
+      if (place.empty() || &other == &output) continue;
+      const std::vector<std::string> places = places_of(other);
+      if (std::find(places.begin(), places.end(), place) == places.end()) continue;
+      const auto& [first, second] = std::minmax(output, other, [](const auto& a, const auto& b) {
+        return &a < &b;  // in the order of the options
+      });
+      usage_error(first.option + " and " + second.option + " name the same file, " + output.text);
+    }
+  }
+}
+
+}  // namespace excavplan::tools
