@@ -52,6 +52,7 @@ BadFiles things_that_are_no_files();
 enum class Flips {
   none,      ///< it is refused, or says the same: it has a checksum
   one_line,  ///< one number or text may be another: that which the bit is in
+  one_row,   ///< the same, or that row may be missing, as nothing counts them
   one_leaf,  ///< the same, of JSON
   any        ///< no format of this kind can tell
 };

@@ -210,6 +210,13 @@ bool differ_in_one(const string& a, const string& b) {
   return one.size() == other.size() && differences <= 1;
 }
 
+bool lacks_one(const string& a, const string& b) {
+  const std::vector<string> one = lines_of(a), other = lines_of(b);
+  if (other.size() + 1 != one.size()) return false;
+  const auto [first, place] = std::mismatch(one.begin(), one.end() - 1, other.begin());
+  return std::equal(first + 1, one.end(), place);
+}
+
 bool differ_in_one_leaf(const string& a, const string& b) {
   const auto one = nlohmann::json::parse(a).flatten();
   const auto changed = nlohmann::json::parse(b, nullptr, false);
@@ -278,6 +285,8 @@ bool may_say(const Tolerance& tolerance, const Damage& damage, const Comparison&
   }
   return tolerance.flips == Flips::any ||
          (tolerance.flips == Flips::one_line && differ_in_one(read.valid_said, read.said)) ||
+         (tolerance.flips == Flips::one_row &&
+          (differ_in_one(read.valid_said, read.said) || lacks_one(read.valid_said, read.said))) ||
          (tolerance.flips == Flips::one_leaf && differ_in_one_leaf(read.valid, read.bytes));
 }
 

@@ -383,11 +383,8 @@ BadFiles bad_files(const string& format) {
 Tolerance tolerance_of(const string& format) {
   static const std::map<string, Tolerance> list = {{"pcd", {Flips::one_line, Cuts::last}},
                                                    {"ply", {Flips::one_line, Cuts::last}},
-                                                   {"xyz", {Flips::one_line, Cuts::shorter}},
+                                                   {"xyz", {Flips::one_row, Cuts::shorter}},
                                                    {"frame", {Flips::one_line, Cuts::last}},
-                                                   {"known_points", {Flips::any, Cuts::shorter}},
-                                                   {"table", {Flips::any, Cuts::shorter}},
-                                                   {"yaml", {Flips::any, Cuts::shorter}},
                                                    {"machine", {Flips::one_leaf, Cuts::none}},
                                                    {"soil", {Flips::one_leaf, Cuts::none}},
                                                    {"law", {Flips::one_leaf, Cuts::none}},

@@ -413,6 +413,8 @@ TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
            {R"({"density_percent": "40"})", "it is \"40\""},
            {R"({"density_percent": 140})", "it is 140"},
            {R"({"bulking_factor": 1.2})", "it is missing"},
+           {R"({"tool": "estimate-density", "density_percent": 40, "law_soil": null})",
+            "density_sd_percent is missing"},
            {"[40]", "it is missing"},
            {R"({"density_percent": 40, "density_percent": 80})", "appears twice"},
            {"{\"zones\": " + std::string(100000, '['), "more than 64 levels"},

@@ -137,6 +137,18 @@ double distance_to_hole(double x, const std::string& file) {
   return std::isfinite(least) ? least : 0.0;
 }
 
+/// What estimate-density always states: of a result that lost one of these, a density would be
+/// taken as exact, as trusted or as that of any soil.
+void require_whole_estimate(const nlohmann::json& result, const std::string& file) {
+  const auto tool = result.find("tool");
+  if (tool == result.end() || *tool != "estimate-density") return;
+  for (const char* key : {"density_sd_percent", "trustworthy", "law_soil"}) {
+    if (result.contains(key)) continue;
+    throw Error(ErrorKind::bad_file,
+                file + ": " + key + " is missing, expected a result of estimate-density --json");
+  }
+}
+
 GroundDensity read_density(const std::string& file) {
   const nlohmann::json json = parse_json(file, read_file(file));
   const auto field = json.is_object() ? json.find("density_percent") : json.end();
@@ -147,6 +159,7 @@ GroundDensity read_density(const std::string& file) {
                                          (there ? ", it is " + shown(*field) : ", it is missing") +
                                          "; expected a result of estimate-density --json");
   }
+  require_whole_estimate(json, file);
   GroundDensity density(field->get<double>(), sd_in(json, file));
   const auto trustworthy = json.find("trustworthy");
   density.trustworthy = trustworthy == json.end() || *trustworthy == true;
