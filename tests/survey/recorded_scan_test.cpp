@@ -349,10 +349,9 @@ TEST(RecordedScan, AMissingTransformNamesTheFrames) {
   EXPECT_EQ(error_of_read(recording, query_of("/points", 2.0, 1.0, "odom")),
             "found no transform of frame 'odom', the frames there are: 'base', 'lidar', 'map'");
   add_cloud(recording, 20000 * ms, {{1.0, 0.0, 0.0}});
-  EXPECT_EQ(
-      error_of_read(recording, query_of("/points", 19.0, 0.0, "map")),
-      "transform of 'base' in 'map' at 20.000 s: found it from 0.000 s to 10.000 s, expected "
-      "it at that time");
+  EXPECT_EQ(error_of_read(recording, query_of("/points", 19.0, 0.0, "map")),
+            "transform of 'base' in 'map' at 20.000 s: found it from 0.000 s to 10.000 s, expected "
+            "it at that time");
 }
 
 TEST(RecordedScan, ASensorWhoseClockIsNotSetCannotBeTransformed) {
