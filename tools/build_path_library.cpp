@@ -82,13 +82,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
 
 const OptionNames option_names = {{"library: densities", "--densities"},
                                   {"library: slopes", "--slopes"},
-                                  {"cell size of a library's ground [m]", "--cell"},
+                                  cell_option[0],
                                   {"machines x soils x slopes x densities of a library",
                                    "--machine x --soil x --slopes x --densities"},
                                   {"points of a library search", "--points"},
                                   {"search: first_generation", "--points"},
-                                  {"search: polish_evaluations", "--polish"},
-                                  {"search: stop.evaluations", "--inherited"},
+                                  {"polish evaluations of a library search", "--polish"},
+                                  {"inherited evaluations of a library search", "--inherited"},
                                   {"search: population", "--population"},
                                   {"search: generations", "--generations"}};
 

@@ -28,13 +28,13 @@ inline void require(bool holds, const std::string& text) {
 inline void require(bool holds, std::string_view what, double value, std::string_view rule) {
   if (holds) return;
   throw Error(ErrorKind::bad_input,
-              std::string(what) + " is " + number_text(value) + ", must be " + std::string(rule));
+              std::string(what) + " is " + plain_number(value) + ", must be " + std::string(rule));
 }
 
 /// @throws Error (bad_input) "WHAT is VALUE, must be in LOWEST .. HIGHEST" unless it is; NaN is not
 inline void require_in(std::string_view what, double value, double lowest, double highest) {
   if (value >= lowest && value <= highest) return;
-  require(false, what, value, "in " + number_text(lowest) + " .. " + number_text(highest));
+  require(false, what, value, "in " + plain_number(lowest) + " .. " + plain_number(highest));
 }
 
 }  // namespace excavplan

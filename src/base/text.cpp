@@ -90,6 +90,12 @@ std::string number_text(double value) {
   return {text, end};
 }
 
+std::string plain_number(double value) {
+  constexpr double most = 1e15;
+  const bool counts = std::abs(value) < most && value == std::floor(value);
+  return counts ? decimals(value, 0) : number_text(value);
+}
+
 std::string decimals(double value, int digits) {
   char text[400];
   const auto end =

@@ -19,6 +19,9 @@ constexpr std::uint64_t most_exact = 9007199254740992;
 
 /// Shortest text of a number that reads back the same, for messages and files.
 std::string number_text(double value);
+
+/// The same, whole numbers below 1e15 without an exponent, for messages.
+std::string plain_number(double value);
 /// The number with so many digits after the point: "0.350".
 std::string decimals(double value, int digits);
 /// A human-readable number: at least so many significant digits, never an exponent; "unknown" if

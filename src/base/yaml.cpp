@@ -87,6 +87,13 @@ bool is_item(string_view text) {
   return text[0] == '-' && (text.size() == 1 || text[1] == ' ' || text[1] == '\t');
 }
 
+/// YAML allows no control characters but tabs, and a carriage return at the end of a line.
+bool is_printable(string_view line) {
+  return std::all_of(line.begin(), line.end(), [](unsigned char c) {
+    return (c >= ' ' && c != 127) || c == '\t' || c == '\r';
+  });
+}
+
 /// The lines of the first document that say something.
 std::vector<Line> lines_of(const std::string& name, string_view text) {
   std::vector<Line> lines;
@@ -95,6 +102,7 @@ std::vector<Line> lines_of(const std::string& name, string_view text) {
     const std::size_t end = text.find('\n');
     const string_view line = text.substr(0, end);
     text.remove_prefix(end == text.npos ? text.size() : end + 1);
+    if (!is_printable(line)) refuse(name, number, line, "a text without control characters");
     const string_view content = without_comment(line);
     if (content.empty() || (lines.empty() && content[0] == '%')) continue;
     if (content == "---" || content == "...") {

@@ -131,7 +131,7 @@ ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, co
                                 double density_percent, const ExperimentOptions& options) {
   require_machine(machine);
   require_soil(soil);
-  require_in("cell size of the ground [m]", options.plan.cell_size, finest_cell, coarsest_cell);
+  require_simulated_cell(options.plan.cell_size);
   Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
   result.held_because = what_moves(experiment, options.fixed_path);

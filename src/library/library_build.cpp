@@ -424,9 +424,7 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
     require_in("inherited evaluations of a library search", anchored->inherited_evaluations, 0,
                most_evaluations);
   }
-  require(search.cell_size >= finest_cell && search.cell_size <= coarsest_cell,
-          "cell size of a library's ground [m]", search.cell_size,
-          "in " + number_text(finest_cell) + " .. " + number_text(coarsest_cell));
+  require_simulated_cell(search.cell_size);
 }
 
 LibraryWorker library_worker(LibraryGrid grid, LibrarySearch search) {

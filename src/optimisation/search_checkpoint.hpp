@@ -21,6 +21,22 @@ std::string describe(const GeneticAlgorithm& method);
 /// limited length.
 Evaluation sound(const Evaluation& outcome);
 
+/// The outcome of a call; an exception is a failed outcome, with the text of a std::exception.
+/// Memory that is short is none: that would change what is found.
+/// @throws std::bad_alloc
+template <typename Call>
+auto caught(const Call& call) -> decltype(call()) {
+  try {
+    return call();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    return Evaluation::failed(e.what());
+  } catch (...) {
+    return Evaluation::failed("an exception that is no std::exception");
+  }
+}
+
 /// The outcomes of a search's evaluations, in memory and in a file
 /// (docs/formats.md#search-checkpoint). A search is determined by its options and these outcomes,
 /// so that nothing else need be kept.

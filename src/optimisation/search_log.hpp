@@ -4,11 +4,9 @@
 
 #include <atomic>
 #include <chrono>
-#include <exception>
 #include <functional>
 #include <map>
 #include <mutex>
-#include <new>
 #include <vector>
 
 #include <excavplan/optimisation/search.hpp>
@@ -21,22 +19,6 @@
 /// stops. Private to the library.
 
 namespace excavplan {
-
-/// The outcome of a call; an exception is a failed outcome, with the text of a std::exception.
-/// Memory that is short is none: that would change what is found.
-/// @throws std::bad_alloc
-template <typename Call>
-auto caught(const Call& call) -> decltype(call()) {
-  try {
-    return call();
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    return Evaluation::failed(e.what());
-  } catch (...) {
-    return Evaluation::failed("an exception that is no std::exception");
-  }
-}
 
 /// A point that a method requests.
 struct Candidate {

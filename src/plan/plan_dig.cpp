@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
@@ -382,6 +383,7 @@ DigPlan plan_dig(const Task& task) {
   const PlanMethod method = task.options.method;
   require(method == PlanMethod::library || method == PlanMethod::search, "method of a plan",
           static_cast<double>(method), "one of PlanMethod");
+  require_in("search: stop.evaluations", task.options.search.stop.evaluations, 0, most_evaluations);
   DigPlan plan;
   plan.method = task.options.method;
   judge_density(task, plan);
@@ -428,7 +430,6 @@ DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensi
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const PlanOptions& options) {
-  require_in("cell size of the ground [m]", options.cell_size, finest_cell, coarsest_cell);
   const Terrain level = level_planning_ground(machine, options.cell_size);
   return plan_dig(Task{machine, soil, density, level, true, options});
 }

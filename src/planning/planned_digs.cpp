@@ -30,6 +30,17 @@ nlohmann::ordered_json dig_json(const PlannedDig& dig) {
   return json;
 }
 
+namespace {
+
+/// Where a figure per energy or time, which the file states too, would be infinite.
+void require_per(const JsonObject& object, const std::string& key, double mass, double per) {
+  if (std::isfinite(1000.0 * mass / per)) return;
+  object.fail(key, "is " + number_text(per) + " in its base unit, too little for a payload of " +
+                       number_text(mass) + " kg");
+}
+
+}  // namespace
+
 PlannedDig read_dig(JsonObject& object) {
   PlannedDig dig;
   std::tie(dig.parameters, dig.start_x) = read_path(object.object("path"));
@@ -38,10 +49,16 @@ PlannedDig read_dig(JsonObject& object) {
   dig.fill = object.number("fill_fraction", 0.0);
   dig.energy = 1000.0 * object.number("energy_kj", 0.0);
   dig.duration = object.number("duration_s", 0.0);
+  require_per(object, "duration_s", dig.payload_mass, dig.duration);
+  if (dig.energy > 0.0) require_per(object, "energy_kj", dig.payload_mass, dig.energy);
   if (object.has("cycle")) {
     JsonObject cycle = object.object("cycle");
     dig.cycle_energy = 1000.0 * cycle.number("energy_kj", 0.0);
     dig.cycle_time = cycle.number("time_s", 0.0);
+    if (dig.cycle_time > 0.0) {
+      require_per(cycle, "time_s", dig.payload_mass, dig.cycle_time);
+      require_per(cycle, "energy_kj", dig.payload_mass, dig.cycle_energy);
+    }
     cycle.ignore("efficiency_kg_per_kj");
     cycle.ignore("rate_t_per_h");
     cycle.done();

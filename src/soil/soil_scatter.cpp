@@ -13,7 +13,10 @@
 namespace excavplan {
 namespace {
 
-constexpr double least_void_ratio_range = 0.05;  // between the limits of a drawn soil; ours
+// Of a drawn soil; ours.
+constexpr double least_void_ratio = 0.01;
+constexpr double least_void_ratio_range = 0.05;  // between its limits
+constexpr double least_loosening = 0.01;         // of dug soil above the densest, of that range
 
 }  // namespace
 
@@ -32,11 +35,15 @@ SoilKind drawn_soil(const SoilKind& soil, const SoilScatter& scatter, std::uint6
   const double loose = 1.0 + scatter.loose_density * random.normal();
   const double water = 1.0 + scatter.water_content * random.normal();
   SoilKind drawn = soil;
-  drawn.void_ratio_max = scaled(soil.void_ratio_max, loosest);
-  drawn.void_ratio_min = std::max(0.01, std::min(scaled(soil.void_ratio_min, densest),
-                                                 drawn.void_ratio_max - least_void_ratio_range));
-  drawn.void_ratio_loose = std::clamp(scaled(soil.void_ratio_loose, loosest * loose),
-                                      drawn.void_ratio_min, drawn.void_ratio_max);
+  drawn.void_ratio_max =
+      std::max(scaled(soil.void_ratio_max, loosest), least_void_ratio + least_void_ratio_range);
+  drawn.void_ratio_min =
+      std::max(least_void_ratio, std::min(scaled(soil.void_ratio_min, densest),
+                                          drawn.void_ratio_max - least_void_ratio_range));
+  const double least_loose =
+      drawn.void_ratio_min + least_loosening * (drawn.void_ratio_max - drawn.void_ratio_min);
+  drawn.void_ratio_loose =
+      std::clamp(scaled(soil.void_ratio_loose, loosest * loose), least_loose, drawn.void_ratio_max);
   const double full = drawn.void_ratio_min / drawn.specific_gravity;  // of the densest state
   drawn.water_content = std::clamp(soil.water_content * water, 0.0, full);
   return drawn;

@@ -223,7 +223,8 @@ void check(const DensityLaw& law, const DensityOptions& options) {
   }
   if (options.payload_mass) require_measured("payload_mass [kg]", *options.payload_mass);
   if (const auto& water = options.soil.water_content) {
-    require_in("water_content", water->value, 0.0, 10.0);
+    require(water->value >= 0.0 && water->value <= 10.0, "water_content", water->value,
+            "in 0 .. 10, a share of the dry mass: 12 % is 0.12");
     require_in("water_content, its sd,", water->sd, 0.0, 10.0);
   }
 }

@@ -44,10 +44,15 @@ class PayloadReader {
         soil_(soil),
         dig_(dig),
         mass_(*options.payload_mass),
-        scatter_(options.soil.scatter) {
+        scatter_(options.soil.scatter),
+        water_content_(soil.water_content) {
     if (const auto& water = options.soil.water_content) {
-      soil_.water_content = water->value;
-      scatter_.water_content = water->value > 0.0 ? water->sd / water->value : 0.0;
+      water_content_ = water->value;
+      // More water than the densest state holds: the ground is looser, its scatter that of a full
+      // one.
+      soil_.water_content = std::min(water_content_, soil_.void_ratio_min / soil_.specific_gravity);
+      scatter_.water_content =
+          water_content_ > 0.0 ? std::min(1.0, water->sd / water_content_) : 0.0;
     }
   }
 
@@ -81,8 +86,9 @@ class PayloadReader {
       k_per_measured_ = 1.0 - dig_.fallback->value;
     }
     bulk_density_ = k_ * mass_.value / (dig_.volumes(2) * (1.0 - void_share()));
-    density_ = density_of_bulk_density(soil_, bulk_density_);
-    per_log_ = 100.0 * soil_.specific_gravity * water_density * (1.0 + soil_.water_content) /
+    const double as_wet = (1.0 + soil_.water_content) / (1.0 + water_content_);
+    density_ = density_of_bulk_density(soil_, as_wet * bulk_density_);
+    per_log_ = 100.0 * soil_.specific_gravity * water_density * (1.0 + water_content_) /
                bulk_density_ / (soil_.void_ratio_max - soil_.void_ratio_min);
   }
 
@@ -162,6 +168,7 @@ class PayloadReader {
   const DugVolumes& dig_;
   Measured mass_;
   SoilScatter scatter_;
+  double water_content_;         ///< measured, or the soil's
   double k_ = 0.0;               ///< of the whole cut
   double k_per_measured_ = 0.0;  ///< its change with the one without the voids
   double bulk_density_ = 0.0;    ///< in place [kg/m^3]

@@ -70,6 +70,9 @@ TEST(Yaml, TheRestIsRefusedWithItsLine) {
   EXPECT_EQ(error("a: *x\n").substr(0, 19), "line 1: found '*x',");
   EXPECT_EQ(error("a: |\n  text\n").substr(0, 18), "line 1: found '|',");
   EXPECT_EQ(error("a: \"x\n").substr(0, 21), "line 1: found '\"x', e");
+  EXPECT_EQ(error("a: 1\nb: \x1F\n"),
+            "line 2: found 'b: ?', expected a text without control characters");
+  EXPECT_NE(error(string(1, '\0')).find("without control characters"), string::npos);
   EXPECT_NE(error(string(100, '[') + string(100, ']')).find("expected at most 64 levels"),
             string::npos);
   string deep;

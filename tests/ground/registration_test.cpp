@@ -202,7 +202,7 @@ TEST(Align, SurfacesThatDoNotFitAreRefused) {
             "at least 100 are needed: do the scans overlap?");
   AlignmentOptions options;
   options.turn_prior = 0.0;
-  EXPECT_EQ(message(one, one, options), "align: turn_prior is 0, must be positive");
+  EXPECT_EQ(message(one, one, options), "align: turn_prior is 0, must be positive and finite");
 }
 
 }  // namespace

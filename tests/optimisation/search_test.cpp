@@ -18,6 +18,7 @@
 
 #include <gtest/gtest.h>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 #include "base/random.hpp"
 
@@ -454,13 +455,15 @@ TEST_P(BothMethods, ProgressIsToldOfEveryEvaluationAndBatch) {
 }
 
 TEST_P(BothMethods, PlansNoMoreThanAnIntCanHold) {
-  constexpr int most = std::numeric_limits<int>::max();
   SearchOptions endless = options();
+  int most = std::numeric_limits<int>::max();
   if (auto* genetic = std::get_if<GeneticAlgorithm>(&endless.method)) {
-    genetic->generations = most;
+    genetic->generations = most_evaluations / genetic->population;
+    most = genetic->population + (genetic->generations - 1) * (genetic->population - 1);
   } else {
     auto& memetic = std::get<MemeticSearch>(endless.method);
-    memetic.generations = memetic.polish_evaluations = memetic.basins = most;
+    memetic.polish_evaluations = most_evaluations;
+    memetic.basins = most;
   }
   int planned = 0;
   endless.progress = [&](const SearchProgress& progress) {

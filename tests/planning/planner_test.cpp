@@ -39,8 +39,8 @@ class HandMade : public SoilSimulator {
     ++digs;
     DigResult result;
     result.payload_mass = 100.0;
-    result.energy.total = 1000.0 + std::pow(path.parameters.drag_length - best_drag_, 2) * 1e4 +
-                          std::pow(path.parameters.penetration_length - 0.4 * best_drag_, 2) * 1e3;
+    result.energy.total = 1e4 + std::pow(path.parameters.drag_length - best_drag_, 2) * 1e5 +
+                          std::pow(path.parameters.penetration_length - 0.4 * best_drag_, 2) * 1e4;
     return result;
   }
 

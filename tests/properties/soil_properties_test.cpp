@@ -21,8 +21,8 @@ SoilKind any_soil(Random& random) {
   SoilKind soil;
   soil.name = "any";
   soil.specific_gravity = random.uniform(2.4, 2.9);
-  soil.water_content = random.uniform(0.0, 0.15);
   soil.void_ratio_min = random.uniform(0.2, 0.8);
+  soil.water_content = random.uniform(0.0, soil.void_ratio_min / soil.specific_gravity);
   soil.void_ratio_max = soil.void_ratio_min + random.uniform(0.1, 1.0);
   soil.void_ratio_loose = random.uniform(soil.void_ratio_min, soil.void_ratio_max);
   soil.cohesion_loosest = random.uniform(0.0, 2e4);
@@ -43,7 +43,7 @@ DensityForm any_form(Random& random) {
   if (random.uniform() < 0.5) {
     DensityLine line;
     line.a = random.uniform(50.0, 1000.0);
-    line.b = random.uniform(-1000.0, 0.0);
+    line.b = -line.a * random.uniform(0.8, 1.3);
     line.residual_sd = random.uniform(0.0, 10.0);
     line.residual_growth = random.uniform(-1.0, 1.0);
     return line;
@@ -188,7 +188,7 @@ TEST(SoilProperties, DrawnSoilsAreSoils) {
 
 /// Over many sites each dry density scatters as stated, and the loose one with that at e_max.
 TEST(SoilProperties, DrawnSoilsScatterAsStated) {
-  SoilKind soil;
+  SoilKind soil = load_soil(find_data_file("soils/loam.json"));
   soil.specific_gravity = 2.65;
   soil.water_content = 0.05;
   soil.void_ratio_min = 0.4;

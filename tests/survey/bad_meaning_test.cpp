@@ -625,7 +625,7 @@ TEST(BadMeaning, SoilAndPayload) {
   add_soil("payload in lb for kg", loam(), payload(2.2 * mass), payload_codes);
   add_soil("payload of another dig", loam(), payload(1.6 * mass), payload_codes);
   add_soil("payload below 0", loam(), payload(-mass), payload_codes);
-  add_soil("moisture in percent", loam(), water(12.0), {"too_wet"});
+  add_soil("moisture in percent", loam(), water(12.0), {"12 % is 0.12"});
   add_soil("moisture ten times too large", loam(), water(1.2), {"too_wet"});
   inputs.push_back({"law of another soil",
                     [] {

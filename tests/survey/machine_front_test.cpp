@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <excavplan/data_files.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
 #include "support/errors.hpp"
@@ -21,7 +22,7 @@ constexpr double margin = 0.25;
 
 /// Boom pin 1 m up, boom 4 m with its knee 1 m above the middle, arm 2 m, bucket a square of 1 m.
 Machine plain_machine() {
-  Machine machine;
+  Machine machine = load_machine(find_data_file("machines/zx120.json"));
   machine.boom_pin = {0.0, 1.0};
   machine.boom_length = 4.0;
   machine.arm_length = 2.0;

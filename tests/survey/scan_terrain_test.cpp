@@ -75,7 +75,7 @@ TEST(ScanTerrain, ScanElsewhereIsRefused) {
   scan.site_from_scan(0, 3) = 50.0;
   EXPECT_THROW(terrain_from_scan(scan, extent, 0.05), FrameError);
   EXPECT_EQ(test::error_of([&] { terrain_from_scan(slope(2000.0), extent, 0.0); }),
-            "terrain from a scan: cell_size is 0, must be > 0 m");
+            "terrain from a scan: cell_size is 0, must be > 0 m and finite");
 }
 
 }  // namespace

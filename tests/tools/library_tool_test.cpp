@@ -155,11 +155,11 @@ TEST_F(LibraryTool, ErrorsNameTheOption) {
   const std::vector<std::pair<Words, std::string>> cases = {
       {{"--slopes", "0,90deg"}, "--slopes [rad] must rise inside -1 .. 1"},
       {{"--densities", "20,10"}, "--densities [%] must rise inside 0 .. 100"},
-      {{"--cell", "5"}, "--cell is 5, must be in 0.005 .. 1"},
-      {{"--points", "0"}, "--points must be >= 1"},
-      {{"--points", "1000001"}, "--points is 1000001, must be at most"},
-      {{"--polish", "-1"}, "--polish must be >= 0"},
-      {{"--inherited", "-1", "--densities", "40,50"}, "--inherited must be >= 0"},
+      {{"--cell", "5"}, "--cell: the cell size is 5 m, must be in 0.005 .. 1 m"},
+      {{"--points", "0"}, "--points is 0, must be in 1 .. 1000000"},
+      {{"--points", "1000001"}, "--points is 1000001, must be in 1 .. 1000000"},
+      {{"--polish", "-1"}, "--polish is -1, must be in 0 .. 1000000"},
+      {{"--inherited", "-1", "--densities", "40,50"}, "--inherited is -1, must be in 0 .. 1000000"},
       {{"--method", "paper", "--population", "0"}, "--population must be >= 2"},
       {{"--method", "paper", "--generations", "-1"}, "--generations must be >= 1"}};
   for (const auto& [words, message] : cases) {

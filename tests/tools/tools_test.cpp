@@ -271,15 +271,15 @@ TEST_F(BadInput, NumbersAboveACeilingAreRefused) {
   const std::string log = folder.write("log.csv", "time_s,fuel_flow_ml_per_s\n0,2\n5,2\n");
   const std::string out = folder.file("out.json");
   const Words search = {"--density", "40", "--search"};
-  refused(2, "--population x generations must be <= 1000000, got 42949672940", "plan-path",
+  refused(2, "--population must be <= 1000000, got 2147483647", "plan-path",
           search + Words{"--method", "paper", "--population", "2147483647"});
-  refused(2, "--evaluations must be <= 1000000, got 2147483647", "plan-path",
+  refused(2, "--evaluations is 2147483647, must be in 0 .. 1000000", "plan-path",
           search + Words{"--evaluations", "2147483647"});
   refused(2, "--generations x generation_size must be <= 1000000, got 25769803764", "plan-path",
           search + Words{"--generations", "2147483647"});
-  refused(2, "--population x generations must be <= 1000000", "build-path-library",
+  refused(2, "--population must be <= 1000000", "build-path-library",
           {"--method", "paper", "--population", "2147483647", "--out", out});
-  refused(2, "--points is 2147483647, must be at most 1000000", "build-path-library",
+  refused(2, "--points is 2147483647, must be in 1 .. 1000000", "build-path-library",
           {"--points", "2147483647", "--out", out});
   refused(2, "--machine x --soil x --slopes x --densities is 505101, must be at most 100000",
           "build-path-library",
