@@ -208,7 +208,7 @@ TEST_F(PlanDig, SearchBeginsWithTheLibrarysDig) {
   EXPECT_EQ(first.dig->parameters.drag_length, known.parameters.drag_length);
   PlanOptions for_time = searched(1);
   for_time.search.objective = DigObjective::Goal::time;  // no library is shipped
-  EXPECT_NE(plan(60.0, for_time).dig->parameters.drag_length, known.parameters.drag_length);
+  EXPECT_FALSE(plan(60.0, for_time).dig) << "the first dig of its own lifts the machine";
   PlanOptions own = searched(1);
   own.search.start = {paper_fixed_path()};
   EXPECT_EQ(plan(60.0, own).dig->parameters.drag_length, paper_fixed_path().drag_length);

@@ -383,7 +383,8 @@ TEST_F(BadInput, ValuesOutOfRangeAreRefused) {
   refused(2, "0 .. 100", "build-path-library", {"--densities", "140", "--out", plot});
   refused(2, "0 .. 100", "run-experiment", {"--densities", "140"});
   refused(2, "--density: 'dense'", "plan-path", {"--density", "dense"});
-  refused(2, "cell is 0 m", "estimate-density", {scan, later_scan, "--cell", "0"});
+  refused(2, "--cell is 0, must be above 0 m and finite", "estimate-density",
+          {scan, later_scan, "--cell", "0"});
   refused(2, "cell size is 0 m", "simulate-dig", {"--density", "40", "--cell", "0"});
   refused(2, "--area: ", "estimate-density", {scan, later_scan, "--area", "1,2,3"});
 }
