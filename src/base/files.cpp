@@ -126,8 +126,8 @@ class OutputFile {
     const int open = std::exchange(descriptor_, -1);
     return open < 0 || ::close(open) == 0 || errno == EINTR;
   }
-  /// Takes the place of the file that is there, with its mode whatever the umask. It is open as long
-  /// as it has its own name: a program that ends at a signal finds it by that.
+  /// Takes the place of the file that is there, with its mode whatever the umask. It is open as
+  /// long as it has its own name: a program that ends at a signal finds it by that.
   bool replace(const Place& place, bool is_flushed) {
     if (place.mode) ::fchmod(descriptor_, *place.mode);
     if (is_flushed && !flush(descriptor_)) return false;

@@ -60,6 +60,7 @@ Table Table::read(const std::string& path) {
   for (string_view rest = content; !rest.empty();) {
     ++number;
     string_view line = taken(rest, '\n');
+    if (!is_printable(line)) refuse_line(path, number, "found a control character");
     line = trimmed(line.substr(0, line.find('#')));
     if (line.empty()) continue;
     split(line, fields);

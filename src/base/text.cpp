@@ -131,6 +131,12 @@ std::optional<std::size_t> first_not_utf8(std::string_view text) {
   return std::nullopt;
 }
 
+bool is_printable(std::string_view line) {
+  return std::all_of(line.begin(), line.end(), [](unsigned char c) {
+    return (c >= ' ' && c != 127) || c == '\t' || c == '\r';
+  });
+}
+
 std::string safe_text(std::string_view text, std::size_t most) {
   constexpr std::string_view gap = " ... ";
   if (text.size() <= most) return safe(text);

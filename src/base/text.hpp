@@ -30,6 +30,9 @@ std::string readable(double value, int digits = 3);
 /// "0.451 ± 0.012": the standard deviation with two digits, the value with as many decimals.
 std::string readable(double value, double sd);
 
+/// Whether a line has no control characters but tabs and carriage returns.
+bool is_printable(std::string_view line);
+
 /// The first byte that is no part of a UTF-8 character (RFC 3629), if there is one.
 std::optional<std::size_t> first_not_utf8(std::string_view text);
 /// A text of unknown origin made fit for a terminal, for JSON and for a message: `?` for every

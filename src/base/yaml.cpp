@@ -87,13 +87,6 @@ bool is_item(string_view text) {
   return text[0] == '-' && (text.size() == 1 || text[1] == ' ' || text[1] == '\t');
 }
 
-/// YAML allows no control characters but tabs, and a carriage return at the end of a line.
-bool is_printable(string_view line) {
-  return std::all_of(line.begin(), line.end(), [](unsigned char c) {
-    return (c >= ' ' && c != 127) || c == '\t' || c == '\r';
-  });
-}
-
 /// The lines of the first document that say something.
 std::vector<Line> lines_of(const std::string& name, string_view text) {
   std::vector<Line> lines;

@@ -32,6 +32,8 @@ nlohmann::ordered_json dig_json(const PlannedDig& dig) {
 
 namespace {
 
+constexpr double most_energy = 1e12;  // [kJ], ours: far above any dig's
+
 /// Where a figure per energy or time, which the file states too, would be infinite.
 void require_per(const JsonObject& object, const std::string& key, double mass, double per) {
   if (std::isfinite(1000.0 * mass / per)) return;
@@ -47,13 +49,13 @@ PlannedDig read_dig(JsonObject& object) {
   dig.payload_mass = object.number("payload_mass_kg", 0.0);
   dig.payload_volume = object.number("payload_volume_m3", 0.0);
   dig.fill = object.number("fill_fraction", 0.0);
-  dig.energy = 1000.0 * object.number("energy_kj", 0.0);
+  dig.energy = 1000.0 * object.number("energy_kj", 0.0, most_energy);
   dig.duration = object.number("duration_s", 0.0);
   require_per(object, "duration_s", dig.payload_mass, dig.duration);
   if (dig.energy > 0.0) require_per(object, "energy_kj", dig.payload_mass, dig.energy);
   if (object.has("cycle")) {
     JsonObject cycle = object.object("cycle");
-    dig.cycle_energy = 1000.0 * cycle.number("energy_kj", 0.0);
+    dig.cycle_energy = 1000.0 * cycle.number("energy_kj", 0.0, most_energy);
     dig.cycle_time = cycle.number("time_s", 0.0);
     if (dig.cycle_time > 0.0) {
       require_per(cycle, "time_s", dig.payload_mass, dig.cycle_time);

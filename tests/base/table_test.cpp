@@ -69,8 +69,9 @@ TEST(Table, FilesWithoutRowsAreRefused) {
 }
 
 TEST(Table, WhatAFileHoldsIsShownShortAndSafe) {
-  EXPECT_EQ(refusal("k,d\x1b[2J\n1,x\xff\n"), "t.csv: line 2: d?[2J is 'x?', expected a number");
-  EXPECT_EQ(refusal("a\x1b,a\x1b\n"), "t.csv: line 1: column 'a?' appears twice");
+  EXPECT_EQ(refusal("k,d\x1b[2J\n1,2\n"), "t.csv: line 1: found a control character");
+  EXPECT_EQ(refusal("k,d\n1,x\xff\n"), "t.csv: line 2: d is 'x?', expected a number");
+  EXPECT_EQ(refusal("a\xff,a\xff\n"), "t.csv: line 1: column 'a?' appears twice");
   const std::string huge(10000000, 'k');
   for (const std::string& content :
        {huge + "\n1\n", "k\n" + huge, huge + "," + huge, "a," + huge + "\n1,x"}) {
