@@ -8,7 +8,6 @@ namespace excavplan {
 namespace {
 
 constexpr std::size_t farthest_back = 8192;
-constexpr std::size_t longest_packed = 33;     // an item: a control byte and 32 literals
 constexpr std::size_t longest_unpacked = 264;  // a repeat
 constexpr std::size_t window_size = 16 * farthest_back;
 
