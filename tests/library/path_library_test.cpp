@@ -339,6 +339,19 @@ TEST_F(LibraryTasks, ADigOfAnotherKindIsTakenOnlyWhereItIsClearlyBetter) {
   EXPECT_LE(worse.evaluations, 4) << "half the effort is enough to know";
 }
 
+TEST_F(LibraryTasks, ClearlyBetterIsMoreThanAFifthOfAPercent) {
+  LibraryJob brief = job_;
+  std::get<AnchoredSearch>(brief.search.method).inherited_evaluations = 2;  // half: the start alone
+  LibraryTask other{place_};
+  const LibraryAnswer own = answer(other);
+  other.starts = {own.dig.parameters};
+  for (const auto& [gain, is_taken] : {std::pair{0.0015, false}, {0.0025, true}}) {
+    other.known = own.rank / (1.0 + gain);
+    const std::string text = do_task(brief, to_text(other), {});
+    EXPECT_EQ(read_answer(brief, place_, "task", text).feasible, is_taken) << gain;
+  }
+}
+
 TEST_F(LibraryTasks, DigsAreMeasuredAsTheyAre) {
   const PlannedDig own = answer({place_}).dig;
   PlannedDig nowhere = own;
