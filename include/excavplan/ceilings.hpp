@@ -17,7 +17,7 @@ inline constexpr unsigned most_threads = 1024;
 inline constexpr double most_cells = 2e7;
 /// Memory that a survey of two scans may need, by its cells and points [byte].
 inline constexpr double most_survey_memory = 8e9;
-/// Points of the messages of a recording that make up one scan.
+/// Points or pixels of the messages of a recording that make up one scan.
 inline constexpr std::uint64_t most_recorded_points = 50000000;
 /// Evaluations that one search may plan, hours of digs.
 inline constexpr int most_evaluations = 1000000;

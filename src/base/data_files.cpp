@@ -12,6 +12,8 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/text.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -51,11 +53,17 @@ std::vector<fs::path> data_folders(const std::string& package_folder) {
 }  // namespace
 
 std::string find_data_file(const std::string& relative_path, const std::string& package_folder) {
+  const fs::path relative = relative_path;
+  if (relative.is_absolute() || std::count(relative.begin(), relative.end(), "..") > 0) {
+    throw Error(ErrorKind::bad_input,
+                excavplan::quoted(relative_path) +
+                    ": found a path out of the folder of the data, expected one in it");
+  }
   std::string searched;
   for (const fs::path& place : data_folders(package_folder)) {
     std::error_code none;
     const fs::path folder = place.lexically_normal();
-    const fs::path file = folder / relative_path;
+    const fs::path file = folder / relative;
     if (fs::is_regular_file(file, none)) return file.string();
     searched += (searched.empty() ? " " : ", ") + folder.string();
   }

@@ -3,10 +3,12 @@
 #include "base/files.hpp"
 
 #include <fcntl.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
@@ -25,9 +27,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string reason_text(int reason) { return std::generic_category().message(reason); }
+
 [[noreturn]] void fail_to_write(const std::string& path, int reason) {
-  throw Error(ErrorKind::bad_file,
-              path + ": cannot be written: " + std::generic_category().message(reason));
+  throw Error(ErrorKind::bad_file, path + ": cannot be written: " + reason_text(reason));
 }
 
 /// Where that goes which is written to a path.
@@ -61,15 +64,8 @@ Place place_of(const std::string& path) {
   return place;
 }
 
-/// Cut where it would be too long for a file system.
-std::string name_beside(const std::string& path) {
-  constexpr std::size_t longest = 255;
-  char host[65] = {};  // a folder may be shared by machines
-  ::gethostname(host, sizeof host - 1);
-  const std::string end = ".part-" + std::string(host) + '-' + std::to_string(::gettid());
-  const std::size_t name = path.rfind('/') + 1;
-  return path.substr(0, name + std::min(path.size() - name, longest - end.size())) + end;
-}
+constexpr std::string_view unfinished = ".part-";
+constexpr std::size_t random_letters = 8;
 
 bool flush(int descriptor) { return ::fsync(descriptor) == 0 || errno == EINVAL; }
 
@@ -91,19 +87,14 @@ class OutputFile {
  public:
   /// @param how  more flags of ::open() for what is not replaced
   explicit OutputFile(const Place& place, int how = 0)
-      : path_(place.is_replaced ? name_beside(place.path) : place.path),
+      : path_(place.is_replaced ? unfinished_name(place.path) : place.path),
         is_removed_(place.is_replaced) {
     constexpr int flags = O_WRONLY | O_CLOEXEC | O_NOCTTY;
     if (!is_removed_) {
       descriptor_ = ::open(path_.c_str(), flags | how);
       return;
     }
-    const auto create = [&] {
-      descriptor_ = ::open(path_.c_str(), flags | O_CREAT | O_EXCL, place.mode.value_or(0666));
-      return descriptor_ >= 0;
-    };
-    const bool is_left_over = !create() && errno == EEXIST && ::unlink(path_.c_str()) == 0;
-    if (is_left_over) create();
+    descriptor_ = ::open(path_.c_str(), flags | O_CREAT | O_EXCL, place.mode.value_or(0666));
     is_removed_ = descriptor_ >= 0;
   }
   ~OutputFile() {
@@ -133,7 +124,7 @@ class OutputFile {
     if (is_flushed && !flush(descriptor_)) return false;
     if (std::rename(path_.c_str(), place.path.c_str()) != 0) return false;
     is_removed_ = false;
-    return close() && (!is_flushed || flush_folder_of(place.path));
+    return true;
   }
 
  private:
@@ -145,9 +136,13 @@ class OutputFile {
 void write(const std::string& path, const std::string& content, bool is_flushed) {
   const Place place = place_of(path);
   OutputFile file(place, O_TRUNC);
-  const bool is_done = file.is_open() && file.write(content) &&
-                       (place.is_replaced ? file.replace(place, is_flushed) : file.close());
-  if (!is_done) fail_to_write(path, errno);
+  const bool is_written = file.is_open() && file.write(content) &&
+                          (place.is_replaced ? file.replace(place, is_flushed) : file.close());
+  if (!is_written) fail_to_write(path, errno);
+  if (!place.is_replaced) return;
+  if (file.close() && (!is_flushed || flush_folder_of(place.path))) return;
+  throw Error(ErrorKind::bad_file,
+              path + ": was written, but a loss of power may undo that: " + reason_text(errno));
 }
 
 void require_folder_of(const std::string& path) {
@@ -182,6 +177,35 @@ void write_journal(const std::string& path, const std::string& content) {
 }
 
 void write_file(const std::string& path, const std::string& content) { write(path, content, true); }
+
+std::string unfinished_name(const std::string& path) {
+  constexpr std::size_t longest = 255;
+  char host[65] = {};
+  ::gethostname(host, sizeof host - 1);
+  std::array<unsigned char, random_letters> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) < 0) fail_to_write(path, errno);
+  std::string end = std::string(unfinished).append(host) + '-' + std::to_string(::gettid()) + '-';
+  for (const unsigned char byte : bytes) end += static_cast<char>('a' + byte % 26);
+  const std::size_t name = path.rfind('/') + 1;
+  return path.substr(0, name + std::min(path.size() - name, longest - end.size())) + end;
+}
+
+bool is_unfinished(std::string_view path) noexcept {
+  const auto drop_end = [&path](auto is_part) {
+    const std::size_t size = path.size();
+    while (!path.empty() && is_part(path.back())) path.remove_suffix(1);
+    return size - path.size();
+  };
+  const auto drop_dash = [&] {
+    const bool is_there = !path.empty() && path.back() == '-';
+    if (is_there) path.remove_suffix(1);
+    return is_there;
+  };
+  path.remove_prefix(path.rfind('/') + 1);
+  return drop_end([](char c) { return c >= 'a' && c <= 'z'; }) == random_letters && drop_dash() &&
+         drop_end([](char c) { return c >= '0' && c <= '9'; }) > 0 && drop_dash() &&
+         path.find(unfinished) != path.npos;
+}
 
 void require_writable(const std::string& path) {
   require_folder_of(path);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 /// @file
 /// Whole files, read and written. Private to the project.
@@ -24,11 +25,19 @@ std::string read_file(const std::string& path, std::uint64_t most_bytes = most_s
 /// Writes a file whole or not at all: beside it first, to the disk, then renamed over it. A file
 /// that a link leads to is replaced where it lies, its mode stays; a pipe or a device is written
 /// to.
-/// @throws Error (bad_file) with the reason if that fails; the old file then remains and no other
+/// @throws Error (bad_file) with the reason if that fails; the old file then remains and no other,
+/// unless the error says that it was replaced: the disk failed when all was written
 void write_file(const std::string& path, const std::string& content);
 /// The same for what is written again and again or can be computed again: it is not flushed, so a
 /// loss of power, unlike a kill, may cost it.
 void write_journal(const std::string& path, const std::string& content);
+
+/// A name beside a path for its content until that is whole: NAME.part-HOST-THREAD-LETTERS, with
+/// eight random letters, as machines of one name may share a folder. Cut where it would be too long
+/// for a file system.
+std::string unfinished_name(const std::string& path);
+/// Whether a path has the form of these names. Allocates nothing.
+bool is_unfinished(std::string_view path) noexcept;
 
 /// For a check before long work: leaves the file as it is.
 /// @throws Error (bad_file) if write_file() would fail, a full disk apart

@@ -217,14 +217,7 @@ std::string JsonObject::text(const std::string& key, std::size_t most_bytes) {
   const json& value = at(key);
   if (!value.is_string()) fail(key, "is " + shown(value) + ", expected a text");
   std::string text = value.get<std::string>();
-  if (text.size() > most_bytes) {
-    fail(key, "is a text of " + std::to_string(text.size()) + " bytes, expected at most " +
-                  std::to_string(most_bytes));
-  }
-  if (safe_text(text, text.size()) != text) {
-    fail(key, "is " + excavplan::quoted(text) +
-                  ", expected a text on one line without control characters");
-  }
+  if (const auto fault = fault_of_line(text, most_bytes)) fail(key, "is " + *fault);
   return text;
 }
 
@@ -291,10 +284,8 @@ void require_storable(const nlohmann::ordered_json& json, const std::string& wha
       refuse(number_text(value.get<double>()) + ", must be finite");
     }
     if (!value.is_string()) continue;
-    try {
-      static_cast<void>(value.dump());
-    } catch (const nlohmann::json::type_error&) {
-      refuse("not UTF-8");
+    if (const auto fault = fault_of_line(value.get_ref<const std::string&>(), longest_text)) {
+      refuse(*fault);
     }
   }
 }

@@ -11,6 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/text.hpp"
+
 /// @file
 /// JSON, read and written in one place. Strict reading of our own files: every error names the
 /// file, the key, the value and the rule; a key that is not read is an error. Private to the
@@ -61,7 +63,7 @@ class JsonObject {
                    double lowest = -std::numeric_limits<double>::max(),
                    double highest = std::numeric_limits<double>::max());
   /// A text on one line without control characters (base/text.hpp), of at most so many bytes.
-  std::string text(const std::string& key, std::size_t most_bytes = 1000);
+  std::string text(const std::string& key, std::size_t most_bytes = longest_text);
   std::string text_or(const std::string& key, const std::string& fallback);
   bool flag(const std::string& key);
   /// A list of numbers of exactly `size` entries.
@@ -92,7 +94,8 @@ class JsonObject {
 };
 
 /// What is to be written can be read again.
-/// @throws Error (bad_input) "WHAT: KEY is ...": a number that is not finite, a text not UTF-8
+/// @throws Error (bad_input) "WHAT: KEY is ...": a number that is not finite, a text that
+/// JsonObject::text() would refuse
 void require_storable(const nlohmann::ordered_json& json, const std::string& what);
 
 /// A JSON object without its closing brace, with its own checksum as the last key.

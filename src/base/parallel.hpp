@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <exception>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -47,8 +46,8 @@ void parallel_for(std::size_t count, unsigned threads, const Task& task) {
     for (std::size_t t = 1; t < std::min<std::size_t>(threads, count); ++t) {
       others.emplace_back(work);
     }
-  } catch (const std::system_error&) {
-    // No more threads are available; those that started do all tasks.
+  } catch (const std::exception&) {
+    // There are no more threads, or no memory for one; those that started do all tasks.
   }
   work();
   for (std::thread& other : others) other.join();

@@ -152,6 +152,16 @@ std::string quoted(std::string_view text) {
   return "'" + safe(whole_characters(text, longest)) + "...'";
 }
 
+std::optional<std::string> fault_of_line(std::string_view text, std::size_t most) {
+  if (text.size() > most) {
+    return "a text of " + std::to_string(text.size()) + " bytes, expected at most " +
+           std::to_string(most);
+  }
+  if (first_not_utf8(text)) return "not UTF-8";
+  if (safe(text) == text) return std::nullopt;
+  return quoted(text) + ", expected a text on one line without control characters";
+}
+
 std::string small_letters(std::string_view text) {
   std::string small(text);
   for (char& c : small) {
@@ -162,9 +172,10 @@ std::string small_letters(std::string_view text) {
 
 std::optional<std::string> nearest_word(const std::string& word,
                                         const std::vector<std::string>& words) {
+  constexpr std::size_t longest = 256;  // of names in files and calls, which may have any length
+  if (word.size() > longest) return std::nullopt;
   std::optional<std::string> best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
-  constexpr std::size_t longest = 256;  // of names in files, which may have any length
   for (const std::string& candidate : words) {
     if (candidate.size() > longest) continue;
     const bool abbreviated = word.size() >= 2 && candidate.rfind(word, 0) == 0;

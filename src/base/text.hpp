@@ -42,6 +42,10 @@ std::optional<std::size_t> first_not_utf8(std::string_view text);
 std::string safe_text(std::string_view text, std::size_t most);
 /// The same in quotes, of which the first 40 bytes are shown.
 std::string quoted(std::string_view text);
+/// Why a text is none that files of ours hold, as the end of "NAME is ..."; nothing if it is one:
+/// at most so many bytes of UTF-8, on one line, with nothing that safe_text() would change.
+std::optional<std::string> fault_of_line(std::string_view text, std::size_t most);
+constexpr std::size_t longest_text = 1000;  ///< of a file of ours by default [byte]; ours
 /// A to Z made small; all else stays.
 std::string small_letters(std::string_view text);
 /// Of some words that which was probably meant, if one of them is near.

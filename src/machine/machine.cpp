@@ -11,6 +11,7 @@
 #include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "machine/machine_check.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -18,7 +19,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double rounding = 1e-12;
 constexpr double longest = 100.0;  // a larger length is an error of units [m]
 constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
@@ -78,30 +78,17 @@ LinkMass read_link(JsonObject file) {
   return link;
 }
 
-std::vector<Vector2d> read_profile(JsonObject& file, double bucket_length) {
+std::vector<Vector2d> read_profile(JsonObject& file) {
   std::vector<Vector2d> profile;
   for (JsonObject& corner : file.objects("profile")) {
     const double along = corner.number("along_m", -longest, longest);
     profile.emplace_back(along, corner.number("across_m", -longest, longest));
     corner.done();
   }
-  if (profile.size() < 3 || profile.size() > 1000) {
-    file.fail("profile", "has " + std::to_string(profile.size()) + " corners, must have 3 .. 1000");
-  }
-  if ((profile[0] - Vector2d(bucket_length, 0.0)).norm() > 1e-9) {
-    file.fail("profile", "begins at (" + number_text(profile[0].x()) + ", " +
-                             number_text(profile[0].y()) + "), must begin at the tip (" +
-                             number_text(bucket_length) + ", 0)");
-  }
-  if (!is_convex(profile)) file.fail("profile", "must be convex and run counter-clockwise");
-  if (profile[1].y() <= 0.0) {
-    file.fail("profile", "has its heel at across_m = " + number_text(profile[1].y()) +
-                             ", must be above 0, the line from bucket pin to tip");
-  }
   return profile;
 }
 
-Teeth read_teeth(JsonObject file, double width_outside) {
+Teeth read_teeth(JsonObject file) {
   Teeth teeth;
   const double count = file.number("count");
   if (!(count >= 1.0 && count <= 50.0 && count == std::floor(count))) {
@@ -109,11 +96,6 @@ Teeth read_teeth(JsonObject file, double width_outside) {
   }
   teeth.count = static_cast<int>(count);
   teeth.width = positive(file, "width_m", longest);
-  if (count * teeth.width > width_outside + rounding) {
-    file.fail("width_m",
-              "is " + number_text(teeth.width) + ", " + number_text(count) +
-                  " teeth must not exceed width_outside_m = " + number_text(width_outside));
-  }
   teeth.thickness = positive(file, "thickness_m", 1.0);
   teeth.length = positive(file, "length_m", 1.0);
   teeth.angle = file.number("angle_rad");
@@ -128,22 +110,14 @@ Teeth read_teeth(JsonObject file, double width_outside) {
 
 Bucket read_bucket(JsonObject file, double bucket_length, double boom_length) {
   Bucket bucket;
-  bucket.profile = read_profile(file, bucket_length);
+  bucket.profile = read_profile(file);
   bucket.width_outside = positive(file, "width_outside_m", longest);
-  if (bucket.width_outside > boom_length) {
-    file.fail("width_outside_m",
-              "is " + number_text(bucket.width_outside) +
-                  ", must not exceed boom_length_m = " + number_text(boom_length));
-  }
   bucket.width_inside = positive(file, "width_inside_m", longest);
-  if (bucket.width_inside > bucket.width_outside) {
-    file.fail("width_inside_m",
-              "is " + number_text(bucket.width_inside) +
-                  ", must not exceed width_outside_m = " + number_text(bucket.width_outside));
-  }
   bucket.edge_thickness = positive(file, "edge_thickness_m", 1.0);
   bucket.edge_angle = positive(file, "edge_angle_rad", pi / 2.0);
-  if (file.has("teeth")) bucket.teeth = read_teeth(file.object("teeth"), bucket.width_outside);
+  if (file.has("teeth")) bucket.teeth = read_teeth(file.object("teeth"));
+  check_shape(bucket, bucket_length, boom_length,
+              [&](const char* key, const std::string& what) { file.fail(key, what); });
   file.ignore("sources");
   file.done();
   return bucket;
@@ -291,7 +265,7 @@ const char* name(Joint joint) {
 
 double Machine::beta() const {
   require(bucket.profile.size() >= 2, "corners of the bucket's profile",
-          static_cast<double>(bucket.profile.size()), "3 .. 1000");
+          static_cast<double>(bucket.profile.size()), "at least 2");
   const Vector2d floor = bucket.profile[1] - bucket.profile[0];
   return std::atan2(floor.y(), -floor.x());
 }

@@ -8,6 +8,7 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "machine/machine_check.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -60,16 +61,14 @@ void check_joint(const Rules& rules, Joint joint, const JointLimits& limits, con
   rules.in(of, " link.across", link.across, -longest, longest);
 }
 
-void check_bucket(const Rules& rules, const Bucket& bucket) {
-  rules.in("bucket.", "profile, its number of corners,", static_cast<double>(bucket.profile.size()),
-           3.0, 1000.0);
+void check_bucket(const Rules& rules, const Machine& machine) {
+  const Bucket& bucket = machine.bucket;
   for (const Eigen::Vector2d& corner : bucket.profile) {
     rules.in("bucket.", "profile", corner.x(), -longest, longest);
     rules.in("bucket.", "profile", corner.y(), -longest, longest);
   }
-  rules.holds(is_convex(bucket.profile), "bucket.profile must be convex and run counter-clockwise");
   rules.positive("bucket.", "width_outside", bucket.width_outside, longest);
-  rules.positive("bucket.", "width_inside", bucket.width_inside, bucket.width_outside);
+  rules.positive("bucket.", "width_inside", bucket.width_inside, longest);
   rules.positive("bucket.", "edge_thickness", bucket.edge_thickness, 1.0);
   rules.positive("bucket.", "edge_angle", bucket.edge_angle, pi / 2.0);
   if (const auto& teeth = bucket.teeth) {
@@ -78,7 +77,12 @@ void check_bucket(const Rules& rules, const Bucket& bucket) {
     rules.positive("bucket.teeth.", "thickness", teeth->thickness, 1.0);
     rules.positive("bucket.teeth.", "length", teeth->length, 1.0);
     rules.positive("bucket.teeth.", "angle", teeth->angle, pi / 2.0);
+    rules.below("bucket.teeth.", "angle", teeth->angle, pi / 2.0);
   }
+  check_shape(bucket, machine.bucket_length, machine.boom_length,
+              [&](const char* key, const std::string& what) {
+                rules.holds(false, (std::string("bucket.") + key + " " + what).c_str());
+              });
 }
 
 void check_hydraulics(const Rules& rules, const Machine& machine) {
@@ -116,6 +120,38 @@ void check_rest(const Rules& rules, const Machine& machine) {
 
 }  // namespace
 
+void check_shape(const Bucket& bucket, double bucket_length, double boom_length,
+                 const std::function<void(const char* key, const std::string& what)>& fail) {
+  constexpr double rounding = 1e-9;  // [m]
+  const auto& profile = bucket.profile;
+  if (profile.size() < 3 || profile.size() > 1000) {
+    fail("profile", "has " + std::to_string(profile.size()) + " corners, must have 3 .. 1000");
+  }
+  const Eigen::Vector2d& tip = profile.front();
+  if ((tip - Eigen::Vector2d(bucket_length, 0.0)).norm() > rounding) {
+    fail("profile", "begins at (" + number_text(tip.x()) + ", " + number_text(tip.y()) +
+                        "), must begin at the tip (" + number_text(bucket_length) + ", 0)");
+  }
+  if (!is_convex(profile)) fail("profile", "must be convex and run counter-clockwise");
+  if (profile[1].y() <= 0.0) {
+    fail("profile", "has its heel at across_m = " + number_text(profile[1].y()) +
+                        ", must be above 0, the line from bucket pin to tip");
+  }
+  const auto at_most = [&](const char* key, double value, const char* other, double limit) {
+    if (value <= limit + rounding) return;
+    fail(key,
+         "is " + number_text(value) + ", must not exceed " + other + " = " + number_text(limit));
+  };
+  at_most("width_outside_m", bucket.width_outside, "boom_length_m", boom_length);
+  at_most("width_inside_m", bucket.width_inside, "width_outside_m", bucket.width_outside);
+  if (const auto& teeth = bucket.teeth;
+      teeth && teeth->count * teeth->width > bucket.width_outside + rounding) {
+    fail("teeth.width_m",
+         "is " + number_text(teeth->width) + ", " + number_text(teeth->count) +
+             " teeth must not exceed width_outside_m = " + number_text(bucket.width_outside));
+  }
+}
+
 void require_machine(const Machine& machine) {
   const Rules rules(machine);
   rules.in("", "boom_pin.x", machine.boom_pin.x(), -longest, longest);
@@ -128,7 +164,7 @@ void require_machine(const Machine& machine) {
     const auto i = static_cast<std::size_t>(joint);
     check_joint(rules, joint, machine.limits[i], machine.links[i]);
   }
-  check_bucket(rules, machine.bucket);
+  check_bucket(rules, machine);
   check_hydraulics(rules, machine);
   check_rest(rules, machine);
 }

@@ -15,6 +15,7 @@
 #include "base/text.hpp"
 #include "optimisation/search_log.hpp"
 #include "optimisation/search_points.hpp"
+#include "optimisation/sound_evaluation.hpp"
 
 namespace excavplan {
 namespace {

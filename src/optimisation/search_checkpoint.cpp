@@ -71,10 +71,12 @@ Evaluation read_outcome(JsonObject& entry) {
              "is " + excavplan::quoted(status) + ", expected ok, infeasible, failed or timed out");
 }
 
-/// What the file does not hold, the search must not see.
-std::string sound(const std::string& reason) {
-  constexpr std::size_t longest = 500;
-  return safe_text(reason, longest);
+/// Else a file that is written could not be resumed from.
+void require_readable(const char* what, const std::string& text) {
+  const auto fault = fault_of_line(text, longest_identity);
+  if (!fault) return;
+  throw Error(ErrorKind::bad_input,
+              std::string("search: a checkpoint holds ") + what + ", which is " + *fault);
 }
 
 }  // namespace
@@ -86,21 +88,6 @@ std::string describe(const GeneticAlgorithm& method) {
          number_text(method.mutation);
 }
 
-Evaluation sound(const Evaluation& outcome) {
-  using Status = Evaluation::Status;
-  switch (outcome.status) {
-    case Status::ok:
-      return {outcome.fitness};
-    case Status::infeasible:
-      return Evaluation::infeasible(outcome.violation, sound(outcome.reason));
-    case Status::failed:
-      return Evaluation::failed(sound(outcome.reason));
-    case Status::timed_out:
-      return Evaluation::timed_out(sound(outcome.reason));
-  }
-  return Evaluation::failed("the status is none");
-}
-
 SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOptions& options)
     : file_(options.checkpoint), problem_(describe(problem)), search_(describe(options)) {
   if (file_.empty()) return;
@@ -108,6 +95,8 @@ SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOpt
     throw Error(ErrorKind::bad_input,
                 "search: a checkpoint needs the fingerprint of the problem, it is empty");
   }
+  require_readable("the fingerprint and the box of the problem", problem_);
+  require_readable("the method", search_);
   require_writable(file_);
   std::error_code unknown;  // of a file that is there but out of reach, which reading it tells
   const auto status = std::filesystem::status(file_, unknown);

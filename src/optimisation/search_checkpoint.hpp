@@ -16,27 +16,6 @@ namespace excavplan {
 /// All settings that decide the course of a method, as text.
 std::string describe(const GeneticAlgorithm& method);
 
-/// An outcome as the constructors of Evaluation make it, whoever filled its fields, which a file
-/// can hold: finite numbers, a violation only if infeasible, a reason only if not ok, in UTF-8 of
-/// limited length.
-Evaluation sound(const Evaluation& outcome);
-
-/// The outcome of a call; an exception is a failed outcome, with the text of a std::exception.
-/// Memory that is short is none: that would change what is found.
-/// @throws std::bad_alloc
-template <typename Call>
-auto caught(const Call& call) -> decltype(call()) {
-  try {
-    return call();
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    return Evaluation::failed(e.what());
-  } catch (...) {
-    return Evaluation::failed("an exception that is no std::exception");
-  }
-}
-
 /// The outcomes of a search's evaluations, in memory and in a file
 /// (docs/formats.md#search-checkpoint). A search is determined by its options and these outcomes,
 /// so that nothing else need be kept.

@@ -12,6 +12,7 @@
 #include <excavplan/error.hpp>
 
 #include "base/parallel.hpp"
+#include "optimisation/sound_evaluation.hpp"
 
 namespace excavplan {
 namespace {

@@ -13,6 +13,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
+#include "base/files.hpp"
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
@@ -410,7 +411,8 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
   const std::string goal = info_of(objective.goal).word;
   std::string file;
   try {
-    file = find_data_file("libraries/" + machine.name + "-" + soil.name + "-" + goal + ".json",
+    file = find_data_file("libraries/" + file_name_part(machine.name) + "-" +
+                              file_name_part(soil.name) + "-" + goal + ".json",
                           data_folder);
   } catch (const Error&) {
     if (!has_data_folder("libraries", data_folder)) throw;

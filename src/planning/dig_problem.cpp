@@ -11,6 +11,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "planning/planned_digs.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 namespace {
@@ -60,6 +61,7 @@ class Fingerprint {
       }
     }
   }
+  void add(const std::string& text) { bytes_ += text; }
   std::string text() const { return checksum_text(bytes_); }
 
  private:
@@ -81,7 +83,7 @@ std::string first_failure(const SearchResult& found) {
 /// SoilSimulator::identity(), or if it has none the checksum of three digs, from the paper's path
 /// down to a quarter of its lengths, which few machines and soils forbid.
 std::string identity_of(const SoilSimulator& simulator, const Machine& machine) {
-  std::string own = simulator.identity();
+  std::string own = checked_identity(simulator);
   if (!own.empty()) return own;
   const Terrain level = level_planning_ground(machine, 0.1);
   Fingerprint digs;
@@ -89,7 +91,11 @@ std::string identity_of(const SoilSimulator& simulator, const Machine& machine) 
     DigParameters dig = paper_fixed_path();
     dig.penetration_length *= share;
     dig.drag_length *= share;
-    digs.add(evaluate_dig(machine, simulator, level, dig));
+    try {
+      digs.add(evaluate_dig(machine, simulator, level, dig));
+    } catch (const Error& error) {  // as in the search, which goes on
+      digs.add(std::string(error.what()));
+    }
   }
   return "a simulator of digs " + digs.text();
 }

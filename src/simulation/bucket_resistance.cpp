@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/angles.hpp"
+#include "soil/sound_soil.hpp"
 
 namespace excavplan {
 namespace {
@@ -359,8 +360,8 @@ BucketResistance::Strip BucketResistance::strip_at(Index row, Index col, double 
 SoilState BucketResistance::mean_soil_at(Index col) const {
   if (ground_.bank_is_even()) return model_.bank;
   const double e = swath_.mean([&](Index row) { return ground_.bank_void_ratio(row, col); });
-  return bank_state_of_void_ratio(
-      model_.soil, std::clamp(e, model_.soil.void_ratio_min, model_.soil.void_ratio_max));
+  return checked_bank_state(model_.soil,
+                            std::clamp(e, model_.soil.void_ratio_min, model_.soil.void_ratio_max));
 }
 
 /// Slope of the surface ahead of the lip along the travel, positive uphill.

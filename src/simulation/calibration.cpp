@@ -16,19 +16,28 @@
 #include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "simulation/scene_path.hpp"
 
 namespace excavplan {
 namespace {
 
+/// A dig on level ground as of a calibration.
+struct CalibrationDig {
+  explicit CalibrationDig(const Machine& machine, const CalibrationOptions& options)
+      : ground(undisturbed(flat_ground(scene_extent(machine, scene.dump_at), options.cell_size))) {
+    scene.path = options.path;
+    scene.simulator = options.simulator;
+  }
+
+  SceneOptions scene;
+  Terrain ground;
+};
+
 /// @param machine  that never stalls
 DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil, double density,
                                    const CalibrationOptions& options) {
-  SceneOptions dig;
-  dig.path = options.path;
-  dig.simulator = options.simulator;
-  const Terrain ground =
-      undisturbed(flat_ground(scene_extent(machine, dig.dump_at), options.cell_size));
-  const DigScene scene = run_scene(machine, soil, density, ground, dig);
+  const CalibrationDig dig(machine, options);
+  const DigScene scene = run_scene(machine, soil, density, dig.ground, dig.scene);
 
   DensityCalibration::Sample sample;
   sample.density_percent = density;
@@ -58,13 +67,18 @@ DensityCalibration::Sample measure_draw(const Machine& machine, const SoilKind& 
   const double density = 100.0 * (static_cast<double>(draw) + 0.5) / options.draws;
   const SoilKind drawn = drawn_soil(soil, options.scatter, Random(draw, 1).bits());
   options.cell_size = CalibrationOptions{}.cell_size;
+  const auto can_be_dug = [&] {
+    const CalibrationDig dig(machine, options);
+    try {
+      scene_path(machine, drawn, dig.ground, dig.scene);
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  };
   for (std::size_t i = 0; options.any_path && i < most_paths; ++i) {
     options.path = drawn_path(draw + i * draws);
-    try {
-      return measure(machine, drawn, density, options);
-    } catch (const Error&) {
-      // This path cannot be driven.
-    }
+    if (can_be_dug()) break;
   }
   return measure(machine, drawn, density, options);
 }

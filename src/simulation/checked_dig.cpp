@@ -20,6 +20,7 @@
 #include "ground/map_check.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/dig_account.hpp"
+#include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {
@@ -125,6 +126,19 @@ class Examination {
     }
   }
 
+  /// No bucket holds more, and no soil is denser (SoilKind::specific_gravity).
+  void check_load(const Machine& machine) const {
+    constexpr double most_heaped = 3.0;  // over the struck capacity; ours
+    constexpr double densest = 1e4;      // [kg/m^3]
+    const double room = most_heaped * struck_capacity(machine);
+    if (result_.payload_volume > room || result_.payload_mass > densest * room ||
+        (result_.payload_volume > 0.0 && result_.payload_mass > densest * result_.payload_volume)) {
+      fail("its dig has a payload of " + plain_number(result_.payload_mass) + " kg in " +
+           number_text(result_.payload_volume) + " m^3, the bucket holds " +
+           number_text(struck_capacity(machine)) + " m^3 struck");
+    }
+  }
+
   void check_torques(const DigPath& path) const {
     if (result_.torques.size() >= path.poses.size()) {
       fail("its dig has " + std::to_string(result_.torques.size()) + " torques between " +
@@ -139,8 +153,7 @@ class Examination {
   void check_patch(const Terrain& terrain) const {
     const TerrainPatch& patch = result_.patch;
     try {
-      Terrain after = terrain;
-      apply(patch, after);
+      require_patch(patch, terrain);
     } catch (const Error& error) {
       fail(std::string("its dig leaves a ") + error.what());
     }
@@ -148,14 +161,18 @@ class Examination {
       for (Index row = 0; row < patch.bank.rows(); ++row) {
         const bool unknown = std::isnan(terrain.bank.z(patch.row + row, patch.col + col));
         const double bank = patch.bank(row, col);
-        if (unknown && std::isnan(bank)) continue;
+        if (unknown && std::isnan(bank) && !(std::abs(patch.loose(row, col)) > farthest_height)) {
+          continue;
+        }
         const double loose = patch.loose(row, col);
         if (!unknown && std::abs(bank) <= farthest_height && loose >= 0.0 &&
-            loose <= farthest_height) {
+            loose <= farthest_height && has_void_ratio(row, col)) {
           continue;
         }
         fail("its dig leaves a bank of " + number_text(bank) + " m and a loose layer of " +
-             number_text(loose) + " m where the ground was " + (unknown ? "un" : "") + "known");
+             number_text(loose) + " m" +
+             (has_void_ratio(row, col) ? "" : ", whose void ratio is none,") +
+             " where the ground was " + (unknown ? "un" : "") + "known");
       }
     }
   }
@@ -163,6 +180,13 @@ class Examination {
   void check_energy(const Machine& machine, const Terrain& terrain, const DigPath& path) const;
 
  private:
+  /// Of the loose layer, where the patch has one.
+  bool has_void_ratio(Index row, Index col) const {
+    constexpr double most = 20.0;  // as require_soil()
+    const Eigen::ArrayXXd& ratio = result_.patch.loose_void_ratio;
+    return ratio.size() == 0 || (ratio(row, col) > 0.0 && ratio(row, col) <= most);
+  }
+
   const SoilSimulator& simulator_;
   const DigResult& result_;
 };
@@ -239,6 +263,10 @@ std::unique_ptr<const SoilSimulator> make_simulator(const SimulatorKind& kind,
   return simulator;
 }
 
+std::string checked_identity(const SoilSimulator& simulator) {
+  return asked([&] { return simulator.identity(); }, [&] { return class_of(simulator); });
+}
+
 DigResult checked_dig(const SoilSimulator& simulator, const Machine& machine,
                       const Terrain& terrain, const DigPath& path, const DigOptions& options) {
   check_dig(terrain, path);
@@ -246,8 +274,12 @@ DigResult checked_dig(const SoilSimulator& simulator, const Machine& machine,
                            [&] { return name_of(simulator); });
   const Examination examination(simulator, result);
   examination.check_numbers();
+  examination.check_load(machine);
   examination.check_torques(path);
   if (options.settle) examination.check_patch(terrain);
+  if (result.given_up && !(options.give_up_below > 0.0)) {
+    examination.fail("its dig gave up, which it was not allowed to");
+  }
   const bool whole = !result.stall && !result.given_up;
   if (whole && result.payload_mass > 0.0) examination.check_energy(machine, terrain, path);
   return result;

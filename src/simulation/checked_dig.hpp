@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <excavplan/simulation/simulators.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
@@ -18,6 +19,9 @@ namespace excavplan {
 std::unique_ptr<const SoilSimulator> make_simulator(const SimulatorKind& kind,
                                                     const Machine& machine, const SoilKind& soil,
                                                     double density_percent);
+
+/// SoilSimulator::identity(). @throws Error (bad_input) with the name of its class if it throws
+std::string checked_identity(const SoilSimulator& simulator);
 
 /// A dig whose result is one that a dig can have. Of ground that does not settle the patch is not
 /// looked at: no search does.

@@ -74,10 +74,13 @@ void check_dig(const Terrain& terrain, const DigPath& path) {
     refuse("dig: a path has at least 2 poses, this one has " + std::to_string(path.poses.size()));
   }
   for (const DigPose& pose : path.poses) {
-    const bool finite = std::isfinite(pose.bucket.x) && std::isfinite(pose.bucket.floor_angle) &&
-                        std::abs(pose.bucket.z) <= farthest_height &&
-                        (pose.joints.array().abs() <= largest_angle).all();
-    if (!finite) refuse("dig: every pose of the path must be finite");
+    require(std::isfinite(pose.bucket.x), "dig: x of a pose [m]", pose.bucket.x, "finite");
+    require(std::isfinite(pose.bucket.floor_angle), "dig: floor angle of a pose [rad]",
+            pose.bucket.floor_angle, "finite");
+    require_in("dig: z of a pose [m]", pose.bucket.z, -farthest_height, farthest_height);
+    for (const double angle : pose.joints) {
+      require_in("dig: joint angle of a pose [rad]", angle, -largest_angle, largest_angle);
+    }
     if (pose.phase >= DigPhase::penetrate && pose.phase <= DigPhase::lift) continue;
     refuse("dig: every pose must be of a phase from penetrate to lift");
   }

@@ -10,6 +10,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
+#include "soil/sound_soil.hpp"
 
 namespace excavplan {
 namespace {
@@ -113,8 +114,7 @@ void GroundWindow::lower_bank(std::size_t cell, double thickness) {
 }
 
 SoilState GroundWindow::bank_state(Index row, Index col) const {
-  return bank_is_even() ? soil_.bank
-                        : bank_state_of_void_ratio(soil_.kind, bank_void_ratio(row, col));
+  return bank_is_even() ? soil_.bank : checked_bank_state(soil_.kind, bank_void_ratio(row, col));
 }
 
 void GroundWindow::mix(std::size_t cell, double thickness) {

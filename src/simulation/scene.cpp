@@ -17,6 +17,7 @@
 #include "base/text.hpp"
 #include "simulation/block_heap.hpp"
 #include "simulation/checked_dig.hpp"
+#include "simulation/scene_path.hpp"
 #include "simulation/terrain_check.hpp"
 
 namespace excavplan {
@@ -111,6 +112,13 @@ void break_up(const BlockSettings& blocks, const SoilKind& soil, DigScene& scene
 
 }  // namespace
 
+DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& ground,
+                   const SceneOptions& options) {
+  DigPath path = lay_out(machine, ground, options);
+  require_clear_of_dig(options.dump_at, machine, soil, path);
+  return path;
+}
+
 DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
                    const Terrain& ground, const SceneOptions& options) {
   require_machine(machine);
@@ -122,8 +130,7 @@ DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_
   scene.density_percent = density_percent;
   scene.dump_at = options.dump_at;
   scene.before = ground;
-  scene.path = lay_out(machine, ground, options);
-  require_clear_of_dig(scene.dump_at, machine, soil, scene.path);
+  scene.path = scene_path(machine, soil, ground, options);
   scene.warnings = reach_warnings(scene.dump_at, machine);
   DigOptions dig;
   dig.history = options.history;

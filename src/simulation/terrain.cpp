@@ -46,7 +46,7 @@ Terrain undisturbed(const HeightMap& surface) {
   return {surface, Eigen::ArrayXXd::Zero(surface.z.rows(), surface.z.cols())};
 }
 
-void apply(const TerrainPatch& patch, Terrain& terrain) {
+void require_patch(const TerrainPatch& patch, const Terrain& terrain) {
   const Eigen::Index rows = patch.bank.rows();
   const Eigen::Index cols = patch.bank.cols();
   if (rows == 0 && cols == 0) return;
@@ -62,9 +62,17 @@ void apply(const TerrainPatch& patch, Terrain& terrain) {
            ") on, all layers alike, must lie on the terrain of " +
            std::to_string(terrain.loose.rows()) + " x " + std::to_string(terrain.loose.cols()));
   }
+}
+
+void apply(const TerrainPatch& patch, Terrain& terrain) {
+  require_patch(patch, terrain);
+  const Eigen::Index rows = patch.bank.rows();
+  const Eigen::Index cols = patch.bank.cols();
+  if (rows == 0 && cols == 0) return;
   terrain.bank.z.block(patch.row, patch.col, rows, cols) = patch.bank;
   terrain.loose.block(patch.row, patch.col, rows, cols) = patch.loose;
-  if (has_ratio) terrain.loose_void_ratio.block(patch.row, patch.col, rows, cols) = ratio;
+  if (patch.loose_void_ratio.size() == 0) return;
+  terrain.loose_void_ratio.block(patch.row, patch.col, rows, cols) = patch.loose_void_ratio;
 }
 
 HeightMapVolumes height_map_volumes(const Terrain& before, const Terrain& after,

@@ -10,4 +10,8 @@ namespace excavplan {
 ///         layers have its size. Heights are checked where a dig reads them.
 void require_terrain(const Terrain& terrain, const char* what);
 
+/// @throws Error (bad_input) unless a patch lies on the terrain and its layers fit; an empty one
+/// does
+void require_patch(const TerrainPatch& patch, const Terrain& terrain);
+
 }  // namespace excavplan

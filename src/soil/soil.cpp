@@ -11,6 +11,7 @@
 #include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "soil/sound_soil.hpp"
 
 namespace excavplan {
 namespace {
@@ -132,6 +133,14 @@ void set_strength(const SoilKind& soil, double cohesion, double friction, SoilSt
   state.tool_friction_angle = soil.tool_friction_ratio * friction;
 }
 
+SoilState state_of_density(const SoilKind& soil, double density_percent) {
+  SoilState state = state_of_void_ratio(soil, void_ratio(soil, density_percent));
+  const double d = density_percent / 100.0;
+  set_strength(soil, soil.cohesion_loosest * std::exp(soil.cohesion_growth * d),
+               soil.friction_loosest + soil.friction_gain * d, state);
+  return state;
+}
+
 }  // namespace
 
 SoilKind load_soil(const std::string& path) {
@@ -176,23 +185,25 @@ std::string fingerprint(const SoilKind& soil) {
   return checksum_text(numbers);
 }
 
+SoilState checked_bank_state(const SoilKind& soil, double void_ratio) {
+  const double span = soil.void_ratio_max - soil.void_ratio_min;
+  return state_of_density(soil,
+                          100.0 * std::clamp((soil.void_ratio_max - void_ratio) / span, 0.0, 1.0));
+}
+
 SoilState bank_state(const SoilKind& soil, double density_percent) {
   require_soil(soil);
-  SoilState state = state_of_void_ratio(soil, void_ratio(soil, density_percent));
-  const double d = density_percent / 100.0;
-  set_strength(soil, soil.cohesion_loosest * std::exp(soil.cohesion_growth * d),
-               soil.friction_loosest + soil.friction_gain * d, state);
-  return state;
+  return state_of_density(soil, density_percent);
 }
 
 SoilState bank_state_of_void_ratio(const SoilKind& soil, double void_ratio) {
+  require_soil(soil);
   if (!(void_ratio >= soil.void_ratio_min && void_ratio <= soil.void_ratio_max)) {
     throw Error(ErrorKind::bad_input,
                 "void ratio of " + soil.name + " is " + number_text(void_ratio) + ", must be in " +
                     number_text(soil.void_ratio_min) + " .. " + number_text(soil.void_ratio_max));
   }
-  const double span = soil.void_ratio_max - soil.void_ratio_min;
-  return bank_state(soil, 100.0 * std::clamp((soil.void_ratio_max - void_ratio) / span, 0.0, 1.0));
+  return checked_bank_state(soil, void_ratio);
 }
 
 SoilState loose_state(const SoilKind& soil) {

@@ -15,6 +15,8 @@ namespace {
 
 // Of a drawn soil; ours.
 constexpr double least_void_ratio = 0.01;
+constexpr double most_void_ratio = 20.0;         // as require_soil()
+constexpr double least_share = 0.1;              // of the density before the draw
 constexpr double least_void_ratio_range = 0.05;  // between its limits
 constexpr double least_loosening = 0.01;         // of dug soil above the densest, of that range
 
@@ -28,7 +30,7 @@ SoilKind drawn_soil(const SoilKind& soil, const SoilScatter& scatter, std::uint6
   Random random(seed);
   // Dry density is G_s rho_w / (1 + e).
   const auto scaled = [](double void_ratio, double density) {
-    return (1.0 + void_ratio) / density - 1.0;
+    return std::min((1.0 + void_ratio) / std::max(density, least_share) - 1.0, most_void_ratio);
   };
   const double loosest = 1.0 + scatter.limit_density * random.normal();
   const double densest = 1.0 + scatter.limit_density * random.normal();

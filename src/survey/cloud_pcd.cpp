@@ -304,7 +304,7 @@ void stream_fields(const FileStream& file, const LzfBlock& block, const Header& 
     const Field& field = header.fields[header.xyz[axis]];
     std::uint64_t begin = 0;
     for (std::size_t i = 0; i < header.xyz[axis]; ++i) begin += header.fields[i].bytes();
-    fields.emplace_back(file.path(), block).skip(begin * header.points);
+    fields.emplace_back(file, block).skip(begin * header.points);
     columns.type[axis] = scalar_type(field);
     columns.stride[axis] = field.size;
   }

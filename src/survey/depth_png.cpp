@@ -49,13 +49,14 @@ std::vector<Size> passes_of(const Size& image, bool is_interlaced) {
   return passes;
 }
 
-/// A packed stream of bytes.
+/// A packed stream of bytes, whose beginning states how far back it refers; as for libpng, it must
+/// keep to that.
 class Unpacker {
  public:
   explicit Unpacker(std::string_view packed) {
     stream_.next_in = const_cast<Bytef*>(bytes_of(packed));
     stream_.avail_in = size_of(packed);
-    if (::inflateInit(&stream_) != Z_OK) throw std::bad_alloc();
+    if (::inflateInit2(&stream_, window_of_stream) != Z_OK) throw std::bad_alloc();
   }
   ~Unpacker() { ::inflateEnd(&stream_); }
   Unpacker(const Unpacker&) = delete;
@@ -73,6 +74,7 @@ class Unpacker {
   }
 
  private:
+  static constexpr int window_of_stream = 0;
   z_stream stream_{};
   int result_ = Z_OK;
 };
@@ -141,6 +143,7 @@ class PngFile {
       if (!is_needed && !is_extra) refuse("a chunk " + quoted(name));
       if (is_needed) kept_.append(whole);
       if (name == "IDAT") pixels_.append(summed.substr(4));
+      if (name == "IEND" && length > 0) refuse("an end with data");
       if (name == "IEND") return;
       at += whole.size();
     }

@@ -15,7 +15,8 @@ constexpr std::size_t longest_surplus = 4096;  // blanks or zeros after the last
 
 }  // namespace
 
-FileStream::FileStream(std::string path) : file_(std::move(path)) {
+FileStream::FileStream(std::string path)
+    : file_(std::make_shared<const InputFile>(std::move(path))) {
   if (size() == 0) refuse("is empty");
 }
 
@@ -34,9 +35,9 @@ void FileStream::fill(std::size_t count) {
   begin_ = 0;
   filled_ = kept;
   const std::size_t wanted = static_cast<std::size_t>(std::min<std::uint64_t>(capacity_, left()));
-  file_.read(offset_ + kept, window_.get() + kept, wanted - kept);
+  file_->read(offset_ + kept, window_.get() + kept, wanted - kept);
   filled_ = wanted;
-  if (offset_ + filled_ == size()) file_.require_end();
+  if (offset_ + filled_ == size()) file_->require_end();
 }
 
 void FileStream::skip(std::uint64_t count) {
@@ -54,7 +55,7 @@ void FileStream::require_end(std::uint64_t ahead) const {
   const std::uint64_t surplus = size() - end;
   std::array<char, longest_surplus> bytes;
   const auto is_padding = [&] {
-    file_.read(end, bytes.data(), surplus);
+    file_->read(end, bytes.data(), surplus);
     constexpr std::string_view padding(" \t\r\n\0", 5);
     return std::string_view(bytes.data(), surplus).find_first_not_of(padding) ==
            std::string_view::npos;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/input_file.hpp"
@@ -28,9 +29,11 @@ class FileStream {
   /// Never waits on a pipe or device.
   /// @throws Error (bad_file) if the file is not regular, not readable or empty
   explicit FileStream(std::string path);
+  /// The same open file once more, from its beginning.
+  FileStream again() const { return FileStream(file_); }
 
-  const std::string& path() const { return file_.path(); }
-  std::uint64_t size() const { return file_.size(); }
+  const std::string& path() const { return file_->path(); }
+  std::uint64_t size() const { return file_->size(); }
   std::uint64_t offset() const { return offset_; }  ///< of the byte that comes next
   std::uint64_t left() const { return size() - offset_; }
 
@@ -51,12 +54,13 @@ class FileStream {
                          const std::string& expected) const;
   [[noreturn]] void fail_here(const std::string& found, const std::string& expected) const;
   /// @throws Error (bad_file): "file: why"
-  [[noreturn]] void refuse(const std::string& why) const { file_.refuse(why); }
+  [[noreturn]] void refuse(const std::string& why) const { file_->refuse(why); }
 
  private:
+  explicit FileStream(std::shared_ptr<const InputFile> file) : file_(std::move(file)) {}
   void fill(std::size_t count);
 
-  InputFile file_;
+  std::shared_ptr<const InputFile> file_;
   std::uint64_t offset_ = 0;  ///< of window_[begin_] in the file
   std::unique_ptr<char[]> window_;
   std::size_t begin_ = 0;

@@ -17,8 +17,11 @@ std::size_t byte_at(std::string_view bytes, std::size_t i) {
 
 }  // namespace
 
-LzfStream::LzfStream(const std::string& path, const LzfBlock& block)
-    : file_(path), block_(block), packed_left_(block.packed), unpacked_left_(block.unpacked) {
+LzfStream::LzfStream(const FileStream& file, const LzfBlock& block)
+    : file_(file.again()),
+      block_(block),
+      packed_left_(block.packed),
+      unpacked_left_(block.unpacked) {
   file_.skip(block.begin);
 }
 

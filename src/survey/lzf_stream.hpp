@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,7 +23,7 @@ struct LzfBlock {
 /// Unpacks a block piece by piece, so that it may be larger than memory.
 class LzfStream {
  public:
-  LzfStream(const std::string& path, const LzfBlock& block);
+  LzfStream(const FileStream& file, const LzfBlock& block);
 
   /// The next bytes, which must be left; good until the next call. @throws Error (bad_file)
   std::string_view read(std::size_t count);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 
 #include "base/check.hpp"
@@ -16,7 +17,6 @@ namespace {
 // Ours.
 constexpr double longest_time = 1e9;                     // [s]
 constexpr std::int64_t largest_clock_step = one_second;  // of stamps against times of recording
-constexpr std::size_t most_points = 150000000;           // of all messages together
 
 std::string scan_topics_text(const RecordingFile& recording) {
   std::vector<std::string> names = topics_for(recording, MessageUse::points);
@@ -163,14 +163,15 @@ std::vector<MessageHead> read_heads(RecordingFile& recording, const RecordedTopi
       query.time ? later(recording.start(), nanoseconds_of(*query.time, "time")) : topic.first;
   if (span > 0) range.to = later(range.from, span);
   std::vector<MessageHead> heads;
-  std::size_t points = 0;
+  std::uint64_t points = 0;
   recording.visit({topic.name}, range.from, range.to, [&](const RecordedMessage& message) {
     heads.push_back({message.time, decode_header(recording.path(), message),
                      decode_size(recording.path(), message)});
-    points += std::min(heads.back().size.pixels(), most_points);
-    if (span > 0 && points > most_points) {
-      refuse(recording.path() + ": the span of " + number_text(query.span) +
-             " s holds more than 150 million points of " + topic.name + ", must be shorter");
+    points += std::min<std::uint64_t>(heads.back().size.pixels(), most_recorded_points);
+    if (span > 0 && points > most_recorded_points) {
+      refuse(recording.path() + ": the span of " + number_text(query.span) + " s holds more than " +
+             std::to_string(most_recorded_points) + " points of " + topic.name +
+             ", must be shorter");
     }
     return span > 0;
   });

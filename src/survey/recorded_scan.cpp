@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
 #include <excavplan/survey/depth_image.hpp>
 
@@ -216,6 +215,7 @@ class ScanReader {
 
  private:
   static std::string frame_name(const std::string& frame) {
+    require(frame != "/", "RecordingQuery: the frame is '/', expected a name or nothing");
     return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
   }
   const MessageHead& first() const { return heads_.front(); }
@@ -386,7 +386,6 @@ class ScanReader {
     return true;
   }
   void join(RecordedScan& scan) {
-    require_points_to_join();
     scan.merge = ScanMerge::joined;
     std::vector<Eigen::Vector3d>& all = scan.cloud.points;
     each_message([&](const MessageHead& head, std::vector<Eigen::Vector3d> points) {
@@ -396,14 +395,6 @@ class ScanReader {
       return true;
     });
     scan.cloud.width = all.size();
-  }
-  void require_points_to_join() const {
-    std::uint64_t points = 0;
-    for (const MessageHead& head : heads_) points += head.size.width * head.size.height;
-    require(points <= most_recorded_points,
-            recording_.path() + ": " + std::to_string(heads_.size()) + " messages of " +
-                topic_.name + " hold " + std::to_string(points) + " points, most of a scan are " +
-                std::to_string(most_recorded_points) + ": take a shorter span");
   }
   void put_in_target(const MessageHead& head, std::vector<Eigen::Vector3d>& points) const {
     if (target_.empty()) return;

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
@@ -36,12 +37,17 @@ struct Shared {
   char note[400];
 };
 
-/// A folder in memory.
+/// A folder in memory, where the system has one for files.
 class Folder {
  public:
   Folder() {
-    std::string name = "/dev/shm/excavplan-bad-XXXXXX";
-    if (::mkdtemp(name.data()) != nullptr) path_ = name;
+    for (const string& place : {string("/dev/shm"), fs::temp_directory_path().string()}) {
+      string name = place + "/excavplan-bad-XXXXXX";
+      if (::mkdtemp(name.data()) == nullptr) continue;
+      path_ = name;
+      return;
+    }
+    throw std::runtime_error("no temporary folder can be made");
   }
   ~Folder() {
     std::error_code ignored;

@@ -85,13 +85,14 @@ string body_of(const string& format, const string& valid) {
 
 void add_json_values(BadFiles& files, const string& format, const ordered_json& json) {
   const ordered_json flat = json.flatten();
-  for (const auto& [key, value] : flat.items()) {
+  for (const auto& item : flat.items()) {
+    const auto& value = item.value();
     if (!value.is_number()) continue;
-    const ordered_json::json_pointer place(key);
+    const ordered_json::json_pointer place(item.key());
     const auto add = [&](const string& name, const ordered_json& other) {
       ordered_json changed = json;
       changed[place] = other;
-      files.push_back({key + " " + name, either, closed(format, changed.dump(1) + "\n")});
+      files.push_back({item.key() + " " + name, either, closed(format, changed.dump(1) + "\n")});
     };
     add("is null", nullptr);
     add("is text", "12");
@@ -140,7 +141,7 @@ void add_json_text(BadFiles& files, const string& format, const string& body) {
   }());
   add("a list of 200,000", unknown, with_key("\"a\": [0" + times(200000, ",0") + "]"));
   add("60 levels", unknown, with_key("\"a\": " + times(60, "[") + times(60, "]")));
-  for (const std::size_t levels : {1000, 80000, 400000}) {
+  for (const std::size_t levels : {1000U, 80000U, 400000U}) {
     const string name = std::to_string(levels) + " levels";
     const Expected deep = is_lenient && levels < 10000 ? either : refused;
     add(name + " of lists", deep, with_key("\"a\": " + times(levels, "[") + times(levels, "]")));
@@ -310,7 +311,7 @@ BadFiles bad_yaml_files(const string& format) {
     add("an executable tag", wrong, "a: !!python/object/apply:os.system ['true']\n" + valid);
     add("a document behind", refused, valid + "---\nb: 1\n");
     add("a directive", wrong, "%YAML 9.9\n---\n" + valid);
-    for (const std::size_t levels : {100, 10000, 200000}) {
+    for (const std::size_t levels : {100U, 10000U, 200000U}) {
       const string name = std::to_string(levels) + " levels";
       add(name + " of [", refused, "a: " + times(levels, "[") + times(levels, "]") + "\n" + valid);
       add(name + " of {", refused,

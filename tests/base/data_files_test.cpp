@@ -9,6 +9,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/error.hpp>
 
+#include "support/errors.hpp"
 #include "support/run_program.hpp"
 
 /// @file
@@ -74,6 +75,19 @@ TEST_F(DataFiles, WhatIsNowhereIsAnErrorThatNamesEveryFolder) {
     EXPECT_EQ(text.rfind("soils/chalk.json: not found in any of " + named + ", ", 0), 0U) << text;
     EXPECT_NE(text.find(", /nowhere/data, "), std::string::npos) << text;
     EXPECT_NE(text.find("/share/excavplan"), std::string::npos) << text;
+  }
+}
+
+TEST_F(DataFiles, NoPathLeadsOutOfTheFolder) {
+  const DataVariable variable(folder_with("named", "loam.json"));
+  const std::string outside = temporary_.write("outside.json", "{}");
+  for (const std::string& path : {outside, std::string("../outside.json"), std::string(".."),
+                                  std::string("soils/../../outside.json"), std::string("/x")}) {
+    const std::string text = error_of([&] { find_data_file(path); });
+    EXPECT_NE(text.find("out of the folder of the data"), std::string::npos) << text;
+  }
+  for (const std::string& path : {std::string(), std::string(1000000, 'a'), std::string("soils")}) {
+    EXPECT_NE(error_of([&] { find_data_file(path); }, ErrorKind::bad_file), "no error");
   }
 }
 

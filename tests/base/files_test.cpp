@@ -7,9 +7,11 @@
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 
@@ -20,6 +22,20 @@
 /// @file
 /// Files that are read whole or refused, written whole or not at all, and what is found before long
 /// work to be a place that cannot be written to.
+
+namespace {
+bool folders_fail = false;
+}  // namespace
+
+/// In the place of the C library's: fails for folders if it is to.
+extern "C" int fsync(int descriptor) {
+  struct stat status {};
+  if (folders_fail && ::fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
 
 namespace excavplan::test {
 namespace {
@@ -221,14 +237,45 @@ TEST_F(Writing, NamesAsLongAsTheyMayBeAreWritten) {
   EXPECT_EQ(files(), 1U);
 }
 
+/// Nor is what a machine of the same name writes in a folder that both share.
 TEST_F(Writing, WhatAKilledRunLeftIsNoHindrance) {
   char host[65] = {};
   ASSERT_EQ(::gethostname(host, sizeof host - 1), 0);
   const std::string left = "file.part-" + std::string(host) + "-" + std::to_string(::gettid());
   folder_.write(left, "half of a much longer file");
+  folder_.write(left + "-aaaaaaaa", "another's");
   write_file(folder_.file("file"), "whole");
   EXPECT_EQ(content_of(folder_.file("file")), "whole");
+  EXPECT_EQ(content_of(folder_.file(left + "-aaaaaaaa")), "another's");
+  EXPECT_EQ(files(), 3U);
+}
+
+TEST_F(Writing, AFailureBehindTheRenameSaysThatTheFileWasWritten) {
+  const std::string path = folder_.write("file", "old");
+  folders_fail = true;
+  const std::string reason = error_about([&] { write_file(path, "new"); }, path);
+  folders_fail = false;
+  EXPECT_EQ(reason, "was written, but a loss of power may undo that: Input/output error");
+  EXPECT_EQ(content_of(path), "new");
   EXPECT_EQ(files(), 1U);
+}
+
+TEST(UnfinishedFiles, AreThoseOfTheirFormAlone) {
+  for (const char* path : {"file", "/folder/file", "", "a.part-b", "run.part-3/x.log"}) {
+    const std::string name = unfinished_name(path);
+    EXPECT_TRUE(is_unfinished(name)) << name;
+    EXPECT_NE(unfinished_name(path), name);
+  }
+  const std::string longest = unfinished_name("folder/" + std::string(255, 'a'));
+  EXPECT_TRUE(is_unfinished(longest));
+  EXPECT_EQ(longest.size(), 7U + 255U);
+  for (const char* path :
+       {"", "-", "survey.part-2.log", "run.part-3/survey.log", "run.part-host-1-abcdefgh/log",
+        "file.part-host-1-abcdefg", "file.part-host-1-abcdefghi", "file.part-host-1-abcdEfgh",
+        "file.part-host--abcdefgh", "file.part-host-x-abcdefgh", "file-host-1-abcdefgh",
+        "file.part-host-1-abcdefgh (deleted)", "abcdefgh", "1-abcdefgh"}) {
+    EXPECT_FALSE(is_unfinished(path)) << path;
+  }
 }
 
 TEST_F(Writing, PipesAndOpenFilesAreWrittenTo) {

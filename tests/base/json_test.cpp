@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/json.hpp"
 
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -130,6 +131,21 @@ TEST(Json, TextThatIsNotUtf8IsNotWritten) {
         json_text({{"name", "lo\xff"}});
       }),
       "a name or another text in a file to write is not UTF-8: {\"name\":\"lo\xEF\xBF\xBD\"}");
+}
+
+TEST(Json, WhatIsToBeWrittenCanBeReadAgain) {
+  const auto refusal = [](const nlohmann::ordered_json& value) {
+    return test::error_of([&] { require_storable({{"name", value}}, "law"); });
+  };
+  const string fault = ", expected a text on one line without control characters";
+  EXPECT_EQ(refusal("Kanto loam, \u00e4"), "no error");
+  EXPECT_EQ(refusal(string(1000, 'x')), "no error");
+  EXPECT_EQ(refusal("zx\n120"), "law: '/name' is 'zx?120'" + fault);
+  EXPECT_EQ(refusal("zx\u202e120"), "law: '/name' is 'zx?120'" + fault);
+  EXPECT_EQ(refusal(string(1001, 'x')),
+            "law: '/name' is a text of 1001 bytes, expected at most 1000");
+  EXPECT_EQ(refusal("lo\xff"), "law: '/name' is not UTF-8");
+  EXPECT_EQ(refusal(std::nan("")), "law: '/name' is nan, must be finite");
 }
 
 TEST(Json, PartsOutliveTheWhole) {

@@ -102,6 +102,12 @@ TEST(SafeText, Utf8IsWhatAnotherDecoderSays) {
   }
 }
 
+TEST(NearestWord, OfAWordOfAnyLengthIsNoneAtOnce) {
+  const std::vector<string> words(100, string(256, 'x'));
+  EXPECT_EQ(nearest_word(string(256, 'x'), words), words.front());
+  EXPECT_EQ(nearest_word(string(10000000, 'x'), words), std::nullopt);
+}
+
 TEST(SmallLetters, OnlyThoseOfAsciiChange) {
   EXPECT_EQ(small_letters("Az[@`{ \xC3\x84Z9"), "az[@`{ \xC3\x84z9");
 }

@@ -151,13 +151,17 @@ TEST(HostileMachine, EmptyOnesAreRefused) {
   flat.bucket.profile.clear();
   Machine line = zx120();
   line.bucket.profile.resize(2);
+  Machine longer = zx120();  // its profile no longer begins at the tip
+  longer.bucket_length *= 2.0;
+  Machine wide = zx120();
+  wide.bucket.width_outside = wide.boom_length + 0.1;
   Machine oil = zx120();
   oil.cylinders.reset();
   Machine moved = zx120();
   const Machine taken = std::move(moved);
   for (const auto& [name, call] : machine_functions()) {
     if (name == "fingerprint" || name == "heaped_capacity") continue;
-    for (const Machine& machine : {Machine{}, flat, line, oil, moved}) {
+    for (const Machine& machine : {Machine{}, flat, line, longer, wide, oil, moved}) {
       EXPECT_TRUE(refuses([&, &call = call] { call(machine); }, "machine")) << name;
     }
   }
@@ -376,13 +380,17 @@ TEST(HostileSoil, DefaultIsRefusedByName) {
     EXPECT_TRUE(refuses([&] { drawn_soil(loam(), {share, 0.0, 0.0}, 1); }, "scatter"));
     EXPECT_TRUE(refuses([&] { drawn_soil(loam(), {0.0, 0.0, share}, 1); }, "scatter"));
   }
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    const SoilKind drawn = drawn_soil(loam(), {1.0, 1.0, 1.0}, seed);
+    EXPECT_NO_THROW(require_soil(drawn));
+  }
   SoilKind narrow = loam();
   narrow.void_ratio_max = 0.03;
   narrow.void_ratio_min = 0.01;
   narrow.void_ratio_loose = 0.02;
   narrow.water_content = 0.0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    EXPECT_TRUE(finite(drawn_soil(narrow, {}, seed).void_ratio_min));
+    EXPECT_NO_THROW(require_soil(drawn_soil(narrow, {}, seed)));
   }
 }
 

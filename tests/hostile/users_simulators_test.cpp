@@ -27,6 +27,7 @@
 #include "support/energy_bound.hpp"
 #include "support/errors.hpp"
 #include "support/hostile.hpp"
+#include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
@@ -100,7 +101,10 @@ std::vector<Case> spoilt_patches() {
           {"bank of nan", patch([](TerrainPatch& p) { p.bank(0, 0) = nan; })},
           {"bank of inf", patch([](TerrainPatch& p) { p.bank(0, 0) = infinity; })},
           {"loose layer of -1", patch([](TerrainPatch& p) { p.loose(1, 1) = -1.0; })},
-          {"loose layer of nan", patch([](TerrainPatch& p) { p.loose(1, 1) = nan; })}};
+          {"loose layer of nan", patch([](TerrainPatch& p) { p.loose(1, 1) = nan; })},
+          {"whose void ratio is none", patch([](TerrainPatch& p) {
+             p.loose_void_ratio = Eigen::ArrayXXd::Constant(p.bank.rows(), p.bank.cols(), nan);
+           })}};
 }
 
 std::vector<Case> spoilt_results() {
@@ -123,6 +127,19 @@ std::vector<Case> spoilt_results() {
   add("torques between", [](const DigPath& p, DigResult& r) { r.torques.resize(p.poses.size()); });
   add("torque that is not", [](const DigPath&, DigResult& r) { r.torques.at(0)[1] = nan; });
   add("with 0 J, less than", [](const DigPath&, DigResult& r) { r.energy.total = 0.0; });
+  add("its dig gave up", [](const DigPath&, DigResult& r) {
+    r.given_up = true;
+    r.energy.total = 1e-3;
+  });
+  add("a payload of 1000000 kg", [](const DigPath&, DigResult& r) {
+    r.payload_mass = 1e6;
+    r.energy.total = 1e8;
+  });
+  add("the bucket holds", [](const DigPath&, DigResult& r) {
+    r.payload_mass = 1000.0;
+    r.payload_volume = 10.0;
+    r.energy.total = 1e8;
+  });
   add("with 1 J, less than", [](const DigPath&, DigResult& r) { r.energy.total = 1.0; });
   add("it threw: a fault", [](const DigPath&, DigResult&) { throw std::logic_error("a fault"); });
   add("it threw something", [](const DigPath&, DigResult&) { throw 42; });
@@ -152,13 +169,26 @@ TEST(UsersSimulator, WithoutIdentityItsClassNamesIt) {
   }
 }
 
+TEST(UsersSimulator, AnIdentityThatThrowsIsAnErrorOfACheckpoint) {
+  const test::TemporaryFolder folder;
+  const Spoilt simulator(
+      40.0, [](const DigPath&, DigResult&) {}, "throws");
+  DigSearchOptions options;
+  options.stop.evaluations = 10;
+  options.checkpoint = folder.file("digs.txt");
+  EXPECT_TRUE(refuses([&] { search_dig(zx120(), simulator, ground(), options); },
+                      "simulator 'Spoilt': it threw: no identity"));
+}
+
 TEST(UsersSimulator, ALackOfMemoryIsNotItsFault) {
   const Spoilt simulator(40.0, [](const DigPath&, DigResult&) { throw std::bad_alloc(); });
   EXPECT_THROW(evaluate_dig(zx120(), simulator, ground(), paper_fixed_path()), std::bad_alloc);
 }
 
 TEST(UsersSimulator, PlansScenesAndExperimentsRefuseIt) {
-  const Terrain field = undisturbed(flat_ground(scene_extent(zx120(), default_dump_point()), 0.1));
+  Terrain field = undisturbed(flat_ground(scene_extent(zx120(), default_dump_point()), 0.1));
+  field.loose_void_ratio =
+      Eigen::ArrayXXd::Constant(field.loose.rows(), field.loose.cols(), loam().void_ratio_loose);
   std::vector<Case> cases = spoilt_results();
   for (Case& bad : spoilt_patches()) {
     SceneOptions options;
@@ -175,9 +205,11 @@ TEST(UsersSimulator, PlansScenesAndExperimentsRefuseIt) {
     EXPECT_TRUE(refuses([&] { run_scene(zx120(), loam(), 40.0, field, scene); }, named));
     CalibrationOptions calibration;
     calibration.simulator = kind;
-    calibration.draws = 0;
     calibration.cell_size = 0.1;
-    EXPECT_TRUE(refuses([&] { calibrate_density(zx120(), loam(), calibration); }, named));
+    for (const int draws : {0, 3}) {
+      calibration.draws = draws;
+      EXPECT_TRUE(refuses([&] { calibrate_density(zx120(), loam(), calibration); }, named));
+    }
     PlanOptions plan;
     plan.simulator = kind;
     EXPECT_TRUE(refuses([&] { plan_dig(zx120(), loam(), 50.0, plan); }, named));
@@ -243,7 +275,7 @@ TEST(UsersSimulator, OneThatFailsNowAndThenFindsAsGoodADig) {
   const auto best = search_dig(zx120(), *good, ground(), budget(digs));
   ASSERT_TRUE(best);
   int reached = 0;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const Spoilt simulator(40.0, [](const DigPath& path, DigResult& result) {
       std::string numbers;
       for (const double n : {path.parameters.drag_length, path.parameters.penetration_length}) {

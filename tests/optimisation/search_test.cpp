@@ -777,6 +777,23 @@ TEST_F(SearchCheckpointFile, IsRefusedForAnotherSearch) {
             "search: a checkpoint needs the fingerprint of the problem, it is empty");
 }
 
+TEST_F(SearchCheckpointFile, WhatNoRunCouldResumeFromIsRefusedAtTheBeginning) {
+  SearchProblem problem = with_fingerprint([](const Eigen::VectorXd&) -> Evaluation {
+    ADD_FAILURE() << "was called";
+    return 0.0;
+  });
+  const std::string start =
+      "search: a checkpoint holds the fingerprint and the box of the problem, ";
+  const auto refusal = [&](const std::string& fingerprint) {
+    problem.fingerprint = fingerprint;
+    return error_of([&] { search(problem, options()); });
+  };
+  EXPECT_EQ(refusal("zx\n120").rfind(start + "which is 'zx?120, box", 0), 0U);
+  EXPECT_EQ(refusal("zx\xff"), start + "which is not UTF-8");
+  EXPECT_EQ(refusal(std::string(70000, 'x')).rfind(start + "which is a text of 700", 0), 0U);
+  EXPECT_FALSE(std::ifstream(file_).is_open());
+}
+
 TEST_F(SearchCheckpointFile, TruncatedOrAlteredIsRefusedAtEveryByte) {
   cut_off(3, options(), hartmann);
   const std::string good = read_file(file_);

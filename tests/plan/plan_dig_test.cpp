@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "support/errors.hpp"
+#include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
@@ -198,6 +200,22 @@ TEST_F(PlanDig, RefusesWhatTheCallerCouldHavePrevented) {
   peat.name = "peat";
   EXPECT_NE(test::error_of([&] { shipped_library(machine_, peat); }).find("no library of zx120 in"),
             std::string::npos);
+}
+
+TEST_F(PlanDig, NoNameLeadsToAnotherFileThanAShippedLibrary) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directories(folder.file("data/libraries"));
+  folder.write("evil-loam-energy.json", "");
+  Machine machine = machine_;
+  for (const std::string& name : {std::string("../../evil"), std::string(), std::string(".."),
+                                  std::string("/x"), std::string(1000000, 'x')}) {
+    machine.name = name;
+    EXPECT_EQ(test::error_of([&] {
+                shipped_library(machine, loam_, {}, folder.file("data"));
+              }).rfind("no library of ", 0),
+              0U)
+        << name.substr(0, 20);
+  }
 }
 
 // ---- Searching --------------------------------------------------------------------------------

@@ -465,7 +465,7 @@ TEST_F(Section, SaysWhatIsWrongWithAPath) {
   far.poses[1].bucket.x = 1e300;
   EXPECT_NE(message(ground, far).find("must lie on the map"), std::string::npos);
   far.poses[1].bucket.x = std::nan("");
-  EXPECT_EQ(message(ground, far), "dig: every pose of the path must be finite");
+  EXPECT_EQ(message(ground, far), "dig: x of a pose [m] is nan, must be finite");
   Terrain narrow = undisturbed(flat_ground({1.0, -0.2, 9.0, 0.2}, 0.05));
   EXPECT_EQ(message(narrow, path), "dig: the bucket, y = -0.35 .. 0.35 m, must lie on the map");
 }

@@ -264,6 +264,37 @@ TEST_F(DepthPng, WhatIsWrongWithRightSumsIsRefusedInSilence) {
   EXPECT_EQ(said(png_with(header, packed, palette)), "found a chunk 'PLTE'");
 }
 
+/// A zlib stream of two rows of 258 black pixels, 1034 zeros: 776 of them in a stored block, the
+/// rest by a reference 600 bytes back in a block of fixed codes (RFC 1951, 3.2.6).
+string black_rows(const string& zlib_header) {
+  const string bits =
+      "110"
+      "11000101"
+      "10010"
+      "11101010"
+      "0000000"
+      "0";
+  string packed = zlib_header + string("\x00\x08\x03\xf7\xfc", 5) + string(776, '\0');
+  for (std::size_t i = 0; i < bits.size(); i += 8) {
+    unsigned byte = 0;
+    for (std::size_t k = 0; k < 8; ++k) byte |= (bits[i + k] == '1' ? 1U : 0U) << k;
+    packed += static_cast<char>(byte);
+  }
+  return packed + test::big_endian(1034U << 16U | 1U);
+}
+
+TEST_F(DepthPng, AStreamKeepsToTheWindowThatItStates) {
+  const string header = header_of(258, 2, kind_);
+  EXPECT_EQ(said(png_with(header, black_rows("\x78\x01"))), "no error") << "32 KiB";
+  EXPECT_EQ(said(png_with(header, black_rows("\x08\x1d"))), "found damaged pixels") << "256 bytes";
+}
+
+TEST_F(DepthPng, AnEndWithDataIsRefused) {
+  const string png = whole_.substr(0, whole_.size() - 12);
+  EXPECT_EQ(said(png + test::png_chunk("IEND")), "no error");
+  EXPECT_EQ(said(png + test::png_chunk("IENDx")), "found an end with data");
+}
+
 TEST_F(DepthPng, ChunksThatAreNotNeededDoNotMatter) {
   const string odd = test::png_chunk("gAMAxx") + test::png_chunk("iCCPz\x01") +
                      test::png_chunk("tRNS") + test::png_chunk("sBITtoo many");

@@ -144,6 +144,8 @@ TEST(Tool, WrongUsageEndsWithTwoAndSaysWhy) {
       {{"a.pcd"}, "--density is missing: density of the ground [%]"},
       {{"--density", "4"}, "BEFORE is missing: a scan"},
       {{"a", "b", "--density", "4"}, "unexpected argument 'b'"},
+      {{"a", "-", "--density", "4"}, "unexpected argument '-'"},
+      {{"a", "---", "--density", "4"}, "unexpected argument '---'"},
       {{"a", "--density", "4", "--density", "5"}, "--density is given more than once"},
       {{"a", "--density", "--json"}, "--density needs a value, got --json"},
       {{"a", "--density", "4", "--seed", "-1"}, "--seed: '-1' is not a whole number, 0 or more"},

@@ -241,15 +241,20 @@ TEST_P(EveryTool, ALimitOnFileSizesIsAnErrorOfTheWrite) {
   }
 }
 
+/// A user's own files that are open meanwhile remain, whatever their names.
 TEST_P(EveryTool, ATermEndsItWhileItWaits) {
+  fs::create_directory(folder.file("run.part-3"));
+  const std::string errors = folder.write("survey.part-host-1-abcdefgh", "");
+  const std::string log = folder.write("run.part-3/survey.part-2.log", "");
   std::array<int, 2> silent{};
   ASSERT_EQ(::pipe(silent.data()), 0);
   ASSERT_EQ(::write(silent[1], "x", 1), 1);
   const pid_t child = started(tool, {"--soil", "-", "-"}, [&] {
     ::dup2(silent[0], STDIN_FILENO);
     ::close(silent[1]);
-    ::dup2(::open("/dev/null", O_RDWR), STDERR_FILENO);
+    ::dup2(::open(errors.c_str(), O_WRONLY | O_CLOEXEC), STDERR_FILENO);
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
+    ::open(log.c_str(), O_WRONLY | O_APPEND);
   });
   int status = 0;
   bool is_over = false;
@@ -264,6 +269,7 @@ TEST_P(EveryTool, ATermEndsItWhileItWaits) {
     ::waitpid(child, &status, 0);
     EXPECT_EQ(exit_code(status), 128 + SIGTERM);
   }
+  for (const std::string& file : {errors, log}) EXPECT_TRUE(fs::exists(file)) << file;
   for (const int end : silent) ::close(end);
 }
 

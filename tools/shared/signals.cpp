@@ -19,6 +19,8 @@
 #include <string>
 #include <system_error>
 
+#include "base/files.hpp"
+
 namespace excavplan::tools {
 namespace {
 
@@ -63,9 +65,11 @@ void remove_unfinished_files() {
   for (; !error && file != std::filesystem::directory_iterator(); file.increment(error)) {
     std::error_code closed;
     const std::string path = std::filesystem::read_symlink(file->path(), closed);
-    const int flags = ::fcntl(std::stoi(file->path().filename()), F_GETFL);
-    const bool is_written = flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;
-    if (!closed && is_written && path.find(".part-") != path.npos) ::unlink(path.c_str());
+    const int descriptor = std::stoi(file->path().filename());
+    const int flags = ::fcntl(descriptor, F_GETFL);
+    const bool is_own = descriptor > STDERR_FILENO && flags >= 0;
+    const bool is_written = is_own && (flags & O_ACCMODE) != O_RDONLY;
+    if (!closed && is_written && is_unfinished(path)) ::unlink(path.c_str());
   }
 }
 

@@ -23,7 +23,14 @@ constexpr const char* its_name = "standard input";
 }
 
 int temporary_file() {
-  std::string name = std::filesystem::temp_directory_path().string() + "/excavplan-XXXXXX";
+  std::error_code wrong;
+  const auto folder = std::filesystem::temp_directory_path(wrong);
+  if (wrong) {
+    throw Error(ErrorKind::bad_file,
+                std::string(its_name) +
+                    ": cannot be copied to a temporary file: TMPDIR: " + wrong.message());
+  }
+  std::string name = folder.string() + "/excavplan-XXXXXX";
   const int file = ::mkstemp(name.data());
   if (file < 0) refuse("cannot be copied to a temporary file");
   ::unlink(name.c_str());

@@ -167,8 +167,7 @@ void refuse_left_over(const std::vector<std::string>& left_over,
   }
   for (const std::string& word : left_over) {
     const std::size_t start = word.find_first_not_of('-');
-    if (start == std::string::npos) continue;
-    if (start == 0) usage_error("unexpected argument '" + word + "'");
+    if (start == std::string::npos || start == 0) usage_error("unexpected argument '" + word + "'");
     const std::string option = word.substr(0, word.find('='));
     const auto meant = nearest_word(option.substr(start), names);
     usage_error("unknown option " + option + (meant ? ", did you mean --" + *meant + "?" : ""));

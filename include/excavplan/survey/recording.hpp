@@ -104,8 +104,9 @@ struct RecordedScan {
 ///
 /// @throws Error (bad_file) also if there is no such topic or no message at that time, no transform
 /// into the frame at the time of a message, no camera info, or if a clock jumped between the
-/// messages; (bad_input) if a time is out of range, the span holds more than 150 million points or
-/// pixels, or the sensor moved and no frame is named
+/// messages; (bad_input) if a time is out of range, the span holds more than
+/// most_recorded_points (ceilings.hpp) points or pixels, the frame is "/", or the sensor moved and
+/// no frame is named
 RecordedScan read_recorded_scan(const RecordingQuery& query);
 
 /// Where the joints were: of every name on a topic of sensor_msgs/JointState the position [rad; m

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <excavplan/machine/machine.hpp>
+
+/// @file The rules between the numbers of a machine, for its file and for programs. Private to the
+/// project.
+
+namespace excavplan {
+
+/// Calls `fail`, which does not return, with the key in the `bucket` of a machine file and what is
+/// wrong.
+void check_shape(const Bucket& bucket, double bucket_length, double boom_length,
+                 const std::function<void(const char* key, const std::string& what)>& fail);
+
+}  // namespace excavplan
