@@ -20,6 +20,7 @@
 #include <iterator>
 #include <string>
 #include <thread>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -55,7 +56,7 @@ Cloud scanned(double spacing, bool after) {
   for (double x = 0.0; x < 6.0; x += spacing) {
     for (double y = -2.0; y < 2.0; y += spacing) {
       const double hole = x > 1.0 && x < 2.5 && y > -0.5 && y < 0.5 ? -0.3 : 0.0;
-      const double heap = std::max(0.0, 0.5 - 0.7 * std::hypot(x - 4.3, y));
+      const double heap = std::max(0.0, 0.63 - 0.7 * std::hypot(x - 4.3, y));
       const double z = after ? hole + heap : 0.0;
       cloud.points.emplace_back(x, y, z + 0.002 * random.normal());
     }
@@ -73,23 +74,29 @@ class Digs {
       for (int d = 0; d <= 100; d += 10) simulators_.emplace_back(machine_, kind, d);
     }
   }
-  /// True if the machine could drive the path.
+  /// True if the bucket lifted soil.
   bool operator()(std::uint64_t index) const {
     Random random(1, index);
     const auto which =
         static_cast<std::size_t>(random.uniform() * static_cast<double>(simulators_.size()));
-    DigParameters parameters;
-    for (const DigParameterInfo& info : dig_parameter_table()) {
-      parameters.*info.field = random.uniform(bounds_.lower.*info.field, bounds_.upper.*info.field);
-    }
-    const auto path =
-        make_dig_path(machine_, parameters, random.uniform(3.5, 7.5), [](double) { return 0.0; });
-    if (!std::holds_alternative<DigPath>(path)) return false;
-    simulators_[which].dig(ground_, std::get<DigPath>(path));
-    return true;
+    return simulators_[which].dig(ground_, drivable_path(random)).payload_mass > 0.0;
   }
 
  private:
+  /// About every fourth that is drawn.
+  DigPath drivable_path(Random& random) const {
+    while (true) {
+      DigParameters parameters;
+      for (const DigParameterInfo& info : dig_parameter_table()) {
+        parameters.*info.field =
+            random.uniform(bounds_.lower.*info.field, bounds_.upper.*info.field);
+      }
+      auto path =
+          make_dig_path(machine_, parameters, random.uniform(3.5, 7.5), [](double) { return 0.0; });
+      if (auto* found = std::get_if<DigPath>(&path)) return std::move(*found);
+    }
+  }
+
   Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
   DigBounds bounds_ = machine_bounds(machine_);
   Terrain ground_ = level_planning_ground(machine_, 0.1);
