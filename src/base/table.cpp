@@ -3,12 +3,12 @@
 #include "base/table.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <excavplan/error.hpp>
 
 #include "base/files.hpp"
+#include "base/read_double.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -102,7 +102,7 @@ void Table::add_row(const std::vector<string_view>& fields, std::size_t line) {
   for (std::size_t i = 0; i < fields.size(); ++i) {
     double value = 0.0;
     const char* const end = fields[i].data() + fields[i].size();
-    const auto [stop, error] = std::from_chars(fields[i].data(), end, value);
+    const auto [stop, error] = read_double(fields[i].data(), end, value);
     if (error != std::errc{} || stop != end || !std::isfinite(value)) {
       refuse_line(path_, line,
                   safe_text(names_[i], longest_name) + " is " + excavplan::quoted(fields[i]) +

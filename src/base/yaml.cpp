@@ -3,7 +3,6 @@
 #include "base/yaml.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <optional>
 #include <string_view>
@@ -11,6 +10,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/read_double.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -113,7 +113,7 @@ std::vector<Line> lines_of(const std::string& name, string_view text) {
 std::optional<double> number_of(string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0.0;
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [stop, error] = read_double(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || stop != word.data() + word.size()) return std::nullopt;
   return value;
 }

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <utility>
 
+#include "base/read_double.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -123,7 +125,7 @@ std::optional<double> parse_number(std::string_view word) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0.0;
   const char* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  const auto [stop, error] = read_double(word.data(), end, value);
   if (error != std::errc() || stop != end) return std::nullopt;
   return value;
 }

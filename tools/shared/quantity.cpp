@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include <excavplan/error.hpp>
 #include <excavplan/survey/scan_pose.hpp>
 
 #include "base/angles.hpp"
+#include "base/read_double.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -91,7 +91,7 @@ double parse_quantity(const std::string& what, const std::string& text, Quantity
   const char* const begin = text.data() + (plus ? 1 : 0);
   const char* const end = text.data() + text.size();
   double value = 0.0;
-  const auto [stop, error] = std::from_chars(begin, end, value);
+  const auto [stop, error] = read_double(begin, end, value);
   if (error != std::errc{} || !std::isfinite(value)) refuse("is not a number");
   std::string suffix(stop, end);
   suffix.erase(0, suffix.find_first_not_of(' '));
