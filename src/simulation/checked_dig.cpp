@@ -21,6 +21,7 @@
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/dig_account.hpp"
 #include "simulation/terrain_check.hpp"
+#include "soil/sound_soil.hpp"
 
 namespace excavplan {
 namespace {
@@ -182,9 +183,8 @@ class Examination {
  private:
   /// Of the loose layer, where the patch has one.
   bool has_void_ratio(Index row, Index col) const {
-    constexpr double most = 20.0;  // as require_soil()
     const Eigen::ArrayXXd& ratio = result_.patch.loose_void_ratio;
-    return ratio.size() == 0 || (ratio(row, col) > 0.0 && ratio(row, col) <= most);
+    return ratio.size() == 0 || (ratio(row, col) > 0.0 && ratio(row, col) <= most_void_ratio);
   }
 
   const SoilSimulator& simulator_;

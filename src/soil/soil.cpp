@@ -33,9 +33,9 @@ struct SoilNumber {
 constexpr SoilNumber soil_numbers[] = {
     {"specific_gravity", &SoilKind::specific_gravity, 0.5, 10.0},
     {"water_content", &SoilKind::water_content, 0.0, 10.0},
-    {"void_ratio_max", &SoilKind::void_ratio_max, 0.01, 20.0},
-    {"void_ratio_min", &SoilKind::void_ratio_min, 0.01, 20.0},
-    {"void_ratio_loose", &SoilKind::void_ratio_loose, 0.01, 20.0},
+    {"void_ratio_max", &SoilKind::void_ratio_max, 0.01, most_void_ratio},
+    {"void_ratio_min", &SoilKind::void_ratio_min, 0.01, most_void_ratio},
+    {"void_ratio_loose", &SoilKind::void_ratio_loose, 0.01, most_void_ratio},
     {"cohesion_loosest_pa", &SoilKind::cohesion_loosest, 0.0, 1e6},
     {"cohesion_growth", &SoilKind::cohesion_growth, 0.0, 10.0},
     {"friction_loosest_rad", &SoilKind::friction_loosest, flattest_friction, steepest_friction},

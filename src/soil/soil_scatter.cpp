@@ -9,13 +9,13 @@
 #include "base/check.hpp"
 #include "base/random.hpp"
 #include "soil/density_forms.hpp"
+#include "soil/sound_soil.hpp"
 
 namespace excavplan {
 namespace {
 
 // Of a drawn soil; ours.
 constexpr double least_void_ratio = 0.01;
-constexpr double most_void_ratio = 20.0;         // as require_soil()
 constexpr double least_share = 0.1;              // of the density before the draw
 constexpr double least_void_ratio_range = 0.05;  // between its limits
 constexpr double least_loosening = 0.01;         // of dug soil above the densest, of that range

@@ -26,9 +26,8 @@ int temporary_file() {
   std::error_code wrong;
   const auto folder = std::filesystem::temp_directory_path(wrong);
   if (wrong) {
-    throw Error(ErrorKind::bad_file,
-                std::string(its_name) +
-                    ": cannot be copied to a temporary file: TMPDIR: " + wrong.message());
+    errno = wrong.value();
+    refuse("cannot be copied to a temporary file: TMPDIR");
   }
   std::string name = folder.string() + "/excavplan-XXXXXX";
   const int file = ::mkstemp(name.data());
