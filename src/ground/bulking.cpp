@@ -39,9 +39,9 @@ BulkingErrors bulking_errors(const VolumeChange& change) {
   const auto sd = [&](const Eigen::Matrix3d& covariance) {
     return std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
   };
-  return {sd(change.errors.noise),  sd(change.errors.correlated), sd(change.errors.datum),
-          sd(change.errors.holes),  sd(change.errors.faces),      sd(change.errors.attribution),
-          sd(change.errors.scans())};
+  return {sd(change.errors.noise),       sd(change.errors.correlated), sd(change.errors.datum),
+          sd(change.errors.holes),       sd(change.errors.faces),      sd(change.errors.thin),
+          sd(change.errors.attribution), sd(change.errors.scans())};
 }
 
 double variance_by_readings(const VolumeChange& change) {

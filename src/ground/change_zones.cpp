@@ -143,6 +143,7 @@ class ChangeFinder {
       learn_from_stable_ground();
     }
     found_.difference -= found_.datum;
+    found_.smooth_sd = smooth_sd_;
     find_residual();
     return std::move(found_);
   }
@@ -214,7 +215,8 @@ class ChangeFinder {
     });
     label = (label < 0).select(stable, label);
     take_in_shadows(label);
-    found_.zone = found_.difference.isNaN().select(stable, widened(label, margin() / cell_size_));
+    found_.zone = found_.difference.isNaN().select(
+        stable, widened(label, zone_margin(options_, cell_size_, smooth_sd_) / cell_size_));
   }
 
   /// In a hole too large to be a chance gap between points.
@@ -259,13 +261,6 @@ class ChangeFinder {
         std::unique(rim.begin(), rim.end(), [&](Cell a, Cell b) { return place(a) == place(b); }),
         rim.end());
     return rim;
-  }
-
-  /// Width of a zone's edge below the threshold, for soil at 27 degrees or steeper; at least one
-  /// cell.
-  double margin() const {
-    constexpr double gentlest = 0.5;  // ours
-    return std::max({options_.margin, cell_size_, options_.growth * smooth_sd_ / gentlest});
   }
 
   bool reaches_the_edge(const std::vector<Cell>& cells) const {
@@ -323,6 +318,11 @@ class ChangeFinder {
 };
 
 }  // namespace
+
+double zone_margin(const ChangeOptions& options, double cell_size, double smooth_sd) {
+  constexpr double gentlest = 0.5;  // ours
+  return std::max({options.margin, cell_size, options.growth * smooth_sd / gentlest});
+}
 
 ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance,
                           double cell_size, const ChangeOptions& options) {

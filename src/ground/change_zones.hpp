@@ -17,6 +17,7 @@ struct ChangedGround {
   Eigen::ArrayXXi zone;           ///< -1 for stable ground
   std::vector<bool> zone_is_cut;  ///< the zone reaches the edge of what was surveyed
   double noise_sd = 0.0;          ///< of one stable cell [m]
+  double smooth_sd = 0.0;         ///< of the mean of 3 x 3 of them [m]
   double datum = 0.0;             ///< [m]
   double stable_share = 0.0;      ///< of the known cells [-]
 };
@@ -26,6 +27,10 @@ struct ChangedGround {
 /// @param cell_size edge of a cell [m]
 ChangedGround find_change(Eigen::ArrayXXd difference, const Eigen::ArrayXXd& variance,
                           double cell_size, const ChangeOptions& options);
+
+/// By how far zones are widened [m]: an edge below the threshold of soil at 27 degrees or steeper;
+/// at least one cell.
+double zone_margin(const ChangeOptions& options, double cell_size, double smooth_sd);
 
 /// The zones within `distance_cells` of the chosen ones, which count as near themselves.
 std::vector<bool> zones_near(const Eigen::ArrayXXi& zone, const std::vector<bool>& chosen,

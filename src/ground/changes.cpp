@@ -188,8 +188,7 @@ class ChangeReader {
     constexpr double established = 2.0;  // sd; ours
     const ZoneErrors& errors = areas_[p.area].errors;
     const auto i = static_cast<Eigen::Index>(p.zone);
-    const double variance = zone(p).noise + zone(p).holes + zone(p).faces +
-                            errors.correlated(i, i) + errors.datum(i, i);
+    const double variance = zone(p).variance() + errors.correlated(i, i) + errors.datum(i, i);
     return !is_main(p) && std::abs(zone(p).volume) < established * std::sqrt(variance);
   }
 

@@ -136,7 +136,7 @@ void state_earlier_soil(const std::vector<const HeightMap*>& before, const std::
   double volume = 0.0;
   for (std::size_t i = 0; i < areas.size(); ++i) volume += loose_volume(*before[i], areas[i]);
   const double hole = change.before.value;
-  if (volume < least_share * hole || volume > 0.5 * hole) return;
+  if (volume < least_share * hole || volume > 0.5 * std::min(hole, change.after.value)) return;
   state(volume, k->value, bulking_errors(change).scans, change);
 }
 

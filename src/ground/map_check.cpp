@@ -51,6 +51,7 @@ void require_surface(const Surface& surface, const char* what) {
   require_size(surface.height, surface.variance, what, "variance");
   require_size(surface.height, surface.points, what, "points");
   require_size(surface.height, surface.seen_from, what, "seen_from");
+  require_size(surface.height, surface.doubt, what, "doubt");
   in(what, "number of sensors", static_cast<double>(surface.sensors.size()), 0.0, most_sensors);
   for (const Eigen::Vector3d& place : surface.sensors) {
     for (const double number : place) {

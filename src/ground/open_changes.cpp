@@ -101,7 +101,7 @@ class OpenChanges {
       double variance = 0.0;
       for (const Place& p : change.zones) {
         const ZoneSum& zone = areas_[p.area].zones[p.zone];
-        variance += zone.noise + zone.holes + zone.faces;
+        variance += zone.variance();
       }
       result_.attribution.push_back({change.kind,
                                      change.what,
@@ -217,6 +217,7 @@ class OpenChanges {
     std::vector<Alternative> readings;
     std::vector<bool> shown(counted_.size(), false);
     const auto add = [&](const Alternative& one) {
+      if (!(one.bulking > 0.0)) return;  // no dig is like that
       readings.push_back(one);
       for (std::size_t i = 0; i < shown.size(); ++i) {
         shown[i] = shown[i] || one.combination->counted[i] != counted_[i];

@@ -9,6 +9,7 @@
 
 #include <excavplan/error.hpp>
 
+#include "ground/doming.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/relief.hpp"
 #include "ground/sampling_gaps.hpp"
@@ -184,6 +185,28 @@ void sum_walls(Area& area, const Eigen::ArrayXXd& before) {
   }
 }
 
+/// Error of soil by its edge that is too thin to tell from noise and runs out beyond the margin of
+/// the zone.
+void sum_thin(Area& area, const ChangeOptions& options) {
+  constexpr double gentlest = 0.3;  // ours: of soil that was scattered [-]
+  const double cell_size = area.grid.cell_size;
+  const double least = options.growth * area.ground.smooth_sd;
+  const double beyond = least / gentlest - zone_margin(options, cell_size, area.ground.smooth_sd);
+  if (!(beyond > 0.0)) return;
+  const auto& zone = area.ground.zone;
+  std::vector<double> edge(area.zones.size(), 0.0);
+  for_each_cell(zone, [&](Cell at) {
+    if (zone(at.row, at.col) < 0) return;
+    for_each_neighbour(zone, at, [&](Cell n) {
+      if (zone(n.row, n.col) < 0) edge[static_cast<std::size_t>(zone(at.row, at.col))] += cell_size;
+    });
+  });
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    if (!(area.zones[i].volume > 0.0)) continue;
+    area.zones[i].thin = std::pow(edge[i] * 0.5 * beyond * beyond * gentlest, 2);
+  }
+}
+
 /// One area's scans, with motion and objects taken out.
 struct Scans {
   HeightMap before;
@@ -246,6 +269,45 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
   return scans;
 }
 
+/// Errors that run through stable ground and zones alike.
+struct Systematic {
+  std::vector<double> left;  // variance of the sum of the cells of each zone [m^2]
+  double rms = 0.0;          // of what was taken off stable ground [m]
+};
+
+Systematic take_systematic_off(ChangedGround& ground, double cell_size) {
+  const Eigen::ArrayXXd before = ground.residual;
+  Systematic errors{take_doming_off(ground, cell_size)};
+  const std::vector<double> of_stripes = take_stripes_off(ground);
+  for (std::size_t i = 0; i < of_stripes.size(); ++i) errors.left[i] += of_stripes[i];
+  const Eigen::ArrayXXd taken = before - ground.residual;
+  const auto known = static_cast<double>(taken.size() - taken.isNaN().count());
+  errors.rms = std::sqrt(taken.isNaN().select(0.0, taken.square()).sum() / std::max(1.0, known));
+  return errors;
+}
+
+/// The change, found where systematic errors are taken off: they would hide what is lower than they
+/// are. They are still in its difference.
+ChangedGround change_in(const Eigen::ArrayXXd& difference, const Eigen::ArrayXXd& variance,
+                        double cell_size, const ChangeOptions& options) {
+  constexpr int most_rounds = 4;
+  ChangedGround found = find_change(difference, variance, cell_size, options);
+  for (int round = 0; round < most_rounds; ++round) {
+    ChangedGround flat = found;
+    take_systematic_off(flat, cell_size);
+    const Eigen::ArrayXXd errors =
+        flat.difference.isNaN().select(0.0, found.difference - flat.difference);
+    if ((errors == 0.0).all()) break;
+    ChangedGround next = find_change(difference - errors, variance, cell_size, options);
+    const bool is_settled = (next.zone == found.zone).all();
+    found = std::move(next);
+    found.difference += errors;
+    found.residual += errors;
+    if (is_settled) break;
+  }
+  return found;
+}
+
 }  // namespace
 
 Area survey(const SurfacePair& pair, const ChangeOptions& options) {
@@ -255,11 +317,10 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.place_after = doubt_of_place(pair.after);
   area.grid.origin = scans.before.origin;
   area.grid.cell_size = scans.before.cell_size;
-  Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
+  const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
   area.inferred = scans.inferred;
   area.unknown = difference.isNaN().cast<int>();
-  area.ground =
-      find_change(std::move(difference), scans.variance_of(0.0), scans.before.cell_size, options);
+  area.ground = change_in(difference, scans.variance_of(0.0), scans.before.cell_size, options);
   area.parts = part_zones(area.ground, area.grid.cell_size);
   area.zones.resize(area.ground.zone_is_cut.size());
   area.kinds.assign(area.zones.size(), ZoneKind::other);
@@ -279,10 +340,12 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
 
   Alignment left = pair.alignment;
   const double share = take_relief_off(scans.before, area.ground, left);
-  const std::vector<double> stripes = take_stripes_off(area.ground);
+  const Systematic systematic = take_systematic_off(area.ground, area.grid.cell_size);
+  area.systematic_rms = systematic.rms;
   sum_zones(area, shadow);
   NoiseModel noise = find_noise(area.ground.residual, area.grid.cell_size);
   noise.white = std::max(noise.white, least_noise * least_noise);
+  area.noise = noise;
   sum_noise(area, scans.variance_of(share), noise.white);
   sum_beyond_edge(area);
   sum_faces(area, pair.before);
@@ -291,6 +354,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   sum_between(area, pair.after);
   sum_borders(area);
   sum_walls(area, scans.before.z);
+  sum_thin(area, options);
   area.errors = ErrorField{scans.before,
                            area.ground.residual,
                            area.ground.zone,
@@ -301,7 +365,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   for (std::size_t i = 0; i < area.zones.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     area.zones[i].volume -= area.errors.mean(at);
-    area.errors.correlated(at, at) += stripes[i] * cell_area * cell_area;
+    area.errors.correlated(at, at) += systematic.left[i] * cell_area * cell_area;
   }
   return area;
 }

@@ -24,11 +24,15 @@ struct ZoneSum {
   double noise = 0.0;    // variance of the volume by the noise of single cells [m^6]
   double holes = 0.0;    // and by the filling of unknown ones [m^6]
   double faces = 0.0;    // and by the position of steep faces [m^6]
+  double thin = 0.0;     // and by soil that is too thin to tell from noise [m^6]
   double unknown = 0.0;  // area that was filled [m^2]
   double shadow = 0.0;   // and of that in shadows under known sight lines [m^2]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Rectangle extent;
   bool is_cut = false;
+
+  /// By all that does not touch other zones.
+  double variance() const { return noise + holes + faces + thin; }
 };
 
 /// One surveyed area and its zones.
@@ -40,6 +44,8 @@ struct Area {
   std::vector<ZoneSum> zones;
   std::vector<ZoneKind> kinds;
   ZoneErrors errors;
+  NoiseModel noise;             // of stable cells
+  double systematic_rms = 0.0;  // of stripes and doming that were taken off [m]
   std::vector<Object> objects;
   std::optional<SensorPlace> inferred;     // of the scan after, where nothing says it
   std::optional<PlaceDoubt> place_before;  // of the place that is said, of each scan

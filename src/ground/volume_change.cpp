@@ -75,6 +75,7 @@ void sum_volumes(const std::vector<Area>& areas, VolumeChange& change) {
       change.errors.noise += zone.noise * part.col(i) * part.col(i).transpose();
       change.errors.holes += zone.holes * part.col(i) * part.col(i).transpose();
       change.errors.faces += zone.faces * part.col(i) * part.col(i).transpose();
+      change.errors.thin += zone.thin * part.col(i) * part.col(i).transpose();
     }
     change.errors.correlated += part * area.errors.correlated * part.transpose();
     change.errors.datum += part * area.errors.datum * part.transpose();
@@ -100,6 +101,8 @@ void set_deviations(VolumeChange& change) {
 std::string litres_as_m3(double volume) {
   return number_text(std::round(volume * 1000.0) / 1000.0) + " m^3";
 }
+
+std::string millimetres(double metres) { return readable(1000.0 * metres, 2) + " mm"; }
 
 std::string hundredths(double value) { return number_text(std::round(value * 100.0) / 100.0); }
 
@@ -276,7 +279,31 @@ void warn_of_place(const Area& area, std::vector<Warning>& warnings) {
   }
 }
 
-void warn_of_ground(const ChangedGround& ground, std::vector<Warning>& warnings) {
+/// Of errors that neighbouring ground shares.
+void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
+  constexpr double noted = 0.010;  // ours: of errors that were taken off [m]
+  constexpr double most = 0.010;   // ours: of those left; below it volumes hardly suffer [m]
+  if (area.systematic_rms > noted) {
+    warnings.push_back({"systematic_errors",
+                        "stripes or a dome of " + millimetres(area.systematic_rms) +
+                            " (rms) run through ground that did not change and were taken off: "
+                            "check the calibration of the sensor and how the scans were put "
+                            "together"});
+  }
+  const double left = std::sqrt(area.noise.correlated);
+  if (left > most && area.noise.length > area.grid.cell_size) {
+    warnings.push_back({"scans_do_not_fit",
+                        "ground that did not change rose and fell by " + millimetres(left) +
+                            " between the scans over " + readable(area.noise.length, 2) +
+                            " m, which is not noise of single points: one of the scans is bent, or "
+                            "the ground was driven on; scan again from one place, or leave out by "
+                            "--area what changed",
+                        true});
+  }
+}
+
+void warn_of_ground(const Area& area, std::vector<Warning>& warnings) {
+  const ChangedGround& ground = area.ground;
   if (ground.stable_share < least_stable_share) {
     warnings.push_back(
         {"little_stable_ground", "only " + hundredths(100.0 * ground.stable_share) +
@@ -294,7 +321,9 @@ void warn_of_ground(const ChangedGround& ground, std::vector<Warning>& warnings)
                             " m: bring both scans into one frame by --before-frame and "
                             "--after-frame, or leave out by --area what moved between them",
                         true});
+    return;
   }
+  warn_of_bends(area, warnings);
 }
 
 void warn_of_balance(VolumeChange& change) {
@@ -394,15 +423,14 @@ void report(Area& area, VolumeChange& change) {
     ChangeZone zone;
     zone.kind = area.kinds[i];
     const auto at = static_cast<Eigen::Index>(i);
-    zone.volume = {sum.volume,
-                   std::sqrt(sum.noise + sum.holes + sum.faces + area.errors.correlated(at, at) +
-                             area.errors.datum(at, at))};
+    zone.volume = {sum.volume, std::sqrt(sum.variance() + area.errors.correlated(at, at) +
+                                         area.errors.datum(at, at))};
     zone.area = sum.area;
     zone.unknown_share = sum.unknown / sum.area;
     zone.extent = sum.extent;
     change.zones.push_back(zone);
   }
-  warn_of_ground(area.ground, change.warnings);
+  warn_of_ground(area, change.warnings);
   warn_of_place(area, change.warnings);
   warn_of_doubt(area.place_before, "before", change.warnings);
   warn_of_doubt(area.place_after, "after", change.warnings);

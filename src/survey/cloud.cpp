@@ -148,6 +148,22 @@ Eigen::Vector3d normal_of(const Cloud& cloud) {
   return normal.z() < 0.0 ? Eigen::Vector3d(-normal) : normal;
 }
 
+/// The step of which all heights are multiples: the median distance of successive heights, where an
+/// eighth of them differ at most; 0 else.
+double height_step_of(const Cloud& cloud) {
+  constexpr std::size_t fewest_at_each = 8;  // points, ours
+  constexpr double same = 1e-5;              // [m]: heights of float32 a hundred metres up
+  Values heights = finite_values(cloud, 2);
+  std::sort(heights.begin(), heights.end());
+  Values steps;
+  for (std::size_t i = 1; i < heights.size(); ++i) {
+    const double step = heights[i] - heights[i - 1];
+    if (step > same) steps.push_back(step);
+  }
+  if (steps.empty() || (steps.size() + 1) * fewest_at_each > heights.size()) return 0.0;
+  return nth(steps, steps.size() / 2);
+}
+
 std::string guess_frame(const Cloud& cloud, const CloudSummary& summary) {
   constexpr double map_distance = 1e4;
   constexpr double ground_height = 0.5;
@@ -222,6 +238,7 @@ ScanOutline CloudOutline::result() const {
   outline.density = points_per_area(cloud, cloud.points.size()) *
                     (static_cast<double>(outline.finite_points) / sampled);
   outline.height = height_span(cloud);
+  outline.height_step = height_step_of(cloud);
   outline.seen_along_z =
       static_cast<double>(seen_along_z(cloud, nearest_seen, farthest_seen)) / sampled;
   outline.normal = normal_of(cloud);

@@ -9,16 +9,22 @@
 namespace excavplan {
 namespace {
 
-/// True if the points above `valley` lie among the others in plan, as leaves above ground do, and
-/// not beside them, as the upper level of a wall does: of the variance of "is above" a plane
-/// through the points explains less than two thirds of what it would if a wall along the cell
-/// parted them, 3 p (1 - p) with p the share above.
-bool lies_among(CellRange points, double valley) {
+double height_above(const CellPoint& point, const Eigen::Vector2d& slope) {
+  return static_cast<double>(point.z) - slope.x() * point.from_centre_x() -
+         slope.y() * point.from_centre_y();
+}
+
+/// True if the points above `valley`, and above a slope, lie among the others in plan, as leaves
+/// above ground do, and not beside them, as the upper level of a wall does: of the variance of "is
+/// above" a plane through the points explains less than two thirds of what it would if a wall along
+/// the cell parted them, 3 p (1 - p) with p the share above.
+bool lies_among(CellRange points, double valley,
+                const Eigen::Vector2d& slope = Eigen::Vector2d::Zero()) {
   const auto n = static_cast<double>(points.size());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
   for (const CellPoint& point : points) {
-    const double above = static_cast<double>(point.z) > valley ? 1.0 : 0.0;
+    const double above = height_above(point, slope) > valley ? 1.0 : 0.0;
     const Eigen::Vector3d p(point.from_centre_x(), point.from_centre_y(), above);
     sum += p;
     products += p * p.transpose();
@@ -249,6 +255,39 @@ std::optional<Split> two_levels(CellRange points, double level, double gap,
   split.low = static_cast<double>(heights[top / 2]);
   split.among = lies_among(points, split.valley);
   return split;
+}
+
+std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope, double least,
+                                  std::vector<float>& heights) {
+  const std::size_t fewest = std::max<std::size_t>(3, points.size() / 10);
+  if (points.size() < 2 * fewest) return std::nullopt;
+  heights.clear();
+  double all = 0.0;
+  for (const CellPoint& point : points) {
+    heights.push_back(static_cast<float>(height_above(point, slope)));
+    all += static_cast<double>(heights.back());
+  }
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  if (static_cast<double>(*high - *low) < least) return std::nullopt;
+  std::sort(heights.begin(), heights.end());
+  const auto n = static_cast<double>(heights.size());
+  double below = 0.0;
+  double most = 0.0;
+  Overlay found;
+  double valley = 0.0;
+  for (std::size_t i = 1; i <= heights.size() - fewest; ++i) {
+    below += static_cast<double>(heights[i - 1]);
+    if (i < fewest) continue;
+    const auto count = static_cast<double>(i);
+    const double apart = (all - below) / (n - count) - below / count;
+    const double between = count * (n - count) * apart * apart;
+    if (between <= most) continue;
+    most = between;
+    found = {apart, 1.0 - count / n};
+    valley = 0.5 * (static_cast<double>(heights[i - 1]) + static_cast<double>(heights[i]));
+  }
+  if (found.apart < least || !lies_among(points, valley, slope)) return std::nullopt;
+  return found;
 }
 
 Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Eigen::Index column) {

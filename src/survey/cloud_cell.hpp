@@ -52,6 +52,20 @@ struct Split {
 std::optional<Split> two_levels(CellRange points, double level, double gap,
                                 std::vector<float>& heights);
 
+/// Two surfaces in one cell, one above the other.
+struct Overlay {
+  double apart = 0.0;        ///< their distance in height [m]
+  double share_above = 0.0;  ///< of the points [-]
+};
+
+/// The best partition of the heights into two, by least squares (Otsu 1979), where the means of the
+/// parts are at least `least` apart, each holds a tenth of the points and three, and the upper lie
+/// among the lower in plan: soil and dust over it, or a scan that holds the ground of two times.
+///
+/// @param slope of the ground [m/cell]
+std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope, double least,
+                                  std::vector<float>& heights);
+
 /// Heights that ground may have.
 struct Band {
   double low;

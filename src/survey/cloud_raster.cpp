@@ -135,17 +135,38 @@ bool upper_level_goes_on(const Eigen::ArrayXXd& lowest, Index cell, double valle
   return known < enough_known || above >= enough_above;
 }
 
+/// What lies above the ground in groups of cells.
+struct Cover {
+  Ceilings ceilings;
+  Eigen::ArrayXXd doubt;  ///< of the height, where points lie on two surfaces [m]
+};
+
+/// By how much the height of a group may be wrong where it holds two surfaces: if the lower one
+/// counts, by the share of the upper; if both do, by that of the smaller.
+double doubt_by(const Overlay& both, bool only_lower) {
+  const double share =
+      only_lower ? both.share_above : std::min(both.share_above, 1.0 - both.share_above);
+  return both.apart * share;
+}
+
 /// Takes what grows or hangs above the ground off the levels. A gap must be wider than noise makes
 /// it, and than a slope does between a few points.
-Ceilings lower_to_ground(PointsByCell& points, Levels& levels, double group_size) {
+Cover lower_to_ground(PointsByCell& points, Levels& levels, double group_size) {
   constexpr double gap_to_noise = 8.0;  // ours
   constexpr double gap_to_cell = 0.5;   // ours
-  Ceilings ceilings;
-  if (!std::isfinite(levels.noise)) return ceilings;
+  constexpr double least_apart = 0.03;  // ours: clods are as high [m]
+  Cover cover{{}, Eigen::ArrayXXd::Zero(levels.height.rows(), levels.height.cols())};
+  if (!std::isfinite(levels.noise)) return cover;
   const double gap = std::max(gap_to_noise * levels.noise, gap_to_cell * group_size);
   std::vector<Split> splits;
+  std::unordered_map<Index, Overlay> overlays;
   std::vector<float> heights;
+  const Index rows = levels.height.rows();
   points.for_each_group([&](Index group, CellRange in_group) {
+    const Surroundings around = surroundings_of(levels.height, group % rows, group / rows);
+    if (const auto both = overlay_in(in_group, around.slope, std::max(gap, least_apart), heights)) {
+      overlays[group] = *both;
+    }
     auto split = two_levels(in_group, levels.height(group), gap, heights);
     if (!split) return;
     split->cell = group;
@@ -156,9 +177,12 @@ Ceilings lower_to_ground(PointsByCell& points, Levels& levels, double group_size
   for (const Split& split : splits) {
     if (!split.among || upper_level_goes_on(lowest, split.cell, split.valley)) continue;
     levels.height(split.cell) = split.low;
-    ceilings[split.cell] = split.valley;
+    cover.ceilings[split.cell] = split.valley;
   }
-  return ceilings;
+  for (const auto& [group, both] : overlays) {
+    cover.doubt(group) = doubt_by(both, cover.ceilings.count(group) > 0);
+  }
+  return cover;
 }
 
 /// Heights that the ground may have in the cells of a group, and its slope.
@@ -189,16 +213,19 @@ Expected expected_in(const PointsByCell& points, const Levels& levels, const Cei
 Surface surface_of(const PointSource& source, const HeightMap& map, const RasterOptions& options) {
   PointsByCell points(source, map, options.memory);
   Levels levels = find_levels(points);
-  const Ceilings ceilings =
+  const Cover cover =
       lower_to_ground(points, levels, static_cast<double>(points.side()) * map.cell_size);
   const double gap = options.outlier_distance * levels.noise;
   Surface surface{map, map.z, Eigen::ArrayXXi::Zero(map.z.rows(), map.z.cols())};
+  surface.doubt = Eigen::ArrayXXd::Zero(map.z.rows(), map.z.cols());
   points.for_each_cell([&](Index cell, CellRange in_cell) {
-    const Expected ground = expected_in(points, levels, ceilings, gap, points.group_of(cell));
+    const Index group = points.group_of(cell);
+    const Expected ground = expected_in(points, levels, cover.ceilings, gap, group);
     const CellHeight result =
         mean_height(in_cell, ground.band, ground.level, levels.noise, ground.slope);
     surface.height.z(cell) = points.base() + (ground.level + result.height);
     surface.variance(cell) = result.variance;
+    surface.doubt(cell) = cover.doubt(group);
     surface.points(cell) = static_cast<int>(std::lround(result.points * points.per_kept(cell)));
   });
   return surface;

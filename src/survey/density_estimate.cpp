@@ -82,6 +82,15 @@ Surfaces survey(const OutlinedScans& seen, const DensityOptions& options) {
 
 // ---- Height maps to volumes -------------------------------------------------------------------
 
+void append(std::vector<Warning> more, std::vector<Warning>& warnings) {
+  for (Warning& warning : more) {
+    const auto same = [&](const Warning& w) { return w.message == warning.message; };
+    if (std::none_of(warnings.begin(), warnings.end(), same)) {
+      warnings.push_back(std::move(warning));
+    }
+  }
+}
+
 /// Errors of the change are about what the scans show.
 template <typename Measure>
 VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
@@ -92,13 +101,22 @@ VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
   }
 }
 
+std::vector<Warning> doubts_about_overlays(const Surfaces& surfaces, const VolumeChange& change) {
+  std::vector<Warning> doubts = check_overlays(surfaces.dig.surfaces, change, change.areas.front());
+  if (surfaces.dump) {
+    append(check_overlays(surfaces.dump->surfaces, change, change.areas.back()), doubts);
+  }
+  return doubts;
+}
+
 VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfaces,
                                 const ChangeOptions& options) {
   VolumeChange change = about(seen, [&] {
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  std::vector<Warning> doubts = check_cover(surfaces.pairs(), change);
+  std::vector<Warning> doubts = doubts_about_overlays(surfaces, change);
+  append(check_cover(surfaces.pairs(), change), doubts);
   for (const Warning& warning : change.warnings) {
     if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
   }
@@ -116,15 +134,6 @@ VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& sur
 
 // ---- Whether the scans can be what they are taken for ------------------------------------------
 
-void append(std::vector<Warning> more, std::vector<Warning>& warnings) {
-  for (Warning& warning : more) {
-    const auto same = [&](const Warning& w) { return w.message == warning.message; };
-    if (std::none_of(warnings.begin(), warnings.end(), same)) {
-      warnings.push_back(std::move(warning));
-    }
-  }
-}
-
 std::vector<Warning> doubts_about(const OutlinedScans& seen) {
   std::vector<Warning> doubts = check_outlines(seen.dig);
   if (seen.dump) append(check_outlines(*seen.dump), doubts);
@@ -133,7 +142,8 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen) {
 
 std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
                                   const VolumeChange& change) {
-  std::vector<Warning> doubts = check_volumes(change);
+  std::vector<Warning> doubts = doubts_about_overlays(surfaces, change);
+  append(check_volumes(change), doubts);
   append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
                          const AreaChange& area) {

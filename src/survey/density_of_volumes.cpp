@@ -116,7 +116,7 @@ Warning disagreement_of(const PayloadDensity& payload, bool unknown_soil) {
 }
 
 /// The dig as another reading has it: another hole if one of the open changes that fell makes this
-/// bulking factor, else another heap.
+/// bulking factor, else another heap with as many voids for its size.
 DugVolumes as_read(const Reading& reading, const VolumeChange& change, DugVolumes dig) {
   constexpr double same = 1e-6;
   const double hole = dig.bulking() * dig.volumes(0) / reading.bulking.value;
@@ -130,7 +130,9 @@ DugVolumes as_read(const Reading& reading, const VolumeChange& change, DugVolume
   if (is_hole) {
     dig.volumes(0) = hole;
   } else {
+    const double share = reading.bulking.value / dig.bulking();
     dig.volumes(2) += (reading.bulking.value - dig.bulking()) * dig.volumes(0);
+    if (dig.voids) dig.voids = Measured{share * dig.voids->value, share * dig.voids->sd};
   }
   return dig;
 }

@@ -74,6 +74,18 @@ std::optional<Warning> other_units(const OutlinedPair& pair) {
                  true};
 }
 
+std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
+  constexpr double most = 0.021;  // ours [m]: steps of 2 cm are a tenth of a shallow hole
+  const bool is_after = pair.after.height_step > pair.before.height_step;
+  const double step = std::max(pair.before.height_step, pair.after.height_step);
+  if (!(step > most)) return std::nullopt;
+  return Warning{"coarse_heights",
+                 name_of(is_after ? pair.scans.after : pair.scans.before) +
+                     ": all heights are multiples of " + readable(step) +
+                     " m: volumes of a dig need finer ones; write the coordinates with more digits",
+                 true};
+}
+
 /// The unit that makes a bucket's volume of it; none for a volume that one digs.
 std::optional<Warning> no_dig_of_metres(double hole, const std::string& what) {
   constexpr double most = 1000.0;  // [m^3]; ours: five times the largest dragline's bucket, 168 m^3
@@ -321,6 +333,7 @@ std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   };
   add(too_small(pair));
   add(other_units(pair));
+  add(coarse_heights(pair));
   const auto before = not_up(pair.before, pair.scans.before);
   add(before ? before : not_up(pair.after, pair.scans.after));
   add(not_in_view(pair));
@@ -386,6 +399,50 @@ std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeCha
              true}};
   }
   return {};
+}
+
+namespace {
+
+/// Zero where a surface has no points or they lie on one surface.
+Eigen::ArrayXXd doubt_of(const Surface& surface) {
+  const Eigen::ArrayXXd& z = surface.height.z;
+  const Eigen::ArrayXXd none = Eigen::ArrayXXd::Zero(z.rows(), z.cols());
+  if (surface.doubt.size() != z.size()) return none;
+  return z.isNaN().select(none, surface.doubt);
+}
+
+}  // namespace
+
+std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeChange& change,
+                                    const AreaChange& area) {
+  constexpr double noted = 0.01;     // ours, of the bulking factor
+  constexpr double doubtful = 0.03;  // ours, likewise
+  const Eigen::ArrayXXd of_before = doubt_of(surfaces.before);
+  const Eigen::ArrayXXd of_after = doubt_of(surfaces.after);
+  double hole = 0.0;
+  double soil = 0.0;
+  double in_after = 0.0;
+  const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
+  for_each_cell(area.zone, [&](Cell at) {
+    const int zone = area.zone(at.row, at.col);
+    if (zone < 0) return;
+    const ZoneKind kind = change.zones[static_cast<std::size_t>(zone)].kind;
+    if (kind == ZoneKind::other) return;
+    const double after = cell_area * of_after(at.row, at.col);
+    (kind == ZoneKind::dig ? hole : soil) += after + cell_area * of_before(at.row, at.col);
+    in_after += after;
+  });
+  if (!(change.before.value > 0.0) || !(change.after.value > 0.0)) return {};
+  const double share = hole / change.before.value + soil / change.after.value;
+  if (!(share > noted)) return {};
+  return {{"two_surfaces",
+           std::string("points of the scan ") +
+               (in_after > 0.5 * (hole + soil) ? "after" : "before") +
+               " lie on two surfaces, one above the other, which leaves " + readable(hole, 2) +
+               " m^3 of the hole and " + readable(soil, 2) +
+               " m^3 of spill and heap in doubt: leave out dust, plants and what else is above the "
+               "ground, and points that were taken at other times",
+           share > doubtful}};
 }
 
 std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area) {

@@ -16,8 +16,8 @@
 
 namespace excavplan {
 
-/// Codes `units` (too small, or one scan in other units than the other) and `frame` (a camera's,
-/// or z is not up), all of which end trust.
+/// Codes `units` (too small, or one scan in other units than the other), `coarse_heights` (rounded
+/// to more than 2 cm) and `frame` (a camera's, or z is not up), all of which end trust.
 std::vector<Warning> check_outlines(const OutlinedPair& pair);
 
 /// Code `registration_beyond_prior`: the scan after has moved by more than three standard
@@ -33,6 +33,11 @@ std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfac
 
 /// Of a machine that was taken out of the scans and hid a part of hole or heap.
 std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeChange& change);
+
+/// Code `two_surfaces`: points of hole, spill or heap lie on two surfaces, one above the other.
+/// Ends trust where the bulking factor may be off by 3 %.
+std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeChange& change,
+                                    const AreaChange& area);
 
 /// Of ground that is bent like a ball about the sensor.
 std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area);

@@ -76,9 +76,10 @@ TEST(AccuracyOfBulking, BudgetAddsUpAndNamesTheSource) {
     const VolumeChange change = Survey{Dig{}, errors_of(variant), 400000, 1}.measured();
     const BulkingErrors by = bulking_errors(change);
     const double sd = bulking_factor(change).value_or(Measured{}).sd;
-    EXPECT_NEAR(std::sqrt(by.noise * by.noise + by.correlated * by.correlated +
-                          by.datum * by.datum + by.holes * by.holes + by.faces * by.faces),
-                sd, 1e-9);
+    EXPECT_NEAR(
+        std::sqrt(by.noise * by.noise + by.correlated * by.correlated + by.datum * by.datum +
+                  by.holes * by.holes + by.faces * by.faces + by.thin * by.thin),
+        sd, 1e-9);
     if (by.correlated > 0.7 * sd) return "correlated";
     if (by.holes > 0.7 * sd) return "holes";
     return by.noise > 0.7 * sd ? "noise" : "none";

@@ -356,6 +356,112 @@ TEST(BadMeaning, Places) {
   expect_no_wrong_answer(inputs);
 }
 
+TEST(BadMeaning, BentScans) {
+  Inputs inputs;
+  const Codes codes = {"scans_do_not_fit", "zone_at_border",       "attribution_open",
+                       "swapped",          "little_stable_ground", "no_dumped_soil",
+                       "other_change",     "zone_partly_unseen",   "registration_beyond_prior"};
+  const auto bent = [&](const std::string& name, const std::function<double(double, double)>& by) {
+    add_both(
+        inputs, "the one after bent: " + name,
+        [=](DigScans& s, auto&) {
+          map_points(s.after, [&](const Vector3d& p) {
+            return Vector3d(p.x(), p.y(), p.z() + by(p.x(), p.y()));
+          });
+        },
+        codes, may_be_right);
+  };
+  for (const auto& [height, length] :
+       {std::pair(0.02, 6.0), std::pair(0.02, 1.5), std::pair(0.04, 3.0)}) {
+    bent("waves of " + std::to_string(height) + " m by " + std::to_string(length) + " m",
+         [=](double x, double) { return height * std::sin(2.0 * pi * x / length); });
+  }
+  bent("oblique waves", [](double x, double y) { return 0.02 * std::sin(pi * (x + 0.6 * y)); });
+  bent("waves in both directions",
+       [](double x, double y) { return 0.02 * std::sin(2.0 * x) * std::sin(3.0 * y); });
+  bent("rings", [](double x, double y) { return 0.02 * std::sin(2.0 * std::hypot(x, y)); });
+  for (const double height : {0.005, 0.01, -0.01}) {
+    bent("a bowl of " + std::to_string(height) + " m at 2 m", [=](double x, double y) {
+      return 0.25 * height * (std::pow(x - 2.7, 2) + std::pow(y - 1.0, 2));
+    });
+  }
+  bent("a step", [](double, double y) { return y > 0.0 ? 0.04 : 0.0; });
+  bent("a step across", [](double x, double) { return x > 2.5 ? 0.04 : 0.0; });
+  bent("a quarter raised", [](double x, double y) { return x > 2.5 && y > 0.0 ? 0.04 : 0.0; });
+  bent("a ramp", [](double x, double) { return 0.03 * std::max(0.0, x - 2.5); });
+  expect_no_wrong_answer(inputs);
+}
+
+TEST(BadMeaning, TwoSurfaces) {
+  Inputs inputs;
+  const Codes codes = {"two_surfaces",     "no_dumped_soil", "zone_partly_unseen",
+                       "attribution_open", "no_hole_found",  "swapped"};
+  const auto with_before = [](DigScans& s, int every, const Rectangle& where) {
+    std::vector<Vector3d> more;
+    int i = 0;
+    for (const Vector3d& p : s.before.clouds.front()->points) {
+      if (i++ % every == 0 && where.contains(p.x(), p.y())) more.push_back(p);
+    }
+    add_points(s.after, more);
+  };
+  const Rectangle all = {-100.0, -100.0, 100.0, 100.0};
+  for (const int every : {1, 2, 4}) {
+    add_both(
+        inputs, "before among after, every " + std::to_string(every),
+        [=](DigScans& s, auto&) { with_before(s, every, all); }, codes);
+  }
+  for (const std::size_t count : {1500u, 6000u}) {
+    add_both(
+        inputs, std::to_string(count) + " points of dust",
+        [=](DigScans& s, auto&) {
+          Random random(5);
+          std::vector<Vector3d> dust;
+          for (std::size_t i = 0; i < count; ++i) {
+            dust.emplace_back(random.uniform(-0.8, 0.8), random.uniform(-0.5, 0.5),
+                              random.uniform(0.0, 0.3));
+          }
+          add_points(s.after, dust);
+        },
+        codes, may_be_right);
+  }
+  expect_no_wrong_answer(inputs);
+}
+
+TEST(BadMeaning, CoarseAndNoisyHeights) {
+  Inputs inputs;
+  const auto rounded = [](double step) {
+    return
+        [=](const Vector3d& p) { return Vector3d(p.x(), p.y(), step * std::round(p.z() / step)); };
+  };
+  for (const double step : {0.03, 0.05, 0.08, 0.1}) {
+    const std::string name = "rounded to " + std::to_string(step) + " m";
+    add_both(inputs, "the one after " + name,
+             [=](DigScans& s, auto&) { map_points(s.after, rounded(step)); }, {"coarse_heights"});
+    add_both(inputs, "both " + name, [=](DigScans& s, auto&) { map_both(s, rounded(step)); },
+             {"coarse_heights"});
+  }
+  for (const double step : {0.001, 0.01}) {
+    add_both(
+        inputs, "both rounded to " + std::to_string(step) + " m",
+        [=](DigScans& s, auto&) { map_both(s, rounded(step)); }, {"grass", "two_surfaces"},
+        may_be_right);
+  }
+  for (const double sd : {0.05, 0.1, 0.15, 0.25}) {
+    add_both(
+        inputs, "noise of " + std::to_string(sd) + " m",
+        [=](DigScans& s, auto&) {
+          Random random(6);
+          map_both(s, [&](const Vector3d& p) {
+            return Vector3d(p.x(), p.y(), p.z() + sd * random.normal());
+          });
+        },
+        {"grass", "scans_do_not_fit", "no_dumped_soil", "attribution_open", "zone_partly_unseen",
+         "no_hole_found", "little_stable_ground", "zone_at_border", "swapped", "blocks"},
+        may_be_right);
+  }
+  expect_no_wrong_answer(inputs);
+}
+
 TEST(BadMeaning, Points) {
   Inputs inputs;
   add(inputs, "nothing in the one after",

@@ -358,6 +358,7 @@ std::vector<Bar> error_bars(const VolumeChange& change) {
                            {"motion between the scans", errors.datum},
                            {"unseen ground", errors.holes},
                            {"steep faces", errors.faces},
+                           {"thin soil", errors.thin},
                            {"open changes", errors.attribution}};
   std::stable_sort(bars.begin(), bars.end(),
                    [](const Bar& a, const Bar& b) { return a.value > b.value; });

@@ -34,6 +34,7 @@ struct BulkingErrors {
   double datum = 0.0;        ///< likewise
   double holes = 0.0;        ///< likewise
   double faces = 0.0;        ///< likewise
+  double thin = 0.0;         ///< likewise
   double attribution = 0.0;  ///< likewise
   double scans = 0.0;        ///< all but attribution
 };

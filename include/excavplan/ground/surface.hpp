@@ -22,6 +22,9 @@ struct Surface {
   std::vector<Eigen::Vector3d> sensors = {};
   /// Of several sensors, those that saw a cell: bit i is that of `sensors[i]`. Empty of one.
   Eigen::ArrayXXi seen_from = {};
+  /// By how much a height may be wrong because the points of its cell lie on two surfaces, one
+  /// above the other [m]: 0 where they lie on one. Empty where the points are not known.
+  Eigen::ArrayXXd doubt = {};
 };
 
 }  // namespace excavplan

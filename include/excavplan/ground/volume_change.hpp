@@ -69,10 +69,11 @@ struct VolumeErrors {
   Eigen::Matrix3d datum = Eigen::Matrix3d::Zero();        ///< motion left between the scans
   Eigen::Matrix3d holes = Eigen::Matrix3d::Zero();        ///< ground that no scan saw
   Eigen::Matrix3d faces = Eigen::Matrix3d::Zero();        ///< position of steep faces
+  Eigen::Matrix3d thin = Eigen::Matrix3d::Zero();         ///< soil too thin to tell from noise
   Eigen::Matrix3d attribution = Eigen::Matrix3d::Zero();  ///< changes that are open
 
   /// Covariance by the scans alone.
-  Eigen::Matrix3d scans() const { return noise + correlated + datum + holes + faces; }
+  Eigen::Matrix3d scans() const { return noise + correlated + datum + holes + faces + thin; }
   /// Covariance by all sources.
   Eigen::Matrix3d total() const { return scans() + attribution; }
 };
@@ -120,7 +121,8 @@ struct SurfacePair {
 /// fifth of it away from the hole); looks_swapped (after / before below 0.97 beyond its error, or
 /// above 3); attribution_open; stirred_ground; other_change; object_taken_out; zone_at_border;
 /// zone_partly_unseen; zone_unseen (refused: no bulking factor); sensor_place_inferred;
-/// little_stable_ground (under 40 %); scans_do_not_fit (noise above 0.1 m); earlier_soil.
+/// little_stable_ground (under 40 %); scans_do_not_fit (noise above 0.1 m, or correlated error above
+/// 10 mm); systematic_errors (stripes or doming above 10 mm, taken off); earlier_soil.
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid, share fewer than 100 known cells,
 ///         or an option is out of range

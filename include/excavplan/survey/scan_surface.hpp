@@ -54,8 +54,9 @@ struct ScanOutline {
   std::uint64_t finite_points = 0;   ///< inside the area
   std::uint64_t machine_points = 0;  ///< that Scan::machine held, left out
   std::optional<Rectangle> extent;   ///< as plan_extent(); none without finite points
-  double density = 0.0;  ///< points per m^2 of occupied ground; NaN if they have no area
-  double height = 0.0;   ///< from the lowest to the highest point but 0.1 % on either side [m]
+  double density = 0.0;      ///< points per m^2 of occupied ground; NaN if they have no area
+  double height_step = 0.0;  ///< of heights that were rounded; 0: they were not [m]
+  double height = 0.0;       ///< from the lowest to the highest point but 0.1 % on either side [m]
   /// Share of the points that lie as a depth camera sees them from the origin: within 60 degrees of
   /// the z axis, at 0.1 to 20 m along it [-].
   double seen_along_z = 0.0;
