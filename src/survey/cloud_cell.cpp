@@ -213,6 +213,39 @@ class CellMean {
   Moments squared_;                      ///< with the squares of the shares
 };
 
+/// Of heights into a lower and an upper part.
+struct Partition {
+  Overlay overlay;
+  double valley = 0.0;     // between them [m]
+  double explained = 0.0;  // of the squares about the mean [-]
+};
+
+/// By least squares, of sorted heights, with at least `fewest` in each part.
+Partition best_partition(const std::vector<float>& heights, std::size_t fewest) {
+  double all = 0.0;
+  double squares = 0.0;
+  for (const float height : heights) {
+    all += static_cast<double>(height);
+    squares += static_cast<double>(height) * static_cast<double>(height);
+  }
+  const auto n = static_cast<double>(heights.size());
+  const double total = squares - all * all / n;
+  Partition best;
+  double below = 0.0;
+  for (std::size_t i = 1; i <= heights.size() - fewest; ++i) {
+    below += static_cast<double>(heights[i - 1]);
+    if (i < fewest) continue;
+    const auto count = static_cast<double>(i);
+    const double apart = (all - below) / (n - count) - below / count;
+    const double explained = count * (n - count) / n * apart * apart / total;
+    if (explained <= best.explained) continue;
+    const double valley =
+        0.5 * (static_cast<double>(heights[i - 1]) + static_cast<double>(heights[i]));
+    best = {{apart, 1.0 - count / n}, valley, explained};
+  }
+  return best;
+}
+
 }  // namespace
 
 double mean_median(std::vector<float>& values) {
@@ -257,37 +290,27 @@ std::optional<Split> two_levels(CellRange points, double level, double gap,
   return split;
 }
 
-std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope, double least,
+std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope, double by_noise,
                                   std::vector<float>& heights) {
+  constexpr double least = 0.03;  // [m]: clods are as high
+  constexpr double most_explained = 0.85;
+  constexpr std::size_t enough = 20;
   const std::size_t fewest = std::max<std::size_t>(3, points.size() / 10);
   if (points.size() < 2 * fewest) return std::nullopt;
   heights.clear();
-  double all = 0.0;
   for (const CellPoint& point : points) {
     heights.push_back(static_cast<float>(height_above(point, slope)));
-    all += static_cast<double>(heights.back());
   }
   const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
   if (static_cast<double>(*high - *low) < least) return std::nullopt;
   std::sort(heights.begin(), heights.end());
-  const auto n = static_cast<double>(heights.size());
-  double below = 0.0;
-  double most = 0.0;
-  Overlay found;
-  double valley = 0.0;
-  for (std::size_t i = 1; i <= heights.size() - fewest; ++i) {
-    below += static_cast<double>(heights[i - 1]);
-    if (i < fewest) continue;
-    const auto count = static_cast<double>(i);
-    const double apart = (all - below) / (n - count) - below / count;
-    const double between = count * (n - count) * apart * apart;
-    if (between <= most) continue;
-    most = between;
-    found = {apart, 1.0 - count / n};
-    valley = 0.5 * (static_cast<double>(heights[i - 1]) + static_cast<double>(heights[i]));
+  const Partition best = best_partition(heights, fewest);
+  const bool is_noise =
+      best.overlay.apart < by_noise && (best.explained < most_explained || points.size() < enough);
+  if (best.overlay.apart < least || is_noise || !lies_among(points, best.valley, slope)) {
+    return std::nullopt;
   }
-  if (found.apart < least || !lies_among(points, valley, slope)) return std::nullopt;
-  return found;
+  return best.overlay;
 }
 
 Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Eigen::Index column) {

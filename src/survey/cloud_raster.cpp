@@ -154,7 +154,6 @@ double doubt_by(const Overlay& both, bool only_lower) {
 Cover lower_to_ground(PointsByCell& points, Levels& levels, double group_size) {
   constexpr double gap_to_noise = 8.0;  // ours
   constexpr double gap_to_cell = 0.5;   // ours
-  constexpr double least_apart = 0.03;  // ours: clods are as high [m]
   Cover cover{{}, Eigen::ArrayXXd::Zero(levels.height.rows(), levels.height.cols())};
   if (!std::isfinite(levels.noise)) return cover;
   const double gap = std::max(gap_to_noise * levels.noise, gap_to_cell * group_size);
@@ -164,7 +163,7 @@ Cover lower_to_ground(PointsByCell& points, Levels& levels, double group_size) {
   const Index rows = levels.height.rows();
   points.for_each_group([&](Index group, CellRange in_group) {
     const Surroundings around = surroundings_of(levels.height, group % rows, group / rows);
-    if (const auto both = overlay_in(in_group, around.slope, std::max(gap, least_apart), heights)) {
+    if (const auto both = overlay_in(in_group, around.slope, gap, heights)) {
       overlays[group] = *both;
     }
     auto split = two_levels(in_group, levels.height(group), gap, heights);

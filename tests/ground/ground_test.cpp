@@ -14,6 +14,7 @@
 #include <excavplan/ground/volume_change.hpp>
 #include "base/random.hpp"
 
+#include "ground/doming.hpp"
 #include "ground/grid_cells.hpp"
 #include "support/errors.hpp"
 
@@ -624,6 +625,97 @@ TEST(VolumeChange, TheDatumIsThatOfTheDensestChanges) {
   });
   const VolumeChange change = measure_change(before, after);
   EXPECT_NEAR(change.areas.front().datum, 0.005, 1e-5);
+}
+
+/// Soil of 2 cm beside the pit is as high as the bends of the scan.
+TEST(VolumeChange, BendsOfAScanHideNoThinSoil) {
+  const Shape thinly_spilled = [](double x, double y) {
+    const PitFrame p(x, y);
+    const bool is_covered = std::abs(p.u) < 1.1 && p.v > -1.4 && p.v < -0.6;
+    return whole_dig(x, y) + (is_covered ? 0.02 : 0.0);
+  };
+  const HeightMap before = noisy(flat_ground(scene, 0.05), 0.004, 1, 1);
+  const VolumeChange straight = measure_change(before, noisy(map_of(thinly_spilled), 0.004, 1, 2));
+  EXPECT_EQ(count_of(straight, "systematic_errors"), 0);
+  const std::pair<const char*, Shape> bends[] = {
+      {"waves", [](double x, double) { return 0.02 * std::sin(4.0 * x); }},
+      {"oblique waves", [](double x, double y) { return 0.02 * std::sin(2.0 * x + 2.5 * y); }},
+      {"a bowl", [](double x, double y) { return 0.004 * (std::pow(x - 5.0, 2) + y * y); }},
+      {"a saddle", [](double x, double y) { return 0.006 * (x - 5.0) * (y - 2.0); }}};
+  for (const auto& [name, bend] : bends) {
+    const Shape& by = bend;
+    const Shape bent = [&](double x, double y) { return thinly_spilled(x, y) + by(x, y); };
+    const VolumeChange change = measure_change(before, noisy(map_of(bent), 0.004, 1, 2));
+    EXPECT_EQ(count_of(change, "systematic_errors"), 1) << name;
+    EXPECT_NEAR(change.before.value, straight.before.value, 0.01 * pit_volume) << name;
+    EXPECT_NEAR(change.after.value, straight.after.value, 0.015 * pit_volume) << name;
+  }
+}
+
+/// On ground of 200 x 100 cells that did not change but for a zone in its middle.
+ChangedGround ground_with(const Shape& error) {
+  ChangedGround ground;
+  ground.difference = Eigen::ArrayXXd(100, 200);
+  ground.zone = Eigen::ArrayXXi::Constant(100, 200, -1);
+  ground.zone.block(40, 80, 20, 40) = 0;
+  ground.zone_is_cut = {false};
+  Random random(4);
+  for_each_cell(ground.difference, [&](Cell at) {
+    const double x = 0.05 * static_cast<double>(at.col);
+    const double y = 0.05 * static_cast<double>(at.row);
+    ground.difference(at.row, at.col) = error(x, y) + 0.002 * random.normal();
+  });
+  ground.residual = (ground.zone < 0).select(ground.difference, nan);
+  return ground;
+}
+
+TEST(VolumeChange, DomingIsTakenOffWhereAllGroundHasIt) {
+  ChangedGround bowl =
+      ground_with([](double x, double y) { return 0.004 * (x * x - 0.5 * x * y + 2.0 * y * y); });
+  const std::vector<double> left = take_doming_off(bowl, 0.05);
+  EXPECT_LT(bowl.difference.block(40, 80, 20, 40).abs().mean(), 0.002);
+  EXPECT_LT(std::sqrt(bowl.residual.isNaN().select(0.0, bowl.residual).square().mean()), 0.0021);
+  ASSERT_EQ(left.size(), 1u);
+  const double of_cells = std::sqrt(left[0]) / 800.0;  // of the mean of its cells
+  EXPECT_GT(of_cells, 0.5e-5);
+  EXPECT_LT(of_cells, 10e-5);
+  const std::pair<const char*, Shape> others[] = {
+      {"noise", [](double, double) { return 0.0; }},
+      {"a plane", [](double x, double y) { return 0.01 * x - 0.02 * y; }},
+      {"a bump", [](double x, double y) {
+         return 0.03 * std::exp(-std::pow(x - 5.0, 2) - std::pow(y - 2.5, 2));
+       }}};
+  for (const auto& [name, error] : others) {
+    ChangedGround ground = ground_with(error);
+    const Eigen::ArrayXXd difference = ground.difference;
+    EXPECT_EQ(take_doming_off(ground, 0.05), std::vector<double>{0.0}) << name;
+    EXPECT_TRUE((ground.difference == difference).all()) << name;
+  }
+}
+
+/// Its error is that of an edge which thins out beyond the zone, along the rim of the heap.
+TEST(VolumeChange, SoilTooThinToTellWidensTheInterval) {
+  const auto thin_of = [](double noise) {
+    const VolumeChange change = measure_change(noisy(flat_ground(scene, 0.05), noise, 1, 1),
+                                               noisy(dug_scene(), noise, 1, 2));
+    EXPECT_EQ(change.errors.thin(0, 0), 0.0);
+    return std::sqrt(change.errors.thin(2, 2));
+  };
+  EXPECT_EQ(thin_of(0.004), 0.0);
+  const double lowest = 3.0 * std::sqrt(2.0) * 0.03 / 3.0;  // that is told, of 3 x 3 cells
+  const double beyond = lowest / 0.3 - lowest / 0.5;
+  const double edge = 8.0 * heap_radius;  // of a square about it: the sides of its cells
+  EXPECT_NEAR(thin_of(0.03) / (edge * 0.15 * beyond * beyond), 1.15, 0.25);
+}
+
+TEST(VolumeChange, ErrorsThatNeighboursShareEndTrust) {
+  const HeightMap before = noisy(flat_ground(scene, 0.05), 0.004, 1, 1);
+  for (const double sd : {0.004, 0.016}) {
+    HeightMap after = noisy(dug_scene(), 0.004, 1, 2);
+    after.z += smooth_noise(after, sd, 0.4, 3, 3);
+    const VolumeChange change = measure_change(before, after);
+    EXPECT_EQ(count_of(change, "scans_do_not_fit"), sd > 0.01 ? 1 : 0) << sd;
+  }
 }
 
 TEST(VolumeChange, ZoneThatTheSurveyCutsOffIsSaid) {

@@ -410,6 +410,8 @@ TEST(BadMeaning, TwoSurfaces) {
         inputs, "before among after, every " + std::to_string(every),
         [=](DigScans& s, auto&) { with_before(s, every, all); }, codes);
   }
+  add_both(inputs, "before among the heap after, every third",
+           [=](DigScans& s, auto&) { with_before(s, 3, {3.2, -100.0, 100.0, 100.0}); }, codes);
   for (const std::size_t count : {1500u, 6000u}) {
     add_both(
         inputs, std::to_string(count) + " points of dust",

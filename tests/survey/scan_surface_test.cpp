@@ -481,5 +481,40 @@ TEST(CellFor, HoldsTwelvePointsOfTheSparsestScan) {
   EXPECT_DOUBLE_EQ(cell_for({dense}), 0.01);
 }
 
+TEST(ScanSurface, PointsOnTwoSurfacesMakeTheHeightDoubtful) {
+  const Rectangle patch{0.0, 0.0, 1.0, 1.0};
+  const auto doubt = [&](const Shape& shape, double above, std::size_t more) {
+    Points points = sampled(shape, patch, 8000, 0.003, 1);
+    const Points others =
+        sampled([&](double x, double y) { return shape(x, y) + above; }, patch, more, 0.003, 2);
+    points.insert(points.end(), others.begin(), others.end());
+    return surface_of(points, patch, 0.05).doubt.mean();
+  };
+  const Shape slope = [](double x, double y) { return 0.8 * x - 0.5 * y; };
+  const Shape wall = [](double x, double) { return x > 0.52 ? 0.3 : 0.0; };
+  for (const Shape& shape : {Shape(level), slope}) {
+    EXPECT_EQ(doubt(shape, 0.0, 0), 0.0);
+    EXPECT_EQ(doubt(shape, 0.01, 2000), 0.0);                // as rough ground
+    EXPECT_NEAR(doubt(shape, 0.2, 2000), 0.2 * 0.2, 0.005);  // a fifth lies above
+    EXPECT_NEAR(doubt(shape, -0.2, 2000), 0.2 * 0.2, 0.14);  // of either, by which one counts
+    EXPECT_NEAR(doubt(shape, 0.2, 8000), 0.2 * 0.44, 0.01);  // the smaller half of 40
+  }
+  EXPECT_LT(doubt(wall, 0.0, 0), 0.002);
+}
+
+TEST(ScanSurface, RoundedHeightsAreTold) {
+  const Folder folder;
+  const auto step_of = [&](double step) {
+    Points points =
+        sampled([](double x, double y) { return 0.3 * x + 0.1 * y; }, field, 4000, 0.005, 1);
+    for (Eigen::Vector3d& p : points) {
+      if (step > 0.0) p.z() = step * std::round(p.z() / step);
+    }
+    return outline(scan_of({folder.write("rounded.pcd", points)})).height_step;
+  };
+  EXPECT_EQ(step_of(0.0), 0.0);
+  for (const double step : {0.01, 0.03, 0.1}) EXPECT_NEAR(step_of(step), step, 1e-6);
+}
+
 }  // namespace
 }  // namespace excavplan
