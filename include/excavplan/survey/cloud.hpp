@@ -111,7 +111,7 @@ struct RasterOptions {
   double cell_size = 0.05;        ///< [m], > 0
   double outlier_distance = 4.0;  ///< points this many robust sd beyond the heights found around
                                   ///< their cell are left out [-], > 0
-  std::uint64_t memory = std::uint64_t{256} << 20;  ///< for points held at a time [byte]; where
+  std::uint64_t memory = std::uint64_t{128} << 20;  ///< for points held at a time [byte]; where
                                                     ///< it does not do, scans are read again
   Eigen::Vector2d node = {0.0, 0.0};                ///< where corners of cells meet [m]
 };
