@@ -81,9 +81,10 @@ Outcome convert(const Inputs& inputs) {
   const std::vector<std::string> frames = frames_of(inputs);
   AveragedDepth average = average_depth_images(frames, intrinsics);
   Cloud& cloud = average.cloud;
-  const auto pose = find_pose(inputs.pose, cloud, [&](const std::string& path) {
-    return read_known_points(path, cloud, intrinsics);
-  });
+  const auto pose = find_pose(
+      inputs.pose, [&] { return level_on_ground(cloud); },
+      [&](const std::string& path) { return read_known_points(path, cloud, intrinsics); });
+  write_pose(inputs.pose, pose);
   if (pose) transform(cloud, pose->site_from_scan);
   const CloudSummary summary = summarise(cloud);
   write_cloud(inputs.out, cloud, format);

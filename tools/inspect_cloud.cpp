@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <memory>
 #include <utility>
 
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/survey/scan_surface.hpp>
 
 #include "shared/found_pose.hpp"
 #include "shared/recordings.hpp"
@@ -53,17 +54,16 @@ std::string range(const std::string& axis, double low, double high) {
          readable(high - low) + " m)";
 }
 
-std::vector<std::string> lines_for_people(const Inputs& inputs, const Cloud& cloud,
-                                          const CloudSummary& summary,
+std::vector<std::string> lines_for_people(const Inputs& inputs, const CloudSummary& summary,
                                           const std::optional<FoundPose>& pose) {
   std::string points = std::to_string(summary.points) + " points";
-  if (cloud.height > 1) {
-    points += " (" + std::to_string(cloud.width) + " x " + std::to_string(cloud.height) + ")";
+  if (summary.height > 1) {
+    points += " (" + std::to_string(summary.width) + " x " + std::to_string(summary.height) + ")";
   }
   std::vector<std::string> lines = {inputs.file + ": " + points + ", " +
                                     std::to_string(summary.finite_points) + " finite"};
-  if (cloud.left_out > 0) {
-    lines.push_back("  " + std::to_string(cloud.left_out) +
+  if (summary.left_out > 0) {
+    lines.push_back("  " + std::to_string(summary.left_out) +
                     " more are withheld or noise: left out");
   }
   if (summary.finite_points > 0) {
@@ -103,20 +103,24 @@ Outcome inspect(const Inputs& inputs) {
   format.text = inputs.ascii;
   auto recorded = recorded_input(inputs.file, inputs.tf_frame);
   if (!recorded && !inputs.tf_frame.empty()) usage_error("--tf-frame needs a recording");
-  Cloud cloud = recorded ? std::move(recorded->scan.cloud) : read_cloud(inputs.file);
-  const auto pose =
-      find_pose(placed, cloud, [](const std::string& path) { return read_known_points(path); });
-  if (pose) transform(cloud, pose->site_from_scan);
-  const CloudSummary summary = summarise(cloud);
-  if (inputs.out) write_cloud(*inputs.out, cloud, format);
+  Scan scan;
+  if (!recorded) scan.files = {inputs.file};
+  if (recorded) scan.clouds = {std::make_shared<const Cloud>(std::move(recorded->scan.cloud))};
+  const auto pose = find_pose(
+      placed, [&] { return level_on_ground(scan); },
+      [](const std::string& path) { return read_known_points(path); });
+  if (pose) scan.site_from_scan = pose->site_from_scan;
+  const CloudSummary summary = summarise(scan);
+  write_pose(placed, pose);
+  if (inputs.out) write_cloud(*inputs.out, scan, format);
 
   Outcome outcome;
   outcome.json = {{"file", inputs.file},
                   {"points", summary.points},
-                  {"width", cloud.width},
-                  {"height", cloud.height},
+                  {"width", summary.width},
+                  {"height", summary.height},
                   {"finite_points", summary.finite_points},
-                  {"left_out_points", cloud.left_out},
+                  {"left_out_points", summary.left_out},
                   {"centroid_m", to_json(summary.centroid)},
                   {"min_m", to_json(summary.min)},
                   {"max_m", to_json(summary.max)},
@@ -125,7 +129,7 @@ Outcome inspect(const Inputs& inputs) {
                   {"pose", pose ? pose->json : nlohmann::ordered_json()}};
   if (recorded) outcome.json["recording"] = std::move(recorded->json);
   if (inputs.out) outcome.json["out"] = *inputs.out;
-  outcome.lines = lines_for_people(inputs, cloud, summary, pose);
+  outcome.lines = lines_for_people(inputs, summary, pose);
   if (recorded) {
     outcome.lines.insert(outcome.lines.begin(), recorded->line);
     outcome.warnings = recorded->scan.warnings;

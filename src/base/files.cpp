@@ -133,16 +133,23 @@ class OutputFile {
   bool is_removed_ = false;
 };
 
-void write(const std::string& path, const std::string& content, bool is_flushed) {
+void write(const std::string& path, const ContentSource& content, bool is_flushed) {
   const Place place = place_of(path);
   OutputFile file(place, O_TRUNC);
-  const bool is_written = file.is_open() && file.write(content) &&
-                          (place.is_replaced ? file.replace(place, is_flushed) : file.close());
-  if (!is_written) fail_to_write(path, errno);
+  if (!file.is_open()) fail_to_write(path, errno);
+  content([&](std::string_view part) {
+    if (!file.write(part)) fail_to_write(path, errno);
+  });
+  const bool is_whole = place.is_replaced ? file.replace(place, is_flushed) : file.close();
+  if (!is_whole) fail_to_write(path, errno);
   if (!place.is_replaced) return;
   if (file.close() && (!is_flushed || flush_folder_of(place.path))) return;
   throw Error(ErrorKind::bad_file,
               path + ": was written, but a loss of power may undo that: " + reason_text(errno));
+}
+
+ContentSource in_one_part(const std::string& content) {
+  return [&content](const auto& append) { append(content); };
 }
 
 void require_folder_of(const std::string& path) {
@@ -173,10 +180,16 @@ std::string read_file(const std::string& path, std::uint64_t most_bytes) {
 }
 
 void write_journal(const std::string& path, const std::string& content) {
-  write(path, content, false);
+  write(path, in_one_part(content), false);
 }
 
-void write_file(const std::string& path, const std::string& content) { write(path, content, true); }
+void write_file(const std::string& path, const std::string& content) {
+  write(path, in_one_part(content), true);
+}
+
+void write_file(const std::string& path, const ContentSource& content) {
+  write(path, content, true);
+}
 
 std::string unfinished_name(const std::string& path) {
   constexpr std::size_t longest = 255;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -28,6 +29,10 @@ std::string read_file(const std::string& path, std::uint64_t most_bytes = most_s
 /// @throws Error (bad_file) with the reason if that fails; the old file then remains and no other,
 /// unless the error says that it was replaced: the disk failed when all was written
 void write_file(const std::string& path, const std::string& content);
+/// Hands on a content too large to hold, part by part.
+using ContentSource = std::function<void(const std::function<void(std::string_view)>& append)>;
+/// The same; what the source throws leaves the old file.
+void write_file(const std::string& path, const ContentSource& content);
 /// The same for what is written again and again or can be computed again: it is not flushed, so a
 /// loss of power, unlike a kill, may cost it.
 void write_journal(const std::string& path, const std::string& content);

@@ -3,6 +3,7 @@
 #include <excavplan/survey/cloud.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,7 +12,10 @@
 #include <excavplan/error.hpp>
 
 #include "base/check.hpp"
+#include "ground/robust.hpp"
 #include "survey/cloud_outline.hpp"
+#include "survey/point_stream.hpp"
+#include "survey/scan_reading.hpp"
 
 namespace excavplan {
 namespace {
@@ -19,21 +23,62 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double left_out = 0.001;  // of the points, on either side of an extent
 
-using Values = std::vector<double>;
+/// The lowest of the values that stream by, so many of them.
+class Lowest {
+ public:
+  explicit Lowest(std::size_t count) : count_(count) {}
 
-Values finite_values(const Cloud& cloud, Eigen::Index axis) {
-  Values values;
-  values.reserve(cloud.points.size());
-  for (const Eigen::Vector3d& point : cloud.points) {
-    if (point.allFinite()) values.push_back(point[axis]);
+  void add(double value) {
+    if (value >= bound_) return;
+    values_.push_back(value);
+    if (values_.size() == 2 * count_) bound_ = highest();
   }
-  return values;
+  /// The highest of them.
+  double highest() {
+    if (values_.size() < count_) refuse_change();
+    const auto last = values_.begin() + static_cast<std::ptrdiff_t>(count_) - 1;
+    std::nth_element(values_.begin(), last, values_.end());
+    values_.resize(count_);
+    return values_.back();
+  }
+
+ private:
+  std::size_t count_;
+  double bound_ = std::numeric_limits<double>::infinity();
+  std::vector<double> values_;  ///< those, and some of the others
+};
+
+template <typename Use>
+void for_each_finite(const PointSource& source, const Use& use) {
+  source([&use](const std::vector<Eigen::Vector3d>& points) {
+    for (const Eigen::Vector3d& point : points) {
+      if (point.allFinite()) use(point);
+    }
+  });
 }
 
-double nth(Values& values, std::size_t n) {
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(n);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
+/// The box of finite points without the farthest 0.1 % on each side.
+Eigen::AlignedBox3d usual_box(const PointSource& source, std::size_t finite_points) {
+  const auto beyond = static_cast<std::size_t>(left_out * static_cast<double>(finite_points));
+  std::vector<Lowest> low(3, Lowest(beyond + 1));
+  std::vector<Lowest> high = low;  // of the negated coordinates
+  for_each_finite(source, [&](const Eigen::Vector3d& point) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = point[static_cast<Eigen::Index>(axis)];
+      low[axis].add(value);
+      high[axis].add(-value);
+    }
+  });
+  return {Eigen::Vector3d(low[0].highest(), low[1].highest(), low[2].highest()),
+          -Eigen::Vector3d(high[0].highest(), high[1].highest(), high[2].highest())};
+}
+
+/// The plan of a box, which contains() the points on its upper edges.
+Rectangle plan_of(const Eigen::AlignedBox3d& box) {
+  const auto above = [](double value) {
+    return std::nextafter(value, std::numeric_limits<double>::infinity());
+  };
+  return {box.min().x(), box.min().y(), above(box.max().x()), above(box.max().y())};
 }
 
 /// Area of the square cells of edge `cell` that hold a point, and how many points they hold.
@@ -41,30 +86,30 @@ struct Occupied {
   double area = 0.0;
   std::size_t points = 0;
 };
-Occupied occupied_area(const Cloud& cloud, const Rectangle& extent, double cell) {
+Occupied occupied_area(const PointSource& source, const Rectangle& extent, double cell) {
   const auto cells_along = [cell](double length) {
     return static_cast<std::size_t>(length / cell) + 1;
   };
   const std::size_t columns = cells_along(extent.x_max - extent.x_min);
   std::vector<bool> seen(columns * cells_along(extent.y_max - extent.y_min));
   Occupied occupied;
-  for (const Eigen::Vector3d& point : cloud.points) {
-    if (!point.allFinite() || !extent.contains(point.x(), point.y())) continue;
+  for_each_finite(source, [&](const Eigen::Vector3d& point) {
+    if (!extent.contains(point.x(), point.y())) return;
     const auto column = static_cast<std::size_t>((point.x() - extent.x_min) / cell);
     const auto row = static_cast<std::size_t>((point.y() - extent.y_min) / cell);
     seen[row * columns + column] = true;
     ++occupied.points;
-  }
+  });
   occupied.area = static_cast<double>(std::count(seen.begin(), seen.end(), true)) * cell * cell;
   return occupied;
 }
 
 /// In cells of some ten points: first if the cloud filled its extent, then as it really does.
-double points_per_area(const Cloud& cloud, std::size_t finite_points) {
+double points_per_area(const PointSource& source, std::size_t finite_points,
+                       const Rectangle& extent) {
   constexpr double points_per_cell = 10.0;
   constexpr double narrowest = 1e-6;  // [m]; a line of points has no area
   constexpr double most_cells = 1e8;  // ours
-  const Rectangle extent = plan_extent(cloud);
   const double width = extent.x_max - extent.x_min;
   const double length = extent.y_max - extent.y_min;
   if (std::min(width, length) < narrowest) return unknown;
@@ -76,60 +121,39 @@ double points_per_area(const Cloud& cloud, std::size_t finite_points) {
   Occupied occupied{width * length, finite_points};
   for (int pass = 0; pass < 2; ++pass) {
     const double cell = std::sqrt(points_per_cell * occupied.area / points);
-    occupied = occupied_area(cloud, extent, std::max(cell, smallest_cell));
+    occupied = occupied_area(source, extent, std::max(cell, smallest_cell));
   }
   return static_cast<double>(occupied.points) / occupied.area;
 }
 
-/// Height at which most points lie, in layers of 0.25 m within 50 m of zero.
-double commonest_height(const Cloud& cloud) {
-  constexpr double layer = 0.25;
-  constexpr std::ptrdiff_t farthest = 200;  // layers from zero; the last ones hold all beyond
-  std::vector<std::size_t> counts(2 * farthest + 1);
-  for (const Eigen::Vector3d& point : cloud.points) {
-    if (!point.allFinite()) continue;
-    constexpr auto limit = static_cast<double>(farthest);
-    const double nearest = std::clamp(std::round(point.z() / layer), -limit, limit);
-    ++counts[static_cast<std::size_t>(nearest + limit)];
+/// Finds the height at which most points lie, in layers of 0.25 m within 50 m of zero.
+class Layers {
+ public:
+  void add(double z) {
+    const double nearest = std::clamp(std::round(z / thickness), -limit, limit);
+    ++counts_[static_cast<std::size_t>(nearest + limit)];
   }
-  const auto fullest = std::max_element(counts.begin(), counts.end()) - counts.begin();
-  return layer * static_cast<double>(fullest - farthest);
-}
+  double commonest_height() const {
+    const auto fullest = std::max_element(counts_.begin(), counts_.end()) - counts_.begin();
+    return thickness * (static_cast<double>(fullest) - limit);
+  }
 
-/// Of the points within 60 degrees of the z axis, ahead, from `nearest` to `farthest` along it:
+ private:
+  static constexpr double thickness = 0.25;
+  static constexpr double limit = 200.0;  // layers from zero; the last ones hold all beyond
+  std::array<std::size_t, 401> counts_{};
+};
+
+/// True of points within 60 degrees of the z axis, ahead, from `nearest` to `farthest` along it:
 /// wider than depth cameras see.
-std::size_t seen_along_z(const Cloud& cloud, double nearest, double farthest) {
+bool is_along_z(const Eigen::Vector3d& point, double nearest, double farthest) {
   constexpr double tan_view = 1.7320508;
-  return static_cast<std::size_t>(
-      std::count_if(cloud.points.begin(), cloud.points.end(), [&](const Eigen::Vector3d& point) {
-        return point.z() > nearest && point.z() < farthest &&
-               point.head<2>().norm() < tan_view * point.z();
-      }));
+  return point.z() > nearest && point.z() < farthest &&
+         point.head<2>().norm() < tan_view * point.z();
 }
 
-/// Without the farthest 0.1 % on either side.
-double height_span(const Cloud& cloud) {
-  Values values = finite_values(cloud, 2);
-  const auto beyond = static_cast<std::size_t>(left_out * static_cast<double>(values.size()));
-  const double lowest = nth(values, beyond);
-  return nth(values, values.size() - 1 - beyond) - lowest;
-}
-
-/// The box of finite points without the farthest 0.1 % on each side.
-Eigen::AlignedBox3d usual_box(const Cloud& cloud) {
-  Eigen::AlignedBox3d box;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    Values values = finite_values(cloud, axis);
-    const auto beyond = static_cast<std::size_t>(left_out * static_cast<double>(values.size()));
-    box.min()(axis) = nth(values, beyond);
-    box.max()(axis) = nth(values, values.size() - 1 - beyond);
-  }
-  return box;
-}
-
-/// Direction of least scatter of finite points but the farthest, z >= 0.
-Eigen::Vector3d normal_of(const Cloud& cloud) {
-  const Eigen::AlignedBox3d box = usual_box(cloud);
+/// Direction of least scatter of the points in a box, z >= 0.
+Eigen::Vector3d normal_of(const Cloud& cloud, const Eigen::AlignedBox3d& box) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const Eigen::Vector3d& point : cloud.points) {
@@ -153,30 +177,84 @@ Eigen::Vector3d normal_of(const Cloud& cloud) {
 double height_step_of(const Cloud& cloud) {
   constexpr std::size_t fewest_at_each = 8;  // points, ours
   constexpr double same = 1e-5;              // [m]: heights of float32 a hundred metres up
-  Values heights = finite_values(cloud, 2);
+  std::vector<double> heights;
+  for (const Eigen::Vector3d& point : cloud.points) heights.push_back(point.z());
   std::sort(heights.begin(), heights.end());
-  Values steps;
+  std::vector<double> steps;
   for (std::size_t i = 1; i < heights.size(); ++i) {
     const double step = heights[i] - heights[i - 1];
     if (step > same) steps.push_back(step);
   }
   if (steps.empty() || (steps.size() + 1) * fewest_at_each > heights.size()) return 0.0;
-  return nth(steps, steps.size() / 2);
+  return median(steps);
 }
 
-std::string guess_frame(const Cloud& cloud, const CloudSummary& summary) {
-  constexpr double map_distance = 1e4;
-  constexpr double ground_height = 0.5;
-  if (summary.finite_points == 0) return "unknown";
-  if (summary.centroid.head<2>().norm() > map_distance) return "map (large coordinates)";
-  const std::size_t ahead = seen_along_z(cloud, 0.0, std::numeric_limits<double>::infinity());
-  if (ahead * 100 >= summary.finite_points * 99) return "camera (z forward)";
-  const Eigen::Vector3d size = summary.max - summary.min;
-  const bool is_wide = std::max(size.x(), size.y()) > size.z();
-  if (is_wide && std::abs(commonest_height(cloud)) <= ground_height) {
-    return "site (z up, ground near 0)";
+/// Adds up what one pass over a cloud shows.
+class Totals {
+ public:
+  void add(const std::vector<Eigen::Vector3d>& points) {
+    summary_.points += points.size();
+    for (const Eigen::Vector3d& point : points) {
+      if (point.allFinite()) add(point);
+    }
   }
-  return "unknown";
+
+  /// But for extent and density, which take more passes.
+  CloudSummary summary() const {
+    CloudSummary summary = summary_;
+    if (summary.finite_points == 0) {
+      summary.centroid = summary.min = summary.max = Eigen::Vector3d::Constant(unknown);
+      summary.density = unknown;
+    } else {
+      summary.centroid = first_ + sum_ / static_cast<double>(summary.finite_points);
+    }
+    summary.frame_guess = frame_guess(summary);
+    return summary;
+  }
+
+ private:
+  void add(const Eigen::Vector3d& point) {
+    if (summary_.finite_points++ == 0) first_ = summary_.min = summary_.max = point;
+    sum_ += point - first_;  // keeps the digits of large coordinates
+    summary_.min = summary_.min.cwiseMin(point);
+    summary_.max = summary_.max.cwiseMax(point);
+    if (is_along_z(point, 0.0, std::numeric_limits<double>::infinity())) ++ahead_;
+    layers_.add(point.z());
+  }
+
+  std::string frame_guess(const CloudSummary& summary) const {
+    constexpr double map_distance = 1e4;
+    constexpr double ground_height = 0.5;
+    if (summary.finite_points == 0) return "unknown";
+    if (summary.centroid.head<2>().norm() > map_distance) return "map (large coordinates)";
+    if (ahead_ * 100 >= summary.finite_points * 99) return "camera (z forward)";
+    const Eigen::Vector3d size = summary.max - summary.min;
+    const bool is_wide = std::max(size.x(), size.y()) > size.z();
+    if (is_wide && std::abs(layers_.commonest_height()) <= ground_height) {
+      return "site (z up, ground near 0)";
+    }
+    return "unknown";
+  }
+
+  CloudSummary summary_;
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
+  std::size_t ahead_ = 0;
+  Layers layers_;
+};
+
+CloudSummary summary_of(const PointSource& source) {
+  Totals totals;
+  source([&totals](const std::vector<Eigen::Vector3d>& points) { totals.add(points); });
+  CloudSummary summary = totals.summary();
+  if (summary.finite_points == 0) return summary;
+  summary.extent = plan_of(usual_box(source, summary.finite_points));
+  summary.density = points_per_area(source, summary.finite_points, *summary.extent);
+  return summary;
+}
+
+PointSource points_of(const Cloud& cloud) {
+  return [&cloud](const PointVisitor& visit) { visit(cloud.points); };
 }
 
 }  // namespace
@@ -190,28 +268,20 @@ void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan) {
 }
 
 CloudSummary summarise(const Cloud& cloud) {
-  CloudSummary summary;
-  summary.points = cloud.points.size();
-  summary.min.setConstant(std::numeric_limits<double>::infinity());
-  summary.max = -summary.min;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  const auto first = std::find_if(cloud.points.begin(), cloud.points.end(),
-                                  [](const Eigen::Vector3d& point) { return point.allFinite(); });
-  for (auto point = first; point != cloud.points.end(); ++point) {
-    if (!point->allFinite()) continue;
-    ++summary.finite_points;
-    sum += *point - *first;  // keeps the digits of large coordinates
-    summary.min = summary.min.cwiseMin(*point);
-    summary.max = summary.max.cwiseMax(*point);
-  }
-  if (summary.finite_points == 0) {
-    summary.centroid = summary.min = summary.max = Eigen::Vector3d::Constant(unknown);
-    summary.density = unknown;
-  } else {
-    summary.centroid = *first + sum / static_cast<double>(summary.finite_points);
-    summary.density = points_per_area(cloud, summary.finite_points);
-  }
-  summary.frame_guess = guess_frame(cloud, summary);
+  CloudSummary summary = summary_of(points_of(cloud));
+  summary.width = cloud.width;
+  summary.height = cloud.height;
+  summary.left_out = cloud.left_out;
+  return summary;
+}
+
+CloudSummary summarise(const Scan& scan) {
+  CloudShape shape;
+  CloudSummary summary =
+      summary_of([&](const PointVisitor& visit) { shape = visit_scan(scan, visit).shape; });
+  summary.width = shape.width;
+  summary.height = shape.height;
+  summary.left_out = shape.left_out;
   return summary;
 }
 
@@ -233,15 +303,19 @@ ScanOutline CloudOutline::result() const {
     if (point.allFinite()) cloud.points.push_back(point);
   }
   if (cloud.points.empty()) return outline;
-  outline.extent = plan_extent(cloud);
+  const PointSource source = points_of(cloud);
+  const Eigen::AlignedBox3d box = usual_box(source, cloud.points.size());
+  outline.extent = plan_of(box);
   const auto sampled = static_cast<double>(cloud.points.size());
-  outline.density = points_per_area(cloud, cloud.points.size()) *
+  outline.density = points_per_area(source, cloud.points.size(), *outline.extent) *
                     (static_cast<double>(outline.finite_points) / sampled);
-  outline.height = height_span(cloud);
+  outline.height = box.sizes().z();
   outline.height_step = height_step_of(cloud);
-  outline.seen_along_z =
-      static_cast<double>(seen_along_z(cloud, nearest_seen, farthest_seen)) / sampled;
-  outline.normal = normal_of(cloud);
+  const auto along_z = std::count_if(
+      cloud.points.begin(), cloud.points.end(),
+      [](const Eigen::Vector3d& point) { return is_along_z(point, nearest_seen, farthest_seen); });
+  outline.seen_along_z = static_cast<double>(along_z) / sampled;
+  outline.normal = normal_of(cloud, box);
   return outline;
 }
 
@@ -271,22 +345,15 @@ double survey_cell(const std::vector<ScanOutline>& outlines) {
 }
 
 Rectangle plan_extent(const Cloud& cloud) {
-  Rectangle extent;
-  for (Eigen::Index axis = 0; axis < 2; ++axis) {
-    Values values = finite_values(cloud, axis);
-    if (values.empty()) {
-      throw Error(ErrorKind::bad_input, "extent of a cloud: none of its " +
-                                            std::to_string(cloud.points.size()) +
-                                            " points is finite");
-    }
-    const auto beyond = static_cast<std::size_t>(left_out * static_cast<double>(values.size()));
-    const double lowest = nth(values, beyond);
-    const double highest = nth(values, values.size() - 1 - beyond);
-    const double above = std::nextafter(highest, std::numeric_limits<double>::infinity());
-    (axis == 0 ? extent.x_min : extent.y_min) = lowest;
-    (axis == 0 ? extent.x_max : extent.y_max) = above;
+  const PointSource source = points_of(cloud);
+  std::size_t finite_points = 0;
+  for_each_finite(source, [&finite_points](const Eigen::Vector3d&) { ++finite_points; });
+  if (finite_points == 0) {
+    throw Error(ErrorKind::bad_input, "extent of a cloud: none of its " +
+                                          std::to_string(cloud.points.size()) +
+                                          " points is finite");
   }
-  return extent;
+  return plan_of(usual_box(source, finite_points));
 }
 
 }  // namespace excavplan

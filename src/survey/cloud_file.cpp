@@ -4,10 +4,12 @@
 
 #include <excavplan/error.hpp>
 #include <excavplan/survey/cloud.hpp>
+#include <excavplan/survey/scan_surface.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "survey/cloud_formats.hpp"
+#include "survey/scan_reading.hpp"
 
 namespace excavplan {
 namespace {
@@ -93,6 +95,39 @@ class Passage : public PointSink {
   const PointVisitor& visit_;
 };
 
+/// @throws Error (bad_input) if none is written by this name
+const CloudFileFormat& written_format(const std::string& path, const std::string& name) {
+  const auto& formats = cloud_file_formats();
+  const auto known = std::find_if(formats.begin(), formats.end(), [&](const CloudFileFormat& f) {
+    return f.head != nullptr && f.name == name;
+  });
+  if (known != formats.end()) return *known;
+  throw Error(ErrorKind::bad_input,
+              path + ": " + excavplan::quoted(name) + " is not a supported output format");
+}
+
+std::string rows_of(const std::vector<Eigen::Vector3d>& points, Numbers numbers) {
+  if (numbers == Numbers::text) return text_rows(points);
+  return binary_rows(points, numbers == Numbers::float64);
+}
+
+/// Passes on all points, the same on every call, and tells their order.
+using OrderedPoints = std::function<CloudShape(const PointVisitor& visit)>;
+
+void write_points(const std::string& path, const OrderedPoints& source, const CloudFormat& format) {
+  const CloudFileFormat& written = written_format(path, format.name);
+  Numbers numbers = format.text || written.is_text ? Numbers::text : Numbers::float32;
+  const CloudShape shape = source([&](const std::vector<Eigen::Vector3d>& points) {
+    if (numbers == Numbers::float32 && needs_double(points)) numbers = Numbers::float64;
+  });
+  write_file(path, [&](const auto& append) {
+    append(written.head(shape, numbers));
+    const CloudShape again = source(
+        [&](const std::vector<Eigen::Vector3d>& points) { append(rows_of(points, numbers)); });
+    if (again.points() != shape.points()) refuse_change();
+  });
+}
+
 }  // namespace
 
 Cloud read_cloud(const std::string& path, std::uint64_t memory_limit) {
@@ -116,28 +151,36 @@ std::optional<Eigen::Vector3d> read_sensor_origin(const std::string& path) {
   return std::nullopt;
 }
 
-void stream_cloud(const std::string& path, const PointVisitor& visit) {
+CloudShape stream_shape(const std::string& path, const PointVisitor& visit) {
   FileStream file(path);
   Passage passage(file, visit);
-  stream(file, passage);
+  return stream(file, passage);
 }
 
-void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format) {
+void stream_cloud(const std::string& path, const PointVisitor& visit) { stream_shape(path, visit); }
+
+void write_cloud(const std::string& path, const Cloud& cloud, const CloudFormat& format) {
   if (cloud.width * cloud.height != cloud.points.size()) {
     throw Error(ErrorKind::bad_input, path + ": a cloud of " + std::to_string(cloud.points.size()) +
                                           " points must be width x height, is " +
                                           std::to_string(cloud.width) + " x " +
                                           std::to_string(cloud.height));
   }
-  const auto& formats = cloud_file_formats();
-  const auto known = std::find_if(formats.begin(), formats.end(), [&](const CloudFileFormat& f) {
-    return f.content != nullptr && f.name == format.name;
-  });
-  if (known == formats.end()) {
-    throw Error(ErrorKind::bad_input,
-                path + ": " + excavplan::quoted(format.name) + " is not a supported output format");
-  }
-  write_file(path, known->content(cloud, format.text));
+  const OrderedPoints source = [&cloud](const PointVisitor& visit) {
+    visit_parts(cloud.points, visit);
+    return CloudShape{cloud.width, cloud.height, cloud.sensor_origin};
+  };
+  write_points(path, source, format);
+}
+
+void write_cloud(const std::string& path, const Scan& scan, const CloudFormat& format) {
+  const std::vector<Standpoint> known = standpoints_of(scan);
+  const OrderedPoints source = [&](const PointVisitor& visit) {
+    CloudShape shape = visit_scan(scan, visit).shape;
+    if (known.size() == 1) shape.sensor = known.front().place;
+    return shape;
+  };
+  write_points(path, source, format);
 }
 
 CloudFormat cloud_format_of_name(const std::string& path) {
@@ -145,7 +188,7 @@ CloudFormat cloud_format_of_name(const std::string& path) {
   for (const CloudFileFormat& format : cloud_file_formats()) {
     const auto& own = format.endings;
     if (std::find(own.begin(), own.end(), ending) == own.end()) continue;
-    if (format.content != nullptr) return {format.name};
+    if (format.head != nullptr) return {format.name};
     throw Error(ErrorKind::bad_input, path + ": " + format.title +
                                           " is read, not written; the name must end in " +
                                           cloud_endings());
@@ -156,7 +199,7 @@ CloudFormat cloud_format_of_name(const std::string& path) {
 std::string cloud_endings() {
   std::vector<std::string> endings;
   for (const CloudFileFormat& format : cloud_file_formats()) {
-    if (format.content == nullptr) continue;
+    if (format.head == nullptr) continue;
     endings.insert(endings.end(), format.endings.begin(), format.endings.end());
   }
   return alternatives(endings);

@@ -26,7 +26,14 @@ struct CloudShape {
   std::uint64_t height = 1;
   std::optional<Eigen::Vector3d> sensor = {};  ///< Cloud::sensor_origin
   std::uint64_t left_out = 0;                  ///< Cloud::left_out
+
+  std::uint64_t points() const { return width * height; }
 };
+/// stream_cloud(), and how the points are ordered.
+CloudShape stream_shape(const std::string& path, const PointVisitor& visit);
+
+/// How the numbers of a file are written: with every digit, or binary.
+enum class Numbers { text, float32, float64 };
 
 /// A format of cloud files.
 struct CloudFileFormat {
@@ -37,11 +44,11 @@ struct CloudFileFormat {
   bool (*holds)(FileStream& file);
   /// Reads a file of this format. @throws Error (bad_file)
   CloudShape (*stream)(FileStream& file, PointSink& sink);
-  /// The content of a file; text with every digit or, where the format has it, binary. Null of a
-  /// format that is read only.
-  std::string (*content)(const Cloud& cloud, bool text);
+  /// What a file holds before the rows of its points; null of a format that is read only.
+  std::string (*head)(const CloudShape& shape, Numbers numbers);
   /// Cloud::sensor_origin from the head of a file; null where the format has none.
   std::optional<Eigen::Vector3d> (*sensor)(FileStream& file) = nullptr;
+  bool is_text = false;  ///< always, so that no file is binary
 };
 
 /// In the order in which a file's content is tried.

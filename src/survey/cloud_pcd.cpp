@@ -391,30 +391,24 @@ std::optional<Eigen::Vector3d> sensor_of_pcd(FileStream& file) {
   return read_header(lines).sensor;
 }
 
-std::string viewpoint_of(const Cloud& cloud) {
-  const Eigen::Vector3d place = cloud.sensor_origin.value_or(Eigen::Vector3d::Zero());
+std::string viewpoint_of(const CloudShape& shape) {
+  const Eigen::Vector3d place = shape.sensor.value_or(Eigen::Vector3d::Zero());
   return number_text(place.x()) + " " + number_text(place.y()) + " " + number_text(place.z());
 }
 
-std::string header_of(const Cloud& cloud, bool is_double, const std::string& encoding) {
-  const std::string size = is_double ? "8" : "4";
+std::string head_of_pcd(const CloudShape& shape, Numbers numbers) {
+  const std::string size = numbers == Numbers::float32 ? "4" : "8";
   return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z\nSIZE " + size +
          " " + size + " " + size + "\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
-         std::to_string(cloud.width) + "\nHEIGHT " + std::to_string(cloud.height) + "\nVIEWPOINT " +
-         viewpoint_of(cloud) + " 1 0 0 0\nPOINTS " + std::to_string(cloud.points.size()) +
-         "\nDATA " + encoding + "\n";
-}
-
-std::string pcd_content(const Cloud& cloud, bool text) {
-  if (text) return header_of(cloud, true, "ascii") + text_rows(cloud.points);
-  const bool is_double = needs_double(cloud.points);
-  return header_of(cloud, is_double, "binary") + binary_rows(cloud.points, is_double);
+         std::to_string(shape.width) + "\nHEIGHT " + std::to_string(shape.height) + "\nVIEWPOINT " +
+         viewpoint_of(shape) + " 1 0 0 0\nPOINTS " + std::to_string(shape.points()) + "\nDATA " +
+         (numbers == Numbers::text ? "ascii" : "binary") + "\n";
 }
 
 }  // namespace
 
 CloudFileFormat pcd_format() {
-  return {"pcd", "PCD", {".pcd"}, holds_pcd, stream_pcd, pcd_content, sensor_of_pcd};
+  return {"pcd", "PCD", {".pcd"}, holds_pcd, stream_pcd, head_of_pcd, sensor_of_pcd};
 }
 
 }  // namespace excavplan

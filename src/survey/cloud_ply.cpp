@@ -306,23 +306,18 @@ CloudShape stream_ply(FileStream& file, PointSink& sink) {
   return {vertices->count, 1};
 }
 
-std::string header_of(const Cloud& cloud, bool is_double, const std::string& encoding) {
-  const std::string type = is_double ? "double" : "float";
-  return "ply\nformat " + encoding + " 1.0\nelement vertex " + std::to_string(cloud.points.size()) +
+std::string head_of_ply(const CloudShape& shape, Numbers numbers) {
+  const std::string encoding = numbers == Numbers::text ? "ascii" : "binary_little_endian";
+  const std::string type = numbers == Numbers::float32 ? "float" : "double";
+  return "ply\nformat " + encoding + " 1.0\nelement vertex " + std::to_string(shape.points()) +
          "\nproperty " + type + " x\nproperty " + type + " y\nproperty " + type +
          " z\nend_header\n";
-}
-
-std::string ply_content(const Cloud& cloud, bool text) {
-  if (text) return header_of(cloud, true, "ascii") + text_rows(cloud.points);
-  const bool is_double = needs_double(cloud.points);
-  return header_of(cloud, is_double, "binary_little_endian") + binary_rows(cloud.points, is_double);
 }
 
 }  // namespace
 
 CloudFileFormat ply_format() {
-  return {"ply", "PLY", {".ply"}, holds_ply, stream_ply, ply_content};
+  return {"ply", "PLY", {".ply"}, holds_ply, stream_ply, head_of_ply};
 }
 
 }  // namespace excavplan

@@ -101,16 +101,17 @@ CloudShape stream_xyz(FileStream& file, PointSink& sink) {
 
 bool holds_xyz(FileStream& file) { return !foreign_content(file); }
 
-std::string xyz_content(const Cloud& cloud, bool) {
-  std::string content = "# x y z [m]\n";
-  if (cloud.points.empty()) content.append(empty_mark).append("\n");
-  return content + text_rows(cloud.points);
+std::string head_of_xyz(const CloudShape& shape, Numbers) {
+  std::string head = "# x y z [m]\n";
+  if (shape.points() == 0) head.append(empty_mark).append("\n");
+  return head;
 }
 
 }  // namespace
 
 CloudFileFormat xyz_format() {
-  return {"xyz", "XYZ text", {".xyz", ".txt", ".asc"}, holds_xyz, stream_xyz, xyz_content};
+  return {"xyz",   "XYZ text", {".xyz", ".txt", ".asc"}, holds_xyz, stream_xyz, head_of_xyz,
+          nullptr, true};
 }
 
 }  // namespace excavplan

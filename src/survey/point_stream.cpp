@@ -7,6 +7,8 @@
 #include <cstring>
 #include <limits>
 
+#include <excavplan/error.hpp>
+
 namespace excavplan {
 namespace {
 
@@ -62,6 +64,8 @@ std::string rows_of(const std::vector<Eigen::Vector3d>& points) {
 }
 
 }  // namespace
+
+void refuse_change() { throw Error(ErrorKind::bad_file, "a scan changed while it was read"); }
 
 double load_scalar(ScalarType type, const char* bytes, bool swapped) {
   return with_type(

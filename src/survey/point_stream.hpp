@@ -5,10 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include <excavplan/survey/cloud.hpp>
 
 #include "base/scalar.hpp"
 #include "survey/file_stream.hpp"
@@ -16,6 +19,11 @@
 /// @file Points on their way out of files and into them. Private to the library.
 
 namespace excavplan {
+
+/// Gives all points, those that are not finite included, to a visitor; the same on every call.
+using PointSource = std::function<void(const PointVisitor&)>;
+/// For who finds that they are not. @throws Error (bad_file)
+[[noreturn]] void refuse_change();
 
 /// Where a reader puts the points of a file, in their order.
 class PointSink {

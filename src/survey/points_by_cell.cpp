@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/error.hpp>
-
 #include "base/random.hpp"
 #include "ground/robust.hpp"
 #include "survey/cloud_outline.hpp"
@@ -18,10 +16,6 @@ namespace {
 constexpr std::size_t most_kept = 256;
 constexpr double enough_in_group = 12.0;  // points, for a level that outliers do not move; ours
 constexpr double largest_side = 4.0;      // ours
-
-[[noreturn]] void refuse_change() {
-  throw Error(ErrorKind::bad_file, "a scan changed while it was read");
-}
 
 /// An even random choice of the points of a cell as they stream by: one of each of `kept`
 /// stretches.

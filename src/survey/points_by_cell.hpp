@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -13,16 +12,12 @@
 #include <Eigen/Core>
 
 #include <excavplan/ground/height_map.hpp>
-#include <excavplan/survey/cloud.hpp>
-
 #include "survey/cloud_cell.hpp"
+#include "survey/point_stream.hpp"
 
 /// @file The points of a scan in the cells of a map. Private to the library.
 
 namespace excavplan {
-
-/// Gives all points, those that are not finite included, to a visitor; the same on every call.
-using PointSource = std::function<void(const PointVisitor&)>;
 
 /// The points of a scan by cell, and by group of cells where cells hold few points; both are
 /// counted as Eigen stores a map, column by column. Of a cell with many points an even random

@@ -23,16 +23,6 @@
 namespace excavplan {
 namespace {
 
-/// Calls `visit` with the points of a cloud, some thousand at a time.
-void visit_parts(const std::vector<Eigen::Vector3d>& points, const PointVisitor& visit) {
-  for (auto from = points.begin(); from != points.end();) {
-    const auto left = static_cast<std::size_t>(points.end() - from);
-    const auto to = from + static_cast<std::ptrdiff_t>(std::min(left, points_at_a_time));
-    visit({from, to});
-    from = to;
-  }
-}
-
 void require_points(const Scan& scan, const ScanOutline& seen) {
   if (seen.finite_points >= 100) return;
   throw Error(ErrorKind::bad_file, name_of(scan) + ": holds fewer than 100 finite points" +
@@ -151,36 +141,56 @@ bool could_be_elsewhere(const RegisteredPair& pair) {
 
 }  // namespace
 
-std::uint64_t visit_scan(const Scan& scan, const PointVisitor& visit) {
+void visit_parts(const std::vector<Eigen::Vector3d>& points, const PointVisitor& visit) {
+  for (auto from = points.begin(); from != points.end();) {
+    const auto left = static_cast<std::size_t>(points.end() - from);
+    const auto to = from + static_cast<std::ptrdiff_t>(std::min(left, points_at_a_time));
+    visit({from, to});
+    from = to;
+  }
+}
+
+VisitedScan visit_scan(const Scan& scan, const PointVisitor& visit) {
   require_scan(scan);
   const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity() || scan.unit != 1.0;
   const Eigen::Matrix3d rotation = scan.unit * scan.site_from_scan.topLeftCorner<3, 3>();
   const Eigen::Vector3d shift = scan.site_from_scan.topRightCorner<3, 1>();
+  VisitedScan visited;
+  std::uint64_t passed_on = 0;
   std::vector<Eigen::Vector3d> kept;
-  std::uint64_t of_machine = 0;
   const PointVisitor bring_in = [&](const std::vector<Eigen::Vector3d>& points) {
     kept.clear();
     for (const Eigen::Vector3d& point : points) {
       const Eigen::Vector3d p = is_moved ? Eigen::Vector3d(rotation * point + shift) : point;
       if (scan.area && !scan.area->contains(p.x(), p.y())) continue;
       if (scan.machine && scan.machine->holds(p)) {
-        ++of_machine;
+        ++visited.machine_points;
       } else {
         kept.push_back(p);
       }
     }
+    passed_on += kept.size();
     visit(kept);
   };
+  const PointVisitor pass_on = [&](const std::vector<Eigen::Vector3d>& points) {
+    passed_on += points.size();
+    visit(points);
+  };
   const bool as_it_is = !is_moved && !scan.area && !scan.machine;
-  for (const std::string& file : scan.files) stream_cloud(file, as_it_is ? visit : bring_in);
+  const PointVisitor& take = as_it_is ? pass_on : bring_in;
+  CloudShape& shape = visited.shape;
+  const auto follow = [&shape](CloudShape next) {
+    next.left_out += shape.left_out;
+    shape = next;
+  };
+  for (const std::string& file : scan.files) follow(stream_shape(file, take));
   for (const auto& cloud : scan.clouds) {
-    if (as_it_is) {
-      visit(cloud->points);
-    } else {
-      visit_parts(cloud->points, bring_in);
-    }
+    visit_parts(cloud->points, take);
+    follow({cloud->width, cloud->height, {}, cloud->left_out});
   }
-  return of_machine;
+  const bool is_one = scan.files.size() + scan.clouds.size() == 1;
+  if (!is_one || shape.points() != passed_on) shape = {passed_on, 1, {}, shape.left_out};
+  return visited;
 }
 
 std::vector<Standpoint> standpoints_of(const Scan& scan) {
@@ -341,10 +351,10 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
 
 ScanOutline outline(const Scan& scan) {
   CloudOutline found;
-  const std::uint64_t of_machine =
+  const VisitedScan visited =
       visit_scan(scan, [&found](const std::vector<Eigen::Vector3d>& points) { found.add(points); });
   ScanOutline result = found.result();
-  result.machine_points = of_machine;
+  result.machine_points = visited.machine_points;
   return result;
 }
 

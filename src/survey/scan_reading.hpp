@@ -8,15 +8,25 @@
 
 #include <excavplan/survey/scan_surface.hpp>
 
+#include "survey/cloud_formats.hpp"
+
 /// @file The points of a scan, wherever they are. Private to the library.
 
 namespace excavplan {
 
+/// What visit_scan() passed on.
+struct VisitedScan {
+  CloudShape shape;  ///< but for the sensor; organised if it is all of one file or cloud
+  std::uint64_t machine_points = 0;  ///< not passed on
+};
+
 /// Passes on the points of a scan in the site frame, without those outside its area or of the
 /// machine; those that are not finite may be among them. The same on every call.
-/// @return how many were of the machine
 /// @throws Error (bad_file)
-std::uint64_t visit_scan(const Scan& scan, const PointVisitor& visit);
+VisitedScan visit_scan(const Scan& scan, const PointVisitor& visit);
+
+/// Calls `visit` with the points of a cloud, some thousand at a time.
+void visit_parts(const std::vector<Eigen::Vector3d>& points, const PointVisitor& visit);
 
 /// What a scan has from one place of the sensor.
 struct Standpoint {

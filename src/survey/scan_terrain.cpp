@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "base/check.hpp"
@@ -18,18 +19,20 @@ constexpr double widest_filled = 0.3;
 constexpr double widest_filled_cells = 3.0;
 constexpr std::size_t fewest_points = 10;  // that make a ground; ours
 
-/// Points of the extent, with a metre around it to interpolate from.
-Cloud cropped(const Scan& scan, Rectangle extent) {
-  extent = {extent.x_min - 1.0, extent.y_min - 1.0, extent.x_max + 1.0, extent.y_max + 1.0};
-  Cloud inside;
-  visit_scan(scan, [&](const std::vector<Eigen::Vector3d>& points) {
-    for (const Eigen::Vector3d& p : points) {
-      if (p.allFinite() && extent.contains(p.x(), p.y())) inside.points.push_back(p);
-    }
-  });
-  inside.width = inside.points.size();
+/// Points of the extent, with a metre around it to interpolate from, all as if seen from one place.
+Scan cropped(const Scan& scan, const Rectangle& extent) {
+  constexpr double around = 1.0;
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const Rectangle area = scan.area.value_or(Rectangle{-endless, -endless, endless, endless});
+  Scan inside = scan;
+  inside.area = {
+      std::max(extent.x_min - around, area.x_min), std::max(extent.y_min - around, area.y_min),
+      std::min(extent.x_max + around, area.x_max), std::min(extent.y_max + around, area.y_max)};
+  inside.sensor_origin = scan.sensor_origin.value_or(Eigen::Vector3d::Zero());
   return inside;
 }
+
+bool is_empty(const Rectangle& r) { return !(r.x_max > r.x_min && r.y_max > r.y_min); }
 
 std::string text(const Rectangle& r) {
   return "x = " + readable(r.x_min) + " .. " + readable(r.x_max) + " m, y = " + readable(r.y_min) +
@@ -50,12 +53,13 @@ void require_points(const Scan& scan, std::size_t points, const Rectangle& exten
 ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
   require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
           "> 0 m and finite");
-  const Cloud near = cropped(scan, extent);
-  require_points(scan, near.points.size(), extent);
-  const double density = summarise(near).density;
+  const Scan near = cropped(scan, extent);
+  const CloudSummary seen = is_empty(*near.area) ? CloudSummary{} : summarise(near);
+  require_points(scan, seen.finite_points, extent);
+  const double density = seen.density;
   RasterOptions raster;
   raster.cell_size = std::max(cell_size, std::sqrt(2.0 / density));
-  const HeightMap map = rasterise(near, plan_extent(near), raster);
+  const HeightMap map = survey_surface(near, *seen.extent, raster).height;
   const double widest_gap = std::max(widest_filled, widest_filled_cells * raster.cell_size);
   ScannedTerrain result{undisturbed(resampled(map, extent, cell_size, widest_gap)), {}};
   result.warnings = scan.doubts;

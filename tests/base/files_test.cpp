@@ -176,6 +176,24 @@ TEST_F(Writing, AFileIsReplacedWholeAndKeepsItsMode) {
   EXPECT_EQ(files(), 2U);
 }
 
+TEST_F(Writing, AContentInPartsIsWrittenWholeOrNotAtAll) {
+  const std::string path = folder_.write("file", "old");
+  const auto write_parts = [&path](bool fails) {
+    write_file(path, [fails](const auto& append) {
+      append("a ");
+      append("");
+      if (fails) throw Error(ErrorKind::bad_file, "the source fails");
+      append("new one");
+    });
+  };
+  EXPECT_THROW(write_parts(true), Error);
+  EXPECT_EQ(content_of(path), "old");
+  EXPECT_EQ(files(), 1U);
+  write_parts(false);
+  EXPECT_EQ(content_of(path), "a new one");
+  EXPECT_EQ(files(), 1U);
+}
+
 TEST_F(Writing, WhatALinkLeadsToIsReplacedWhereItLies) {
   fs::create_directory(folder_.file("data"));
   const std::string target = folder_.write("data/target", "old");

@@ -4,7 +4,8 @@
 /// @file
 /// A long run in one process: load digs|estimates NUMBER [THREADS]. Prints memory and open files
 /// after each tenth and exits with 1 if either has grown since the first one: memory by more than
-/// 1 MiB, files at all. load scans POINTS BEFORE AFTER writes a pair of scans.
+/// 1 MiB, files at all. load scans POINTS BEFORE AFTER [TIMES] writes a pair of scans, so many
+/// times as long and wide.
 
 #include <unistd.h>
 
@@ -50,7 +51,7 @@ long open_files() {
 }
 
 /// A pit and a heap on level ground, with noise, seen before or after the dig.
-Cloud scanned(double spacing, bool after) {
+Cloud scanned(double spacing, bool after, double times = 1.0) {
   Random random(2, after ? 1 : 0);
   Cloud cloud;
   for (double x = 0.0; x < 6.0; x += spacing) {
@@ -58,7 +59,7 @@ Cloud scanned(double spacing, bool after) {
       const double hole = x > 1.0 && x < 2.5 && y > -0.5 && y < 0.5 ? -0.3 : 0.0;
       const double heap = std::max(0.0, 0.63 - 0.7 * std::hypot(x - 4.3, y));
       const double z = after ? hole + heap : 0.0;
-      cloud.points.emplace_back(x, y, z + 0.002 * random.normal());
+      cloud.points.emplace_back(times * x, times * y, z + 0.002 * random.normal());
     }
   }
   cloud.width = cloud.points.size();
@@ -173,10 +174,11 @@ bool run(std::uint64_t number, unsigned threads, const std::function<bool(std::u
 
 int main(int count, char** words) {
   const std::string what = count > 1 ? words[1] : "";
-  if (what == "scans" && count == 5) {
+  if (what == "scans" && (count == 5 || count == 6)) {
     const double spacing = std::sqrt(24.0 / std::strtod(words[2], nullptr));
-    write_cloud(words[3], scanned(spacing, false), {"pcd"});
-    write_cloud(words[4], scanned(spacing, true), {"pcd"});
+    const double times = count == 6 ? std::strtod(words[5], nullptr) : 1.0;
+    write_cloud(words[3], scanned(spacing, false, times), {"pcd"});
+    write_cloud(words[4], scanned(spacing, true, times), {"pcd"});
     return 0;
   }
   const std::uint64_t number = count > 2 ? std::strtoull(words[2], nullptr, 10) : 0;

@@ -246,6 +246,26 @@ TEST(PlanExtent, LeavesOutTheFarthestThousandthOnEachSide) {
   EXPECT_NEAR(extent.y_max, 7.0, 0.02);
 }
 
+TEST(PlanExtent, IsThatOfTheSortedCoordinatesInWhateverOrderTheyCome) {
+  Random random(5);
+  for (const std::size_t count : {1, 2, 999, 1000, 1001, 25000}) {
+    std::vector<double> values(count);
+    for (double& value : values) value = std::round(random.uniform(-300.0, 300.0));
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    const std::vector<double> falling(sorted.rbegin(), sorted.rend());
+    for (const std::vector<double>& order : {values, sorted, falling}) {
+      Cloud cloud;
+      for (const double value : order) cloud.points.emplace_back(value, -value, 0.0);
+      const Rectangle extent = plan_extent(cloud);
+      EXPECT_EQ(extent.x_min, sorted[count / 1000]);
+      EXPECT_EQ(extent.x_max, std::nextafter(sorted[count - 1 - count / 1000], 1e9));
+      EXPECT_EQ(extent.y_min, -sorted[count - 1 - count / 1000]);
+      EXPECT_EQ(extent.y_max, std::nextafter(-sorted[count / 1000], 1e9));
+    }
+  }
+}
+
 TEST(PlanExtent, HoldsEveryPointOfASmallCloud) {
   const Cloud cloud = cloud_of({{1.0, 5.0, 0.0}, {2.0, 4.0, 0.0}});
   const Rectangle extent = plan_extent(cloud);

@@ -11,12 +11,16 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
+
+#include <excavplan/survey/scan_pose.hpp>
 
 #include "base/random.hpp"
 
@@ -417,6 +421,106 @@ TEST(ScanSurface, VolumeBetweenWallsStaysUnbiasedAtAnyHeadingAndDensity) {
     }
     EXPECT_NEAR(sum, truth, (count > 100000 ? 0.001 : 0.006) * std::abs(truth)) << count;
   }
+}
+
+// ---- Summary and conversion -------------------------------------------------------------------
+
+/// Of 300 x 200 points, some of which are not finite, seen from a place.
+Cloud organised_cloud() {
+  Cloud cloud;
+  cloud.points = sampled([](double x, double y) { return 0.2 * x * y; }, field, 60000, 0.01, 4);
+  for (std::size_t i = 0; i < cloud.points.size(); i += 100) cloud.points[i].z() = nan;
+  cloud.width = 300;
+  cloud.height = 200;
+  cloud.sensor_origin = Eigen::Vector3d(0.5, -1.25, 2.0);
+  return cloud;
+}
+
+void expect_same(const CloudSummary& a, const CloudSummary& b) {
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.finite_points, b.finite_points);
+  EXPECT_EQ(a.left_out, b.left_out);
+  EXPECT_EQ(a.centroid, b.centroid);
+  EXPECT_EQ(a.min, b.min);
+  EXPECT_EQ(a.max, b.max);
+  EXPECT_EQ(a.extent->x_min, b.extent->x_min);
+  EXPECT_EQ(a.extent->y_max, b.extent->y_max);
+  EXPECT_EQ(a.density, b.density);
+  EXPECT_EQ(a.frame_guess, b.frame_guess);
+}
+
+TEST(ScanSummary, IsThatOfTheWholeCloudToTheByte) {
+  const Folder folder;
+  Cloud cloud = organised_cloud();
+  const Eigen::Matrix4d pose = pose_of_quaternion({1.0, 2.0, 0.5}, {0.0, 0.36, 0.48, 0.8});
+  const std::pair<const char*, CloudFormat> files[] = {
+      {"a.pcd", {"pcd", true}}, {"a.ply", {"ply", true}}, {"a.xyz", {"xyz"}}};
+  for (const auto& [name, format] : files) write_cloud(folder.file(name), cloud, format);
+  for (const bool is_moved : {false, true}) {
+    if (is_moved) transform(cloud, pose);
+    const CloudSummary whole = summarise(cloud);
+    EXPECT_EQ(whole.extent->x_max, plan_extent(cloud).x_max);
+    for (const auto& [name, format] : files) {
+      Scan scan = scan_of({folder.file(name)});
+      if (is_moved) scan.site_from_scan = pose;
+      const CloudSummary seen = summarise(scan);
+      expect_same(seen, whole);
+      EXPECT_EQ(seen.width, format.name == "pcd" ? 300U : 60000U);
+      EXPECT_EQ(seen.height, format.name == "pcd" ? 200U : 1U);
+    }
+  }
+}
+
+TEST(ScanSummary, PointsThatAreLeftOutAreOutOfOrder) {
+  Cloud cloud = organised_cloud();
+  cloud.left_out = 3;
+  Scan scan;
+  scan.clouds = {std::make_shared<const Cloud>(cloud)};
+  EXPECT_EQ(summarise(scan).width, 300U);
+  scan.area = Rectangle{0.0, 0.0, 1.5, 2.0};
+  const CloudSummary half = summarise(scan);
+  EXPECT_LT(half.points, 35000U);
+  EXPECT_EQ(half.width, half.points);
+  EXPECT_EQ(half.height, 1U);
+  scan.area.reset();
+  scan.clouds.push_back(scan.clouds.front());
+  const CloudSummary both = summarise(scan);
+  EXPECT_EQ(both.width, 120000U);
+  EXPECT_EQ(both.height, 1U);
+  EXPECT_EQ(both.left_out, 6U);
+}
+
+TEST(WriteScan, GivesTheBytesOfTheWholeCloud) {
+  const Folder folder;
+  const Cloud near = organised_cloud();
+  Cloud far = near;
+  transform(far, pose_of_quaternion({5e5, 5.7e6, 100.0}, {0.0, 0.0, 0.0, 1.0}));
+  for (const Cloud& cloud : {near, far}) {
+    write_cloud(folder.file("source.pcd"), cloud, {"pcd", true});
+    for (const CloudFormat& format :
+         {CloudFormat{"pcd"}, {"pcd", true}, {"ply"}, {"ply", true}, {"xyz"}}) {
+      Scan scan = scan_of({folder.file("source.pcd")});
+      write_cloud(folder.file("streamed"), scan, format);
+      write_cloud(folder.file("whole"), cloud, format);
+      EXPECT_EQ(test::content_of(folder.file("streamed")), test::content_of(folder.file("whole")));
+      scan.site_from_scan = pose_of_quaternion({1.0, 2.0, 0.5}, {0.0, 0.36, 0.48, 0.8});
+      Cloud moved = cloud;
+      transform(moved, scan.site_from_scan);
+      write_cloud(folder.file("streamed"), scan, format);
+      write_cloud(folder.file("whole"), moved, format);
+      EXPECT_EQ(test::content_of(folder.file("streamed")), test::content_of(folder.file("whole")));
+    }
+  }
+}
+
+TEST(WriteScan, TakesTheFileItReads) {
+  const Folder folder;
+  const Cloud cloud = organised_cloud();
+  write_cloud(folder.file("a.pcd"), cloud, {"pcd", true});
+  write_cloud(folder.file("a.pcd"), scan_of({folder.file("a.pcd")}), {"xyz"});
+  const Cloud read = read_cloud(folder.file("a.pcd"));
+  ASSERT_EQ(read.points.size(), cloud.points.size());
+  EXPECT_EQ(read.points[1], cloud.points[1]);
 }
 
 // ---- Outline ----------------------------------------------------------------------------------

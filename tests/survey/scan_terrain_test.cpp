@@ -4,13 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <string>
 
 #include "base/random.hpp"
 
 #include "support/errors.hpp"
+#include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
@@ -68,6 +71,60 @@ TEST(ScanTerrain, NarrowGapsAreFilledAndWideOnesStayUnknown) {
   const ScannedTerrain wide = terrain_from_scan(slope(2000.0, 4.0, 4.6), extent, 0.05);
   EXPECT_EQ(codes(wide), Codes{"unseen_ground"});
   EXPECT_TRUE(std::isnan(height_at(wide.terrain.bank, 4.3, 0.0)));
+}
+
+/// What the points within a metre of the extent show if they are held.
+HeightMap held_ground(const Scan& scan, double cell_size) {
+  Cloud near;
+  for (const auto& cloud : scan.clouds) {
+    for (const Eigen::Vector3d& p : cloud->points) {
+      const Rectangle around{extent.x_min - 1.0, extent.y_min - 1.0, extent.x_max + 1.0,
+                             extent.y_max + 1.0};
+      if (p.allFinite() && around.contains(p.x(), p.y())) near.points.push_back(p);
+    }
+  }
+  const double cell = std::max(cell_size, std::sqrt(2.0 / summarise(near).density));
+  return resampled(rasterise(near, plan_extent(near), {cell}), extent, cell_size,
+                   std::max(0.3, 3.0 * cell));
+}
+
+void expect_same_bytes(const HeightMap& a, const HeightMap& b) {
+  ASSERT_TRUE(same_grid(a, b));
+  const auto bytes = static_cast<std::size_t>(a.z.size()) * sizeof(double);
+  EXPECT_EQ(std::memcmp(a.z.data(), b.z.data(), bytes), 0);
+}
+
+TEST(ScanTerrain, IsThatOfThePointsHeldToTheByte) {
+  const test::TemporaryFolder folder;
+  for (const double per_area : {40.0, 2000.0}) {
+    Scan held = slope(per_area, 4.0, 4.4);
+    auto noisy = std::make_shared<Cloud>(*held.clouds.front());
+    Random random(7);
+    for (Eigen::Vector3d& p : noisy->points) p.z() += 0.01 * random.normal();
+    noisy->points.front().z() = std::nan("");
+    noisy->sensor_origin = Eigen::Vector3d(-3.0, 0.0, 2.0);
+    held.clouds.front() = noisy;
+    const HeightMap ground = held_ground(held, 0.05);
+    expect_same_bytes(terrain_from_scan(held, extent, 0.05).terrain.bank, ground);
+    Scan streamed;
+    streamed.files = {folder.file("a.pcd")};
+    write_cloud(streamed.files.front(), *noisy, {"pcd", true});
+    expect_same_bytes(terrain_from_scan(streamed, extent, 0.05).terrain.bank, ground);
+    auto beside = std::make_shared<Cloud>(*noisy);
+    beside->sensor_origin = Eigen::Vector3d(3.0, 5.0, 2.0);
+    held.clouds.push_back(beside);
+    expect_same_bytes(terrain_from_scan(held, extent, 0.05).terrain.bank, held_ground(held, 0.05));
+  }
+}
+
+TEST(ScanTerrain, KnowsNothingOutsideTheAreaOfTheScan) {
+  Scan scan = slope(2000.0);
+  scan.area = Rectangle{0.0, -2.5, 4.0, 2.5};
+  const ScannedTerrain ground = terrain_from_scan(scan, extent, 0.05);
+  EXPECT_NEAR(height_at(ground.terrain.bank, 3.0, 0.3), 0.3, 0.002);
+  EXPECT_TRUE(std::isnan(height_at(ground.terrain.bank, 5.0, 0.3)));
+  scan.area = Rectangle{0.0, -2.5, 0.5, 2.5};
+  EXPECT_THROW(terrain_from_scan(scan, extent, 0.05), FrameError);
 }
 
 TEST(ScanTerrain, ScanElsewhereIsRefused) {

@@ -73,14 +73,17 @@ void check_pose(const PoseInputs& inputs) {
   }
 }
 
-std::optional<FoundPose> find_pose(const PoseInputs& inputs, const Cloud& cloud,
+std::optional<FoundPose> find_pose(const PoseInputs& inputs, const Leveller& level,
                                    const PointsReader& read_points) {
   std::optional<FoundPose> found;
   if (inputs.pose) found = {frame_named("--pose", *inputs.pose), {{"method", "given"}}, {}};
-  if (inputs.level) found = found_pose(level_on_ground(cloud));
+  if (inputs.level) found = found_pose(level());
   if (inputs.points) found = pose_from_points(read_points(*inputs.points));
-  if (inputs.pose_out) write_frame(*inputs.pose_out, found->site_from_scan);
   return found;
+}
+
+void write_pose(const PoseInputs& inputs, const std::optional<FoundPose>& pose) {
+  if (inputs.pose_out) write_frame(*inputs.pose_out, pose->site_from_scan);
 }
 
 }  // namespace excavplan::tools

@@ -42,9 +42,12 @@ struct PoseInputs {
 void declare_pose(Arguments& arguments, PoseInputs& inputs, const std::string& columns);
 /// @throws Error (bad_input) if they exclude each other
 void check_pose(const PoseInputs& inputs);
+using Leveller = std::function<LevelPose()>;
 using PointsReader = std::function<KnownPoints(const std::string& path)>;
-/// The pose of a cloud, if one is asked for; writes it to --pose-out.
-std::optional<FoundPose> find_pose(const PoseInputs& inputs, const Cloud& cloud,
+/// The pose of a scan, if one is asked for.
+std::optional<FoundPose> find_pose(const PoseInputs& inputs, const Leveller& level,
                                    const PointsReader& read_points);
+/// Writes it to --pose-out, if that is given.
+void write_pose(const PoseInputs& inputs, const std::optional<FoundPose>& pose);
 
 }  // namespace excavplan::tools

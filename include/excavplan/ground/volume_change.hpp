@@ -117,12 +117,11 @@ struct SurfacePair {
 /// rose elsewhere the heap; if nothing did, that is the largest rise beside the hole that holds at
 /// least half of the dug volume. The centre of a zone decides whether it lies in a given area.
 ///
-/// Warnings: no_hole_found; no_dumped_soil (of the dug volume less than half rose, or less than a
-/// fifth away from the hole); looks_swapped (after / before below 0.97 beyond its error, or above
-/// 3); attribution_open; stirred_ground; other_change; object_taken_out; zone_at_border;
-/// zone_partly_unseen; zone_unseen (refused: no bulking factor); sensor_place_inferred;
-/// little_stable_ground (under 40 %); scans_do_not_fit (noise above 0.1 m, or 10 mm of what
-/// neighbours share); systematic_errors; earlier_soil.
+/// Warnings: no_hole_found; no_dumped_soil (less than half of the dug volume rose, or a fifth away
+/// from the hole); looks_swapped (after / before below 0.97 beyond its error, or above 3);
+/// attribution_open; stirred_ground; other_change; object_taken_out; zone_at_border;
+/// zone_partly_unseen; zone_unseen; sensor_place_inferred; little_stable_ground (under 40 %);
+/// scans_do_not_fit; systematic_errors; earlier_soil.
 ///
 /// @throws Error (bad_input) if the surfaces are not on one grid, share fewer than 100 known cells,
 ///         or an option is out of range

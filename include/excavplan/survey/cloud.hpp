@@ -62,7 +62,7 @@ void stream_cloud(const std::string& path, const PointVisitor& visit);
 /// The file appears whole or not at all (written beside, then renamed).
 /// @throws Error (bad_file) if the file cannot be written; (bad_input) if the cloud's width and
 /// height do not fit its points, or the format is none
-void write_cloud(const std::string& path, const Cloud& cloud, CloudFormat format);
+void write_cloud(const std::string& path, const Cloud& cloud, const CloudFormat& format);
 
 /// The format of a file name: .pcd and .ply binary, .xyz .txt .asc text.
 /// @throws Error (bad_input) for any other ending
@@ -86,11 +86,15 @@ void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);
 /// What is in a cloud.
 struct CloudSummary {
   std::size_t points = 0;                              ///< of the cloud
+  std::size_t width = 0;                               ///< Cloud::width
+  std::size_t height = 1;                              ///< Cloud::height
+  std::size_t left_out = 0;                            ///< Cloud::left_out
   std::size_t finite_points = 0;                       ///< without NaN and infinity
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< over the finite points [m]; NaN if there
                                                        ///< are none
   Eigen::Vector3d min = Eigen::Vector3d::Zero();  ///< smallest x, y and z of the finite points [m]
   Eigen::Vector3d max = Eigen::Vector3d::Zero();  ///< largest x, y and z of the finite points [m]
+  std::optional<Rectangle> extent = {};           ///< as plan_extent(); none without finite points
   double density = 0.0;     ///< points per m^2 of occupied ground; NaN if they have no area
   std::string frame_guess;  ///< "site (z up, ground near 0)", "map (large
                             ///< coordinates)", "camera (z forward)", "unknown"
@@ -107,7 +111,7 @@ struct RasterOptions {
   double cell_size = 0.05;        ///< [m], > 0
   double outlier_distance = 4.0;  ///< points this many robust sd beyond the heights found around
                                   ///< their cell are left out [-], > 0
-  std::uint64_t memory = std::uint64_t{256} << 20;  ///< for points held at a time [byte]; where
+  std::uint64_t memory = std::uint64_t{128} << 20;  ///< for points held at a time [byte]; where
                                                     ///< it does not do, scans are read again
   Eigen::Vector2d node = {0.0, 0.0};                ///< where corners of cells meet [m]
 };

@@ -69,6 +69,17 @@ struct ScanOutline {
 /// @throws Error (bad_file) as read_cloud()
 ScanOutline outline(const Scan& scan);
 
+/// As that of a cloud of the scan's points, from four passes over its files.
+/// @throws Error (bad_file) as read_cloud(), or if a file changes while it is read
+CloudSummary summarise(const Scan& scan);
+
+/// Writes the points of a scan, in the site frame, as write_cloud() does that of a cloud. They are
+/// read twice and not held. Width and height are those of its file if all points are of one, the
+/// place of the sensor is written if it is known and one.
+/// @throws Error as write_cloud() and read_cloud(), and (bad_file) if a file changes while it is
+/// read
+void write_cloud(const std::string& path, const Scan& scan, const CloudFormat& format);
+
 /// One outline for each scan, found in parallel (0 threads: one per core).
 std::vector<ScanOutline> outlines(const std::vector<Scan>& scans, unsigned threads = 0);
 

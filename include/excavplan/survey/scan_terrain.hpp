@@ -21,10 +21,10 @@ struct ScannedTerrain {
 ///
 /// A scan with fewer than 2 points per cell is rasterised on larger cells and interpolated
 /// (sparse_terrain). Gaps of up to 0.3 m or 3 cells are filled; what lies in wider ones stays
-/// unknown (unseen_ground), and no dig is planned there.
+/// unknown (unseen_ground), and no dig is planned there. Files are read several times and not held.
 ///
-/// @throws Error (bad_file) if a file cannot be read; FrameError with fewer than 10 points within a
-/// metre of the extent; (bad_input) unless cell_size > 0
+/// @throws Error (bad_file) if a file cannot be read or changes meanwhile; FrameError with fewer
+/// than 10 points within a metre of the extent; (bad_input) unless cell_size > 0
 ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size);
 
 }  // namespace excavplan
