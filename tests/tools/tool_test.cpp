@@ -128,6 +128,19 @@ TEST(Tool, OptionsMayStandBeforeAndAfterPositionals) {
   }
 }
 
+TEST(Tool, WordsBehindTwoDashesAreNames) {
+  for (const char* name : {"a.pcd", "--json", "--xyzzy", "-h", "--"}) {
+    const Probe probe = run({"--density", "40", "--", name});
+    EXPECT_EQ(probe.code, 0) << probe.err;
+    EXPECT_EQ(probe.before, name);
+    EXPECT_EQ(run({"a.pcd", "--density", "40", "--", name}).err,
+              "probe: unexpected argument '" + std::string(name) + "'\nSee probe --help\n");
+  }
+  EXPECT_EQ(run({"a.pcd", "--density", "40", "--"}).code, 0);
+  EXPECT_EQ(run({"--xyzzy", "--", "--json"}).err,
+            "probe: unknown option --xyzzy\nSee probe --help\n");
+}
+
 TEST(Tool, MisspeltOptionIsReportedBeforeTheMissingOne) {
   for (const char* misspelt : {"--denisty", "--densty", "-density", "--dens", "--Density"}) {
     const Probe probe = run({"a.pcd", misspelt, "40"});
