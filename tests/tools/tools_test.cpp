@@ -339,6 +339,34 @@ TEST_F(Tools, PipesAndDevicesMayBeSharedByOutputs) {
             0);
 }
 
+TEST_F(Tools, AnOutputNamedStandardOutputComesBeforeTheAnswer) {
+  const std::string file = folder.file("dig.csv");
+  const Words plan = {"--density", "40", "--json", "--trajectory"};
+  ASSERT_EQ(run_program("plan-path", plan + Words{file}).code, 0);
+  const std::string trajectory = content_of(file);
+  const ProgramResult both = run_program("plan-path", plan + Words{"/dev/stdout"});
+  EXPECT_EQ(both.code, 0) << both.err;
+  EXPECT_EQ(both.out.substr(0, trajectory.size()), trajectory);
+  EXPECT_EQ(json::parse(both.out.substr(trajectory.size())).at("tool"), "plan-path");
+}
+
+TEST_F(Tools, AnOutputThatReplacesTheFileOfStandardOutputIsRefused) {
+  const std::string file = folder.write("dig.csv", "old\n");
+  fs::create_symlink("dig.csv", folder.file("link.csv"));
+  for (const std::string& name : {file, folder.file("link.csv")}) {
+    const pid_t child = started("plan-path", {"--density", "40", "--trajectory", name}, [&] {
+      ::dup2(::open(file.c_str(), O_WRONLY | O_APPEND), STDOUT_FILENO);
+      ::dup2(STDOUT_FILENO, STDERR_FILENO);
+    });
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(exit_code(status), 2);
+    EXPECT_EQ(content_of(file), "old\nplan-path: --trajectory names the file of standard output, " +
+                                    name + "; /dev/stdout adds to it\nSee plan-path --help\n");
+    folder.write("dig.csv", "old\n");
+  }
+}
+
 TEST_F(BadInput, StandardInputIsATransformButNoDatabase) {
   const std::string frame = folder.write("frame.txt", "1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   const Words words = {scan, "--json", "--frame"};
