@@ -327,6 +327,20 @@ TEST_F(BadInput, OneFileForTwoThingsIsRefused) {
           {"--density", "40", "--before", copy, "--after", copy});
   refused(2, "--library and --checkpoint name the same file", "plan-path",
           {"--density", "40", "--search", "--library", copy, "--checkpoint", copy});
+  const std::string soil = folder.write("digs.json.soil3", "mine");
+  fs::create_symlink("digs.json.soil3", folder.file("other.soil1"));
+  const Words uncertain = {"--density", "40", "--density-sd", "8", "--search", "--checkpoint"};
+  for (const char* name : {"digs.json", "other"}) {
+    const std::string part = name + std::string(name[0] == 'd' ? ".soil3" : ".soil1");
+    const std::string same = "name the same file, " + folder.file(part);
+    refused(2, "--checkpoint and --trajectory " + same, "plan-path",
+            uncertain + Words{folder.file(name), "--trajectory", soil});
+    refused(2, "--library and --checkpoint " + same, "plan-path",
+            uncertain + Words{folder.file(name), "--library", soil});
+    refused(3, folder.file(part) + ": is no checkpoint of a search", "plan-path",
+            uncertain + Words{folder.file(name)});
+  }
+  EXPECT_EQ(content_of(soil), "mine");
   refused(2, "--out: standard output is no file to write", "calibrate-density", {"--out", "-"});
   EXPECT_EQ(content_of(out), "old");
   EXPECT_EQ(content_of(copy), content_of(scan));

@@ -211,6 +211,10 @@ std::vector<UsedFile> used_files(const std::vector<Arguments::Entry>& entries,
     if (!writes && !entry.input) continue;
     for (const std::string& text : words.of_entry[i].texts) {
       files.push_back({shown_name(entry), text, writes});
+      if (!entry.beside) continue;
+      for (const std::string& name : entry.beside(text)) {
+        files.push_back({shown_name(entry), name, true});
+      }
     }
   }
   return files;
