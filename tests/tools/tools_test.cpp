@@ -353,6 +353,23 @@ TEST_F(Tools, PipesAndDevicesMayBeSharedByOutputs) {
             0);
 }
 
+TEST_F(Tools, AStackTooSmallIsNoCrash) {
+  const TemporaryFolder outputs;
+  const std::string err = outputs.file("err");
+  const pid_t child = started("estimate-density", quickstart(folder), [&] {
+    ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_STACK, &limit);
+    limit.rlim_cur = 160 * 1024;
+    ::setrlimit(RLIMIT_STACK, &limit);
+  });
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(exit_code(status), 1);
+  EXPECT_EQ(content_of(err),
+            "estimate-density: not enough memory for a stack of 1 MiB (ulimit -s or -v)\n");
+}
+
 TEST_F(Tools, AnOutputNamedStandardOutputComesBeforeTheAnswer) {
   const std::string file = folder.file("dig.csv");
   const Words plan = {"--density", "40", "--json", "--trajectory"};

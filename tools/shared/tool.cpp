@@ -20,6 +20,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "shared/stack.hpp"
 #include "shared/standard_input.hpp"
 #include "shared/used_files.hpp"
 
@@ -376,6 +377,10 @@ int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
              const std::function<Outcome(Console&)>& work) {
   hold_standard_streams();
+  if (!hold_stack()) {
+    std::cerr << about.name << ": not enough memory for a stack of 1 MiB (ulimit -s or -v)\n";
+    return 1;
+  }
   StandardInput input;
   return reported(about, input, [&] { return run(argc, argv, about, declare, work, input); });
 }
