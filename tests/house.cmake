@@ -6,10 +6,6 @@ cmake_minimum_required(VERSION 3.24)
 
 # No header and no program file is longer than this.
 set(most_lines 150)
-# These may reach 200, with the reason.
-# fifteen options with their help, and a main() that speaks for all ranks of an MPI job
-set(long_programs tools/build_path_library.cpp)
-
 
 file(GLOB_RECURSE headers RELATIVE ${ROOT}
   ${ROOT}/include/*.hpp ${ROOT}/src/*.hpp ${ROOT}/tools/*.hpp)
@@ -18,12 +14,8 @@ foreach(file IN LISTS headers programs)
   file(READ ${ROOT}/${file} text)
   string(REGEX REPLACE "[^\n]" "" text "${text}")
   string(LENGTH "${text}" count)
-  set(most ${most_lines})
-  if(file IN_LIST long_programs)
-    set(most 200)
-  endif()
-  if(count GREATER most)
-    message(SEND_ERROR "${file}: ${count} lines, at most ${most} are allowed")
+  if(count GREATER most_lines)
+    message(SEND_ERROR "${file}: ${count} lines, at most ${most_lines} are allowed")
   endif()
 endforeach()
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/library/library_build.hpp>
 
-#include "base/text.hpp"
 #include "shared/entry_folder.hpp"
-#include "shared/goal_inputs.hpp"
+#include "shared/library_inputs.hpp"
 #include "shared/library_results.hpp"
 #include "shared/ranks.hpp"
 #include "shared/results.hpp"
@@ -29,16 +28,7 @@ const About about = {
     true};
 
 struct Inputs {
-  std::string densities = "0:5:100";
-  std::string slopes = "0";
-  std::string soils = "loam";
-  std::string machines = "zx120";
-  std::string simulator = default_simulator().word;
-  GoalInputs goal;
-  std::string method = "memetic";
-  AnchoredSearch anchored;
-  GeneticAlgorithm genetic;
-  LibrarySearch search;
+  LibraryInputs library;
   std::uint64_t threads = 0;
   bool resume = false;
   std::optional<std::string> cells;
@@ -46,29 +36,7 @@ struct Inputs {
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
-  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
-                 "relative densities [%], or a list a,b,c");
-  arguments.text("slopes", "LIST", inputs.slopes,
-                 "slopes of the ground, rising away from the machine: first:step:last or a,b,c "
-                 "[rad]");
-  arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
-  arguments.text("machine", "NAME,..", inputs.machines, "zx120 or machine files");
-  arguments.simulator(inputs.simulator);
-  declare_goal(arguments, inputs.goal);
-  arguments.choice("method", inputs.method, {"memetic", "paper"},
-                   "memetic: three densities without a warm start, the others from neighbours; "
-                   "paper: a genetic algorithm for each");
-  arguments.option("points", inputs.anchored.points,
-                   "memetic: initial digs of a search without a warm start");
-  arguments.option("polish", inputs.anchored.polish_evaluations,
-                   "memetic: simulated digs of one Nelder-Mead search");
-  arguments.option("inherited", inputs.anchored.inherited_evaluations,
-                   "memetic: simulated digs of a density that starts from its neighbours");
-  arguments.option("population", inputs.genetic.population, "paper: population of a generation");
-  arguments.option("generations", inputs.genetic.generations, "paper: generations of a search");
-  arguments.option("cell", inputs.search.cell_size, Quantity::length,
-                   "cell size of the simulated ground");
-  arguments.option("seed", inputs.search.seed, "seed; the same seed gives the same file");
+  declare_library(arguments, inputs.library);
   arguments.threads(inputs.threads, "; same file for any");
   arguments.place("cells", inputs.cells,
                   "folder for the results of each density; kept, reused by later runs and shared "
@@ -80,52 +48,9 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.require("out");
 }
 
-const OptionNames option_names = {{"library: densities", "--densities"},
-                                  {"library: slopes", "--slopes"},
-                                  cell_option[0],
-                                  {"machines x soils x slopes x densities of a library",
-                                   "--machine x --soil x --slopes x --densities"},
-                                  {"points of a library search", "--points"},
-                                  {"search: first_generation", "--points"},
-                                  {"polish evaluations of a library search", "--polish"},
-                                  {"inherited evaluations of a library search", "--inherited"},
-                                  {"search: population", "--population"},
-                                  {"search: generations", "--generations"}};
-
-LibraryGrid grid_of(const Inputs& inputs) {
-  LibraryGrid grid;
-  for (const std::string& name : split(inputs.machines, ',')) {
-    grid.machines.push_back(machine_named(name));
-  }
-  for (const std::string& name : split(inputs.soils, ',')) grid.soils.push_back(soil_named(name));
-  grid.slopes = parse_series("--slopes", inputs.slopes, Quantity::angle);
-  grid.densities_percent = parse_densities("--densities", inputs.densities);
-  return grid;
-}
-
-/// Of options that only the other method has.
-std::vector<Warning> warnings_of(const Inputs& inputs) {
-  const AnchoredSearch anchored;
-  const GeneticAlgorithm genetic;
-  const bool paper = inputs.method == "paper";
-  IgnoredOptions ignored;
-  ignored.add(paper && inputs.anchored.points != anchored.points, "--points");
-  ignored.add(paper && inputs.anchored.polish_evaluations != anchored.polish_evaluations,
-              "--polish");
-  ignored.add(paper && inputs.anchored.inherited_evaluations != anchored.inherited_evaluations,
-              "--inherited");
-  ignored.add(!paper && inputs.genetic.population != genetic.population, "--population");
-  ignored.add(!paper && inputs.genetic.generations != genetic.generations, "--generations");
-  return ignored.warnings("--method " + inputs.method + " has none");
-}
-
 LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   LibraryBuildOptions options;
-  options.search = inputs.search;
-  options.search.objective = objective_of(inputs.goal);
-  options.search.simulator = simulator_of_word(inputs.simulator);
-  options.search.method = inputs.anchored;
-  if (inputs.method == "paper") options.search.method = inputs.genetic;
+  options.search = search_of(inputs.library);
   options.threads = static_cast<unsigned>(inputs.threads);
   options.folder = inputs.cells.value_or(inputs.out + ".cells");
   options.note = [&console](const std::string& line) { console.note(line); };
@@ -146,9 +71,9 @@ LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
 
 Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
   const Stopwatch watch;
-  const LibraryGrid grid = grid_of(inputs);
+  const LibraryGrid grid = grid_of(inputs.library);
   LibraryBuildOptions options = options_of(inputs, console);
-  naming_options(option_names, [&] { require_buildable(grid, options.search); });
+  naming_options(library_option_names, [&] { require_buildable(grid, options.search); });
   if (ranks != nullptr) {
     if (options.threads == 0) options.threads = 1;
     ranks->agree(options.threads);
@@ -162,13 +87,13 @@ Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
   std::optional<EntryFolder> own;
   if (!inputs.cells) own.emplace(options.folder, inputs.resume);
   const LibraryBuild build =
-      naming_options(option_names, [&] { return build_path_libraries(grid, options); });
+      naming_options(library_option_names, [&] { return build_path_libraries(grid, options); });
   Outcome outcome = build.stopped ? stopped_build(build, options.folder,
                                                   inputs.cells ? "the same command" : "--resume")
                                   : written_libraries(build.libraries, inputs.out);
   if (own) build.stopped ? own->keep() : own->clear();
   outcome.json["wall_time_s"] = watch.seconds();
-  outcome.warnings = warnings_of(inputs);
+  outcome.warnings = warnings_of(inputs.library);
   return outcome;
 }
 

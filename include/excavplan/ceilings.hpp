@@ -21,6 +21,8 @@ inline constexpr double most_survey_memory = 8e9;
 inline constexpr std::uint64_t most_recorded_points = 50000000;
 /// Evaluations that one search may plan, hours of digs.
 inline constexpr int most_evaluations = 1000000;
+/// Densities that the ground is taken to have where its density is uncertain.
+inline constexpr int most_possible_densities = 20;
 /// Drawn soils of a calibration.
 inline constexpr int most_draws = 100000;
 /// Densities times slopes, machines and soils of a build of path libraries.

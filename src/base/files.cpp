@@ -11,6 +11,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -35,29 +36,49 @@ std::string reason_text(int reason) { return std::generic_category().message(rea
 
 /// Where that goes which is written to a path.
 struct Place {
-  std::string path;                 ///< behind all links
-  bool is_replaced = true;          ///< else written to: a pipe, a device, /dev/stdout
-  std::optional<mode_t> mode = {};  ///< of the file that is there
+  std::string path;                    ///< behind all links
+  bool is_replaced = true;             ///< else written to: a pipe, a device, an open file
+  std::optional<int> descriptor = {};  ///< of a file that this process has open
+  std::optional<mode_t> mode = {};     ///< of the file that is there
 };
 
-bool is_of_process(const fs::path& link) {
+bool is_link(const fs::path& path) {
   std::error_code none;
-  return fs::canonical(link.parent_path(), none).string().rfind("/proc/", 0) == 0;
+  return fs::is_symlink(fs::symlink_status(path, none));
 }
 
-Place place_of(const std::string& path) {
+fs::path folder_of(const fs::path& path) {
+  std::error_code none;
+  return fs::canonical(path.parent_path(), none);
+}
+
+/// Whether a link leads to what a process has open, whatever its text.
+bool is_of_process(const fs::path& link) {
+  return is_link(link) && folder_of(link).string().rfind("/proc/", 0) == 0;
+}
+
+/// What is behind all links but those of a process.
+fs::path behind_links(const std::string& path) {
   constexpr int most_links = 40;  // as Linux follows
-  struct stat status {};
-  const bool exists = ::stat(path.c_str(), &status) == 0;
-  if (!exists && errno != ENOENT) fail_to_write(path, errno);
-  if (exists && !S_ISREG(status.st_mode)) return {path, false};
   fs::path target = path;
-  std::error_code error;
-  for (int links = 0; fs::is_symlink(fs::symlink_status(target, error)); ++links) {
-    if (is_of_process(target)) return {path, false};
+  for (int links = 0; is_link(target) && !is_of_process(target); ++links) {
+    std::error_code error;
     if (links == most_links) fail_to_write(path, ELOOP);
     target = target.parent_path() / fs::read_symlink(target, error);
     if (error) fail_to_write(path, error.value());
+  }
+  return target;
+}
+
+Place place_of(const std::string& path) {
+  struct stat status {};
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (!exists && errno != ENOENT) fail_to_write(path, errno);
+  if (const auto descriptor = open_descriptor(path)) return {path, false, descriptor};
+  if (exists && !S_ISREG(status.st_mode)) return {path, false};
+  const fs::path target = behind_links(path);
+  if (is_of_process(target)) {
+    throw Error(ErrorKind::bad_file, path + ": is a file that another process has open");
   }
   Place place{target.string()};
   if (exists) place.mode = status.st_mode & 0777;
@@ -85,13 +106,13 @@ bool flush_folder_of(const std::string& path) {
 /// return false.
 class OutputFile {
  public:
-  /// @param how  more flags of ::open() for what is not replaced
-  explicit OutputFile(const Place& place, int how = 0)
+  explicit OutputFile(const Place& place)
       : path_(place.is_replaced ? unfinished_name(place.path) : place.path),
         is_removed_(place.is_replaced) {
     constexpr int flags = O_WRONLY | O_CLOEXEC | O_NOCTTY;
     if (!is_removed_) {
-      descriptor_ = ::open(path_.c_str(), flags | how);
+      descriptor_ = place.descriptor ? ::fcntl(*place.descriptor, F_DUPFD_CLOEXEC, 0)
+                                     : ::open(path_.c_str(), flags);
       return;
     }
     descriptor_ = ::open(path_.c_str(), flags | O_CREAT | O_EXCL, place.mode.value_or(0666));
@@ -135,7 +156,7 @@ class OutputFile {
 
 void write(const std::string& path, const ContentSource& content, bool is_flushed) {
   const Place place = place_of(path);
-  OutputFile file(place, O_TRUNC);
+  OutputFile file(place);
   if (!file.is_open()) fail_to_write(path, errno);
   content([&](std::string_view part) {
     if (!file.write(part)) fail_to_write(path, errno);
@@ -189,6 +210,19 @@ void write_file(const std::string& path, const std::string& content) {
 
 void write_file(const std::string& path, const ContentSource& content) {
   write(path, content, true);
+}
+
+std::optional<int> open_descriptor(const std::string& path) {
+  const fs::path link = behind_links(path);
+  if (!is_of_process(link)) return std::nullopt;
+  const fs::path folder = folder_of(link);
+  const bool is_own =
+      folder == folder_of("/proc/self/fd/0") || folder == folder_of("/proc/thread-self/fd/0");
+  const std::string name = link.filename();
+  int number = -1;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  const bool is_number = error == std::errc{} && end == name.data() + name.size();
+  return is_own && is_number ? std::optional(number) : std::nullopt;
 }
 
 std::string unfinished_name(const std::string& path) {

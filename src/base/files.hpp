@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,7 +26,7 @@ std::string read_file(const std::string& path, std::uint64_t most_bytes = most_s
 
 /// Writes a file whole or not at all: beside it first, to the disk, then renamed over it. A file
 /// that a link leads to is replaced where it lies, its mode stays; a pipe or a device is written
-/// to.
+/// to, and so is an open_descriptor() from where it stands.
 /// @throws Error (bad_file) with the reason if that fails; the old file then remains and no other,
 /// unless the error says that it was replaced: the disk failed when all was written
 void write_file(const std::string& path, const std::string& content);
@@ -36,6 +37,10 @@ void write_file(const std::string& path, const ContentSource& content);
 /// The same for what is written again and again or can be computed again: it is not flushed, so a
 /// loss of power, unlike a kill, may cost it.
 void write_journal(const std::string& path, const std::string& content);
+
+/// The file that this process has open and a path leads to, as /dev/stdout and /dev/fd/3 do.
+/// @throws Error (bad_file) if the links of the path cannot be followed
+std::optional<int> open_descriptor(const std::string& path);
 
 /// A name beside a path for its content until that is whole: NAME.part-HOST-THREAD-LETTERS, with
 /// eight random letters, as machines of one name may share a folder. Cut where it would be too long

@@ -18,6 +18,7 @@
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
 #include "ground/robust.hpp"
+#include "ground/too_few_cells.hpp"
 
 namespace excavplan {
 namespace {
@@ -122,10 +123,9 @@ class Aligner {
       found_.centre += Eigen::Vector3d(map_.x(at.col), map_.y(at.row), map_.z(at.row, at.col));
     });
     if (samples_.size() < fewest_cells) {
-      throw Error(ErrorKind::bad_input,
-                  "align: the surfaces share " + std::to_string(samples_.size()) +
-                      " known cells with known neighbours and no steep gradient, at least " +
-                      std::to_string(fewest_cells) + " are needed: do the scans overlap?");
+      throw TooFewCells("align: the surfaces share " + std::to_string(samples_.size()) +
+                            " known cells with known neighbours and no steep gradient",
+                        fewest_cells, map_.cell_size);
     }
     found_.centre /= static_cast<double>(samples_.size());
     for (Sample& sample : samples_) {

@@ -16,6 +16,7 @@
 #include "ground/shadow_filling.hpp"
 #include "ground/sight_lines.hpp"
 #include "ground/stripes.hpp"
+#include "ground/too_few_cells.hpp"
 #include "ground/zone_filling.hpp"
 
 namespace excavplan {
@@ -261,10 +262,8 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
   const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
   const Eigen::Index known = difference.size() - difference.isNaN().count();
   if (known < fewest_known_cells) {
-    throw Error(ErrorKind::bad_input, "the maps before and after share " + std::to_string(known) +
-                                          " known cells, at least " +
-                                          std::to_string(fewest_known_cells) +
-                                          " are needed: do the scans overlap?");
+    throw TooFewCells("the maps before and after share " + std::to_string(known) + " known cells",
+                      fewest_known_cells, scans.before.cell_size);
   }
   return scans;
 }

@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optimisation/search_checkpoint.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <system_error>
 
 #include <excavplan/error.hpp>
 
 #include "base/files.hpp"
+#include "base/input_file.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 
@@ -86,6 +89,14 @@ std::string describe(const GeneticAlgorithm& method) {
          std::to_string(method.generations) + ", tournament " + std::to_string(method.tournament) +
          ", crossover " + number_text(method.crossover) + ", mutation " +
          number_text(method.mutation);
+}
+
+bool is_checkpoint(const std::string& file) {
+  const std::string expected = std::string("{\n\"format\": \"") + format + '"';
+  const InputFile bytes(file);
+  std::string found(std::min<std::uint64_t>(bytes.size(), expected.size()), ' ');
+  bytes.read(0, found.data(), found.size());
+  return found == expected;
 }
 
 SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOptions& options)

@@ -10,8 +10,12 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <excavplan/ceilings.hpp>
+#include <excavplan/error.hpp>
+
 #include "base/check.hpp"
 #include "base/parallel.hpp"
+#include "optimisation/search_checkpoint.hpp"
 #include "planning/dig_problem.hpp"
 #include "simulation/checked_dig.hpp"
 
@@ -20,18 +24,25 @@ namespace {
 
 using Eigen::Index;
 
-std::string checkpoint_of_soil(const std::string& checkpoint, std::size_t i) {
-  return checkpoint.empty() ? checkpoint : checkpoint + ".soil" + std::to_string(i + 1);
-}
+namespace fs = std::filesystem;
 
-/// Removes those of an earlier search, which a resume would otherwise read if this search ends
-/// before it has written its own.
-void remove_checkpoints(const std::string& checkpoint, std::size_t soils) {
-  std::vector<std::string> files = {checkpoint};
-  for (std::size_t i = 0; i < soils; ++i) files.push_back(checkpoint_of_soil(checkpoint, i));
+/// Makes sure that no other file is in the place of a checkpoint that the caller did not name, and,
+/// unless they are resumed, removes those of an earlier search: a resume would otherwise read them
+/// if this search ends before it has written its own.
+void prepare_checkpoints(const DigSearchOptions& options, std::size_t soils) {
+  if (options.checkpoint.empty()) return;
+  std::vector<std::string> files = {options.checkpoint};
+  for (std::size_t i = 0; i < soils; ++i) {
+    files.push_back(checkpoint_of_soil(options.checkpoint, i));
+    std::error_code error;
+    if (!fs::exists(files.back(), error) || is_checkpoint(files.back())) continue;
+    throw Error(ErrorKind::bad_file,
+                files.back() + ": is no checkpoint of a search, but has the name of one of " +
+                    options.checkpoint);
+  }
   for (const std::string& file : files) {
     std::error_code error;
-    if (std::filesystem::is_regular_file(file, error)) std::filesystem::remove(file, error);
+    if (!options.resume && fs::is_regular_file(file, error)) fs::remove(file, error);
   }
 }
 
@@ -119,15 +130,17 @@ Found<UncertainDigSearchResult> nothing(std::optional<NearestDig> nearest, bool 
 
 }  // namespace
 
+std::string checkpoint_of_soil(const std::string& checkpoint, std::size_t soil) {
+  return checkpoint.empty() ? checkpoint : checkpoint + ".soil" + std::to_string(soil + 1);
+}
+
 Found<UncertainDigSearchResult> search_dig(const Machine& machine,
                                            const std::vector<PossibleSoil>& soils,
                                            const Terrain& terrain,
                                            const DigSearchOptions& options) {
   check(soils);
   check(options, machine);
-  if (!options.checkpoint.empty() && !options.resume) {
-    remove_checkpoints(options.checkpoint, soils.size());
-  }
+  prepare_checkpoints(options, soils.size());
   const BestForEach best = best_for_each(machine, soils, terrain, options);
   if (best.digs().empty()) return nothing(best.nearest(), best.stopped);
   const DigSearchOptions from_bests =
@@ -185,7 +198,8 @@ std::vector<PossibleDensity> possible_densities(double mean_percent, double sd_p
   require(sd_percent > 0.0 && std::isfinite(sd_percent), "the standard deviation of the density",
           sd_percent, "above 0 and finite");
   sd_percent = std::min(sd_percent, 1000.0);  // above it all densities are equally likely
-  require(count >= 1 && count <= 20, "the number of possible densities", count, "in 1 .. 20");
+  require(count >= 1 && count <= most_possible_densities, "the number of possible densities", count,
+          "in 1 .. " + std::to_string(most_possible_densities));
   // Three-term recurrence of the polynomials orthogonal under the density on a fine grid
   // (Stieltjes), then the eigenvalues of its matrix (Golub and Welsch 1969).
   constexpr Index fine = 4000;

@@ -15,6 +15,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/cover.hpp"
+#include "ground/too_few_cells.hpp"
 #include "soil/density_forms.hpp"
 #include "survey/density_of_volumes.hpp"
 #include "survey/paper_change.hpp"
@@ -96,6 +97,8 @@ template <typename Measure>
 VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
   try {
     return measure();
+  } catch (const TooFewCells& few) {
+    throw few.of_scans(seen.dig.names());
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, seen.dig.names() + ": " + error.what());
   }

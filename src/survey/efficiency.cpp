@@ -10,6 +10,7 @@
 #include "base/check.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
+#include "ground/too_few_cells.hpp"
 #include "survey/scan_checks.hpp"
 #include "survey/scan_reading.hpp"
 
@@ -227,6 +228,8 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
     add(check_volumes(change));
     add(change.warnings);
     return {Lifted::volume, change.dumped};
+  } catch (const TooFewCells& few) {
+    throw few.of_scans(seen.names());
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, names + error.what());
   }

@@ -17,6 +17,7 @@
 #include "ground/coarse_motion.hpp"
 #include "ground/robust.hpp"
 #include "ground/sampling_gaps.hpp"
+#include "ground/too_few_cells.hpp"
 #include "survey/cloud_outline.hpp"
 #include "survey/point_stream.hpp"
 
@@ -338,8 +339,12 @@ RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
   RegisteredPair result;
   result.surfaces = survey(coarse, result.correction);
   const Registering registering = {scans.after, extent, coarse, small};
-  registering.align_again(result);
-  if (could_be_elsewhere(result)) registering.look_farther(result);
+  try {
+    registering.align_again(result);
+    if (could_be_elsewhere(result)) registering.look_farther(result);
+  } catch (const TooFewCells& few) {
+    throw few.of_scans(name_of(scans.before) + ", " + name_of(scans.after));
+  }
   if (is_fine) {
     const Alignment found = result.surfaces.alignment;
     result.surfaces = survey(options, result.correction);

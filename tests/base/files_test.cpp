@@ -296,7 +296,7 @@ TEST(UnfinishedFiles, AreThoseOfTheirFormAlone) {
   }
 }
 
-TEST_F(Writing, PipesAndOpenFilesAreWrittenTo) {
+TEST_F(Writing, PipesAreWrittenTo) {
   const std::string pipe = folder_.file("pipe");
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -305,14 +305,57 @@ TEST_F(Writing, PipesAndOpenFilesAreWrittenTo) {
   EXPECT_EQ(::read(reader, bytes.data(), bytes.size()), 7);
   ::close(reader);
   EXPECT_STREQ(bytes.data(), "through");
-  const std::string path = folder_.write("file", "a longer old content");
-  const ino_t before = inode(path);
-  const int open = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  write_file("/dev/fd/" + std::to_string(open), "new");
-  ::close(open);
-  EXPECT_EQ(content_of(path), "new");
-  EXPECT_EQ(inode(path), before);
+  EXPECT_EQ(files(), 1U);
+}
+
+class OpenFiles : public Writing {
+ protected:
+  ~OpenFiles() override { ::close(open_); }
+
+  const std::string path_ = folder_.write("file", "old content");
+  const int open_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
+  const std::string name_ = "/dev/fd/" + std::to_string(open_);
+};
+
+TEST_F(OpenFiles, AreWrittenToFromWhereTheyStand) {
+  const ino_t before = inode(path_);
+  ASSERT_EQ(::lseek(open_, 0, SEEK_END), 11);
+  fs::create_symlink(name_, folder_.file("link"));
+  for (const std::string& name :
+       {name_, folder_.file("link"), "/proc/thread-self/fd/" + std::to_string(open_)}) {
+    EXPECT_NO_THROW(require_writable(name));
+    EXPECT_EQ(open_descriptor(name), open_);
+    write_file(name, ", a file");
+    ASSERT_EQ(::write(open_, ", more", 6), 6);
+  }
+  const std::string added = ", a file, more";
+  EXPECT_EQ(content_of(path_), "old content" + added + added + added);
+  EXPECT_EQ(inode(path_), before);
   EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(OpenFiles, ThatCannotBeWrittenToAreRefused) {
+  const auto reason = [](const std::string& name) {
+    return error_about([&] { require_writable(name); }, name);
+  };
+  const int read_only = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  EXPECT_EQ(reason("/dev/fd/" + std::to_string(read_only)),
+            "cannot be written: Bad file descriptor");
+  ::close(read_only);
+  const pid_t other = ::fork();
+  if (other == 0) ::pause();
+  const std::string of_other = "/proc/" + std::to_string(other) + "/fd/" + std::to_string(open_);
+  EXPECT_EQ(reason(of_other), "is a file that another process has open");
+  ::kill(other, SIGKILL);
+  ::waitpid(other, nullptr, 0);
+  EXPECT_EQ(content_of(path_), "old content");
+}
+
+TEST_F(OpenFiles, AreNotThoseOfOtherPaths) {
+  for (const std::string& name : {path_, folder_.file("none"), std::string("/proc/self/exe"),
+                                  std::string("/dev/null"), std::string("/proc/self/fd")}) {
+    EXPECT_EQ(open_descriptor(name), std::nullopt) << name;
+  }
 }
 
 }  // namespace

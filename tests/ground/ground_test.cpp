@@ -735,9 +735,10 @@ TEST(VolumeChange, MapsThatDoNotFitAreRefused) {
   HeightMap unseen = ground;
   unseen.z.setConstant(nan);
   unseen.z.topLeftCorner(3, 3).setZero();
-  EXPECT_EQ(message(ground, unseen),
-            "the maps before and after share 9 known cells, at least 100 are needed: do the scans "
-            "overlap?");
+  EXPECT_EQ(
+      message(ground, unseen),
+      "the maps before and after share 9 known cells, at least 100 are needed: do they overlap, "
+      "with points enough for cells of 0.050 m?");
   ChangeOptions options;
   options.growth = 6.0;
   EXPECT_EQ(message(ground, ground, options),

@@ -199,7 +199,7 @@ TEST(Align, SurfacesThatDoNotFitAreRefused) {
   unseen.height.z.setConstant(nan);
   EXPECT_EQ(message(one, unseen),
             "align: the surfaces share 0 known cells with known neighbours and no steep gradient, "
-            "at least 100 are needed: do the scans overlap?");
+            "at least 100 are needed: do they overlap, with points enough for cells of 0.10 m?");
   AlignmentOptions options;
   options.turn_prior = 0.0;
   EXPECT_EQ(message(one, one, options), "align: turn_prior is 0, must be positive and finite");

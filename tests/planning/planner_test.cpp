@@ -27,6 +27,7 @@
 #include "simulation/section_simulator.hpp"
 
 #include "support/errors.hpp"
+#include "support/run_program.hpp"
 
 namespace excavplan {
 namespace {
@@ -735,6 +736,23 @@ TEST_F(UncertainSearch, BegunAnewItKeepsNothingOfAnEarlierOne) {
   wrong.bounds.upper.drag_length = 0.1;
   EXPECT_THROW(search_dig(machine_, others, level_, wrong), Error);
   EXPECT_TRUE(is_there(0));  // a slip costs no work done
+}
+
+TEST_F(UncertainSearch, FilesInThePlaceOfItsCheckpointsAreRefusedAndStay) {
+  run(options());
+  const std::string other = files()[2];
+  const std::string checkpoint = test::content_of(other);
+  for (const std::string& content : {std::string("mine"), std::string(), "{" + checkpoint}) {
+    std::ofstream(other) << content;
+    for (const bool resume : {false, true}) {
+      EXPECT_EQ(test::error_of([&] { run(options(1, resume)); }, ErrorKind::bad_file),
+                other + ": is no checkpoint of a search, but has the name of one of " + file_);
+    }
+    EXPECT_EQ(test::content_of(other), content);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(is_there(i)) << i;
+  }
+  std::ofstream(other) << checkpoint.substr(0, 100);  // as a loss of power may leave it
+  EXPECT_TRUE(run(options(1, false)));
 }
 
 TEST_F(UncertainSearch, FinishedItMayGoFurther) {

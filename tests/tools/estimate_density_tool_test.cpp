@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <random>
 #include <sstream>
 
 #include <Eigen/Geometry>
@@ -432,6 +433,27 @@ TEST_F(BadInput, ScansThatDoNotOverlapAreRefused) {
   const std::string far = folder.write("far.txt", "1 0 0 100\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   refused(3, "do not overlap", "estimate-density",
           {scan, later_scan, "--after-frame", far, "--plot", plot});
+}
+
+/// So many points on level ground of 10 m x 10 m, each in a place of its own.
+std::string scattered(int points, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto place = [&] { return std::to_string(1e-3 * static_cast<double>(random() % 10000)); };
+  std::string cloud;
+  for (int i = 0; i < points; ++i) cloud += place() + " " + place() + " 0\n";
+  return cloud;
+}
+
+TEST_F(BadInput, ScansTooSparseForTheirCellsAreNamed) {
+  const std::string before = folder.write("before.xyz", scattered(400, 1));
+  const std::string after = folder.write("after.xyz", scattered(400, 2));
+  const std::string names = before + ", " + after;
+  const std::string reason = ": too few points for cells of ";
+  refused(3, names + reason, "estimate-density", {before, after});
+  refused(3, names + reason, "estimate-density", {before, after, "--no-register", "--cell", "5cm"});
+  const std::string log = folder.write("log.csv", "time_s,power_w\n0,1\n1,1\n");
+  refused(3, names + reason + "0.010 m: the maps before and after share ", "measure-efficiency",
+          {log, "--dump-before", before, "--dump-after", after, "--cell", "1cm"});
 }
 
 TEST_F(BadInput, FramesThatAreNotRigidAreRefused) {

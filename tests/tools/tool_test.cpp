@@ -4,13 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include <excavplan/data_files.hpp>
 
+#include "shared/stack.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::tools {
@@ -117,6 +122,39 @@ Probe run(std::vector<const char*> words, const Outcome& outcome = {}) {
   return result;
 }
 
+/// Lets this process have no more memory than it has.
+void use_up_memory() {
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+  ::setrlimit(RLIMIT_AS, &limit);
+}
+
+[[gnu::noinline]] void use_stack() {
+  std::array<volatile char, stack_reserve - 16384> bytes;
+  for (std::size_t i = bytes.size(); i > 0; i -= std::min<std::size_t>(i, 4096)) bytes[i - 1] = 0;
+}
+
+TEST(Stack, IsHeldForWhenMemoryIsUsedUp) {
+  const auto later = [] {
+    const bool held = hold_stack();
+    use_up_memory();
+    use_stack();
+    ::_exit(held ? 0 : 1);
+  };
+  EXPECT_EXIT(later(), testing::ExitedWithCode(0), "");
+}
+
+TEST(Stack, ThatCannotBeHadIsNotHeld) {
+  const auto without_memory = [] {
+    use_up_memory();
+    ::_exit(hold_stack() ? 0 : 1);
+  };
+  EXPECT_EXIT(without_memory(), testing::ExitedWithCode(1), "");
+}
+
 TEST(Tool, OptionsMayStandBeforeAndAfterPositionals) {
   for (const auto& words : {std::vector<const char*>{"--cell", "5mm", "a.pcd", "--density", "40"},
                             std::vector<const char*>{"a.pcd", "--density=40%", "--cell=0.005"}}) {
@@ -126,6 +164,19 @@ TEST(Tool, OptionsMayStandBeforeAndAfterPositionals) {
     EXPECT_EQ(probe.cell_size, 0.005);
     EXPECT_EQ(probe.density, 40.0);
   }
+}
+
+TEST(Tool, WordsBehindTwoDashesAreNames) {
+  for (const char* name : {"a.pcd", "--json", "--xyzzy", "-h", "--"}) {
+    const Probe probe = run({"--density", "40", "--", name});
+    EXPECT_EQ(probe.code, 0) << probe.err;
+    EXPECT_EQ(probe.before, name);
+    EXPECT_EQ(run({"a.pcd", "--density", "40", "--", name}).err,
+              "probe: unexpected argument '" + std::string(name) + "'\nSee probe --help\n");
+  }
+  EXPECT_EQ(run({"a.pcd", "--density", "40", "--"}).code, 0);
+  EXPECT_EQ(run({"--xyzzy", "--", "--json"}).err,
+            "probe: unknown option --xyzzy\nSee probe --help\n");
 }
 
 TEST(Tool, MisspeltOptionIsReportedBeforeTheMissingOne) {

@@ -327,6 +327,20 @@ TEST_F(BadInput, OneFileForTwoThingsIsRefused) {
           {"--density", "40", "--before", copy, "--after", copy});
   refused(2, "--library and --checkpoint name the same file", "plan-path",
           {"--density", "40", "--search", "--library", copy, "--checkpoint", copy});
+  const std::string soil = folder.write("digs.json.soil3", "mine");
+  fs::create_symlink("digs.json.soil3", folder.file("other.soil1"));
+  const Words uncertain = {"--density", "40", "--density-sd", "8", "--search", "--checkpoint"};
+  for (const char* name : {"digs.json", "other"}) {
+    const std::string part = name + std::string(name[0] == 'd' ? ".soil3" : ".soil1");
+    const std::string same = "name the same file, " + folder.file(part);
+    refused(2, "--checkpoint and --trajectory " + same, "plan-path",
+            uncertain + Words{folder.file(name), "--trajectory", soil});
+    refused(2, "--library and --checkpoint " + same, "plan-path",
+            uncertain + Words{folder.file(name), "--library", soil});
+    refused(3, folder.file(part) + ": is no checkpoint of a search", "plan-path",
+            uncertain + Words{folder.file(name)});
+  }
+  EXPECT_EQ(content_of(soil), "mine");
   refused(2, "--out: standard output is no file to write", "calibrate-density", {"--out", "-"});
   EXPECT_EQ(content_of(out), "old");
   EXPECT_EQ(content_of(copy), content_of(scan));
@@ -337,6 +351,51 @@ TEST_F(Tools, PipesAndDevicesMayBeSharedByOutputs) {
                         {"--density", "40", "--history", "/dev/null", "--report", "/dev/null"})
                 .code,
             0);
+}
+
+TEST_F(Tools, AStackTooSmallIsNoCrash) {
+  const TemporaryFolder outputs;
+  const std::string err = outputs.file("err");
+  const pid_t child = started("estimate-density", quickstart(folder), [&] {
+    ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    rlimit limit{};
+    ::getrlimit(RLIMIT_STACK, &limit);
+    limit.rlim_cur = 160 * 1024;
+    ::setrlimit(RLIMIT_STACK, &limit);
+  });
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(exit_code(status), 1);
+  EXPECT_EQ(content_of(err),
+            "estimate-density: not enough memory for a stack of 1 MiB (ulimit -s or -v)\n");
+}
+
+TEST_F(Tools, AnOutputNamedStandardOutputComesBeforeTheAnswer) {
+  const std::string file = folder.file("dig.csv");
+  const Words plan = {"--density", "40", "--json", "--trajectory"};
+  ASSERT_EQ(run_program("plan-path", plan + Words{file}).code, 0);
+  const std::string trajectory = content_of(file);
+  const ProgramResult both = run_program("plan-path", plan + Words{"/dev/stdout"});
+  EXPECT_EQ(both.code, 0) << both.err;
+  EXPECT_EQ(both.out.substr(0, trajectory.size()), trajectory);
+  EXPECT_EQ(json::parse(both.out.substr(trajectory.size())).at("tool"), "plan-path");
+}
+
+TEST_F(Tools, AnOutputThatReplacesTheFileOfStandardOutputIsRefused) {
+  const std::string file = folder.write("dig.csv", "old\n");
+  fs::create_symlink("dig.csv", folder.file("link.csv"));
+  for (const std::string& name : {file, folder.file("link.csv")}) {
+    const pid_t child = started("plan-path", {"--density", "40", "--trajectory", name}, [&] {
+      ::dup2(::open(file.c_str(), O_WRONLY | O_APPEND), STDOUT_FILENO);
+      ::dup2(STDOUT_FILENO, STDERR_FILENO);
+    });
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(exit_code(status), 2);
+    EXPECT_EQ(content_of(file), "old\nplan-path: --trajectory names the file of standard output, " +
+                                    name + "; /dev/stdout adds to it\nSee plan-path --help\n");
+    folder.write("dig.csv", "old\n");
+  }
 }
 
 TEST_F(BadInput, StandardInputIsATransformButNoDatabase) {

@@ -193,10 +193,11 @@ void Arguments::output(const std::string& name, std::string& value, const std::s
 }
 
 void Arguments::output(const std::string& name, std::optional<std::string>& value,
-                       const std::string& help) {
+                       const std::string& help, const Beside& beside) {
   file(name, value, help);
   entries_.back().input = false;
   entries_.back().output = true;
+  entries_.back().beside = beside;
 }
 
 void Arguments::place(const std::string& name, std::string& value, const std::string& help) {

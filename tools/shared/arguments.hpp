@@ -46,6 +46,8 @@ auto naming_options(const OptionNames& names, const Work& work) {
 class Arguments {
  public:
   using Assign = std::function<void(const std::string& text)>;
+  /// The names of the files that are written with one.
+  using Beside = std::function<std::vector<std::string>(const std::string& name)>;
   struct Entry {
     std::string name;
     std::string placeholder;  ///< "LENGTH"; empty for a flag
@@ -58,6 +60,7 @@ class Arguments {
     bool input = false;     ///< a file to read, or "-" for standard input
     bool place = false;     ///< a file or folder to write, which the tool checks
     bool repeated = false;  ///< may be given several times, `assign` is called for each
+    Beside beside = {};
   };
 
   void positional(const std::string& name, std::string& value, const std::string& help);
@@ -97,7 +100,8 @@ class Arguments {
   void file(const std::string& name, std::optional<std::string>& value, const std::string& help);
   /// A file to write; whether it can be written is checked before the work.
   void output(const std::string& name, std::string& value, const std::string& help);
-  void output(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  void output(const std::string& name, std::optional<std::string>& value, const std::string& help,
+              const Beside& beside = {});
   /// A file or folder to write; whether it can be written is for the tool to check.
   void place(const std::string& name, std::string& value, const std::string& help);
   void place(const std::string& name, std::optional<std::string>& value, const std::string& help);

@@ -4,7 +4,9 @@
 
 #include <variant>
 
+#include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
+#include <excavplan/planning/uncertain_soil.hpp>
 
 #include "shared/quantity.hpp"
 
@@ -39,6 +41,14 @@ std::variant<MemeticSearch, GeneticAlgorithm> method_of(const SearchInputs& inpu
   paper.population = inputs.population.value_or(paper.population);
   if (inputs.generations != 0) paper.generations = inputs.generations;
   return paper;
+}
+
+std::vector<std::string> checkpoints_of_soils(const std::string& checkpoint) {
+  std::vector<std::string> files;
+  for (std::size_t i = 0; i < most_possible_densities; ++i) {
+    files.push_back(checkpoint_of_soil(checkpoint, i));
+  }
+  return files;
 }
 
 /// Shows a search on the console. @return whether it may continue
@@ -81,7 +91,8 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.output(
       "checkpoint", inputs.checkpoint,
       "save the simulated digs in this file; for several densities also in FILE.soil1, "
-      "FILE.soil2, ...");
+      "FILE.soil2, ...",
+      checkpoints_of_soils);
   arguments.flag("resume", inputs.resume, "continue from the checkpoint if it exists");
   arguments.option("seed", inputs.seed, "seed of the search");
   arguments.threads(inputs.threads, "; the path does not depend on it");

@@ -20,6 +20,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "shared/stack.hpp"
 #include "shared/standard_input.hpp"
 #include "shared/used_files.hpp"
 
@@ -125,7 +126,7 @@ struct ParsedWords {
     std::vector<std::string> texts;
   };
   std::vector<Given> of_entry;
-  std::vector<std::string> left_over;
+  std::vector<std::string> left_over;  ///< also the first "--", behind which all words are names
 };
 
 /// CLI11 only sorts the words. Conversion and missing options come after the check for unknown
@@ -165,9 +166,13 @@ void refuse_left_over(const std::vector<std::string>& left_over,
   for (const Arguments::Entry& entry : entries) {
     if (!entry.positional) names.push_back(entry.name);
   }
-  for (const std::string& word : left_over) {
+  const auto names_begin = std::find(left_over.begin(), left_over.end(), "--");
+  for (auto at = left_over.begin(); at != left_over.end(); ++at) {
+    if (at == names_begin) continue;
+    const std::string& word = *at;
     const std::size_t start = word.find_first_not_of('-');
-    if (start == std::string::npos || start == 0) usage_error("unexpected argument '" + word + "'");
+    const bool is_option = at < names_begin && start != std::string::npos && start > 0;
+    if (!is_option) usage_error("unexpected argument '" + word + "'");
     const std::string option = word.substr(0, word.find('='));
     const auto meant = nearest_word(option.substr(start), names);
     usage_error("unknown option " + option + (meant ? ", did you mean --" + *meant + "?" : ""));
@@ -207,6 +212,10 @@ std::vector<UsedFile> used_files(const std::vector<Arguments::Entry>& entries,
     if (!writes && !entry.input) continue;
     for (const std::string& text : words.of_entry[i].texts) {
       files.push_back({shown_name(entry), text, writes});
+      if (!entry.beside) continue;
+      for (const std::string& name : entry.beside(text)) {
+        files.push_back({shown_name(entry), name, true});
+      }
     }
   }
   return files;
@@ -368,6 +377,10 @@ int run_tool(int argc, const char* const* argv, const About& about,
              const std::function<void(Arguments&)>& declare,
              const std::function<Outcome(Console&)>& work) {
   hold_standard_streams();
+  if (!hold_stack()) {
+    std::cerr << about.name << ": not enough memory for a stack of 1 MiB (ulimit -s or -v)\n";
+    return 1;
+  }
   StandardInput input;
   return reported(about, input, [&] { return run(argc, argv, about, declare, work, input); });
 }

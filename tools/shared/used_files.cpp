@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/used_files.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
 
+#include "base/files.hpp"
 #include "shared/arguments.hpp"
 
 namespace excavplan::tools {
@@ -39,20 +43,33 @@ std::vector<std::string> places_of(const UsedFile& file) {
   return places;
 }
 
+/// What would be printed is lost where its file is replaced.
+void refuse_file_of_standard_output(const UsedFile& output) {
+  struct stat file {};
+  struct stat printed {};
+  const bool are_files = ::stat(output.text.c_str(), &file) == 0 && S_ISREG(file.st_mode) &&
+                         ::fstat(STDOUT_FILENO, &printed) == 0;
+  if (!are_files || file.st_dev != printed.st_dev || file.st_ino != printed.st_ino) return;
+  if (open_descriptor(output.text) == STDOUT_FILENO) return;
+  usage_error(output.option + " names the file of standard output, " + output.text +
+              "; /dev/stdout adds to it");
+}
+
 }  // namespace
 
 void refuse_shared_files(const std::vector<UsedFile>& files) {
-  for (const UsedFile& output : files) {
-    if (!output.output) continue;
-    const std::string place = place_of(output.text);
-    for (const UsedFile& other : files) {
-      if (place.empty() || &other == &output) continue;
-      const std::vector<std::string> places = places_of(other);
-      if (std::find(places.begin(), places.end(), place) == places.end()) continue;
-      const auto& [first, second] = std::minmax(output, other, [](const auto& a, const auto& b) {
-        return &a < &b;  // in the order of the options
-      });
-      usage_error(first.option + " and " + second.option + " name the same file, " + output.text);
+  std::vector<std::vector<std::string>> places(files.size());
+  std::transform(files.begin(), files.end(), places.begin(), places_of);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!files[i].output) continue;
+    refuse_file_of_standard_output(files[i]);
+    const std::string& place = places[i].front();
+    for (std::size_t j = 0; j < files.size(); ++j) {
+      const bool is_there = std::count(places[j].begin(), places[j].end(), place) > 0;
+      if (j == i || place.empty() || !is_there) continue;
+      const auto [first, second] = std::minmax(i, j);  // in the order of the options
+      usage_error(files[first].option + " and " + files[second].option + " name the same file, " +
+                  files[i].text);
     }
   }
 }

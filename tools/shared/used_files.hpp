@@ -15,7 +15,8 @@ struct UsedFile {
 };
 
 /// Names of one file, also through links and as ./FILE, are found; pipes and devices may be shared.
-/// @throws Error (bad_input) if a file to write is also written or read by another option
+/// @throws Error (bad_input) if a file to write is also written or read by another option, or is
+/// that of standard output by another name than /dev/stdout
 void refuse_shared_files(const std::vector<UsedFile>& files);
 
 }  // namespace excavplan::tools

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <excavplan/planning/dig_search.hpp>
@@ -32,16 +34,19 @@ struct UncertainDigSearchResult {
   double value_of_knowing() const { return worth_if_known / expected.worth - 1.0; }
 };
 
+/// FILE.soil1 for the first soil, 0, of a search with the checkpoint FILE, and so on; empty: none.
+std::string checkpoint_of_soil(const std::string& checkpoint, std::size_t soil);
+
 /// Searches the best dig for each soil, and from all of them the dig of the highest expected worth.
 /// The stop rules are those of each search; an evaluation of the last is one dig in every soil. The
 /// search for the i-th soil has the i-th seed from the one given on.
 ///
-/// Of a checkpoint FILE the search for the first soil keeps FILE.soil1, that for the second
-/// FILE.soil2 and so on, the last search FILE itself; without `resume` all of them start again.
-/// What is stopped before the last search gives the best on average of the digs found so far.
+/// The search for each soil keeps its checkpoint_of_soil(), the last search the checkpoint itself;
+/// without `resume` all of them start again. What is stopped before the last search gives the best
+/// on average of the digs found so far.
 ///
 /// @throws Error as for one soil, and (bad_input) unless the probabilities are positive and add up
-///         to 1
+///         to 1, and (bad_file) if in the place of the checkpoint of a soil there is another file
 Found<UncertainDigSearchResult> search_dig(const Machine& machine,
                                            const std::vector<PossibleSoil>& soils,
                                            const Terrain& terrain,

@@ -139,7 +139,7 @@ struct RegisteredPair {
 /// shifts to 1.2 m and turns to 6 degrees are tried as well, and kept if they leave two thirds of
 /// the difference or less. Cells that lie between the points of a sparse scan, its rings or its
 /// lines are interpolated; they count no points.
-/// @throws Error as survey_surface() and align()
+/// @throws Error as survey_surface() and align(), but (bad_file) if they share too few known cells
 RegisteredPair survey_registered(const ScanPair& scans, const Rectangle& extent,
                                  const RasterOptions& options, double registration_cell,
                                  unsigned threads = 0);

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/library_inputs.hpp"
+
+#include "base/text.hpp"
+#include "shared/results.hpp"
+
+namespace excavplan::tools {
+
+void declare_library(Arguments& arguments, LibraryInputs& inputs) {
+  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
+                 "relative densities [%], or a list a,b,c");
+  arguments.text("slopes", "LIST", inputs.slopes,
+                 "slopes of the ground, rising away from the machine: first:step:last or a,b,c "
+                 "[rad]");
+  arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
+  arguments.text("machine", "NAME,..", inputs.machines, "zx120 or machine files");
+  arguments.simulator(inputs.simulator);
+  declare_goal(arguments, inputs.goal);
+  arguments.choice("method", inputs.method, {"memetic", "paper"},
+                   "memetic: three densities without a warm start, the others from neighbours; "
+                   "paper: a genetic algorithm for each");
+  arguments.option("points", inputs.anchored.points,
+                   "memetic: initial digs of a search without a warm start");
+  arguments.option("polish", inputs.anchored.polish_evaluations,
+                   "memetic: simulated digs of one Nelder-Mead search");
+  arguments.option("inherited", inputs.anchored.inherited_evaluations,
+                   "memetic: simulated digs of a density that starts from its neighbours");
+  arguments.option("population", inputs.genetic.population, "paper: population of a generation");
+  arguments.option("generations", inputs.genetic.generations, "paper: generations of a search");
+  arguments.option("cell", inputs.search.cell_size, Quantity::length,
+                   "cell size of the simulated ground");
+  arguments.option("seed", inputs.search.seed, "seed; the same seed gives the same file");
+}
+
+const OptionNames library_option_names = {
+    {"library: densities", "--densities"},
+    {"library: slopes", "--slopes"},
+    cell_option[0],
+    {"machines x soils x slopes x densities of a library",
+     "--machine x --soil x --slopes x --densities"},
+    {"points of a library search", "--points"},
+    {"search: first_generation", "--points"},
+    {"polish evaluations of a library search", "--polish"},
+    {"inherited evaluations of a library search", "--inherited"},
+    {"search: population", "--population"},
+    {"search: generations", "--generations"}};
+
+LibraryGrid grid_of(const LibraryInputs& inputs) {
+  LibraryGrid grid;
+  for (const std::string& name : split(inputs.machines, ',')) {
+    grid.machines.push_back(machine_named(name));
+  }
+  for (const std::string& name : split(inputs.soils, ',')) grid.soils.push_back(soil_named(name));
+  grid.slopes = parse_series("--slopes", inputs.slopes, Quantity::angle);
+  grid.densities_percent = parse_densities("--densities", inputs.densities);
+  return grid;
+}
+
+LibrarySearch search_of(const LibraryInputs& inputs) {
+  LibrarySearch search = inputs.search;
+  search.objective = objective_of(inputs.goal);
+  search.simulator = simulator_of_word(inputs.simulator);
+  search.method = inputs.anchored;
+  if (inputs.method == "paper") search.method = inputs.genetic;
+  return search;
+}
+
+std::vector<Warning> warnings_of(const LibraryInputs& inputs) {
+  const AnchoredSearch anchored;
+  const GeneticAlgorithm genetic;
+  const bool paper = inputs.method == "paper";
+  IgnoredOptions ignored;
+  ignored.add(paper && inputs.anchored.points != anchored.points, "--points");
+  ignored.add(paper && inputs.anchored.polish_evaluations != anchored.polish_evaluations,
+              "--polish");
+  ignored.add(paper && inputs.anchored.inherited_evaluations != anchored.inherited_evaluations,
+              "--inherited");
+  ignored.add(!paper && inputs.genetic.population != genetic.population, "--population");
+  ignored.add(!paper && inputs.genetic.generations != genetic.generations, "--generations");
+  return ignored.warnings("--method " + inputs.method + " has none");
+}
+
+}  // namespace excavplan::tools

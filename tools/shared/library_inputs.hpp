@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/library/library_build.hpp>
+
+#include "shared/goal_inputs.hpp"
+#include "shared/tool.hpp"
+
+namespace excavplan::tools {
+
+/// What libraries are built for and how their digs are searched, from the command line.
+struct LibraryInputs {
+  std::string densities = "0:5:100";
+  std::string slopes = "0";
+  std::string soils = "loam";
+  std::string machines = "zx120";
+  std::string simulator = default_simulator().word;
+  GoalInputs goal;
+  std::string method = "memetic";
+  AnchoredSearch anchored;
+  GeneticAlgorithm genetic;
+  LibrarySearch search;  ///< its cell size and seed; the rest is above
+};
+
+void declare_library(Arguments& arguments, LibraryInputs& inputs);
+
+/// What build_path_libraries() calls them in its messages.
+extern const OptionNames library_option_names;
+
+/// @throws Error (bad_input) or (bad_file) naming option or file
+LibraryGrid grid_of(const LibraryInputs& inputs);
+LibrarySearch search_of(const LibraryInputs& inputs);
+
+/// Of options that only the other method has.
+std::vector<Warning> warnings_of(const LibraryInputs& inputs);
+
+}  // namespace excavplan::tools
