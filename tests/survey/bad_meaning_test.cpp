@@ -410,8 +410,12 @@ TEST(BadMeaning, TwoSurfaces) {
         inputs, "before among after, every " + std::to_string(every),
         [=](DigScans& s, auto&) { with_before(s, every, all); }, codes);
   }
-  add_both(inputs, "before among the heap after, every third",
-           [=](DigScans& s, auto&) { with_before(s, 3, {3.2, -100.0, 100.0, 100.0}); }, codes);
+  add_both(
+      inputs, "before among the heap after, every third",
+      [=](DigScans& s, auto&) {
+        with_before(s, 3, {3.2, -100.0, 100.0, 100.0});
+      },
+      codes);
   for (const std::size_t count : {1500u, 6000u}) {
     add_both(
         inputs, std::to_string(count) + " points of dust",
@@ -437,10 +441,10 @@ TEST(BadMeaning, CoarseAndNoisyHeights) {
   };
   for (const double step : {0.03, 0.05, 0.08, 0.1}) {
     const std::string name = "rounded to " + std::to_string(step) + " m";
-    add_both(inputs, "the one after " + name,
-             [=](DigScans& s, auto&) { map_points(s.after, rounded(step)); }, {"coarse_heights"});
-    add_both(inputs, "both " + name, [=](DigScans& s, auto&) { map_both(s, rounded(step)); },
-             {"coarse_heights"});
+    add(inputs, "the one after " + name,
+        [=](DigScans& s, auto&) { map_points(s.after, rounded(step)); }, {"coarse_heights"});
+    add(inputs, "both " + name, [=](DigScans& s, auto&) { map_both(s, rounded(step)); },
+        {"coarse_heights"});
   }
   for (const double step : {0.001, 0.01}) {
     add_both(
@@ -449,7 +453,7 @@ TEST(BadMeaning, CoarseAndNoisyHeights) {
         may_be_right);
   }
   for (const double sd : {0.05, 0.1, 0.15, 0.25}) {
-    add_both(
+    add(
         inputs, "noise of " + std::to_string(sd) + " m",
         [=](DigScans& s, auto&) {
           Random random(6);

@@ -70,7 +70,7 @@ std::vector<Fault> faults() {
 }
 
 TEST(ScanChecks, NoBadSurveyIsTrustedAndWrong) {
-  constexpr std::size_t surveys = 20;
+  constexpr std::size_t surveys = 14;
   for (const Fault& fault : faults()) {
     std::vector<int> trusted(surveys);
     std::vector<int> wrong(surveys);
