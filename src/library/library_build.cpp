@@ -41,12 +41,19 @@ void require_rising(const std::string& what, const std::vector<double>& values, 
   }
 }
 
+/// Else neither library nor entry could be read again.
+void require_name(const std::string& what, const std::string& name) {
+  const auto fault = fault_of_line(name, longest_text);
+  if (fault) refuse("library: the name of a " + what + " is " + *fault);
+}
+
 /// Libraries are told apart by the names of their machine and soil.
 template <typename Named>
 void require_unlike(const std::string& what, const std::vector<Named>& all) {
   require(!all.empty(), "library: no " + what + " is asked for");
   std::set<std::string> names;
   for (const Named& one : all) {
+    require_name(what, one.name);
     require(names.insert(file_name_part(one.name)).second,
             "library: two of the " + what + "s are named '" + one.name + "', or alike");
   }
@@ -406,6 +413,7 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
     check(search.objective, machine);
   }
   for (const SoilKind& soil : grid.soils) require_soil(soil);
+  require_name("simulator", search.simulator.name);
   if (!search.simulator.make) {
     refuse("library: simulator " + excavplan::quoted(search.simulator.name) +
            " has no function that makes one");

@@ -14,6 +14,7 @@
 #include "base/input_file.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "optimisation/sound_evaluation.hpp"
 
 namespace excavplan {
 namespace {
@@ -74,6 +75,21 @@ Evaluation read_outcome(JsonObject& entry) {
              "is " + excavplan::quoted(status) + ", expected ok, infeasible, failed or timed out");
 }
 
+std::string described(const Evaluation& outcome) {
+  if (outcome.ok()) return "ok with fitness " + number_text(outcome.fitness);
+  return name(outcome.status) + (" with violation " + number_text(outcome.violation));
+}
+
+/// But for the rounding of another compiler.
+bool is_same(const Evaluation& a, const Evaluation& b) {
+  constexpr double close = 1e-9;  // ours
+  const auto is_close = [](double x, double y) {
+    return std::abs(x - y) <= close * std::max(std::abs(x), std::abs(y));
+  };
+  return a.status == b.status && (!a.ok() || is_close(a.fitness, b.fitness)) &&
+         is_close(a.violation, b.violation);
+}
+
 /// Else a file that is written could not be resumed from.
 void require_readable(const char* what, const std::string& text) {
   const auto fault = fault_of_line(text, longest_identity);
@@ -112,8 +128,21 @@ SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOpt
   std::error_code unknown;  // of a file that is there but out of reach, which reading it tells
   const auto status = std::filesystem::status(file_, unknown);
   if (options.resume && status.type() != std::filesystem::file_type::not_found) {
-    load(static_cast<std::size_t>(problem.box.lower.size()));
+    load(problem.box);
   }
+}
+
+void SearchCheckpoint::verify_best(const Objective& objective) const {
+  const auto best =
+      std::max_element(earlier_.begin(), earlier_.end(),
+                       [](const auto& a, const auto& b) { return better(b.second, a.second); });
+  if (best == earlier_.end()) return;
+  const Eigen::VectorXd point = point_of(best->first);
+  const Evaluation now = sound(caught([&]() -> Evaluation { return objective(point); }));
+  if (now.status == Evaluation::Status::timed_out || is_same(best->second, now)) return;
+  throw Error(ErrorKind::bad_file, file_ + ": evaluations: the best point, " + text_of(point) +
+                                       ", is " + described(best->second) +
+                                       ", but evaluated again it is " + described(now));
 }
 
 const Evaluation* SearchCheckpoint::find(const Eigen::VectorXd& point) const {
@@ -150,7 +179,7 @@ std::string SearchCheckpoint::text() const {
   return sealed(text + "\n]");
 }
 
-void SearchCheckpoint::load(std::size_t dimensions) {
+void SearchCheckpoint::load(const SearchBox& box) {
   JsonObject file =
       JsonObject::open_sealed(file_, read_file(file_, most_journal_bytes), format, 1, most_values);
   const auto check = [&file](const char* key, const std::string& own) {
@@ -161,9 +190,13 @@ void SearchCheckpoint::load(std::size_t dimensions) {
   };
   check("problem", problem_);
   check("search", search_);
+  const auto dimensions = static_cast<std::size_t>(box.lower.size());
   for (JsonObject& entry : file.objects("evaluations")) {
-    const std::vector<double> point = entry.numbers("point", dimensions);
-    earlier_.emplace(point, read_outcome(entry));
+    const Eigen::VectorXd point = point_of(entry.numbers("point", dimensions));
+    if (point != point.cwiseMax(box.lower).cwiseMin(box.upper)) {
+      entry.fail("point", "is " + text_of(point) + ", outside the box of the search");
+    }
+    earlier_.emplace(key_of(point), read_outcome(entry));
     entry.done();
   }
   file.done();

@@ -29,6 +29,10 @@ class SearchCheckpoint {
   /// @throws Error (bad_file, bad_input)
   SearchCheckpoint(const SearchProblem& problem, const SearchOptions& options);
 
+  /// Evaluates the best point of an earlier run again: the file may have been changed, and its
+  /// checksum with it.
+  /// @throws Error (bad_file) if the outcome is another
+  void verify_best(const Objective& objective) const;
   /// The outcome an earlier run noted for a point.
   const Evaluation* find(const Eigen::VectorXd& point) const;
   void add(const Eigen::VectorXd& point, const Evaluation& outcome);
@@ -39,7 +43,7 @@ class SearchCheckpoint {
  private:
   using Outcomes = std::map<PointKey, Evaluation>;
 
-  void load(std::size_t dimensions);
+  void load(const SearchBox& box);
   std::string text() const;
 
   std::string file_;

@@ -60,6 +60,7 @@ SearchLog::SearchLog(const SearchProblem& problem, const SearchOptions& options,
   const int most = limit > 0 ? limit : std::numeric_limits<int>::max();
   progress_.planned = static_cast<int>(std::min<double>(most, planned));
   progress_.best = progress_.mean = progress_.seconds_left = unknown;
+  checkpoint_.verify_best(problem.objective);
 }
 
 SearchLog::Prepared SearchLog::prepare(int generation, const Candidate& candidate) const {

@@ -20,6 +20,10 @@ inline PointKey key_of(const Eigen::VectorXd& point) {
   return {point.data(), point.data() + point.size()};
 }
 
+inline Eigen::VectorXd point_of(const PointKey& key) {
+  return Eigen::Map<const Eigen::VectorXd>(key.data(), static_cast<Eigen::Index>(key.size()));
+}
+
 /// A box seen as the unit cube, where all distances of the search are measured.
 class UnitCube {
  public:

@@ -707,6 +707,29 @@ TEST_F(LibraryBuilding, AMachineWithoutTheDataOfTheCycleIsRefusedForItsGoals) {
             std::string::npos);
 }
 
+TEST_F(LibraryBuilding, NamesThatNoFileCouldHoldAreRefusedBeforeTheSearch) {
+  const std::string rule = ", expected a text on one line without control characters";
+  for (const auto& [name, fault] : std::vector<std::pair<std::string, std::string>>{
+           {"lo\nam", "'lo?am'" + rule},
+           {"\x1b[31mloam", "'?[31mloam'" + rule},
+           {std::string("lo\0am", 5), "'lo?am'" + rule},
+           {"loam\xe2\x80\xae", "'loam?'" + rule},
+           {"lo\xff", "not UTF-8"},
+           {std::string(1001, 'x'), "a text of 1001 bytes, expected at most 1000"}}) {
+    const auto refusal = [](const LibraryGrid& cells, LibraryBuildOptions options) {
+      options.progress = [](const LibraryProgress&) { return false; };
+      return test::error_of([&] { build_path_libraries(cells, options); });
+    };
+    LibraryGrid of_machine = grid({20}), of_soil = grid({20});
+    of_machine.machines[0].name = of_soil.soils[0].name = name;
+    LibraryBuildOptions of_simulator = quick();
+    of_simulator.search.simulator.name = name;
+    EXPECT_EQ(refusal(of_machine, quick()), "library: the name of a machine is " + fault);
+    EXPECT_EQ(refusal(of_soil, quick()), "library: the name of a soil is " + fault);
+    EXPECT_EQ(refusal(grid({20}), of_simulator), "library: the name of a simulator is " + fault);
+  }
+}
+
 TEST_F(LibraryBuilding, BadGridsAndOptionsAreRefused) {
   const auto refusal = [&](const LibraryGrid& cells, const LibraryBuildOptions& options) {
     return test::error_of([&] { build_path_libraries(cells, options); });

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -23,6 +24,7 @@
 #include "base/random.hpp"
 
 #include "base/files.hpp"
+#include "base/json.hpp"
 #include "support/errors.hpp"
 #include "support/search_functions.hpp"
 
@@ -736,7 +738,7 @@ TEST_F(SearchCheckpointFile, AFinishedSearchIsNotSimulatedAgainAndMayGoFurther) 
     return hartmann(x);
   };
   search(with_fingerprint(counting), options());
-  EXPECT_EQ(calls, 0);
+  EXPECT_EQ(calls, 1);  // the best, to see whether the file holds
   SearchOptions further = options();
   further.stop.evaluations = 300;
   const SearchResult result = search(with_fingerprint(counting), further);
@@ -816,6 +818,34 @@ TEST_F(SearchCheckpointFile, TruncatedOrAlteredIsRefusedAtEveryByte) {
             ": checksum: does not match the content: the file was modified");
   EXPECT_EQ(with("excavplan-search", "excavplan-soil"),
             ": format: is 'excavplan-soil', expected 'excavplan-search'");
+}
+
+TEST_F(SearchCheckpointFile, AlteredWithItsChecksumItIsRefusedForItsBest) {
+  cut_off(40, options(), hartmann);
+  const auto good = nlohmann::ordered_json::parse(read_file(file_));
+  const auto altered = [&](const char* key, const nlohmann::json& value) {
+    nlohmann::ordered_json json = good;
+    json.erase("checksum");
+    auto& all = json["evaluations"];
+    auto best = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
+      return a["fitness"] < b["fitness"];
+    });
+    (*best)[key] = value;
+    return refusal(sealed_text(json));
+  };
+  EXPECT_EQ(altered("status", "ok"), "no error");
+  const std::string lie = altered("fitness", 99.5);
+  EXPECT_EQ(lie.rfind(": evaluations: the best point, ", 0), 0U) << lie;
+  EXPECT_NE(lie.find(", is ok with fitness 99.5, but evaluated again it is ok with fitness "),
+            std::string::npos)
+      << lie;
+  for (const double fitness : {4.0, 1e300}) EXPECT_NE(altered("fitness", fitness), "no error");
+  EXPECT_NE(altered("fitness", nullptr), "no error");
+  EXPECT_NE(altered("point", {0.5, 0.5, 0.5}), "no error");
+  const std::string outside = altered("point", {0.5, 0.5, 1.5});
+  EXPECT_NE(outside.find(".point: is 0.5 0.5 1.5, outside the box of the search"),
+            std::string::npos)
+      << outside;
 }
 
 TEST_F(SearchCheckpointFile, ReasonsInAnyEncodingAndLengthComeBackTheSame) {

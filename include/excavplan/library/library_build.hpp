@@ -93,8 +93,8 @@ struct LibraryBuild {
 };
 
 /// What build_path_libraries() checks first: for callers that prepare its folder.
-/// @throws Error (bad_input) if the grid or an option is out of range, or a machine does not state
-///         what the goal needs
+/// @throws Error (bad_input) if the grid or an option is out of range, a name is not one line of
+///         UTF-8 without control characters, or a machine does not state what the goal needs
 void require_buildable(const LibraryGrid& grid, const LibrarySearch& search);
 
 /// Searches the best dig of every entry.
