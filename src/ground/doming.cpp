@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/doming.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -84,12 +85,12 @@ Eigen::ArrayXXd patches_of(const Eigen::ArrayXXd& values, Index side) {
 
 /// True if the patches of a map lie on a quadratic surface, and not on a plane.
 bool is_bent(const Eigen::ArrayXXd& patches) {
-  constexpr Index fewest = 24;    // ours: four for each term
-  constexpr double least = 0.85;  // ours: of what a plane leaves
+  constexpr Index fewest = 24;        // ours: four for each term
+  constexpr double explained = 0.85;  // ours: of the variance that a plane leaves
   if (patches.size() - patches.isNaN().count() < fewest) return false;
   const double flat = Trend(patches, 3).mean_square(patches);
   const double bent = Trend(patches, 6).mean_square(patches);
-  return bent < (1.0 - least) * flat;
+  return bent < (1.0 - explained) * flat;
 }
 
 }  // namespace

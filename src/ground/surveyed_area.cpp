@@ -189,10 +189,10 @@ void sum_walls(Area& area, const Eigen::ArrayXXd& before) {
 /// Error of soil by its edge that is too thin to tell from noise and runs out beyond the margin of
 /// the zone.
 void sum_thin(Area& area, const ChangeOptions& options) {
-  constexpr double gentlest = 0.3;  // ours: of soil that was scattered [-]
+  constexpr double scattered = 0.3;  // ours: slope of soil that thins out [-]
   const double cell_size = area.grid.cell_size;
   const double least = options.growth * area.ground.smooth_sd;
-  const double beyond = least / gentlest - zone_margin(options, cell_size, area.ground.smooth_sd);
+  const double beyond = least / scattered - zone_margin(options, cell_size, area.ground.smooth_sd);
   if (!(beyond > 0.0)) return;
   const auto& zone = area.ground.zone;
   std::vector<double> edge(area.zones.size(), 0.0);
@@ -204,7 +204,7 @@ void sum_thin(Area& area, const ChangeOptions& options) {
   });
   for (std::size_t i = 0; i < edge.size(); ++i) {
     if (!(area.zones[i].volume > 0.0)) continue;
-    area.zones[i].thin = std::pow(edge[i] * 0.5 * beyond * beyond * gentlest, 2);
+    area.zones[i].thin = std::pow(edge[i] * 0.5 * beyond * beyond * scattered, 2);
   }
 }
 

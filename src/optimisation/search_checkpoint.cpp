@@ -107,12 +107,18 @@ std::string describe(const GeneticAlgorithm& method) {
          number_text(method.mutation);
 }
 
-bool is_checkpoint(const std::string& file) {
-  const std::string expected = std::string("{\n\"format\": \"") + format + '"';
+void require_checkpoint_place(const std::string& file) {
+  std::error_code unknown;  // of a file that is there but out of reach, which reading it tells
+  const auto status = std::filesystem::status(file, unknown);
+  if (status.type() != std::filesystem::file_type::regular) return;
+  constexpr std::uint64_t beginning = 100;  // which names the format, however it is spaced
   const InputFile bytes(file);
-  std::string found(std::min<std::uint64_t>(bytes.size(), expected.size()), ' ');
+  if (bytes.size() == 0) return;
+  std::string found(std::min(bytes.size(), beginning), ' ');
   bytes.read(0, found.data(), found.size());
-  return found == expected;
+  if (found.find(std::string("\"") + format + '"') != std::string::npos) return;
+  throw Error(ErrorKind::bad_file,
+              file + ": is no checkpoint of a search; name another file, or remove this one");
 }
 
 SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOptions& options)
@@ -124,8 +130,9 @@ SearchCheckpoint::SearchCheckpoint(const SearchProblem& problem, const SearchOpt
   }
   require_readable("the fingerprint and the box of the problem", problem_);
   require_readable("the method", search_);
+  require_checkpoint_place(file_);
   require_writable(file_);
-  std::error_code unknown;  // of a file that is there but out of reach, which reading it tells
+  std::error_code unknown;
   const auto status = std::filesystem::status(file_, unknown);
   if (options.resume && status.type() != std::filesystem::file_type::not_found) {
     load(problem.box);

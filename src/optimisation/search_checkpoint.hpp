@@ -16,9 +16,10 @@ namespace excavplan {
 /// All settings that decide the course of a method, as text.
 std::string describe(const GeneticAlgorithm& method);
 
-/// Whether a file begins as a checkpoint does, of whatever search and whole or not.
-/// @throws Error (bad_file) if it cannot be read
-bool is_checkpoint(const std::string& file);
+/// Makes sure that a file, if there is one, is empty or begins as a checkpoint does, of whatever
+/// search and whole or not.
+/// @throws Error (bad_file) if it holds something else or cannot be read
+void require_checkpoint_place(const std::string& file);
 
 /// The outcomes of a search's evaluations, in memory and in a file
 /// (docs/formats.md#search-checkpoint). A search is determined by its options and these outcomes,

@@ -26,20 +26,16 @@ using Eigen::Index;
 
 namespace fs = std::filesystem;
 
-/// Makes sure that no other file is in the place of a checkpoint that the caller did not name, and,
-/// unless they are resumed, removes those of an earlier search: a resume would otherwise read them
-/// if this search ends before it has written its own.
+/// Makes sure that no other file is in the place of a checkpoint, and, unless they are resumed,
+/// removes those of an earlier search: a resume would otherwise read them if this search ends
+/// before it has written its own.
 void prepare_checkpoints(const DigSearchOptions& options, std::size_t soils) {
   if (options.checkpoint.empty()) return;
   std::vector<std::string> files = {options.checkpoint};
   for (std::size_t i = 0; i < soils; ++i) {
     files.push_back(checkpoint_of_soil(options.checkpoint, i));
-    std::error_code error;
-    if (!fs::exists(files.back(), error) || is_checkpoint(files.back())) continue;
-    throw Error(ErrorKind::bad_file,
-                files.back() + ": is no checkpoint of a search, but has the name of one of " +
-                    options.checkpoint);
   }
+  for (const std::string& file : files) require_checkpoint_place(file);
   for (const std::string& file : files) {
     std::error_code error;
     if (!options.resume && fs::is_regular_file(file, error)) fs::remove(file, error);

@@ -12,7 +12,6 @@
 #include <excavplan/error.hpp>
 
 #include "base/check.hpp"
-#include "ground/robust.hpp"
 #include "survey/cloud_outline.hpp"
 #include "survey/point_stream.hpp"
 #include "survey/scan_reading.hpp"
@@ -172,11 +171,13 @@ Eigen::Vector3d normal_of(const Cloud& cloud, const Eigen::AlignedBox3d& box) {
   return normal.z() < 0.0 ? Eigen::Vector3d(-normal) : normal;
 }
 
-/// The step of which all heights are multiples: the median distance of successive heights, where an
-/// eighth of them differ at most; 0 else.
+/// The step of rounded heights: the least distance of successive ones, where eight points share
+/// each height, there are five heights, and 95 % of the distances are multiples of it; 0 else.
 double height_step_of(const Cloud& cloud) {
   constexpr std::size_t fewest_at_each = 8;  // points, ours
+  constexpr std::size_t fewest_steps = 4;    // ours
   constexpr double same = 1e-5;              // [m]: heights of float32 a hundred metres up
+  constexpr double most_other = 0.05;        // ours
   std::vector<double> heights;
   for (const Eigen::Vector3d& point : cloud.points) heights.push_back(point.z());
   std::sort(heights.begin(), heights.end());
@@ -185,8 +186,13 @@ double height_step_of(const Cloud& cloud) {
     const double step = heights[i] - heights[i - 1];
     if (step > same) steps.push_back(step);
   }
-  if (steps.empty() || (steps.size() + 1) * fewest_at_each > heights.size()) return 0.0;
-  return median(steps);
+  const bool are_few = (steps.size() + 1) * fewest_at_each <= heights.size();
+  if (!are_few || steps.size() < fewest_steps) return 0.0;
+  const double least = *std::min_element(steps.begin(), steps.end());
+  const auto others = std::count_if(steps.begin(), steps.end(), [&](double step) {
+    return std::abs(step - least * std::round(step / least)) > same + 0.01 * least;
+  });
+  return static_cast<double>(others) > most_other * static_cast<double>(steps.size()) ? 0.0 : least;
 }
 
 /// Adds up what one pass over a cloud shows.

@@ -216,7 +216,6 @@ class CellMean {
 /// Of heights into a lower and an upper part.
 struct Partition {
   Overlay overlay;
-  double valley = 0.0;     // between them [m]
   double explained = 0.0;  // of the squares about the mean [-]
 };
 
@@ -241,7 +240,7 @@ Partition best_partition(const std::vector<float>& heights, std::size_t fewest) 
     if (explained <= best.explained) continue;
     const double valley =
         0.5 * (static_cast<double>(heights[i - 1]) + static_cast<double>(heights[i]));
-    best = {{apart, 1.0 - count / n}, valley, explained};
+    best = {{apart, 1.0 - count / n, below / count, valley}, explained};
   }
   return best;
 }
@@ -307,7 +306,7 @@ std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope
   const Partition best = best_partition(heights, fewest);
   const bool is_noise =
       best.overlay.apart < by_noise && (best.explained < most_explained || points.size() < enough);
-  if (best.overlay.apart < least || is_noise || !lies_among(points, best.valley, slope)) {
+  if (best.overlay.apart < least || is_noise || !lies_among(points, best.overlay.valley, slope)) {
     return std::nullopt;
   }
   return best.overlay;

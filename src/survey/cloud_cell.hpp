@@ -56,6 +56,8 @@ std::optional<Split> two_levels(CellRange points, double level, double gap,
 struct Overlay {
   double apart = 0.0;        ///< their distance in height [m]
   double share_above = 0.0;  ///< of the points [-]
+  double low = 0.0;          ///< mean of the lower, at the centre of the cell [m]
+  double valley = 0.0;       ///< between them, likewise
 };
 
 /// The best partition of the heights into two, by least squares (Otsu 1979), where each part holds

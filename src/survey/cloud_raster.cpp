@@ -178,7 +178,9 @@ Cover lower_to_ground(PointsByCell& points, Levels& levels, double group_size) {
     levels.height(split.cell) = split.low;
     cover.ceilings[split.cell] = split.valley;
   }
+  for (const auto& [group, both] : overlays) lowest(group) = both.low;
   for (const auto& [group, both] : overlays) {
+    if (upper_level_goes_on(lowest, group, both.valley)) continue;  // as beside a wall
     cover.doubt(group) = doubt_by(both, cover.ceilings.count(group) > 0);
   }
   return cover;

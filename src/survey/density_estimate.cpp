@@ -166,7 +166,8 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
 Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const VolumeChange& change) {
   const HeightMap& before = surfaces.before.height;
   HeightMap after = realigned(surfaces.after.height, surfaces.alignment);
-  after.z -= change.areas.front().datum;
+  const AreaChange& area = change.areas.front();
+  after.z = area.difference.z.isNaN().select(after.z - area.datum, before.z + area.difference.z);
   const auto path = make_dig_path(dug.machine, dug.parameters, *dug.start_x,
                                   profile_under_bucket(before, dug.machine));
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) {

@@ -411,29 +411,58 @@ Eigen::ArrayXXd doubt_of(const Surface& surface) {
   return z.isNaN().select(none, surface.doubt);
 }
 
+/// -1 in the hole, 1 in spill and heap, 0 elsewhere; with the ground beside them whose doubt grew:
+/// the lower of its two surfaces may be the ground before.
+Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& area,
+                                 const Eigen::ArrayXXd& growth) {
+  Eigen::ArrayXXi part = Eigen::ArrayXXi::Zero(area.zone.rows(), area.zone.cols());
+  std::vector<Cell> front;
+  for_each_cell(part, [&](Cell at) {
+    const int zone = area.zone(at.row, at.col);
+    if (zone < 0) return;
+    const ZoneKind kind = change.zones[static_cast<std::size_t>(zone)].kind;
+    if (kind == ZoneKind::other) return;
+    part(at.row, at.col) = kind == ZoneKind::dig ? -1 : 1;
+    front.push_back(at);
+  });
+  for (std::size_t next = 0; next < front.size(); ++next) {
+    const int here = part(front[next].row, front[next].col);
+    for_each_neighbour(part, front[next], [&](Cell n) {
+      if (part(n.row, n.col) != 0 || !(growth(n.row, n.col) > 0.0)) return;
+      part(n.row, n.col) = here;
+      front.push_back(n);
+    });
+  }
+  return part;
+}
+
 }  // namespace
 
 std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeChange& change,
                                     const AreaChange& area) {
   constexpr double noted = 0.01;     // ours, of the bulking factor
   constexpr double doubtful = 0.03;  // ours, likewise
+  constexpr double weight_of_new =
+      3.0;  // ours: nothing grows on dug soil, so that either may be it
   const Eigen::ArrayXXd of_before = doubt_of(surfaces.before);
   const Eigen::ArrayXXd of_after = doubt_of(surfaces.after);
+  const Eigen::ArrayXXi part = parts_with_doubt(change, area, of_after - of_before);
   double hole = 0.0;
   double soil = 0.0;
   double in_after = 0.0;
   const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
-  for_each_cell(area.zone, [&](Cell at) {
-    const int zone = area.zone(at.row, at.col);
-    if (zone < 0) return;
-    const ZoneKind kind = change.zones[static_cast<std::size_t>(zone)].kind;
-    if (kind == ZoneKind::other) return;
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) == 0) return;
+    const double before = cell_area * of_before(at.row, at.col);
     const double after = cell_area * of_after(at.row, at.col);
-    (kind == ZoneKind::dig ? hole : soil) += after + cell_area * of_before(at.row, at.col);
+    const double grown = std::max(0.0, after - before);
+    (part(at.row, at.col) < 0 ? hole : soil) += before + after + (weight_of_new - 1.0) * grown;
     in_after += after;
   });
-  if (!(change.before.value > 0.0) || !(change.after.value > 0.0)) return {};
-  const double share = hole / change.before.value + soil / change.after.value;
+  const auto share_of = [](double doubt, double volume) {
+    return volume > 0.0 ? doubt / volume : 0.0;
+  };
+  const double share = share_of(hole, change.before.value) + share_of(soil, change.after.value);
   if (!(share > noted)) return {};
   return {{"two_surfaces",
            std::string("points of the scan ") +

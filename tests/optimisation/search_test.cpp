@@ -796,6 +796,19 @@ TEST_F(SearchCheckpointFile, WhatNoRunCouldResumeFromIsRefusedAtTheBeginning) {
   EXPECT_FALSE(std::ifstream(file_).is_open());
 }
 
+TEST_F(SearchCheckpointFile, ReplacesNoOtherFileResumedOrNot) {
+  for (const bool resume : {false, true}) {
+    SearchOptions begun = options();
+    begun.resume = resume;
+    std::ofstream(file_) << "# Notes";
+    EXPECT_EQ(error_of([&] { search(with_fingerprint(hartmann), begun); }, ErrorKind::bad_file),
+              file_ + ": is no checkpoint of a search; name another file, or remove this one");
+    EXPECT_EQ(read_file(file_), "# Notes");
+    std::ofstream(file_).flush();  // empty
+    if (!resume) search(with_fingerprint(hartmann), begun);
+  }
+}
+
 TEST_F(SearchCheckpointFile, TruncatedOrAlteredIsRefusedAtEveryByte) {
   cut_off(3, options(), hartmann);
   const std::string good = read_file(file_);
@@ -817,7 +830,7 @@ TEST_F(SearchCheckpointFile, TruncatedOrAlteredIsRefusedAtEveryByte) {
   EXPECT_EQ(with("\"fitness\":", "\"fitness\":1"),
             ": checksum: does not match the content: the file was modified");
   EXPECT_EQ(with("excavplan-search", "excavplan-soil"),
-            ": format: is 'excavplan-soil', expected 'excavplan-search'");
+            ": is no checkpoint of a search; name another file, or remove this one");
 }
 
 TEST_F(SearchCheckpointFile, AlteredWithItsChecksumItIsRefusedForItsBest) {

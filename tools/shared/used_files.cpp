@@ -50,7 +50,7 @@ void refuse_file_of_standard_output(const UsedFile& output) {
   const bool are_files = ::stat(output.text.c_str(), &file) == 0 && S_ISREG(file.st_mode) &&
                          ::fstat(STDOUT_FILENO, &printed) == 0;
   if (!are_files || file.st_dev != printed.st_dev || file.st_ino != printed.st_ino) return;
-  if (open_descriptor(output.text) == STDOUT_FILENO) return;
+  if (open_descriptor(output.text)) return;  // which adds to it
   usage_error(output.option + " names the file of standard output, " + output.text +
               "; /dev/stdout adds to it");
 }

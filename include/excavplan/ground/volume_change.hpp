@@ -37,7 +37,7 @@ struct ChangeZone {
 
 /// Change of the ground in one surveyed area.
 struct AreaChange {
-  HeightMap difference;   ///< after - before [m], less the datum; NaN where either is unknown
+  HeightMap difference;   ///< after - before [m] less datum, stripes and doming; NaN where unknown
   Eigen::ArrayXXi zone;   ///< index into VolumeChange::zones, -1 for stable ground
   double noise_sd = 0.0;  ///< of one stable cell of `difference`, at least 0.1 mm [m]
   double datum =
