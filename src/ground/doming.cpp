@@ -43,9 +43,9 @@ class Trend {
     const double y = (static_cast<double>(at.row) + 0.5) / rows_ - 0.5;
     return (Terms() << 1.0, x, y, x * x, x * y, y * y).finished().head(count_);
   }
-  /// Of a sum of terms, for values that err independently by `variance`.
-  double variance_of(const Eigen::VectorXd& sum, double variance) const {
-    return variance * sum.dot(unit_covariance_ * sum);
+  /// Of sums of terms, a column each, for values that err independently by `variance`.
+  Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& sums, double variance) const {
+    return variance * (sums.transpose() * unit_covariance_ * sums);
   }
   /// Of values less the trend.
   double mean_square(const Eigen::ArrayXXd& values) const {
@@ -95,23 +95,24 @@ bool is_bent(const Eigen::ArrayXXd& patches) {
 
 }  // namespace
 
-std::vector<double> take_doming_off(ChangedGround& ground, double cell_size) {
+Eigen::MatrixXd take_doming_off(ChangedGround& ground, double cell_size) {
   constexpr double patch = 0.4;  // [m], ours
-  std::vector<double> variance(ground.zone_is_cut.size(), 0.0);
+  const auto zones = static_cast<Index>(ground.zone_is_cut.size());
   const auto side = std::max<Index>(1, static_cast<Index>(std::lround(patch / cell_size)));
-  if (!is_bent(patches_of(ground.residual, side))) return variance;
+  if (!is_bent(patches_of(ground.residual, side))) {
+    return Eigen::MatrixXd::Zero(zones, zones);
+  }
   const Trend dome(ground.residual, 6);
-  std::vector<Eigen::VectorXd> sums(variance.size(), Eigen::VectorXd::Zero(6));
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(6, zones);
   for_each_cell(ground.difference, [&](Cell at) {
     const double error = dome.at(at);
     ground.difference(at.row, at.col) -= error;
     ground.residual(at.row, at.col) -= error;
     const int zone = ground.zone(at.row, at.col);
-    if (zone >= 0) sums[static_cast<std::size_t>(zone)] += dome.terms(at);
+    if (zone >= 0) sums.col(zone) += dome.terms(at);
   });
   const double of_cell = find_noise(ground.residual, cell_size).large_area_variance(cell_size);
-  for (std::size_t i = 0; i < sums.size(); ++i) variance[i] = dome.variance_of(sums[i], of_cell);
-  return variance;
+  return dome.covariance_of(sums, of_cell);
 }
 
 }  // namespace excavplan

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
+#include <Eigen/Core>
 
 #include "ground/change_zones.hpp"
 
@@ -15,7 +15,7 @@ namespace excavplan {
 /// residuals of the stable ground is subtracted, in the zones as well, where it explains nearly all
 /// by which patches of that ground differ.
 ///
-/// @return what is left of it: variance of the sum of the cells of each zone [m^2]; 0 without
-std::vector<double> take_doming_off(ChangedGround& ground, double cell_size);
+/// @return what is left of it: covariance of the sums of the cells of the zones [m^2]; 0 without
+Eigen::MatrixXd take_doming_off(ChangedGround& ground, double cell_size);
 
 }  // namespace excavplan

@@ -123,7 +123,7 @@ class Aligner {
       found_.centre += Eigen::Vector3d(map_.x(at.col), map_.y(at.row), map_.z(at.row, at.col));
     });
     if (samples_.size() < fewest_cells) {
-      throw TooFewCells("align: the surfaces share " + std::to_string(samples_.size()) +
+      throw TooFewCells("the surfaces share " + std::to_string(samples_.size()) +
                             " known cells with known neighbours and no steep gradient",
                         fewest_cells, map_.cell_size);
     }

@@ -270,15 +270,17 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
 
 /// Errors that run through stable ground and zones alike.
 struct Systematic {
-  std::vector<double> left;  // variance of the sum of the cells of each zone [m^2]
-  double rms = 0.0;          // of what was taken off stable ground [m]
+  Eigen::MatrixXd left;  // covariance of the sums of the cells of the zones [m^2]
+  double rms = 0.0;      // of what was taken off stable ground [m]
 };
 
 Systematic take_systematic_off(ChangedGround& ground, double cell_size) {
   const Eigen::ArrayXXd before = ground.residual;
   Systematic errors{take_doming_off(ground, cell_size)};
   const std::vector<double> of_stripes = take_stripes_off(ground);
-  for (std::size_t i = 0; i < of_stripes.size(); ++i) errors.left[i] += of_stripes[i];
+  for (std::size_t i = 0; i < of_stripes.size(); ++i) {
+    errors.left(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += of_stripes[i];
+  }
   const Eigen::ArrayXXd taken = before - ground.residual;
   const auto known = static_cast<double>(taken.size() - taken.isNaN().count());
   errors.rms = std::sqrt(taken.isNaN().select(0.0, taken.square()).sum() / std::max(1.0, known));
@@ -305,6 +307,46 @@ ChangedGround change_in(const Eigen::ArrayXXd& difference, const Eigen::ArrayXXd
     if (is_settled) break;
   }
   return found;
+}
+
+/// Sums, for each zone, what outliers leave in its volume that are as many as on even ground [m^3].
+Eigen::VectorXd outlier_volumes(const SurfacePair& pair, const Area& area) {
+  Eigen::VectorXd volumes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(area.zones.size()));
+  const Eigen::ArrayXXd& before = pair.before.outlier_bias;
+  const Eigen::ArrayXXd& after = pair.after.outlier_bias;
+  const auto cells = area.unknown.size();
+  if (before.size() != cells || after.size() != cells) return volumes;
+  for_each_cell(area.unknown, [&](Cell at) {
+    const int zone = area.ground.zone(at.row, at.col);
+    if (zone < 0 || area.unknown(at.row, at.col) != 0) return;
+    volumes(zone) += after(at.row, at.col) - before(at.row, at.col);
+  });
+  return volumes * area.grid.cell_size * area.grid.cell_size;
+}
+
+/// The errors that each zone has of its own.
+void sum_own_errors(Area& area, const SurfacePair& pair, const Scans& scans,
+                    const Eigen::ArrayXXd& variance, const ChangeOptions& options) {
+  sum_noise(area, variance, area.noise.white);
+  sum_beyond_edge(area);
+  for (const Surface* surface : {&pair.before, &pair.after}) {
+    sum_faces(area, *surface);
+    sum_between(area, *surface);
+  }
+  sum_borders(area);
+  sum_walls(area, scans.before.z);
+  sum_thin(area, options);
+}
+
+/// Those that zones share, with what the stable ground predicts of them taken off the volumes.
+void predict_errors(Area& area, const HeightMap& before, const Alignment& left) {
+  area.errors = ErrorField{before,           area.ground.residual,
+                           area.ground.zone, static_cast<int>(area.zones.size()),
+                           area.noise,       left}
+                    .predict();
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    area.zones[i].volume -= area.errors.mean(static_cast<Eigen::Index>(i));
+  }
 }
 
 }  // namespace
@@ -342,30 +384,13 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   const Systematic systematic = take_systematic_off(area.ground, area.grid.cell_size);
   area.systematic_rms = systematic.rms;
   sum_zones(area, shadow);
-  NoiseModel noise = find_noise(area.ground.residual, area.grid.cell_size);
-  noise.white = std::max(noise.white, least_noise * least_noise);
-  area.noise = noise;
-  sum_noise(area, scans.variance_of(share), noise.white);
-  sum_beyond_edge(area);
-  sum_faces(area, pair.before);
-  sum_faces(area, pair.after);
-  sum_between(area, pair.before);
-  sum_between(area, pair.after);
-  sum_borders(area);
-  sum_walls(area, scans.before.z);
-  sum_thin(area, options);
-  area.errors = ErrorField{scans.before,
-                           area.ground.residual,
-                           area.ground.zone,
-                           static_cast<int>(area.zones.size()),
-                           noise,
-                           left}
-                    .predict();
-  for (std::size_t i = 0; i < area.zones.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    area.zones[i].volume -= area.errors.mean(at);
-    area.errors.correlated(at, at) += systematic.left[i] * cell_area * cell_area;
-  }
+  area.noise = find_noise(area.ground.residual, area.grid.cell_size);
+  area.noise.white = std::max(area.noise.white, least_noise * least_noise);
+  sum_own_errors(area, pair, scans, scans.variance_of(share), options);
+  predict_errors(area, scans.before, left);
+  const Eigen::VectorXd outliers = outlier_volumes(pair, area);
+  area.errors.correlated += systematic.left * cell_area * cell_area;
+  area.errors.correlated += outliers * outliers.transpose();
   return area;
 }
 

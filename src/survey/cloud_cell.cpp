@@ -9,11 +9,6 @@
 namespace excavplan {
 namespace {
 
-double height_above(const CellPoint& point, const Eigen::Vector2d& slope) {
-  return static_cast<double>(point.z) - slope.x() * point.from_centre_x() -
-         slope.y() * point.from_centre_y();
-}
-
 /// True if the points above `valley`, and above a slope, lie among the others in plan, as leaves
 /// above ground do, and not beside them, as the upper level of a wall does: of the variance of "is
 /// above" a plane through the points explains less than two thirds of what it would if a wall along
@@ -107,13 +102,14 @@ class PlaneFit {
 class CellMean {
  public:
   /// `noise` is that of a point on level ground [m].
-  CellMean(CellRange points, Band band, double reference, double noise) {
+  CellMean(CellRange points, const Band& band, double reference, double noise) {
     points_.reserve(points.size());
     for (const CellPoint& point : points) {
-      const auto z = static_cast<double>(point.z);
-      if (!band.contains(z)) continue;
-      points_.emplace_back(point.from_centre_x(), point.from_centre_y(), z - reference);
+      if (!band.contains(point)) continue;
+      points_.emplace_back(point.from_centre_x(), point.from_centre_y(),
+                           static_cast<double>(point.z) - reference);
       all_.add(points_.back(), 1.0);
+      lowest_ = std::min(lowest_, points_.back().z());
     }
     if (points_.empty()) return;
     shared_ = squared_ = all_;
@@ -196,6 +192,7 @@ class CellMean {
     const Eigen::Vector2d squared_centre = squared_.sum.head<2>();
     result.height = mean.z() - slope.dot(centre);
     result.points = static_cast<int>(points_.size());
+    result.lowest = lowest_;
     const double freedom = all_.count - parameters;
     if (freedom < 1.0) return result;
     const double constant = 1.0 + lever.dot(centre);
@@ -208,9 +205,10 @@ class CellMean {
   }
 
   std::vector<Eigen::Vector3d> points_;  ///< accepted, from the centre of the cell [cell, cell, m]
-  Moments all_;                          ///< with weight 1
-  Moments shared_;                       ///< with shares that add up to 1
-  Moments squared_;                      ///< with the squares of the shares
+  double lowest_ = std::numeric_limits<double>::infinity();
+  Moments all_;      ///< with weight 1
+  Moments shared_;   ///< with shares that add up to 1
+  Moments squared_;  ///< with the squares of the shares
 };
 
 /// Of heights into a lower and an upper part.
@@ -339,13 +337,24 @@ Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Ei
   }
   const PlaneFit plane(kept);
   constexpr double nearly_in_a_row = 0.1;  // [cell^2]
-  if (plane.least_spread() > nearly_in_a_row) result.slope = plane.slope();
+  if (!(plane.least_spread() > nearly_in_a_row)) return result;
+  result.slope = plane.slope();
+  const double rise = plane.mean().z() - plane.slope().dot(plane.mean().head<2>());
+  result.plane = result.low + rise;
+  constexpr std::size_t tell_bend = 8;  // ours: fewer are near any plane
+  if (count < tell_bend) return result;
+  result.off_plane = result.off_plane_all = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double off = std::abs(around[i].z - result.plane -
+                                result.slope.dot(Eigen::Vector2d(around[i].x, around[i].y)));
+    result.off_plane_all = std::max(result.off_plane_all, off);
+    if (i > 0 && i + 1 < count) result.off_plane = std::max(result.off_plane, off);
+  }
   return result;
 }
 
-CellHeight mean_height(CellRange points, Band band, double reference, double noise,
-                       const Eigen::Vector2d& slope_around) {
-  return CellMean(points, band, reference, noise).result(slope_around);
+CellHeight mean_height(CellRange points, const Band& band, double reference, double noise) {
+  return CellMean(points, band, reference, noise).result(band.slope);
 }
 
 }  // namespace excavplan

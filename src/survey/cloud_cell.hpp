@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -26,6 +28,12 @@ struct CellPoint {
  private:
   static double from_centre(std::uint16_t v) { return (v + 0.5) / 65536.0 - 0.5; }
 };
+
+/// Of a point above a slope [m/cell] through the centre of its cell.
+inline double height_above(const CellPoint& point, const Eigen::Vector2d& slope) {
+  return static_cast<double>(point.z) - slope.x() * point.from_centre_x() -
+         slope.y() * point.from_centre_y();
+}
 
 /// The points of one cell.
 struct CellRange {
@@ -71,17 +79,30 @@ struct Overlay {
 std::optional<Overlay> overlay_in(CellRange points, const Eigen::Vector2d& slope, double by_noise,
                                   std::vector<float>& heights);
 
-/// Heights that ground may have.
+/// Heights that ground may have in a cell: between two levels, and about a plane.
 struct Band {
   double low;
   double high;
-  bool contains(double z) const { return z >= low && z <= high; }
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();         ///< of the ground around [m/cell]
+  double plane = 0.0;                                      ///< at the centre of the cell [m]
+  Eigen::Vector2d plane_slope = Eigen::Vector2d::Zero();   ///< [m/cell]
+  double reach = std::numeric_limits<double>::infinity();  ///< from the plane [m]
+
+  bool contains(const CellPoint& point) const {
+    const auto z = static_cast<double>(point.z);
+    return z >= low && z <= high && std::abs(from_plane(point)) <= reach;
+  }
+  double from_plane(const CellPoint& point) const {
+    return height_above(point, plane_slope) - plane;
+  }
+  double farthest() const { return std::min(reach, 0.5 * (high - low)); }  ///< from the ground [m]
 };
 
 /// A mean height and the data behind it.
 struct CellHeight {
   double height = std::numeric_limits<double>::quiet_NaN();
   double variance = std::numeric_limits<double>::quiet_NaN();
+  double lowest = std::numeric_limits<double>::quiet_NaN();  ///< of the points of the band
   int points = 0;
 };
 
@@ -91,6 +112,9 @@ struct Surroundings {
                      ///< five are known
   double high = 0.0;
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< of the plane through those levels [m/cell]
+  double plane = 0.0;                               ///< that plane at the centre [m]
+  double off_plane = std::numeric_limits<double>::infinity();  ///< of these levels, at most [m]
+  double off_plane_all = off_plane;                            ///< of all levels
 };
 
 Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Eigen::Index column);
@@ -104,8 +128,6 @@ Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Ei
 /// counts by the area of the cell that is nearest to it.
 ///
 /// @param noise of a point on level ground [m]
-/// @param slope_around of the surroundings [m/cell]
-CellHeight mean_height(CellRange points, Band band, double reference, double noise,
-                       const Eigen::Vector2d& slope_around);
+CellHeight mean_height(CellRange points, const Band& band, double reference, double noise);
 
 }  // namespace excavplan

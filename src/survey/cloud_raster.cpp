@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -18,6 +16,7 @@
 #include "base/text.hpp"
 #include "ground/sight_lines.hpp"
 #include "survey/cloud_cell.hpp"
+#include "survey/ground_bands.hpp"
 #include "survey/points_by_cell.hpp"
 #include "survey/scan_reading.hpp"
 
@@ -71,164 +70,27 @@ HeightMap empty_map(const Rectangle& extent, const RasterOptions& options) {
   return map;
 }
 
-/// The level of every group of cells and how far points may be from it.
-struct Levels {
-  Eigen::ArrayXXd height;  ///< above the base [m]; NaN without points
-  double noise = 0.0;      ///< lower quartile of the cells' robust sd [m]
-};
-
-/// Medians of all groups, from 64 to 128 points where there are more, and the noise: lower
-/// quartile of the robust standard deviation (1.4826 times the median absolute deviation) of some
-/// thousand groups spread over the map, which is that of level ground without outliers.
-Levels find_levels(PointsByCell& points) {
-  constexpr std::size_t enough_points = 128;
-  constexpr std::size_t fewest_points = 5;
-  constexpr std::size_t fewest_groups = 10;
-  constexpr std::size_t most_samples = 4096;
-  Levels levels{Eigen::ArrayXXd::Constant(points.group_rows(), points.group_columns(), unknown)};
-  std::size_t groups = 0;
-  for (Index group = 0; group < levels.height.size(); ++group) {
-    if (points.in_group(group) >= fewest_points) ++groups;
-  }
-  const std::size_t stride = (groups + most_samples - 1) / most_samples;
-  std::vector<float> values;
-  std::vector<double> noise;
-  std::size_t seen = 0;
-  points.for_each_group([&](Index group, CellRange in_group) {
-    values.clear();
-    const std::size_t step = 1 + in_group.size() / enough_points;
-    for (std::size_t i = 0; i < in_group.size(); i += step) values.push_back(in_group.first[i].z);
-    const double level = mean_median(values);
-    levels.height(group) = level;
-    if (in_group.size() < fewest_points || seen++ % stride != 0) return;
-    for (float& value : values) value = std::abs(value - static_cast<float>(level));
-    noise.push_back(1.4826 * mean_median(values));
-  });
-  if (groups < fewest_groups) {
-    levels.noise = std::numeric_limits<double>::infinity();
-    return levels;
-  }
-  const auto quartile = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 4);
-  std::nth_element(noise.begin(), quartile, noise.end());
-  levels.noise = *quartile;
-  return levels;
-}
-
-/// Groups whose upper points are no ground, with the height above which those lie.
-using Ceilings = std::unordered_map<Index, double>;
-
-/// True if two cells around have their ground above `valley`, or too few are known.
-bool upper_level_goes_on(const Eigen::ArrayXXd& lowest, Index cell, double valley) {
-  constexpr int enough_known = 4;  // with the cell itself; ours
-  constexpr int enough_above = 2;  // ours
-  const Index column = cell / lowest.rows();
-  const Index row = cell % lowest.rows();
-  int known = 0;
-  int above = 0;
-  for (Index c = std::max<Index>(column - 1, 0); c <= std::min(column + 1, lowest.cols() - 1);
-       ++c) {
-    for (Index r = std::max<Index>(row - 1, 0); r <= std::min(row + 1, lowest.rows() - 1); ++r) {
-      known += std::isnan(lowest(r, c)) ? 0 : 1;
-      above += lowest(r, c) >= valley ? 1 : 0;
-    }
-  }
-  return known < enough_known || above >= enough_above;
-}
-
-/// What lies above the ground in groups of cells.
-struct Cover {
-  Ceilings ceilings;
-  Eigen::ArrayXXd doubt;  ///< of the height, where points lie on two surfaces [m]
-};
-
-/// By how much the height of a group may be wrong where it holds two surfaces: if the lower one
-/// counts, by the share of the upper; if both do, by that of the smaller.
-double doubt_by(const Overlay& both, bool only_lower) {
-  const double share =
-      only_lower ? both.share_above : std::min(both.share_above, 1.0 - both.share_above);
-  return both.apart * share;
-}
-
-/// Takes what grows or hangs above the ground off the levels. A gap must be wider than noise makes
-/// it, and than a slope does between a few points.
-Cover lower_to_ground(PointsByCell& points, Levels& levels, double group_size) {
-  constexpr double gap_to_noise = 8.0;  // ours
-  constexpr double gap_to_cell = 0.5;   // ours
-  Cover cover{{}, Eigen::ArrayXXd::Zero(levels.height.rows(), levels.height.cols())};
-  if (!std::isfinite(levels.noise)) return cover;
-  const double gap = std::max(gap_to_noise * levels.noise, gap_to_cell * group_size);
-  std::vector<Split> splits;
-  std::unordered_map<Index, Overlay> overlays;
-  std::vector<float> heights;
-  const Index rows = levels.height.rows();
-  points.for_each_group([&](Index group, CellRange in_group) {
-    const Surroundings around = surroundings_of(levels.height, group % rows, group / rows);
-    if (const auto both = overlay_in(in_group, around.slope, gap, heights)) {
-      overlays[group] = *both;
-    }
-    auto split = two_levels(in_group, levels.height(group), gap, heights);
-    if (!split) return;
-    split->cell = group;
-    splits.push_back(*split);
-  });
-  Eigen::ArrayXXd lowest = levels.height;
-  for (const Split& split : splits) lowest(split.cell) = split.low;
-  for (const Split& split : splits) {
-    if (!split.among || upper_level_goes_on(lowest, split.cell, split.valley)) continue;
-    levels.height(split.cell) = split.low;
-    cover.ceilings[split.cell] = split.valley;
-  }
-  for (const auto& [group, both] : overlays) lowest(group) = both.low;
-  for (const auto& [group, both] : overlays) {
-    if (upper_level_goes_on(lowest, group, both.valley)) continue;  // as beside a wall
-    cover.doubt(group) = doubt_by(both, cover.ceilings.count(group) > 0);
-  }
-  return cover;
-}
-
-/// Heights that the ground may have in the cells of a group, and its slope.
-struct Expected {
-  Band band;
-  double level = 0.0;
-  Eigen::Vector2d slope;  // [m/cell]
-};
-
-Expected expected_in(const PointsByCell& points, const Levels& levels, const Ceilings& ceilings,
-                     double gap, Index group) {
-  constexpr std::size_t trusted = 5;  // points, whose median is hardly ever an outlier; ours
-  const Index rows = levels.height.rows();
-  Surroundings around = surroundings_of(levels.height, group % rows, group / rows);
-  const double level = levels.height(group);
-  if (points.in_group(group) >= trusted) {
-    around.low = std::min(around.low, level);
-    around.high = std::max(around.high, level);
-  }
-  const double reach = gap + 0.5 * (around.high - around.low);
-  Band band{around.low - reach, around.high + reach};
-  if (const auto ceiling = ceilings.find(group); ceiling != ceilings.end()) {
-    band.high = std::min(band.high, ceiling->second);
-  }
-  return {band, level, around.slope / static_cast<double>(points.side())};
-}
-
 Surface surface_of(const PointSource& source, const HeightMap& map, const RasterOptions& options) {
   PointsByCell points(source, map, options.memory);
-  Levels levels = find_levels(points);
-  const Cover cover =
-      lower_to_ground(points, levels, static_cast<double>(points.side()) * map.cell_size);
-  const double gap = options.outlier_distance * levels.noise;
+  const GroundBands ground(points, map.cell_size, options.outlier_distance);
+  OutlierTally outliers(ground.gap());
+  Eigen::ArrayXXd reach = map.z;
   Surface surface{map, map.z, Eigen::ArrayXXi::Zero(map.z.rows(), map.z.cols())};
   surface.doubt = Eigen::ArrayXXd::Zero(map.z.rows(), map.z.cols());
+  surface.lowest = map.z;
   points.for_each_cell([&](Index cell, CellRange in_cell) {
-    const Index group = points.group_of(cell);
-    const Expected ground = expected_in(points, levels, cover.ceilings, gap, group);
-    const CellHeight result =
-        mean_height(in_cell, ground.band, ground.level, levels.noise, ground.slope);
-    surface.height.z(cell) = points.base() + (ground.level + result.height);
+    const double level = ground.level(cell);
+    const Band band = ground.band(cell);
+    const CellHeight result = mean_height(in_cell, band, level, ground.noise());
+    surface.height.z(cell) = points.base() + (level + result.height);
+    surface.lowest(cell) = points.base() + (level + result.lowest);
     surface.variance(cell) = result.variance;
-    surface.doubt(cell) = cover.doubt(group);
+    surface.doubt(cell) = ground.doubt(cell);
     surface.points(cell) = static_cast<int>(std::lround(result.points * points.per_kept(cell)));
+    reach(cell) = band.farthest();
+    outliers.add(in_cell, band);
   });
+  surface.outlier_bias = reach.unaryExpr([&](double r) { return outliers.bias_within(r); });
   return surface;
 }
 

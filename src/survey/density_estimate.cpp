@@ -104,10 +104,10 @@ VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
   }
 }
 
-std::vector<Warning> doubts_about_overlays(const Surfaces& surfaces, const VolumeChange& change) {
-  std::vector<Warning> doubts = check_overlays(surfaces.dig.surfaces, change, change.areas.front());
+std::vector<Warning> doubts_about_points(const Surfaces& surfaces, const VolumeChange& change) {
+  std::vector<Warning> doubts = check_points(surfaces.dig.surfaces, change, change.areas.front());
   if (surfaces.dump) {
-    append(check_overlays(surfaces.dump->surfaces, change, change.areas.back()), doubts);
+    append(check_points(surfaces.dump->surfaces, change, change.areas.back()), doubts);
   }
   return doubts;
 }
@@ -118,7 +118,7 @@ VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfa
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  std::vector<Warning> doubts = doubts_about_overlays(surfaces, change);
+  std::vector<Warning> doubts = doubts_about_points(surfaces, change);
   append(check_cover(surfaces.pairs(), change), doubts);
   for (const Warning& warning : change.warnings) {
     if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
@@ -145,7 +145,7 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen) {
 
 std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
                                   const VolumeChange& change) {
-  std::vector<Warning> doubts = doubts_about_overlays(surfaces, change);
+  std::vector<Warning> doubts = doubts_about_points(surfaces, change);
   append(check_volumes(change), doubts);
   append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,

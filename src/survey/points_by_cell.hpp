@@ -31,10 +31,18 @@ class PointsByCell {
 
   double base() const { return base_; }        ///< that heights of points are counted from [m]
   Eigen::Index side() const { return side_; }  ///< of a group [cell]; 1: each cell is a group
+  Eigen::Index rows() const { return rows_; }
+  Eigen::Index columns() const { return columns_; }
   Eigen::Index group_rows() const { return (rows_ + side_ - 1) / side_; }
   Eigen::Index group_columns() const { return (columns_ + side_ - 1) / side_; }
   Eigen::Index group_of(Eigen::Index cell) const {
     return (cell % rows_) / side_ + group_rows() * (cell / rows_ / side_);
+  }
+  /// The centre of a cell from that of its group [cell]: x by columns, y by rows.
+  Eigen::Vector2d from_centre_of_group(Eigen::Index cell) const {
+    const double centre = 0.5 * static_cast<double>(side_ - 1);
+    return {static_cast<double>(cell / rows_ % side_) - centre,
+            static_cast<double>(cell % rows_ % side_) - centre};
   }
   /// All points of a cell over those that are kept of it.
   double per_kept(Eigen::Index cell) const {

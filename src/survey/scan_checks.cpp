@@ -403,27 +403,36 @@ std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeCha
 
 namespace {
 
-/// Zero where a surface has no points or they lie on one surface.
-Eigen::ArrayXXd doubt_of(const Surface& surface) {
+/// What a surface tells of its heights; zero where it has none.
+Eigen::ArrayXXd known(const Eigen::ArrayXXd& values, const Surface& surface) {
   const Eigen::ArrayXXd& z = surface.height.z;
   const Eigen::ArrayXXd none = Eigen::ArrayXXd::Zero(z.rows(), z.cols());
-  if (surface.doubt.size() != z.size()) return none;
-  return z.isNaN().select(none, surface.doubt);
+  if (values.size() != z.size()) return none;
+  return z.isNaN().select(none, values);
 }
 
-/// -1 in the hole, 1 in spill and heap, 0 elsewhere; with the ground beside them whose doubt grew:
-/// the lower of its two surfaces may be the ground before.
-Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& area,
-                                 const Eigen::ArrayXXd& growth) {
+/// -1 in the hole, 1 in spill and heap, 0 elsewhere.
+Eigen::ArrayXXi parts_of(const VolumeChange& change, const AreaChange& area) {
   Eigen::ArrayXXi part = Eigen::ArrayXXi::Zero(area.zone.rows(), area.zone.cols());
-  std::vector<Cell> front;
   for_each_cell(part, [&](Cell at) {
     const int zone = area.zone(at.row, at.col);
     if (zone < 0) return;
     const ZoneKind kind = change.zones[static_cast<std::size_t>(zone)].kind;
-    if (kind == ZoneKind::other) return;
-    part(at.row, at.col) = kind == ZoneKind::dig ? -1 : 1;
-    front.push_back(at);
+    if (kind != ZoneKind::other) part(at.row, at.col) = kind == ZoneKind::dig ? -1 : 1;
+  });
+  return part;
+}
+
+double ratio(double part, double all) { return all > 0.0 ? part / all : 0.0; }
+
+/// With the ground beside them whose doubt grew: the lower of its two surfaces may be the ground
+/// before.
+Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& area,
+                                 const Eigen::ArrayXXd& growth) {
+  Eigen::ArrayXXi part = parts_of(change, area);
+  std::vector<Cell> front;
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) != 0) front.push_back(at);
   });
   for (std::size_t next = 0; next < front.size(); ++next) {
     const int here = part(front[next].row, front[next].col);
@@ -436,16 +445,14 @@ Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& a
   return part;
 }
 
-}  // namespace
-
 std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeChange& change,
                                     const AreaChange& area) {
   constexpr double noted = 0.01;     // ours, of the bulking factor
   constexpr double doubtful = 0.03;  // ours, likewise
   constexpr double weight_of_new =
       3.0;  // ours: nothing grows on dug soil, so that either may be it
-  const Eigen::ArrayXXd of_before = doubt_of(surfaces.before);
-  const Eigen::ArrayXXd of_after = doubt_of(surfaces.after);
+  const Eigen::ArrayXXd of_before = known(surfaces.before.doubt, surfaces.before);
+  const Eigen::ArrayXXd of_after = known(surfaces.after.doubt, surfaces.after);
   const Eigen::ArrayXXi part = parts_with_doubt(change, area, of_after - of_before);
   double hole = 0.0;
   double soil = 0.0;
@@ -459,10 +466,7 @@ std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeCha
     (part(at.row, at.col) < 0 ? hole : soil) += before + after + (weight_of_new - 1.0) * grown;
     in_after += after;
   });
-  const auto share_of = [](double doubt, double volume) {
-    return volume > 0.0 ? doubt / volume : 0.0;
-  };
-  const double share = share_of(hole, change.before.value) + share_of(soil, change.after.value);
+  const double share = ratio(hole, change.before.value) + ratio(soil, change.after.value);
   if (!(share > noted)) return {};
   return {{"two_surfaces",
            std::string("points of the scan ") +
@@ -472,6 +476,91 @@ std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeCha
                " m^3 of spill and heap in doubt: leave out dust, plants and what else is above the "
                "ground, and points that were taken at other times",
            share > doubtful}};
+}
+
+std::vector<Warning> check_outliers(const SurfacePair& surfaces, const VolumeChange& change,
+                                    const AreaChange& area) {
+  constexpr double noted = 0.01;     // ours, of the bulking factor
+  constexpr double doubtful = 0.02;  // ours: twice the error of a good survey
+  const Eigen::ArrayXXd of_before = known(surfaces.before.outlier_bias, surfaces.before);
+  const Eigen::ArrayXXd of_after = known(surfaces.after.outlier_bias, surfaces.after);
+  const Eigen::ArrayXXi part = parts_of(change, area);
+  double hole = 0.0;
+  double soil = 0.0;
+  double in_after = 0.0;
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) == 0) return;
+    const double raised = of_after(at.row, at.col) - of_before(at.row, at.col);
+    (part(at.row, at.col) < 0 ? hole : soil) += raised;
+    in_after += std::abs(of_after(at.row, at.col)) - std::abs(of_before(at.row, at.col));
+  });
+  const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
+  hole *= cell_area;
+  soil *= cell_area;
+  const double share = std::abs(ratio(hole, change.before.value) + ratio(soil, change.after.value));
+  if (!(share > noted)) return {};
+  return {{"outliers",
+           std::string("points of the scan ") + (in_after > 0.0 ? "after" : "before") +
+               " lie off the ground, " + (soil > 0.0 ? "above" : "below") +
+               " it in the main; where it is uneven they are not told from it, which may change " +
+               "hole by " + readable(-hole, 2) + " m^3 and spill and heap by " + readable(soil, 2) +
+               " m^3: scan again without dust, rain or vibration, or clean the cloud",
+           share > doubtful}};
+}
+
+/// A floor that a limit of heights cuts: cells of the hole whose lowest points lie at one height,
+/// as no noise leaves them.
+std::vector<Warning> check_floor(const SurfacePair& surfaces, const VolumeChange& change,
+                                 const AreaChange& area) {
+  constexpr std::size_t blunders = 2;    // below the floor; ours
+  constexpr std::ptrdiff_t fewest = 20;  // ours
+  constexpr double least_noise = 2e-3;   // [m], ours: less hides no volume that counts
+  constexpr double edge = 0.25;          // ours, of the noise
+  constexpr double floor = 2.0;          // ours, likewise
+  constexpr double most = 0.25;  // ours: noise leaves some 0.03 of the cells so near the lowest
+  const Surface& after = surfaces.after;
+  if (after.lowest.size() != after.height.z.size()) return {};
+  const Eigen::ArrayXXi part = parts_of(change, area);
+  std::vector<double> lowest;
+  std::vector<double> scatter;
+  for_each_cell(part, [&](Cell at) {
+    const double here = after.lowest(at.row, at.col);
+    if (part(at.row, at.col) >= 0 || std::isnan(here)) return;
+    lowest.push_back(here);
+    const double variance = after.points(at.row, at.col) * after.variance(at.row, at.col);
+    if (!std::isnan(variance)) scatter.push_back(variance);
+  });
+  if (lowest.size() <= blunders || scatter.empty()) return {};
+  std::sort(lowest.begin(), lowest.end());
+  const double noise = std::sqrt(quantile(scatter, 0.5));
+  if (noise < least_noise) return {};
+  const auto up_to = [&](double height) {
+    return std::upper_bound(lowest.begin(), lowest.end(), lowest[blunders] + height) -
+           lowest.begin();  // cells
+  };
+  const auto at_edge = up_to(edge * noise);
+  if (at_edge < fewest ||
+      static_cast<double>(at_edge) < most * static_cast<double>(up_to(floor * noise))) {
+    return {};
+  }
+  return {{"floor_cut",
+           "the lowest points of " + std::to_string(at_edge) + " cells of the hole lie at " +
+               readable(lowest[blunders], 4) +
+               " m, as where a limit of heights or depths cuts "
+               "the floor off: what lies deeper is missing; widen the limit",
+           true}};
+}
+
+}  // namespace
+
+std::vector<Warning> check_points(const SurfacePair& surfaces, const VolumeChange& change,
+                                  const AreaChange& area) {
+  std::vector<Warning> found = check_overlays(surfaces, change, area);
+  for (const auto& more :
+       {check_outliers(surfaces, change, area), check_floor(surfaces, change, area)}) {
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  return found;
 }
 
 std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area) {

@@ -35,9 +35,11 @@ std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfac
 std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeChange& change);
 
 /// Code `two_surfaces`: points of hole, spill or heap lie on two surfaces, one above the other.
-/// Ends trust where the bulking factor may be off by 3 %.
-std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeChange& change,
-                                    const AreaChange& area);
+/// Code `outliers`: points off even ground are so many and so far to one side of it that like ones
+/// in hole, spill and heap would count. Where they may change the bulking factor by 1 %; by 3 %, or
+/// 2 % of outliers, they end trust.
+std::vector<Warning> check_points(const SurfacePair& surfaces, const VolumeChange& change,
+                                  const AreaChange& area);
 
 /// Of ground that is bent like a ball about the sensor.
 std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area);

@@ -178,6 +178,23 @@ Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
+/// The points must be as far from each other in the scan as in the site, to a tenth.
+void check_lengths(const std::vector<Eigen::Vector3d>& in_scan, const Eigen::Vector3d& scan_mean,
+                   const std::vector<Eigen::Vector3d>& in_site, const Eigen::Vector3d& site_mean) {
+  constexpr double most = 1.1;  // ours
+  double scan = 0.0;
+  double site = 0.0;
+  for (std::size_t i = 0; i < in_scan.size(); ++i) {
+    scan += (in_scan[i] - scan_mean).squaredNorm();
+    site += (in_site[i] - site_mean).squaredNorm();
+  }
+  const double factor = std::sqrt(site / scan);
+  if (factor <= most && factor >= 1.0 / most) return;
+  refuse("the known points are " + readable(factor) +
+         " times as far from each other in the site as in the scan: one of them is in other units, "
+         "or points are exchanged");
+}
+
 /// Which axis of the sensor shows ahead.
 Eigen::Vector3d forward(const Eigen::Vector3d& up) {
   if (up.z() > upright) return Eigen::Vector3d::UnitX();
@@ -199,7 +216,7 @@ LevelPose level(const std::vector<Eigen::Vector3d>& scan, const Eigen::Vector3d&
   pose.residual_sd = ground.sd;
   pose.ground_share = ground.share;
   if (pose.height < least_height) {
-    refuse("its largest plane is " + number_text(pose.height) +
+    refuse("its largest plane is " + readable(pose.height) +
            " m from the sensor, less than 0.05 m: it is not the ground");
   }
   pose.tilt = std::acos(std::clamp(-up.z(), -1.0, 1.0));
@@ -225,7 +242,11 @@ LevelPose level_on_ground(const Scan& scan, std::uint64_t seed) {
   const std::vector<Standpoint> known = standpoints_of(scan);
   const Eigen::Vector3d place =
       known.size() == 1 ? known[0].place : scan.site_from_scan.topRightCorner<3, 1>();
-  return level(sample.values(), place, seed);
+  try {
+    return level(sample.values(), place, seed);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::bad_file, name_of(scan) + ": " + error.what());
+  }
 }
 
 KnownPoints read_known_points(const std::string& path) {
@@ -254,6 +275,7 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
   if (!(svd.singularValues()(1) > thin * thin * svd.singularValues()(0))) {
     refuse("the known points lie on one line, so the rotation about it is undetermined");
   }
+  check_lengths(in_scan, scan_mean, in_site, site_mean);
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();
   sign.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   const Eigen::Matrix3d rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();

@@ -198,7 +198,7 @@ TEST(Align, SurfacesThatDoNotFitAreRefused) {
   Surface unseen = one;
   unseen.height.z.setConstant(nan);
   EXPECT_EQ(message(one, unseen),
-            "align: the surfaces share 0 known cells with known neighbours and no steep gradient, "
+            "the surfaces share 0 known cells with known neighbours and no steep gradient, "
             "at least 100 are needed: do they overlap, with points enough for cells of 0.10 m?");
   AlignmentOptions options;
   options.turn_prior = 0.0;

@@ -76,6 +76,7 @@ inline pid_t started(const std::string& name, std::vector<std::string> arguments
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("fork failed");
   if (child == 0) {
+    ::signal(SIGINT, SIG_DFL);  // which a shell ignores in what it runs in the background
     redirect();
     ::execv(program.c_str(), words.data());
     ::_exit(127);

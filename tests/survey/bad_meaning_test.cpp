@@ -433,6 +433,57 @@ TEST(BadMeaning, TwoSurfaces) {
   expect_no_wrong_answer(inputs);
 }
 
+TEST(BadMeaning, PointsOffTheGround) {
+  Inputs inputs;
+  const Codes codes = {"outliers", "two_surfaces", "grass", "attribution_open"};
+  for (const double off : {-0.1, -0.06, 0.04, 0.06, 0.08, 0.1, 0.15}) {
+    for (const double share : {0.02, 0.05, 0.1, 0.2}) {
+      add_both(
+          inputs, std::to_string(share) + " of the points after by " + std::to_string(off) + " m",
+          [=](DigScans& s, auto&) {
+            Random random(7);
+            map_points(s.after, [&](const Vector3d& p) {
+              return Vector3d(p.x(), p.y(), p.z() + (random.uniform() < share ? off : 0.0));
+            });
+          },
+          codes, may_be_right);
+    }
+  }
+  for (const double height : {0.05, 0.15, 0.3}) {
+    add_both(
+        inputs, "a tenth of the points up to " + std::to_string(height) + " m above",
+        [=](DigScans& s, auto&) {
+          Random random(8);
+          map_points(s.after, [&](const Vector3d& p) {
+            const double off = random.uniform() < 0.1 ? random.uniform(0.0, height) : 0.0;
+            return Vector3d(p.x(), p.y(), p.z() + off);
+          });
+        },
+        codes, may_be_right);
+  }
+  expect_no_wrong_answer(inputs);
+}
+
+TEST(BadMeaning, ALimitOfHeights) {
+  Inputs inputs;
+  const Codes codes = {"floor_cut", "hole_in_shadow", "zone_unseen", "zone_partly_unseen"};
+  const auto lowest = [](const Scan& scan) {
+    double z = 0.0;
+    for (const Vector3d& p : scan.clouds.front()->points) z = std::min(z, p.z());
+    return z;
+  };
+  for (const double above : {0.01, 0.02, 0.03, 0.05, 0.1}) {
+    add_both(
+        inputs, "cut " + std::to_string(above) + " m above the lowest point",
+        [=](DigScans& s, auto&) {
+          const double limit = lowest(s.after) + above;
+          keep_points(s.after, [=](const Vector3d& p) { return p.z() > limit; });
+        },
+        codes, may_be_right);
+  }
+  expect_no_wrong_answer(inputs);
+}
+
 TEST(BadMeaning, CoarseAndNoisyHeights) {
   Inputs inputs;
   const auto rounded = [](double step) {

@@ -252,6 +252,10 @@ TEST(PoseOfPoints, RefusesWhatLeavesItFree) {
   EXPECT_EQ(
       error(line, line),
       "pose of a scan: the known points lie on one line, so the rotation about it is undetermined");
+  std::vector<Eigen::Vector3d> in_mm = targets;
+  for (Eigen::Vector3d& p : in_mm) p *= 1000.0;
+  EXPECT_NE(error(in_mm, targets).find("0.00100 times as far from each other in the site"),
+            std::string::npos);
   EXPECT_NE(error({{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})
                 .find("known point 3 has a coordinate that is not finite"),
             std::string::npos);

@@ -612,6 +612,54 @@ TEST(ScanSurface, PointsOnTwoSurfacesMakeTheHeightDoubtful) {
   }
 }
 
+TEST(ScanSurface, OutliersOnASlopeAreTold) {
+  const Rectangle patch{0.0, 0.0, 2.0, 2.0};
+  const Shape steep = [](double x, double y) { return 0.8 * x - 0.5 * y; };
+  for (const double off : {-0.1, 0.1}) {
+    Points points = sampled(steep, patch, 16000, 0.003, 1);
+    for (std::size_t i = 0; i < points.size(); i += 20) points[i].z() += off;
+    const Surface surface = surface_of(points, patch, 0.05);
+    const Eigen::ArrayXXd inside = surface.height.z.block(2, 2, 36, 36);
+    double miss = 0.0;
+    for (Eigen::Index col = 2; col < 38; ++col) {
+      for (Eigen::Index row = 2; row < 38; ++row) {
+        miss += surface.height.z(row, col) - steep(surface.height.x(col), surface.height.y(row));
+      }
+    }
+    EXPECT_NEAR(miss / static_cast<double>(inside.size()), 0.0, 0.0005) << off;
+    EXPECT_LT(std::abs(surface.outlier_bias.block(2, 2, 36, 36).mean()), 0.0005) << off;
+  }
+}
+
+TEST(ScanSurface, OutliersOfEvenGroundAreExpectedWhereItIsUneven) {
+  const Rectangle patch{0.0, 0.0, 2.0, 2.0};
+  const Shape half_rough = [](double x, double y) {
+    return x < 1.0 ? 0.0 : 0.2 * std::sin(40.0 * x) * std::sin(40.0 * y);
+  };
+  const auto bias = [&](double off) {
+    Points points = sampled(half_rough, patch, 16000, 0.003, 1);
+    for (std::size_t i = 0; i < points.size(); i += 20) points[i].z() += off;
+    const Surface surface = surface_of(points, patch, 0.05);
+    return std::pair(surface.outlier_bias.block(2, 2, 36, 15).mean(),
+                     surface.outlier_bias.block(2, 24, 36, 14).mean());
+  };
+  for (const double off : {-0.1, 0.1}) {
+    const auto [even, rough] = bias(off);
+    EXPECT_NEAR(even, 0.0, 0.0002);
+    EXPECT_NEAR(rough, 0.05 * off, 0.2 * std::abs(0.05 * off));  // a twentieth of the points
+  }
+  EXPECT_NEAR(bias(0.0).second, 0.0, 0.0002);
+}
+
+TEST(ScanSurface, KnowsTheLowestPointOfEachCell) {
+  const Rectangle patch{0.0, 0.0, 0.5, 0.5};
+  Points points = sampled(level, patch, 2000, 0.003, 1);
+  for (Eigen::Vector3d& p : points) p.z() = std::max(p.z(), -0.002);
+  const Surface surface = surface_of(points, patch, 0.05);
+  EXPECT_NEAR(surface.lowest.minCoeff(), -0.002, 1e-6);
+  EXPECT_TRUE((surface.lowest < surface.height.z).all());
+}
+
 TEST(ScanSurface, RoundedHeightsAreTold) {
   const Folder folder;
   const auto step_of = [&](double step) {

@@ -18,10 +18,17 @@ std::string millimetres(double metres) {
 FoundPose pose_from_points(const KnownPoints& points) {
   const PointPose pose = pose_of_points(points.in_scan, points.in_site);
   const double worst = *std::max_element(pose.residuals.begin(), pose.residuals.end());
+  double lowest = points.in_site.front().z();
+  for (const Eigen::Vector3d& point : points.in_site) lowest = std::min(lowest, point.z());
+  const double below = lowest - pose.site_from_scan(2, 3);
   return {pose.site_from_scan,
           {{"method", "points"}, {"residuals_m", pose.residuals}, {"residual_rms_m", pose.rms}},
           std::to_string(points.in_site.size()) + " known points fit within " +
-              millimetres(pose.rms) + " (rms), the worst one within " + millimetres(worst)};
+              millimetres(pose.rms) + " (rms), the worst one within " + millimetres(worst) +
+              (below > 0.0 ? "; the sensor is " + readable(below) +
+                                 " m below them all: points on level ground that are mirrored or "
+                                 "exchanged turn it over"
+                           : "")};
 }
 
 }  // namespace

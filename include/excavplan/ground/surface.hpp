@@ -25,6 +25,11 @@ struct Surface {
   /// By how much a height may be wrong because the points of its cell lie on two surfaces, one
   /// above the other [m]: 0 where they lie on one. Empty where the points are not known.
   Eigen::ArrayXXd doubt = {};
+  /// Mean offset that outliers leave in a height [m], if they are as many as on even ground, where
+  /// they are told from it. Empty where the points are not known.
+  Eigen::ArrayXXd outlier_bias = {};
+  /// Height of the lowest accepted point of each cell [m]. Empty where the points are not known.
+  Eigen::ArrayXXd lowest = {};
 };
 
 }  // namespace excavplan

@@ -45,7 +45,7 @@ LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed = 1);
 /// The same of a scan of any size, from a random choice of 32768 to 65536 of its points that is the
 /// same every time; the pose follows Scan::site_from_scan. The sensor stood where the scan or its
 /// files say, if they agree, or else at the origin of the files.
-/// @throws Error (bad_file) as read_cloud(); (bad_input) as above
+/// @throws Error (bad_file) as read_cloud() and as above, naming the scan
 LevelPose level_on_ground(const Scan& scan, std::uint64_t seed = 1);
 
 /// Points of a scan whose places in the site are known, pair by pair.
@@ -70,7 +70,7 @@ struct PointPose {
 /// (Kabsch 1976, Umeyama 1991).
 ///
 /// @throws Error (bad_input) with fewer than three pairs, lists of different length, a coordinate
-/// that is not finite, or points on one line
+/// that is not finite, points on one line, or distances between them that differ by over 10 %
 PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
                          const std::vector<Eigen::Vector3d>& in_site);
 
