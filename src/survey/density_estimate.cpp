@@ -33,6 +33,7 @@ struct OutlinedScans {
   std::optional<OutlinedPair> dump;
   double cell_size = 0.0;
 
+  std::string names() const { return dig.names() + (dump ? ", " + dump->names() : ""); }
   std::uint64_t machine_points() const {
     return dig.machine_points() + (dump ? dump->machine_points() : 0);
   }
@@ -98,9 +99,9 @@ VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
   try {
     return measure();
   } catch (const TooFewCells& few) {
-    throw few.of_scans(seen.dig.names());
+    throw few.of_scans(seen.names());
   } catch (const Error& error) {
-    throw Error(ErrorKind::bad_file, seen.dig.names() + ": " + error.what());
+    throw Error(ErrorKind::bad_file, seen.names() + ": " + error.what());
   }
 }
 
@@ -112,20 +113,30 @@ std::vector<Warning> doubts_about_points(const Surfaces& surfaces, const VolumeC
   return doubts;
 }
 
-VolumeChange surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfaces,
-                                const ChangeOptions& options) {
-  VolumeChange change = about(seen, [&] {
+struct SurfaceVolumes {
+  VolumeChange change;
+  std::vector<Warning> of_points;  ///< doubts
+  std::vector<Warning> of_cover;
+};
+
+SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfaces,
+                                  const ChangeOptions& options) {
+  SurfaceVolumes volumes;
+  VolumeChange& change = volumes.change;
+  change = about(seen, [&] {
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  std::vector<Warning> doubts = doubts_about_points(surfaces, change);
-  append(check_cover(surfaces.pairs(), change), doubts);
+  volumes.of_points = doubts_about_points(surfaces, change);
+  volumes.of_cover = check_cover(surfaces.pairs(), change);
+  std::vector<Warning> doubts = volumes.of_points;
+  append(volumes.of_cover, doubts);
   for (const Warning& warning : change.warnings) {
     if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
   }
   with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names()); });
   state_water(surfaces.pairs(), change);
-  return change;
+  return volumes;
 }
 
 VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& surface,
@@ -144,8 +155,9 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen) {
 }
 
 std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
-                                  const VolumeChange& change) {
-  std::vector<Warning> doubts = doubts_about_points(surfaces, change);
+                                  const SurfaceVolumes& volumes) {
+  const VolumeChange& change = volumes.change;
+  std::vector<Warning> doubts = volumes.of_points;
   append(check_volumes(change), doubts);
   append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
@@ -156,7 +168,7 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
   };
   check(seen.dig, surfaces.dig, change.areas.front());
   if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());
-  append(check_cover(surfaces.pairs(), change), doubts);
+  append(volumes.of_cover, doubts);
   return doubts;
 }
 
@@ -251,11 +263,12 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
   const OutlinedScans seen = outline_scans(scans, options);  // extent, density of points, cell
   std::vector<Warning> doubts = doubts_about(seen);
   Surfaces surfaces;
-  const VolumeChange surface = with_doubts(doubts, [&] {
+  const SurfaceVolumes volumes = with_doubts(doubts, [&] {
     surfaces = survey(seen, options);  // height maps on each other
     return surface_volumes_of(seen, surfaces, options.change);
   });
-  append(doubts_about(seen, surfaces, surface), doubts);
+  const VolumeChange& surface = volumes.change;
+  append(doubts_about(seen, surfaces, volumes), doubts);
 
   DensityEstimate known;  // whatever the method
   known.fallback = fallback_of(options, surfaces, surface);
