@@ -211,28 +211,74 @@ TEST_F(Section, TeethPenetrateAsTheirConeIndexSays) {
   const SoilState state = bank_state(soil, 20.0);
   Machine plain = machine_;
   plain.bucket.teeth.reset();
-  const Terrain ground = level_planning_ground(machine_);
-  const DigPath path = path_on(ground);
-  DigOptions options;
-  options.history = true;
-  const DigResult with = SectionSimulator(machine_, soil, 20.0).dig(ground, path, options);
-  const DigResult without = SectionSimulator(plain, soil, 20.0).dig(ground, path, options);
-  const Teeth& teeth = *machine_.bucket.teeth;
+  const Bucket& bucket = machine_.bucket;
+  const Teeth& teeth = *bucket.teeth;
   const double tan_delta = std::tan(state.tool_friction_angle);
   const double flanks = (1.0 + tan_delta / std::tan(0.5 * teeth.angle)) /
                         (1.0 + tan_delta / std::tan(15.0 * pi / 180.0));
-  for (std::size_t i = 0; with.history[i].phase == DigPhase::penetrate; ++i) {
-    const double z = 0.5 * (path.poses[i].bucket.z + path.poses[i + 1].bucket.z);
-    const double driven = -z / std::sin(path.parameters.penetration_angle);
-    // No higher than the tip is deep.
-    const double lip = std::min(-z, machine_.bucket.edge_thickness) * machine_.bucket.width_outside;
-    const double area = teeth.count * teeth.width * std::min(-z, teeth.thickness) * flanks *
-                        std::min(1.0, driven / teeth.length);
-    const double expected = cone_index(soil, state, -z) * (area - lip);
-    const Eigen::Vector2d more = with.history[i].soil - without.history[i].soil;
-    const double sign = more.x() > 0.0 ? 1.0 : -1.0;
-    EXPECT_NEAR(sign * more.norm(), expected, 1e-6 * std::abs(expected)) << "driven " << driven;
+  DigOptions options;
+  options.history = true;
+  for (const double gradient : {-0.2, 0.0, 0.2}) {
+    const Terrain ground = slope(gradient);
+    const DigPath path = path_on(ground);
+    const DigResult with = SectionSimulator(machine_, soil, 20.0).dig(ground, path, options);
+    const DigResult without = SectionSimulator(plain, soil, 20.0).dig(ground, path, options);
+    const auto place = [&](std::size_t i) {
+      return Eigen::Vector2d(path.poses[i].bucket.x, path.poses[i].bucket.z);
+    };
+    for (std::size_t i = 0; with.history[i].phase == DigPhase::penetrate; ++i) {
+      const Eigen::Vector2d tip = 0.5 * (place(i) + place(i + 1));
+      const double depth = gradient * (tip.x() - 5.0) - tip.y();
+      const double driven = (tip - place(0)).norm();
+      // No higher than the tip is deep.
+      const double lip = std::min(depth, bucket.edge_thickness) * bucket.width_outside;
+      const double area = teeth.count * teeth.width * std::min(depth, teeth.thickness) * flanks *
+                          std::min(1.0, driven / teeth.length);
+      const double expected = cone_index(soil, state, depth) * (area - lip);
+      const Eigen::Vector2d more = with.history[i].soil - without.history[i].soil;
+      const double sign = more.x() > 0.0 ? 1.0 : -1.0;
+      EXPECT_NEAR(sign * more.norm(), expected, 1e-3 * std::abs(expected))
+          << "gradient " << gradient << ", driven " << driven;
+    }
   }
+}
+
+TEST_F(Section, BluntLipsMeetThePassivePressureOnAFlatEdge) {
+  // Two lips dragged level through the same ground differ by the limit pressure on a flat front in
+  // soil with friction (Sokolovski 1960): as deep as it is thick, under the soil above it.
+  const SoilKind soil = soil_kind("clay");
+  const SoilState state = bank_state(soil, 40.0);
+  const double phi = state.friction_angle;
+  const double delta = state.tool_friction_angle;
+  const double root = std::sqrt(std::pow(std::sin(phi), 2) - std::pow(std::sin(delta), 2));
+  const double ratio =
+      std::cos(delta) * (std::cos(delta) + root) / (1.0 - std::sin(phi)) *
+      std::exp((delta + std::asin(std::sin(delta) / std::sin(phi))) * std::tan(phi));
+  constexpr double depth = 0.15;
+  const auto on_lip = [&](double thickness) {
+    const double active = std::pow(std::tan(0.25 * pi - 0.5 * phi), 2);
+    const double pressure =
+        state.cohesion / std::tan(phi) + state.unit_weight * (0.5 * thickness + active * depth);
+    return ratio * pressure * thickness * machine_.bucket.width_outside;
+  };
+  const auto drag = [&](double thickness) {
+    Machine machine = machine_;
+    machine.bucket.edge_thickness = thickness;
+    for (JointLimits& limits : machine.limits) limits.torque = 1e9;
+    DigPath path;
+    for (int i = 0; i <= 2; ++i) {
+      DigPose pose;
+      pose.phase = DigPhase::drag;
+      pose.bucket = {6.2 - 0.025 * i, -depth, 0.05};
+      pose.joints = std::get<JointAngles>(inverse_kinematics(machine, pose.bucket));
+      path.poses.push_back(pose);
+    }
+    DigOptions options;
+    options.history = true;
+    const Terrain ground = level_planning_ground(machine_);
+    return SectionSimulator(machine, soil, 40.0).dig(ground, path, options).history[0].soil.x();
+  };
+  EXPECT_NEAR(drag(0.05) - drag(0.02), on_lip(0.05) - on_lip(0.02), 0.01 * on_lip(0.05));
 }
 
 TEST_F(Section, HeelStandsOnTheGroundLikeAFooting) {

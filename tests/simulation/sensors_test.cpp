@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -43,6 +44,13 @@ TEST(Sensors, CameraTakesAllErrorsOfItsSensorAndKeepsItsPlace) {
   EXPECT_EQ(camera.disparity_step, sensor.disparity_step);
   EXPECT_EQ(camera.flying_pixels, sensor.flying_pixels);
   EXPECT_THROW(with_errors_of(sensor_of_word("lidar"), placed), Error);
+}
+
+TEST(Sensors, DepthsOfTheCameraComeInThirtySecondsOfAPixelOfDisparity) {
+  // Data sheet of the D400 series: imagers 50 mm apart, disparities with five binary places.
+  const Sensor& sensor = sensor_of_word("d435i");
+  const double focal = 0.5 * sensor.width / std::tan(0.5 * sensor.view_across);
+  EXPECT_NEAR(sensor.disparity_step, 1.0 / (32.0 * 0.050 * focal), 0.001 * sensor.disparity_step);
 }
 
 TEST(Sensors, LidarOfTheSimulationHasTheNoiseOfTheTable) {
