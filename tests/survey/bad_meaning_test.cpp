@@ -436,8 +436,8 @@ TEST(BadMeaning, TwoSurfaces) {
 TEST(BadMeaning, PointsOffTheGround) {
   Inputs inputs;
   const Codes codes = {"outliers", "two_surfaces", "grass", "attribution_open"};
-  for (const double off : {-0.1, -0.06, 0.04, 0.06, 0.08, 0.1, 0.15}) {
-    for (const double share : {0.02, 0.05, 0.1, 0.2}) {
+  for (const double off : {-0.1, 0.04, 0.08, 0.15}) {
+    for (const double share : {0.02, 0.05, 0.2}) {
       add_both(
           inputs, std::to_string(share) + " of the points after by " + std::to_string(off) + " m",
           [=](DigScans& s, auto&) {
