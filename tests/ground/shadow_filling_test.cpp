@@ -106,6 +106,7 @@ Filled filled(const HeightMap& after, const Eigen::Vector3d& sensor) {
   filled.variance = fill_shadows({before, filled.map, mixed, places, told}, filled.ground);
   return filled;
 }
+
 /// From so far away that its rays are parallel; the flank behind the top of the heap is hidden.
 class FarFlank : public testing::TestWithParam<double> {
  protected:
@@ -138,26 +139,21 @@ INSTANTIATE_TEST_SUITE_P(From, FarFlank, testing::Values(-1.0, 1.0), [](const au
   return std::string(side.param < 0.0 ? "TheLeft" : "TheRight");
 });
 
-/// The part of a cell that is hidden behind an edge in it lies below what was seen of the cell.
-void expect_edge_kept(const Shape& shape, Cell edge) {
-  const Eigen::Vector3d sensor(-20.0, 2.0, 18.0);
-  const Filled result = filled(scanned(shape, sensor), sensor);
-  ASSERT_TRUE(std::isnan(result.scan.z(edge.row, edge.col + 1)));
-  ASSERT_FALSE(std::isnan(result.scan.z(edge.row, edge.col)));
-  const double seen = result.scan.z(edge.row, edge.col);
-  const double truth = scanned(shape, std::nullopt).z(edge.row, edge.col);
-  EXPECT_NEAR(result.map.z(edge.row, edge.col), truth, 0.015);
-  EXPECT_LE(result.map.z(edge.row, edge.col), seen);
-}
-
+/// What is hidden of the cell behind the edge lies below what was seen of it.
 TEST(ShadowFilling, ALedgeInAHoleKeepsItsHeightUpToItsEdge) {
   const double wall = std::tan(70.0 * degree);
-  expect_edge_kept(
-      [&](double x, double y) {
-        return Pit{{0.6, 0.8, 3.6, 3.2}, 0.2, wall}(x, y) +
-               Pit{{1.53, 1.2, 3.1, 2.8}, 0.3, wall}(x, y);
-      },
-      {40, 30});
+  const Pit upper{{0.6, 0.8, 3.6, 3.2}, 0.2, wall};
+  const Pit lower{{1.53, 1.2, 3.1, 2.8}, 0.3, wall};
+  const Shape shape = [&](double x, double y) { return upper(x, y) + lower(x, y); };
+  const Eigen::Vector3d sensor(-20.0, 2.0, 18.0);
+  const Filled result = filled(scanned(shape, sensor), sensor);
+  const Cell edge = {40, 30};
+  const double seen = result.scan.z(edge.row, edge.col);
+  ASSERT_FALSE(std::isnan(seen));
+  ASSERT_TRUE(std::isnan(result.scan.z(edge.row, edge.col + 1)));
+  const double height = result.map.z(edge.row, edge.col);
+  EXPECT_NEAR(height, scanned(shape, std::nullopt).z(edge.row, edge.col), 0.015);
+  EXPECT_LE(height, seen);
 }
 
 }  // namespace
