@@ -12,6 +12,8 @@
 
 #include <gtest/gtest.h>
 
+#include <excavplan/ground/volume_change.hpp>
+
 #include "base/angles.hpp"
 #include "ground/change_zones.hpp"
 #include "ground/grid_cells.hpp"
@@ -154,6 +156,41 @@ TEST(ShadowFilling, ALedgeInAHoleKeepsItsHeightUpToItsEdge) {
   const double height = result.map.z(edge.row, edge.col);
   EXPECT_NEAR(height, scanned(shape, std::nullopt).z(edge.row, edge.col), 0.015);
   EXPECT_LE(height, seen);
+}
+
+/// The change by a pit of which one far sensor hides a share.
+struct HalfSeenPit {
+  double unseen_share;
+  bool is_warned;
+};
+
+HalfSeenPit half_seen_pit(double fall_of_rays) {
+  const Pit pit{{1.0, 1.2, 3.0, 2.8}, 0.5, std::tan(70.0 * degree)};
+  SurfacePair pair;
+  pair.before.height = flat_ground({0.0, 0.0, 4.0, 4.0}, cell_size);
+  pair.after.sensors = {{2.0 - 200.0, 2.0, 200.0 * fall_of_rays}};
+  pair.after.height = scanned(pit, pair.after.sensors[0]);
+  const Eigen::ArrayXXd& z = pair.after.height.z;
+  pair.after.points = z.isNaN().select(Eigen::ArrayXXi::Zero(z.rows(), z.cols()), 20);
+  pair.after.variance = z.isNaN().select(z, 1e-6);
+  const VolumeChange change = measure_change(pair);
+  const auto hole = std::find_if(change.zones.begin(), change.zones.end(),
+                                 [](const ChangeZone& zone) { return zone.kind == ZoneKind::dig; });
+  if (hole == change.zones.end()) return {nan, false};
+  return {hole->unknown_share,
+          std::any_of(change.warnings.begin(), change.warnings.end(),
+                      [](const Warning& warning) { return warning.code == "zone_partly_unseen"; })};
+}
+
+TEST(ShadowFilling, KeepsTrustInAHoleUpToThirtyFivePercentInShadow) {
+  const HalfSeenPit below = half_seen_pit(0.60);
+  EXPECT_GT(below.unseen_share, ChangeOptions{}.max_unknown_share);
+  EXPECT_LT(below.unseen_share, 0.33);
+  EXPECT_FALSE(below.is_warned);
+  const HalfSeenPit above = half_seen_pit(0.45);
+  EXPECT_GT(above.unseen_share, 0.37);
+  EXPECT_LT(above.unseen_share, ChangeOptions{}.refused_unknown_share);
+  EXPECT_TRUE(above.is_warned);
 }
 
 }  // namespace
