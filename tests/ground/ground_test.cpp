@@ -727,6 +727,17 @@ TEST(VolumeChange, ZoneThatTheSurveyCutsOffIsSaid) {
   EXPECT_EQ(count_of(change, "zone_at_border"), 1);
 }
 
+/// A prism of 27 degrees along the section of the heap at the edge: half of its height squared, by
+/// its slope of 0.5.
+TEST(VolumeChange, SoilBeyondTheEdgeOfTheSurveyMayBeAPrismOfTheGentlestSlope) {
+  constexpr Rectangle half = {0.0, 0.0, 8.5, 5.0};
+  const VolumeChange change = measure_change(flat_ground(half, 0.05), map_of(whole_dig, half));
+  const double slope = std::tan(35.0 * degree);
+  const double squares_of_section = 2.0 / 3.0 * std::pow(heap_radius, 3) * slope * slope;
+  const double prism = 0.5 * squares_of_section / 0.5;
+  EXPECT_NEAR(std::sqrt(change.errors.holes(2, 2)), prism, 0.02 * prism);
+}
+
 TEST(VolumeChange, MapsThatDoNotFitAreRefused) {
   const auto message = [](const HeightMap& before, const HeightMap& after,
                           const ChangeOptions& options = {}) {

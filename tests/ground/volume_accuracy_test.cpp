@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <excavplan/ground/bulking.hpp>
 #include "base/random.hpp"
 
@@ -184,6 +186,31 @@ INSTANTIATE_TEST_SUITE_P(
                     Visit{"BucketOverTheHole", {-0.4, -0.5, 0.2, 0.0}, 0.9, true},
                     Visit{"BucketAtTheRim", {0.9, -0.4, 1.4, 0.2}, 0.9, true}),
     [](const auto& visit) { return std::string(visit.param.what); });
+
+TEST(VolumesOfSurfaces, TheExtentOfAZoneAndOfAnObjectIsThatOfTheirWholeCells) {
+  Surface after = exact(true);
+  put(after, {2.2, 1.7, 2.6, 2.1}, 1.75);
+  const VolumeChange change = measure_change({exact(false), after, {}});
+  ASSERT_EQ(count_of(change, "object_taken_out"), 1);
+  const AreaChange& area = change.areas.front();
+  const double half = 0.5 * area.difference.cell_size;
+  std::vector<Eigen::AlignedBox2d> boxes(change.zones.size());
+  for (Eigen::Index col = 0; col < area.zone.cols(); ++col) {
+    for (Eigen::Index row = 0; row < area.zone.rows(); ++row) {
+      if (area.zone(row, col) < 0) continue;
+      const Eigen::Vector2d centre(area.difference.x(col), area.difference.y(row));
+      Eigen::AlignedBox2d& box = boxes[static_cast<std::size_t>(area.zone(row, col))];
+      box.extend(Eigen::Vector2d(centre.array() - half));
+      box.extend(Eigen::Vector2d(centre.array() + half));
+    }
+  }
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Rectangle& extent = change.zones[i].extent;
+    const Eigen::Vector2d low(extent.x_min, extent.y_min);
+    const Eigen::Vector2d high(extent.x_max, extent.y_max);
+    EXPECT_LT((boxes[i].min() - low).norm() + (boxes[i].max() - high).norm(), 1e-9) << i;
+  }
+}
 
 TEST(VolumesOfSurfaces, BlocksOfAHeapAreNoObjects) {
   Surface after = exact(true);

@@ -597,6 +597,30 @@ TEST(DigPathAnywhere, IsAsGoodAsTheBestStartOfAnExhaustiveSearch) {
   }
 }
 
+// With steps of 0.3 m no phase has more poses than the scan lays out.
+TEST(DigPathAnywhere, IsTheBestStartWhereTheScanHasAllPoses) {
+  DigPathOptions coarse;
+  coarse.step = 0.3;
+  Random random(14);
+  int drivable = 0;
+  for (int n = 0; n < 100; ++n) {
+    const DigParameters parameters = random_parameters(random);
+    double best = -infinity;
+    for (int i = 46; i <= 170; ++i) {
+      const auto outcome = make_dig_path(zx120(), parameters, i / 20.0, flat, coarse);
+      if (const auto* path = std::get_if<DigPath>(&outcome)) {
+        best = std::max(best, margin_of(*path));
+      }
+    }
+    const auto chosen = make_dig_path_anywhere(zx120(), parameters, flat, coarse);
+    ASSERT_EQ(std::holds_alternative<DigPath>(chosen), best > -infinity);
+    if (best == -infinity) continue;
+    EXPECT_NEAR(margin_of(std::get<DigPath>(chosen)), best, 1e-9);
+    ++drivable;
+  }
+  EXPECT_GT(drivable, 50);
+}
+
 TEST(DigPathAnywhere, TakesTheMiddleOfEquals) {
   // Pushed only a little and hardly dragged, the heel stays where it is: the margin is the angle.
   const DigParameters parameters{0.3, 0.1, 1e-12};
