@@ -137,7 +137,9 @@ class ShadowFiller {
   }
 
   /// Slope of the faces by the area between a quarter and three quarters of their height. The sum
-  /// of the slope over all cells is height times length of the contours, however cells blur it.
+  /// of the slope over all cells is height times length of the contours, however cells blur it. A
+  /// wide ledge that is hidden ends in a rim that is seen; a narrow one may be hidden with its
+  /// wall.
   Angle face_of(const std::vector<Cell>& cells, bool is_hole) const {
     constexpr double fewest = 20.0;  // ours: cells of a face
     const double sign = is_hole ? -1.0 : 1.0;
@@ -147,7 +149,7 @@ class ShadowFiller {
     double slopes = 0.0;
     double counted = 0.0;
     double middle = 0.0;
-    std::vector<double> gentle;
+    std::vector<double> between;  // slopes
     for (const Cell at : cells) {
       const double slope = slope_(at.row, at.col);
       if (std::isnan(slope)) continue;
@@ -156,16 +158,28 @@ class ShadowFiller {
       counted += height > 0.1 * top ? 1.0 : 0.0;
       if (!(height > 0.25 * top && height < 0.75 * top)) continue;
       middle += 1.0;
-      gentle.push_back(slope);
+      between.push_back(slope);
     }
     const Angle usual = is_hole ? usual_wall : usual_repose;
     if (!(counted > fewest) || !(middle > 0.0) || !(top > 0.0)) return usual;
-    if (!is_hole) return {std::atan(median(gentle)), repose_scatter};
-    const double length = slopes / top;            // of a contour [cell]
-    const double blurred = 2.0 * middle / length;  // width of the face [cell]
-    const double least = 0.2;                      // ours [cell]
-    const double width = std::sqrt(std::max(blurred * blurred - 1.0 / 3.0, least * least));
-    return {std::atan2(top, width * change_.cell_size), wall_scatter};
+    if (!is_hole) return {std::atan(median(between)), repose_scatter};
+    const double length = slopes / top;  // of a contour [cell]
+    const auto angle = [&](double cells_of_face) {
+      const double blurred = 2.0 * cells_of_face / length;  // width of the face [cell]
+      const double least = 0.2;                             // ours [cell]
+      const double width = std::sqrt(std::max(blurred * blurred - 1.0 / 3.0, least * least));
+      return std::atan2(top, width * change_.cell_size);
+    };
+    const double wall = angle(middle - ledge_cells(between));
+    return {wall, std::max(wall_scatter, 0.5 * (wall - angle(middle)))};
+  }
+
+  /// Cells far gentler than the wall above and below them.
+  static double ledge_cells(const std::vector<double>& slopes) {
+    constexpr double level = 0.5;  // ours: of the slope of the wall
+    const double limit = level * value_at(slopes, 0.95);
+    return static_cast<double>(
+        std::count_if(slopes.begin(), slopes.end(), [&](double s) { return s < limit; }));
   }
 
   /// Level of the deepest cells that are not steep, or what the deepest faces leave open.

@@ -176,7 +176,7 @@ bool AllSightLines::sees(std::size_t place, Cell at) const {
 Eigen::ArrayXXi drop_mixed_returns(Surface& surface) {
   Eigen::ArrayXXd& z = surface.height.z;
   Eigen::ArrayXXi dropped = Eigen::ArrayXXi::Zero(z.rows(), z.cols());
-  if (surface.sensors.size() != 1) return dropped;
+  if (surface.sensors.size() != 1 || surface.points.size() == 0) return dropped;
   constexpr double least_share = 0.5;  // of the points: the rest ends at the rim on average
   constexpr double least_step = 0.35;  // ours: of a cell; mixed returns lie along one ray
   constexpr double fewest = 4.0;       // ours: points that tell a part of a cell from the whole
@@ -192,6 +192,7 @@ Eigen::ArrayXXi drop_mixed_returns(Surface& surface) {
   });
   const auto drop = [&] {
     z = (dropped != 0).select(std::numeric_limits<double>::quiet_NaN(), z);
+    if (surface.variance.size() == 0) return;
     surface.variance =
         (dropped != 0).select(std::numeric_limits<double>::quiet_NaN(), surface.variance);
   };

@@ -158,6 +158,40 @@ TEST(ShadowFilling, ALedgeInAHoleKeepsItsHeightUpToItsEdge) {
   EXPECT_LE(height, seen);
 }
 
+/// The change by a shape that one far sensor sees.
+VolumeChange change_by(const Shape& shape, double fall_of_rays) {
+  SurfacePair pair;
+  pair.before.height = flat_ground({0.0, 0.0, 4.0, 4.0}, cell_size);
+  pair.after.sensors = {{2.0 - 200.0, 2.0, 200.0 * fall_of_rays}};
+  pair.after.height = scanned(shape, pair.after.sensors[0]);
+  const Eigen::ArrayXXd& z = pair.after.height.z;
+  pair.after.points = z.isNaN().select(Eigen::ArrayXXi::Zero(z.rows(), z.cols()), 20);
+  pair.after.variance = z.isNaN().select(z, 1e-6);
+  return measure_change(pair);
+}
+
+class PitInShadow : public testing::TestWithParam<double> {};
+
+TEST_P(PitInShadow, HasAnErrorThatCoversWhatALedgeHides) {
+  const double wall = std::tan(70.0 * degree);
+  const Pit plain{{0.6, 0.8, 3.6, 3.2}, 0.5, wall};
+  const Pit upper{plain.rim, 0.2, wall};
+  const auto with_ledge = [&](double width) {
+    const double inset = width + upper.depth / wall;
+    const Pit lower{{0.6 + inset, 0.8 + inset, 3.6 - inset, 3.2 - inset}, 0.3, wall};
+    return [=](double x, double y) { return upper(x, y) + lower(x, y); };
+  };
+  for (const Shape& shape :
+       {Shape(plain), Shape(with_ledge(0.1)), Shape(with_ledge(0.2)), Shape(with_ledge(0.6))}) {
+    const double truth = -scanned(shape, std::nullopt).z.sum() * cell_size * cell_size;
+    const Measured found = change_by(shape, GetParam()).excavated;
+    EXPECT_NEAR(found.value, truth, 3.0 * found.sd);
+    EXPECT_NEAR(found.value, truth, 0.02 * truth);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Falls, PitInShadow, testing::Values(0.7, 0.9, 1.2));
+
 /// The change by a pit of which one far sensor hides a share.
 struct HalfSeenPit {
   double unseen_share;
@@ -166,14 +200,7 @@ struct HalfSeenPit {
 
 HalfSeenPit half_seen_pit(double fall_of_rays) {
   const Pit pit{{1.0, 1.2, 3.0, 2.8}, 0.5, std::tan(70.0 * degree)};
-  SurfacePair pair;
-  pair.before.height = flat_ground({0.0, 0.0, 4.0, 4.0}, cell_size);
-  pair.after.sensors = {{2.0 - 200.0, 2.0, 200.0 * fall_of_rays}};
-  pair.after.height = scanned(pit, pair.after.sensors[0]);
-  const Eigen::ArrayXXd& z = pair.after.height.z;
-  pair.after.points = z.isNaN().select(Eigen::ArrayXXi::Zero(z.rows(), z.cols()), 20);
-  pair.after.variance = z.isNaN().select(z, 1e-6);
-  const VolumeChange change = measure_change(pair);
+  const VolumeChange change = change_by(pit, fall_of_rays);
   const auto hole = std::find_if(change.zones.begin(), change.zones.end(),
                                  [](const ChangeZone& zone) { return zone.kind == ZoneKind::dig; });
   if (hole == change.zones.end()) return {nan, false};

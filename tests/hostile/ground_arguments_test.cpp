@@ -196,6 +196,31 @@ TEST(HostileChange, SurfacesThatDoNotFit) {
       "must be on one grid"));
 }
 
+TEST(HostileChange, LayersMayBeMissing) {
+  for (unsigned given = 0; given < 64; ++given) {
+    for (std::size_t sensors = 0; sensors < 3; ++sensors) {
+      const auto scanned = [&](bool dug) {
+        Surface surface{hills(dug), {}, {}};
+        const Eigen::Index rows = surface.height.z.rows();
+        const Eigen::Index cols = surface.height.z.cols();
+        const auto is_given = [given](unsigned layer) { return ((given >> layer) & 1) != 0; };
+        if (is_given(0)) surface.variance = Eigen::ArrayXXd::Constant(rows, cols, 1e-6);
+        if (is_given(1)) surface.points = Eigen::ArrayXXi::Constant(rows, cols, 4);
+        if (is_given(2)) surface.seen_from = Eigen::ArrayXXi::Constant(rows, cols, 1);
+        if (is_given(3)) surface.doubt = Eigen::ArrayXXd::Zero(rows, cols);
+        if (is_given(4)) surface.outlier_bias = Eigen::ArrayXXd::Zero(rows, cols);
+        if (is_given(5)) surface.lowest = surface.height.z - 0.001;
+        for (std::size_t i = 0; i < sensors; ++i) {
+          surface.sensors.emplace_back(-3.0 + 6.0 * static_cast<double>(i), 0.0, 2.0);
+        }
+        return surface;
+      };
+      EXPECT_TRUE(sound(measure_change({scanned(false), scanned(true), {}})))
+          << "layers " << given << ", " << sensors << " sensors";
+    }
+  }
+}
+
 TEST(HostileChange, NothingChangedOrAllUnknown) {
   const HeightMap same = hills(false);
   const VolumeChange none = measure_change(same, same);
