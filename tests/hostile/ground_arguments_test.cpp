@@ -197,7 +197,12 @@ TEST(HostileChange, SurfacesThatDoNotFit) {
 }
 
 TEST(HostileChange, LayersMayBeMissing) {
-  for (unsigned given = 0; given < 64; ++given) {
+  std::vector<unsigned> choices = {0, 63};
+  for (unsigned layer = 0; layer < 6; ++layer) {
+    choices.push_back(1U << layer);
+    choices.push_back(63U ^ (1U << layer));
+  }
+  for (const unsigned given : choices) {
     for (std::size_t sensors = 0; sensors < 3; ++sensors) {
       const auto scanned = [&](bool dug) {
         Surface surface{hills(dug), {}, {}};
