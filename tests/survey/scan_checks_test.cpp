@@ -14,6 +14,7 @@
 #include "ground/low_objects.hpp"
 #include "support/block_heap.hpp"
 #include "support/dig_survey.hpp"
+#include "survey/scan_checks.hpp"
 
 namespace excavplan {
 namespace {
@@ -90,6 +91,34 @@ TEST(ScanChecks, NoBadSurveyIsTrustedAndWrong) {
       }
     }
   }
+}
+
+/// A pit and a heap with flanks of these angles, as deep as high.
+VolumeChange pit_and_heap(double pit_angle, double heap_angle) {
+  constexpr double height = 0.5;
+  const HeightMap before = flat_ground({-3.0, -2.0, 3.0, 2.0}, 0.05);
+  HeightMap after = before;
+  for (Eigen::Index col = 0; col < after.z.cols(); ++col) {
+    for (Eigen::Index row = 0; row < after.z.rows(); ++row) {
+      const auto inside = [&](double x) {
+        return 0.8 - std::hypot(before.x(col) - x, before.y(row));
+      };
+      after.z(row, col) += std::clamp(std::tan(heap_angle) * inside(1.5), 0.0, height) -
+                           std::clamp(std::tan(pit_angle) * inside(-1.5), 0.0, height);
+    }
+  }
+  return measure_change(before, after);
+}
+
+TEST(ScanChecks, ASteepHeapIsOneOfExchangedScansOnlyBesideAGentleHole) {
+  const auto looks_swapped = [](double pit_angle, double heap_angle) {
+    const std::vector<Warning> doubts = check_volumes(pit_and_heap(pit_angle, heap_angle));
+    return std::any_of(doubts.begin(), doubts.end(),
+                       [](const Warning& warning) { return warning.code == "looks_swapped"; });
+  };
+  EXPECT_TRUE(looks_swapped(35.0 * degree, 65.0 * degree));
+  EXPECT_FALSE(looks_swapped(65.0 * degree, 35.0 * degree));
+  EXPECT_FALSE(looks_swapped(60.0 * degree, 60.0 * degree)) << "soil that holds together";
 }
 
 TEST(ScanChecks, GoodSurveysPass) {

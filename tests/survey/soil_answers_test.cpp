@@ -299,6 +299,49 @@ TEST_F(SoilAnswers, ReadingsAreReadAsTheAnswerIs) {
   }
 }
 
+TEST_F(SoilAnswers, TheIntervalHasOneInFortyOfTheReadingsOnEitherSide) {
+  const SoilDig dig = exact(40.0, paper_fixed_path());
+  const double k = bulking_factor(dig.change)->value;
+  for (const double other : {0.85 * k, 1.3 * k}) {
+    DensityEstimate known;
+    known.change = dig.change;
+    known.change.readings = {reading_of(k, 0.94), reading_of(other, 0.06)};
+    const DensityEstimate found = test::estimate_of(known, loam_.law, in(loam_));
+    const double sd = found.density->sd_percent;
+    const auto share_below = [&](double percent) {
+      double share = 0.0;
+      for (const DensityReading& each : found.readings) {
+        const double apart = (percent - each.density_percent) / sd;
+        share += each.reading.weight * 0.5 * std::erfc(-apart / std::sqrt(2.0));
+      }
+      return share;
+    };
+    const auto [low, high] = found.density->interval_percent;
+    EXPECT_NEAR(share_below(low), 0.025, 0.002);
+    EXPECT_NEAR(share_below(high), 0.975, 0.002);
+    EXPECT_GT(low, 0.0);
+    EXPECT_LT(high, 100.0);
+  }
+}
+
+TEST_F(SoilAnswers, WithAPayloadTheLawScattersAsItStates) {
+  for (const SoilLaw& kind : laws_) {
+    for (const double density : {20.0, 80.0}) {
+      test::SoilDigOptions exactly;
+      exactly.scatter = {0.0, 0.0, 0.0};
+      exactly.volume_error = exactly.mass_error = 1e-6;
+      exactly.density_percent = density;
+      const SoilDig dig = test::random_dig(machine_, kind.soil, 1, exactly);
+      DensityOptions options = in(kind);
+      options.payload_mass = dig.payload_mass;
+      const PayloadDensity payload = *test::estimate_of(dig.change, kind.law, options).payload;
+      const Measured& by_law = payload.law_density_percent;
+      const double stated = residual_sd_at(kind.law.form, by_law.value);
+      EXPECT_NEAR(by_law.sd, stated, 0.02 * stated) << kind.soil.name << ", " << density << " %";
+    }
+  }
+}
+
 // The payload knows the hole: a reading of another hole is told from one of another heap.
 TEST_F(SoilAnswers, AReadingOfAnotherHoleIsThatOfItsWeight) {
   const SoilDig dig = exact(40.0, paper_fixed_path());
