@@ -300,6 +300,41 @@ TEST(Attribution, UprightThingsAndClodsAreToldApart) {
   EXPECT_NEAR(clods.volume.value, 4.0 * cone_volume(0.17), 0.002);
 }
 
+/// Clods fall between hole and heap, where the bucket goes; the heap lies on the hole's other side.
+TEST(Attribution, SmallRisesBehindTheHoleAreNoClodsOfTheSwing) {
+  const auto with_both = [](double x, double y) {
+    double z = dug(x, y);
+    for (const double at : {2.5, 3.5}) z += cone(x, y, {at, 0.3}, 0.17);
+    for (const double at : {-2.5, -2.0}) z += cone(x, y, {at, 2.0}, 0.17);
+    return z;
+  };
+  const VolumeChange change = change_of(with_both);
+  const AttributedChange clods = open_change(change, "clods along the swing");
+  const AttributedChange rises = open_change(change, "small rises");
+  EXPECT_NEAR(clods.volume.value, 2.0 * cone_volume(0.17), 0.001);
+  EXPECT_NEAR(rises.volume.value, 2.0 * cone_volume(0.17), 0.001);
+  EXPECT_LT(rises.probability, clods.probability);
+}
+
+/// Away from a pit of 8 cm it fell by 0.15 or 0.3 of that.
+TEST(Attribution, GroundThatFellByFarLessThanAShallowHoleMayHaveSettled) {
+  const auto level = [](double, double) { return 0.0; };
+  for (const double depth : {0.012, 0.024}) {
+    const auto shallow = [&](double x, double y) {
+      return box(x, y, {-1.5, -0.9, 1.5, 0.9}, -0.08) + box(x, y, {5.0, -2.0, 7.4, 2.0}, 0.06) +
+             box(x, y, {2.5, -1.0, 4.0, 0.5}, -depth);
+    };
+    const VolumeChange change =
+        measure_change(scanned(level, 1, 0.0005), scanned(shallow, 2, 0.0005));
+    const bool may_have_settled = depth < 0.02;
+    const AttributedChange fall =
+        open_change(change, may_have_settled ? "ground that fell a little" : "a second hole");
+    EXPECT_EQ(fall.counted, !may_have_settled) << depth;
+    const double fallen = may_have_settled ? 0.0 : 2.25 * depth;
+    EXPECT_NEAR(change.before.value, 5.4 * 0.08 + fallen, 0.01) << depth;
+  }
+}
+
 TEST(Attribution, StirredGroundIsNoiseOfWhatLiesInIt) {
   const scenes::SmoothError churn(extent, 0.15, Random(8, 1));
   const auto stirred = [&](double x, double y) {

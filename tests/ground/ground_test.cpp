@@ -14,6 +14,7 @@
 #include <excavplan/ground/volume_change.hpp>
 #include "base/random.hpp"
 
+#include "ground/change_zones.hpp"
 #include "ground/doming.hpp"
 #include "ground/grid_cells.hpp"
 #include "support/errors.hpp"
@@ -625,6 +626,20 @@ TEST(VolumeChange, TheDatumIsThatOfTheDensestChanges) {
   });
   const VolumeChange change = measure_change(before, after);
   EXPECT_NEAR(change.areas.front().datum, 0.005, 1e-5);
+}
+
+/// On maps without noise a third of the ground, all cut to one level, is as dense as the rest.
+TEST(VolumeChange, WithoutNoiseTheDatumIsTheLevelThatDidNotChange) {
+  const HeightMap before = flat_ground({0.0, 0.0, 6.0, 6.0}, 0.05);
+  const Eigen::ArrayXXd unknown = nan * before.z;
+  for (const double change : {-0.1, 0.1}) {
+    HeightMap after = before;
+    after.z.block(20, 20, 70, 70) += change;
+    const ChangedGround found = find_change(after.z - before.z, unknown, before.cell_size, {});
+    EXPECT_NEAR(found.datum, 0.0, 1e-9) << change;
+    EXPECT_LT(found.zone(0, 0), 0) << change;
+    EXPECT_GE(found.zone(55, 55), 0) << change;
+  }
 }
 
 /// Soil of 2 cm beside the pit is as high as the bends of the scan.
