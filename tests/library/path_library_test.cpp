@@ -352,6 +352,41 @@ TEST_F(LibraryTasks, ClearlyBetterIsMoreThanAFifthOfAPercent) {
   }
 }
 
+/// Every dig lifts the same mass at the same cost.
+class EvenSimulator : public SoilSimulator {
+ public:
+  EvenSimulator(double mass, double volume) : mass_(mass), volume_(volume) {}
+  DigResult dig(const Terrain&, const DigPath&, const DigOptions&) const override {
+    DigResult result;
+    result.payload_mass = mass_;
+    result.payload_volume = volume_;
+    result.energy.total = 1e6;
+    return result;
+  }
+
+ private:
+  double mass_;
+  double volume_;
+};
+
+TEST_F(LibraryTasks, AFillOfExactlyTheLeastIsEnough) {
+  const auto evaluations = [&](double fill) {
+    LibraryJob job = job_;
+    job.search.objective.min_fill = 0.5;
+    const double volume = fill * heaped_capacity(machine_);
+    job.search.simulator = {"even", "even 1", [volume](const Machine&, const SoilKind&, double) {
+                              return std::make_unique<const EvenSimulator>(300.0, volume);
+                            }};
+    const LibraryAnswer found =
+        read_answer(job, place_, "task", do_task(job, to_text({place_}), {}));
+    EXPECT_EQ(found.dig.fill, fill);
+    return found.evaluations;
+  };
+  const int once = evaluations(0.75);
+  EXPECT_EQ(evaluations(0.5), once);
+  EXPECT_GT(evaluations(0.5 - 1e-9), once) << "with too little it is searched once more";
+}
+
 TEST_F(LibraryTasks, DigsAreMeasuredAsTheyAre) {
   const PlannedDig own = answer({place_}).dig;
   PlannedDig nowhere = own;
@@ -626,6 +661,28 @@ TEST_F(LibraryBuilding, MeasuresWhatIsLostMidwayBetweenSlopes) {
     EXPECT_LT(entry.to_next_slope.midway.loss, 0.5);
   }
   EXPECT_GT(dug_midway, 0);
+}
+
+// The polynomial through n points is exact for one of degree n - 1. Where the logarithm of what
+// every dig is worth is one of the density, the best worth midway is known and nothing is lost.
+TEST_F(LibraryBuilding, TheBestMidwayIsExpectedFromUpToFourEntriesAround) {
+  const auto loss = [&](const std::vector<double>& densities, int degree, double bend,
+                        std::size_t entry) {
+    const double middle = 0.5 * (densities.front() + densities.back());
+    LibraryBuildOptions options = quick();
+    options.search.simulator = {
+        "even", "even 1", [=](const Machine&, const SoilKind&, double density) {
+          const double mass = 200.0 * std::exp(bend * std::pow((density - middle) / 50.0, degree));
+          return std::make_unique<const EvenSimulator>(mass, 0.4);
+        }};
+    const auto built = build_path_libraries(grid(densities), options).libraries;
+    return built[0].entries[entry].to_next_density.midway.loss;
+  };
+  for (const double bend : {-1.0, 1.0}) {
+    EXPECT_NEAR(loss({20, 30, 40}, 2, bend, 0), 0.0, 1e-12) << bend;
+    EXPECT_NEAR(loss({20, 30, 40}, 2, bend, 1), 0.0, 1e-12) << bend;
+    EXPECT_NEAR(loss({20, 30, 40, 50}, 3, bend, 1), 0.0, 1e-12) << bend;
+  }
 }
 
 TEST_F(LibraryBuilding, MachinesAndSoilsMakeALibraryEach) {

@@ -15,6 +15,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "planning/dig_layout.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
@@ -36,6 +37,25 @@ class OwnSimulator : public SoilSimulator {
 SimulatorKind own_simulator() {
   return {"own", "own 1", [](const Machine&, const SoilKind&, double) {
             return std::make_unique<const OwnSimulator>();
+          }};
+}
+
+/// The same, and keeps the paths that it digs.
+SimulatorKind recording_simulator(std::vector<DigPath>& dug) {
+  class Recorder : public OwnSimulator {
+   public:
+    explicit Recorder(std::vector<DigPath>& dug) : dug_(dug) {}
+    DigResult dig(const Terrain& ground, const DigPath& path,
+                  const DigOptions& options) const override {
+      dug_.push_back(path);
+      return OwnSimulator::dig(ground, path, options);
+    }
+
+   private:
+    std::vector<DigPath>& dug_;
+  };
+  return {"own", "own 1", [&dug](const Machine&, const SoilKind&, double) {
+            return std::make_unique<const Recorder>(dug);
           }};
 }
 
@@ -240,6 +260,41 @@ TEST_F(PlanDig, SearchHasABudgetUnlessToldOtherwise) {
   const DigPlan uncertain = plan(GroundDensity(40.0, 5.0), options);
   EXPECT_GE(uncertain.evaluations, 300);
   EXPECT_LE(uncertain.evaluations, 3 * 100 + 3 * 100 + 3);
+}
+
+// docs/methods.md#planning: "spends the first third of its 600 digs on the path with the start of
+// least work, then frees the start".
+TEST_F(PlanDig, ASearchFreesTheStartAfterAThirdOfItsDigs) {
+  std::vector<DigPath> dug;
+  PlanOptions options = searched(0, 1);
+  options.simulator = recording_simulator(dug);
+  ASSERT_EQ(plan(40.0, options).evaluations, 600);
+  const DigLayout layout(machine_, level_planning_ground(machine_));
+  const auto of_least_work = [&](int from, int to) {
+    return std::count_if(dug.begin() + from, dug.begin() + to, [&](const DigPath& path) {
+      const auto laid = layout.path(path.parameters, StartRule::Kind::least_work);
+      const auto* usual = std::get_if<DigPath>(&laid);
+      return usual && usual->start_x == path.start_x;
+    });
+  };
+  EXPECT_EQ(of_least_work(0, 200), 200);
+  EXPECT_LT(of_least_work(200, 300), 50);
+}
+
+// StopRules::stall: evaluations without a better point, looked at after each round of polishes.
+TEST_F(PlanDig, ASearchThatFindsNothingBetterEndsAndDoesNotBeginAgain) {
+  PlanOptions options = searched(600);
+  options.simulator = own_simulator();
+  options.search.objective = DigObjective::Goal::energy;
+  options.search.bounds.lower.drag_length = options.search.bounds.upper.drag_length = 1.5;
+  options.search.start = {{0.7, 0.3, 1.5}};  // all digs of this drag are worth the same
+  options.search.stop.stall = 10;
+  auto& method = std::get<MemeticSearch>(options.search.method);
+  method.polish_evaluations = 12;
+  const DigPlan found = plan(40.0, options);
+  EXPECT_EQ(found.search->stopped_by, StopReason::stall);
+  EXPECT_GT(found.evaluations, options.search.stop.stall);
+  EXPECT_LE(found.evaluations, 1 + method.polish_evaluations);
 }
 
 TEST_F(PlanDig, SameSearchForAnyThreads) {

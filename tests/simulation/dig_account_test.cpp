@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -271,6 +273,20 @@ TEST_P(Simulators, StateTheTorquesOfEveryStretch) {
   }
   EXPECT_NEAR(digging, result.energy.total, 1e-9 * digging);
   EXPECT_NEAR(lifting, result.energy.lift, 1e-9 * lifting);
+}
+
+// docs/formats.md#force-history: one row per step of penetrate, drag and scoop.
+TEST_P(Simulators, RecordTheForcesOfEveryStepInTheGroundAndOfNoneAbove) {
+  DigOptions options;
+  options.history = true;
+  const DigResult result = make(zx120(), 40.0)->dig(ground_, path_, options);
+  std::vector<std::string> in_ground, recorded;
+  for (std::size_t i = 1; i < path_.poses.size(); ++i) {
+    if (path_.poses[i].phase != DigPhase::lift) in_ground.push_back(name(path_.poses[i].phase));
+  }
+  for (const ForceSample& sample : result.history) recorded.push_back(name(sample.phase));
+  ASSERT_LT(in_ground.size(), path_.poses.size() - 1) << "the path ends with a lift";
+  EXPECT_EQ(recorded, in_ground);
 }
 
 // Above the corner pressure of the pumps the soil slows the machine.

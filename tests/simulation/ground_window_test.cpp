@@ -171,6 +171,20 @@ TEST(Slump, DryWallCavesInToItsFrictionAngleAndCohesiveWallStands) {
   EXPECT_NEAR(caved.loose.sum(), 1.5 * broken, 1e-9);
 }
 
+// Without cohesion no length decides how steep soil stands.
+TEST(Slump, ADryWallOfAnyHeightCavesInToItsFrictionAngle) {
+  const Ground ground;
+  for (const double cell : {0.05, 0.0125, 0.005}) {
+    Terrain terrain = undisturbed(flat_ground({0, 0, 80 * cell, 10 * cell}, cell));
+    terrain.bank.z.leftCols(40) += 10 * cell;
+    ground.slump(terrain, 35 * degree, false);
+    const Eigen::ArrayXXd z = terrain.surface().z;
+    const double steepest = (z.leftCols(76) - z.rightCols(76)).maxCoeff() / (4 * cell);
+    EXPECT_LT(steepest, std::tan(37 * degree)) << cell;  // a single cell may fall a sixth steeper
+    EXPECT_GT(steepest, std::tan(34 * degree)) << cell;
+  }
+}
+
 TEST(Slump, UnknownCellsAreWalls) {
   Terrain terrain = undisturbed(flat_ground({0, 0, 1, 1}, 0.05));
   terrain.bank.z.col(10).setConstant(std::nan(""));

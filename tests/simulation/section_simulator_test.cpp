@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "base/angles.hpp"
+#include "simulation/soil_section.hpp"
 #include "support/errors.hpp"
 #include "support/machine_file.hpp"
 #include "support/soil_simulator_contract.hpp"
@@ -407,6 +408,67 @@ TEST_F(Section, SoilSwellsFromTheCellItComesFrom) {
                          loose * ground.bank.cell_size * ground.bank.cell_size;
   EXPECT_GT(result.payload_volume, 0.05);
   EXPECT_NEAR(result.payload_volume, swollen, 1e-9 * swollen);
+}
+
+// ---- The ground of the section ------------------------------------------------------------------
+
+/// A bucket of 0.8 m on cells of 5 cm.
+class SectionGround : public testing::Test {
+ protected:
+  SoilSection section_on(const Terrain& ground) const {
+    return {ground, {kind_, bank_, loose_}, width_, {1.0, 3.0, 0.0}};
+  }
+  static Terrain after(const Terrain& before, SoilSection& section) {
+    Terrain terrain = before;
+    apply(section.ground().patch(), terrain);
+    return terrain;
+  }
+
+  const double width_ = 0.8;
+  const SoilKind kind_ = soil_kind("loam");
+  const SoilState bank_ = bank_state(kind_, 40.0);
+  const SoilState loose_ = loose_state(kind_);
+  const Terrain level_ = undisturbed(flat_ground({0.0, -2.0, 4.0, 2.0}, 0.05));
+};
+
+// docs/methods.md#simulation: a heap of mean height h > b s over the width b is a triangle. One of
+// area A whose sides fall by s is sqrt(A s) high. Within 2 mm: sum over cells of 5 cm.
+TEST_F(SectionGround, AHeapHigherThanItsWidthAllowsFallsFromACrest) {
+  const double slope = std::tan(kind_.angle_of_repose);
+  SoilSection section = section_on(level_);
+  section.settle(2.0, {SoilSection::Side::both, 2.025, slope}, 1.2);
+  const Eigen::Index col = section.column_at(2.025);
+  const double area = width_ * section.column(col).settled;
+  ASSERT_GT(area, 1.2 * width_ * width_ * slope);
+  write_back(section, slope);
+  const Terrain dug = after(level_, section);
+  const double crest = std::sqrt(area * slope);
+  for (Eigen::Index row = 0; row < dug.loose.rows(); ++row) {
+    const double height = crest - slope * std::abs(level_.bank.y(row));
+    EXPECT_NEAR(dug.loose(row, col), std::max(0.0, height), 2e-3) << level_.bank.y(row);
+  }
+}
+
+TEST_F(SectionGround, RowsOfAnyHeightAreCutToOneLevel) {
+  Random random(11);
+  Terrain ground = level_;
+  for (Eigen::Index i = 0; i < ground.bank.z.size(); ++i) {
+    ground.bank.z.data()[i] = random.uniform(-0.01, 0.01);
+  }
+  SoilSection section = section_on(ground);
+  section.cut({3.0, -0.004}, {1.0, -0.004});
+  const Terrain dug = after(ground, section);
+  const Swath& swath = section.swath();
+  int untouched = 0;
+  for (Eigen::Index col = section.column_at(1.01); col <= section.column_at(2.99); ++col) {
+    const auto before = ground.bank.z.block(swath.first_row(), col, swath.rows(), 1);
+    const auto bank = dug.bank.z.block(swath.first_row(), col, swath.rows(), 1);
+    const double level = bank.maxCoeff();
+    EXPECT_LT((bank - before.min(level)).abs().maxCoeff(), 1e-12) << ground.bank.x(col);
+    EXPECT_NEAR(bank.mean(), std::min(before.mean(), -0.004), 1e-12) << ground.bank.x(col);
+    untouched += static_cast<int>((bank == before).count());
+  }
+  EXPECT_GT(untouched, 0);
 }
 
 // ---- Against the built-in simulator -------------------------------------------------------------
