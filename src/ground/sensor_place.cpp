@@ -82,6 +82,13 @@ Blocks blocks_of(const Surface& surface) {
   return blocks;
 }
 
+/// Above the middle [m].
+double highest(const Blocks& blocks) {
+  double most = 0.0;
+  for (const Block& block : blocks.all) most = std::max(most, block.place.z());
+  return most;
+}
+
 /// The way of a ray to a point per unit of its fall.
 Eigen::Vector2d tangent_to(const Eigen::Vector3d& point, const Eigen::Vector3d& inverse) {
   return (inverse.z() * point.head<2>() - inverse.head<2>()) / (1.0 - inverse.z() * point.z());
@@ -240,10 +247,11 @@ double SensorPlace::misfit(const Eigen::Vector3d& place, const Rectangle& area) 
 }
 
 std::optional<SensorPlace> infer_sensor(const Surface& surface) {
-  constexpr std::size_t fewest = 150;   // ours: blocks
-  constexpr double significant = 50.0;  // ours: by chance 1e-10, but patterns are not random
-  constexpr double least_sds = 4.0;     // ours: of the height
-  constexpr double least_power = 0.9;   // ours
+  constexpr std::size_t fewest = 150;     // ours: blocks
+  constexpr double significant = 50.0;    // ours: by chance 1e-10, but patterns are not random
+  constexpr double least_sds = 4.0;       // ours: of the height
+  constexpr double least_power = 0.9;     // ours
+  constexpr double highest_ground = 0.6;  // ours: of the height, near which the fit is bounded
   if (surface.points.size() == 0) return std::nullopt;
   const Blocks blocks = blocks_of(surface);
   if (blocks.all.size() < fewest) return std::nullopt;
@@ -253,7 +261,7 @@ std::optional<SensorPlace> infer_sensor(const Surface& surface) {
   const Eigen::Matrix3d covariance = regression.covariance();
   const bool is_told = inverse.dot(covariance.ldlt().solve(inverse)) > significant &&
                        inverse.z() > least_sds * std::sqrt(covariance(2, 2));
-  if (!is_told) return std::nullopt;
+  if (!is_told || inverse.z() * highest(blocks) > highest_ground) return std::nullopt;
   // Thinned points, and those of cameras that look down, are even and thin out little with range.
   if (regression.scatter() < 1.0 && regression.power_of_range() < least_power) return std::nullopt;
   return SensorPlace(blocks.middle, inverse, covariance);

@@ -125,12 +125,6 @@ void GroundWindow::mix(std::size_t cell, double thickness) {
   }
 }
 
-void GroundWindow::wake(const CellBlock& block) {
-  for (Index col = block.col_begin; col < block.col_end; ++col) {
-    for (Index row = block.row_begin; row < block.row_end; ++row) awake_[at(row, col)] = 1;
-  }
-}
-
 template <typename Cell>
 double GroundWindow::mass(Cell&& cell_mass) const {
   double mass = 0.0;

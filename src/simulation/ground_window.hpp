@@ -96,7 +96,6 @@ class GroundWindow {
   /// a cell that is asleep is at rest.
   bool awake(std::size_t cell) const { return awake_[cell] != 0; }
   void let_sleep(std::size_t cell) { awake_[cell] = 0; }
-  void wake(const CellBlock& block);
 
   /// Whether soil slid off a cell when it was last looked at: what slides onto it will slide on.
   bool slides(std::size_t cell) const { return slides_[cell] != 0; }

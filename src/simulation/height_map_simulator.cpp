@@ -269,7 +269,6 @@ class Dig {
     const HoldingSlopes slopes = turn_clear(last);
     pile_.move_to(at.x, 0.0);
     spill(level_ahead({at.x, at.z}), [&](double) { return cavity_.capacity(0.0, slopes); });
-    ground_.wake(ground_.widened(moving_, 1));
   }
 
   /// Loose soil that was gained where the ground was cut, and elsewhere.

@@ -134,6 +134,32 @@ TEST(SensorPlace, IsToldByNoPointsThatScatterLessThanRandomOnesAndThinOutLittleW
   }
 }
 
+/// Cones of up to half the height of the sensor.
+TEST(SensorPlace, BesideHeapsItIsSeldomWrong) {
+  Random random(11);
+  int told = 0;
+  int wrong = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const double height = random.uniform(1.0, 3.0);
+    const Eigen::Vector3d sensor(random.uniform(-2.0, 9.5), random.uniform(-3.0, 0.0), height);
+    const double top = random.uniform(0.2, 0.5) * height;
+    const double slope = random.uniform(0.5, 1.0);
+    const Eigen::Vector2d centre(random.uniform(2.5, 5.0), random.uniform(2.0, 4.0));
+    const Ground cone = [&](double x, double y) {
+      const Eigen::Vector2d from = Eigen::Vector2d(x, y) - centre;
+      const double z = top - slope * from.norm();
+      return z > 0.0 ? Facet{z, -slope * from.normalized()} : Facet{0.0, {0.0, 0.0}};
+    };
+    const Surface scan = random_scan(cone, sensor, 1, seed);
+    const auto found = infer_sensor(scan);
+    if (!found) continue;
+    ++told;
+    wrong += found->misfit(sensor, scan.height.extent()) > 6.0 ? 1 : 0;
+  }
+  EXPECT_GT(told, 100);
+  EXPECT_LE(wrong, told / 10);
+}
+
 /// No place inside the heap is taken for it, and the place where it stood is not doubted.
 TEST(SensorPlace, OfALowSensorBesideASteepHeapIsAboveTheHeap) {
   for (int heading = 0; heading < 360; heading += 45) {
