@@ -141,20 +141,21 @@ TEST(HeatMap, LargeMapsStaySmallFiles) {
   EXPECT_LT(to_svg({"", {panel}, {}, {}}).size(), 4000000U);
 }
 
-// 801 cells a side are averaged in blocks, which the last row and column do not fill.
+// Large maps are averaged in blocks, which the last row and column need not fill.
 TEST(HeatMap, LargeMapsShowTheLastRowAndColumnToo) {
   const std::vector<double> bands = {0.1};
-  const auto shows_change_at = [&](Eigen::Index row, Eigen::Index col) {
-    HeightMap map = flat_ground({0.0, 0.0, 80.1, 80.1}, 0.1);
+  const auto shows_change_at = [&](Eigen::Index size, Eigen::Index row, Eigen::Index col) {
+    HeightMap map{{0.0, 0.0}, 0.1, Eigen::ArrayXXd::Zero(size, size)};
     map.z(row, col) = 100.0;
     Panel panel("", "x", "y");
     panel.heat_map(map, bands);
     return count(to_svg({"", {panel}, {}, {}}), "fill=\"" + band_colour(1.0, bands)) == 1U;
   };
-  ASSERT_EQ(flat_ground({0.0, 0.0, 80.1, 80.1}, 0.1).z.rows(), 801);
-  EXPECT_TRUE(shows_change_at(400, 400));
-  EXPECT_TRUE(shows_change_at(800, 400));
-  EXPECT_TRUE(shows_change_at(400, 800));
+  for (const Eigen::Index size : {801, 802, 803}) {
+    EXPECT_TRUE(shows_change_at(size, size / 2, size / 2)) << size;
+    EXPECT_TRUE(shows_change_at(size, size - 1, size / 2)) << size;
+    EXPECT_TRUE(shows_change_at(size, size / 2, size - 1)) << size;
+  }
 }
 
 /// Level ground of 6 x 4 m with a hole, a spill beside it, a heap and a rut that was left out.
