@@ -388,6 +388,20 @@ TEST(SqliteRecordings, RunNothingThatAFileBringsAlong) {
   }
 }
 
+TEST(SqliteRecordings, OfMoreThan16384TopicsAreRefused) {
+  const TempFolder folder;
+  const string path = folder.path() + "/topics.db3";
+  const Database database(path);
+  database.run(string(topics_table) + messages_table +
+               "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 16384) "
+               "INSERT INTO topics SELECT i, '/' || i, 'std_msgs/msg/Empty', 'cdr', '' FROM n;"
+               "INSERT INTO messages VALUES(1, 16384, 5, x'00010000');");
+  EXPECT_EQ(messages_of(*open_recording(path), {"/16384"}).size(), 1u);
+  database.run("INSERT INTO topics VALUES(16385, '/more', 'std_msgs/msg/Empty', 'cdr', '');");
+  EXPECT_EQ(error_about([&] { open_recording(path); }, path),
+            "table topics: found more rows, expected at most 16384");
+}
+
 // Fifteen pages, each fifty times the next one, would be 50^15 rows (SQLite's file format, 1.6).
 TEST(SqliteRecordings, OfPagesThatFanOutWithoutEndAreRefused) {
   constexpr std::size_t page_size = 512;

@@ -144,6 +144,39 @@ TEST(DamagedRecordings, OfMcapWithWrongIndexesSayWhatIsWrong) {
        {"opcode 0", in_mcap(8, 1, 0, 0, 1), "a record of opcode 0, expected one of 1 to 255"}});
 }
 
+/// Spoils the first message index of each chunk between two times [s of the scene].
+/// @return how many
+int spoil_indexes_between(string& bytes, double from, double to) {
+  const auto time = [&](std::size_t at) {
+    return 1e-9 * static_cast<double>(get(bytes, at, 8)) - 1.7e9;
+  };
+  int spoilt = 0;
+  for (std::size_t at = mcap_record(bytes, 8); bytes[at] == 8; at += 9 + get(bytes, at + 1, 8)) {
+    if (time(at + 9) < from || time(at + 17) > to) continue;
+    put(bytes, get(bytes, at + 25, 8) + get(bytes, at + 33, 8), 5, 1);  // its opcode
+    ++spoilt;
+  }
+  return spoilt;
+}
+
+// docs/formats.md: of a recording only what is asked for is read. The first messages of all topics
+// are from 0 to 0.3 s, the last ones of those that go on from 4.3 s on.
+TEST(DamagedRecordings, OfMcapInTheMiddleAreListedByTheirFirstAndLastChunks) {
+  const TempFolder folder;
+  string content = content_of(recording("scene_none.mcap"));
+  ASSERT_GT(spoil_indexes_between(content, 0.4, 4.2), 0);
+  const string path = folder.write("middle.mcap", content);
+  const auto whole = open_recording(recording("scene_none.mcap"));
+  const auto file = open_recording(path);
+  ASSERT_EQ(file->topics().size(), whole->topics().size());
+  for (std::size_t i = 0; i < file->topics().size(); ++i) {
+    EXPECT_EQ(file->topics()[i].first, whole->topics()[i].first);
+    EXPECT_EQ(file->topics()[i].last, whole->topics()[i].last);
+  }
+  EXPECT_NE(error_about([&] { all_messages(*file); }, path).find("expected message index"),
+            string::npos);
+}
+
 TEST(DamagedRecordings, OfMcapWithoutAnIndexSayWhatIsWrong) {
   expect_errors(
       "scene_unchunked.mcap",

@@ -80,6 +80,21 @@ TEST_F(Tools, CalibrateDensitySaysOnWhichDigsTheLawIs) {
   EXPECT_LT(number(none, "/closed_form_as_measured/residual_sd_percent"), 0.1);
 }
 
+// The samples lie 0.0005 points above or below d = 200 k - 190, orthogonally to 1 and k: with two
+// numbers fitted, sqrt(4 / (4 - 2)) of 0.0005 points are left.
+TEST_F(Tools, CalibrateDensityPrintsSmallNumbersAndNoRoundingErrors) {
+  const auto line_of = [&](const std::string& densities) {
+    const std::string text =
+        run_program("calibrate-density", {"--samples", folder.write("digs.csv", densities)}).out;
+    return text.substr(0, text.find('\n'));
+  };
+  const std::string columns = "bulking_factor,density_percent\n";
+  EXPECT_TRUE(contains(line_of(columns + "1,10.0005\n1.1,29.9995\n1.2,49.9995\n1.3,70.0005\n"),
+                       "residual_sd_percent 0.00070711"));
+  const std::string exact = line_of(columns + "1,10\n1.1,30\n1.2,50\n1.3,70\n");
+  EXPECT_EQ(exact.substr(exact.rfind(' ')), " 0.0000") << exact;
+}
+
 TEST_F(BadInput, TablesThatHoldNoSamplesAreRefused) {
   refused(3, "letter.txt: ", "calibrate-density", {"--samples", letter});
   const std::string one = folder.write("one.csv", "bulking_factor,density_percent\n1.1,20\n");

@@ -351,6 +351,16 @@ TEST_F(Tools, ASurveyIsPlannedWithoutScans) {
   EXPECT_NEAR(shares, 1.0, 1e-9);
 }
 
+// Registration multiplies the variance of the datum by 2.5 (docs/methods.md#survey-planning).
+TEST_F(Tools, ASurveyIsPlannedWithRegistrationIfTheSensorMoves) {
+  const auto datum_sd = [](const std::string& survey) {
+    return number(answer("estimate-density", {"--plan-survey", survey}), "/datum_sd_m");
+  };
+  const double stands = datum_sd("height=2,moved=no");
+  EXPECT_NEAR(datum_sd("height=2,moved=yes"), std::sqrt(2.5) * stands, 1e-6 * stands);
+  EXPECT_EQ(datum_sd("height=2"), stands);
+}
+
 TEST_F(Tools, WithoutDumpedSoilThereAreVolumesButNoDensity) {
   const json result = answer("estimate-density", quickstart(folder) + Words{"--area", "0,-3,12,2"});
   expect_keys(result, "number", volume_keys);

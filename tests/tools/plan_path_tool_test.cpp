@@ -383,6 +383,23 @@ TEST_F(Tools, ADensityMeasuredElsewhereIsWarnedOf) {
   }
 }
 
+// docs/formats.md: more than 5 m from the hole. The holes are long in x, so that the distance is
+// that of their nearer edge from y = 0.
+TEST_F(Tools, ADensityMeasuredElsewhereIsOneOfMoreThanFiveMetresOff) {
+  const auto is_elsewhere = [&](const std::string& y_min, const std::string& y_max) {
+    const std::string file = folder.write("result.json", R"({"density_percent": 40, "zones": [
+        {"kind": "dig", "extent_m": [-50, )" + y_min + ", 50, " +
+                                                             y_max + "]}]}");
+    const json plan = answer(
+        "plan-path", {"--density-from", file, "--terrain", shipped("quickstart/before.pcd")});
+    return warns(plan, "density_from_elsewhere");
+  };
+  EXPECT_FALSE(is_elsewhere("4.8", "6"));
+  EXPECT_TRUE(is_elsewhere("5.2", "6"));
+  EXPECT_FALSE(is_elsewhere("-6", "-4.8"));
+  EXPECT_TRUE(is_elsewhere("-6", "-5.2"));
+}
+
 TEST_F(Tools, ADensityAboveTheRangeIsPlannedWithAllItMayBe) {
   const std::string law = folder.file("stiff.json");
   const std::string digs = folder.write(

@@ -56,6 +56,34 @@ TEST(Panel, EqualAspectShowsAMetreEquallyLong) {
   EXPECT_NE(svg.find("M76 121L796 49\""), std::string::npos) << svg;
 }
 
+/// The heights of the axes of all panels, in the order of the page [px].
+std::vector<double> heights_of_axes(const std::string& svg) {
+  std::vector<double> heights;
+  const std::string border = "\" fill=\"none\" stroke=\"#444444\"/>";
+  for (auto at = svg.find(border); at != std::string::npos; at = svg.find(border, at + 1)) {
+    heights.push_back(std::stod(svg.substr(svg.rfind("height=\"", at) + 8)));
+  }
+  return heights;
+}
+
+TEST(Panel, ATallViewIsNoHigherThanItsRowAndHalfAsHighInTheSecondOne) {
+  const auto panel = [](const Rectangle& view, bool equal) {
+    Panel made("", "x", "y");
+    made.view(view);
+    made.equal_aspect(equal);
+    return made;
+  };
+  const Rectangle tall = {0.0, 0.0, 10.0, 40.0};
+  const std::vector<double> heights =
+      heights_of_axes(to_svg({"", {panel(tall, true)}, {}, {}, {panel(tall, true)}}));
+  const std::vector<double> rows =
+      heights_of_axes(to_svg({"", {panel(tall, false)}, {}, {}, {panel(tall, false)}}));
+  ASSERT_EQ(heights.size(), 2U);
+  ASSERT_EQ(rows.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(heights[i], rows[i], 0.01);
+  EXPECT_LT(heights[1], 0.6 * heights[0]);
+}
+
 TEST(Panel, UnknownPointsInterruptALine) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Panel panel("", "x", "y");
@@ -111,6 +139,23 @@ TEST(HeatMap, LargeMapsStaySmallFiles) {
   Panel panel("", "x", "y");
   panel.heat_map(map, colour_bands(0.1, 1.0));
   EXPECT_LT(to_svg({"", {panel}, {}, {}}).size(), 4000000U);
+}
+
+// Large maps are averaged in blocks, which the last row and column need not fill.
+TEST(HeatMap, LargeMapsShowTheLastRowAndColumnToo) {
+  const std::vector<double> bands = {0.1};
+  const auto shows_change_at = [&](Eigen::Index size, Eigen::Index row, Eigen::Index col) {
+    HeightMap map{{0.0, 0.0}, 0.1, Eigen::ArrayXXd::Zero(size, size)};
+    map.z(row, col) = 100.0;
+    Panel panel("", "x", "y");
+    panel.heat_map(map, bands);
+    return count(to_svg({"", {panel}, {}, {}}), "fill=\"" + band_colour(1.0, bands)) == 1U;
+  };
+  for (const Eigen::Index size : {801, 802, 803}) {
+    EXPECT_TRUE(shows_change_at(size, size / 2, size / 2)) << size;
+    EXPECT_TRUE(shows_change_at(size, size - 1, size / 2)) << size;
+    EXPECT_TRUE(shows_change_at(size, size / 2, size - 1)) << size;
+  }
 }
 
 /// Level ground of 6 x 4 m with a hole, a spill beside it, a heap and a rut that was left out.
@@ -206,6 +251,30 @@ TEST(HeightChangeFigure, ZoomsToWhatWasCounted) {
   const std::string svg = height_change_figure(Survey().sheet);
   EXPECT_EQ(svg.find("text-anchor=\"middle\">0.5</text>"), std::string::npos);  // x of the map
   EXPECT_NE(svg.find("−0.0324 m³ around x 5.8, y 2 m"), std::string::npos);
+}
+
+/// Whether a number stands below the axis of x.
+bool shows_x(const std::string& svg, const std::string& number) {
+  return svg.find("text-anchor=\"middle\">" + number) != std::string::npos;
+}
+
+// The rut begins at x = 5.6 m, the hole and its heap end at 3 m.
+TEST(HeightChangeFigure, WhatWasLeftOutFarAwayIsOutOfView) {
+  ChangeSheet sheet = Survey().sheet;
+  sheet.before.clear();  // no sections
+  const std::string svg = height_change_figure(sheet);
+  EXPECT_TRUE(shows_x(svg, "2"));
+  for (const char* beyond : {"4", "5"}) EXPECT_FALSE(shows_x(svg, beyond)) << beyond;
+}
+
+TEST(HeightChangeFigure, WhereNothingWasCountedAllIsInView) {
+  Survey survey;
+  survey.sheet.change.zones.clear();
+  survey.sheet.change.areas[0].zone.setConstant(-1);
+  survey.sheet.before.clear();
+  survey.add(ZoneKind::other, {5.6, 0.2, 5.9, 3.8}, -0.03);
+  const std::string svg = height_change_figure(survey.sheet);
+  for (const char* x : {"0", "3", "6"}) EXPECT_TRUE(shows_x(svg, x)) << x;
 }
 
 TEST(HeightChangeFigure, ListsWarningsOpenChangesAndErrors) {
