@@ -80,7 +80,9 @@ std::vector<std::string> files_of(const std::string& folder) {
     if (std::find(files.begin(), files.end(), plain) == files.end()) files.push_back(name);
   }
   std::sort(files.begin(), files.end());
-  const auto is_mcap = [](const std::string& name) { return name.find(".mcap") != name.npos; };
+  const auto is_mcap = [](const std::string& name) {
+    return ends_with(name, ".mcap") || ends_with(name, ".mcap.zstd");
+  };
   const auto mcap_files = std::count_if(files.begin(), files.end(), is_mcap);
   const bool is_mixed = mcap_files > 0 && mcap_files < static_cast<std::ptrdiff_t>(files.size());
   if (files.empty() || files.size() > most_files || is_mixed) {

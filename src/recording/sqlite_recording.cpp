@@ -249,11 +249,13 @@ void SqliteRecording::require_table(const std::string& name,
 void SqliteRecording::read_topics() {
   const Statement rows = prepare("SELECT id, name, type, serialization_format FROM topics");
   while (step(rows.get())) {
-    if (topic_of_id_.size() == most_topics) {
+    if (topics_.size() == most_topics) {
       fail_at(path_, "table topics", "more rows", "at most " + std::to_string(most_topics));
     }
     const std::int64_t id = integer(rows.get(), 0, "id of topics");
-    topic_of_id_[id] = topics_.size();
+    if (!topic_of_id_.emplace(id, topics_.size()).second) {
+      fail_at(path_, "table topics", "id " + std::to_string(id) + " twice", "each id once");
+    }
     topics_.push_back({text(rows.get(), 1, "name"), ros2_type(text(rows.get(), 2, "type"))});
     formats_.push_back(text(rows.get(), 3, "serialization_format"));
   }

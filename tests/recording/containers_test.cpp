@@ -223,6 +223,12 @@ TEST(Containers, OfAFolderAreOneKind) {
   EXPECT_EQ(error_about([&] { open_recording(folder.path()); }, folder.path()),
             "the folder: found files of both .db3 and .mcap, expected one kind; name the file "
             "that is meant");
+  const string named_so = folder.path() + "/run.mcap";
+  std::filesystem::create_directory(named_so);
+  folder.write("run.mcap/metadata.yaml", "rosbag2_bagfile_information:\n");
+  folder.write("run.mcap/a.mcap", content_of(recording("scene_none.mcap")));
+  folder.write("run.mcap/a.db3", content_of(recording("scene.db3")));
+  EXPECT_THROW(open_recording(named_so), Error);
 }
 
 // Two files of overlapping times count as one recording.
@@ -400,6 +406,19 @@ TEST(SqliteRecordings, OfMoreThan16384TopicsAreRefused) {
   database.run("INSERT INTO topics VALUES(16385, '/more', 'std_msgs/msg/Empty', 'cdr', '');");
   EXPECT_EQ(error_about([&] { open_recording(path); }, path),
             "table topics: found more rows, expected at most 16384");
+}
+
+TEST(SqliteRecordings, OfTwoTopicsOfOneIdAreRefused) {
+  const TempFolder folder;
+  const string path = folder.path() + "/topics.db3";
+  Database(path).run(
+      "CREATE TABLE topics(id INTEGER, name TEXT, type TEXT, "
+      "serialization_format TEXT, offered_qos_profiles TEXT);" +
+      string(messages_table) +
+      "INSERT INTO topics VALUES(1, '/a', 'std_msgs/msg/Empty', 'cdr', '');"
+      "INSERT INTO topics VALUES(1, '/b', 'std_msgs/msg/Empty', 'cdr', '');");
+  EXPECT_EQ(error_about([&] { open_recording(path); }, path),
+            "table topics: found id 1 twice, expected each id once");
 }
 
 // Fifteen pages, each fifty times the next one, would be 50^15 rows (SQLite's file format, 1.6).
