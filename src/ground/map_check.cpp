@@ -53,7 +53,7 @@ void require_surface(const Surface& surface, const char* what) {
   require_size(surface.height, surface.seen_from, what, "seen_from");
   require_size(surface.height, surface.doubt, what, "doubt");
   require_size(surface.height, surface.outlier_bias, what, "outlier_bias");
-  require_size(surface.height, surface.lowest, what, "lowest");
+  require_size(surface.height, surface.below, what, "below");
   in(what, "number of sensors", static_cast<double>(surface.sensors.size()), 0.0, most_sensors);
   for (const Eigen::Vector3d& place : surface.sensors) {
     for (const double number : place) {

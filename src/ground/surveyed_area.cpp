@@ -312,14 +312,14 @@ ChangedGround change_in(const Eigen::ArrayXXd& difference, const Eigen::ArrayXXd
 /// Sums, for each zone, what outliers leave in its volume that are as many as on even ground [m^3].
 Eigen::VectorXd outlier_volumes(const SurfacePair& pair, const Area& area) {
   Eigen::VectorXd volumes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(area.zones.size()));
-  const Eigen::ArrayXXd& before = pair.before.outlier_bias;
-  const Eigen::ArrayXXd& after = pair.after.outlier_bias;
+  const Eigen::ArrayXXf& before = pair.before.outlier_bias;
+  const Eigen::ArrayXXf& after = pair.after.outlier_bias;
   const auto cells = area.unknown.size();
   if (before.size() != cells || after.size() != cells) return volumes;
   for_each_cell(area.unknown, [&](Cell at) {
     const int zone = area.ground.zone(at.row, at.col);
     if (zone < 0 || area.unknown(at.row, at.col) != 0) return;
-    volumes(zone) += after(at.row, at.col) - before(at.row, at.col);
+    volumes(zone) += static_cast<double>(after(at.row, at.col) - before(at.row, at.col));
   });
   return volumes * area.grid.cell_size * area.grid.cell_size;
 }

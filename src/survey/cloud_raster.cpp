@@ -74,23 +74,24 @@ Surface surface_of(const PointSource& source, const HeightMap& map, const Raster
   PointsByCell points(source, map, options.memory);
   const GroundBands ground(points, map.cell_size, options.outlier_distance);
   OutlierTally outliers(ground.gap());
-  Eigen::ArrayXXd reach = map.z;
   Surface surface{map, map.z, Eigen::ArrayXXi::Zero(map.z.rows(), map.z.cols())};
-  surface.doubt = Eigen::ArrayXXd::Zero(map.z.rows(), map.z.cols());
-  surface.lowest = map.z;
+  surface.doubt = Eigen::ArrayXXf::Zero(map.z.rows(), map.z.cols());
+  surface.below = surface.doubt;
+  Eigen::ArrayXXf reach = surface.doubt;
   points.for_each_cell([&](Index cell, CellRange in_cell) {
     const double level = ground.level(cell);
     const Band band = ground.band(cell);
     const CellHeight result = mean_height(in_cell, band, level, ground.noise());
     surface.height.z(cell) = points.base() + (level + result.height);
-    surface.lowest(cell) = points.base() + (level + result.lowest);
+    surface.below(cell) = static_cast<float>(result.height - result.lowest);
     surface.variance(cell) = result.variance;
-    surface.doubt(cell) = ground.doubt(cell);
+    surface.doubt(cell) = static_cast<float>(ground.doubt(cell));
     surface.points(cell) = static_cast<int>(std::lround(result.points * points.per_kept(cell)));
-    reach(cell) = band.farthest();
+    reach(cell) = static_cast<float>(band.farthest());
     outliers.add(in_cell, band);
   });
-  surface.outlier_bias = reach.unaryExpr([&](double r) { return outliers.bias_within(r); });
+  surface.outlier_bias = reach.unaryExpr(
+      [&](float r) { return static_cast<float>(outliers.bias_within(static_cast<double>(r))); });
   return surface;
 }
 

@@ -404,11 +404,10 @@ std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeCha
 namespace {
 
 /// What a surface tells of its heights; zero where it has none.
-Eigen::ArrayXXd known(const Eigen::ArrayXXd& values, const Surface& surface) {
+Eigen::ArrayXXf known(const Eigen::ArrayXXf& values, const Surface& surface) {
   const Eigen::ArrayXXd& z = surface.height.z;
-  const Eigen::ArrayXXd none = Eigen::ArrayXXd::Zero(z.rows(), z.cols());
-  if (values.size() != z.size()) return none;
-  return z.isNaN().select(none, values);
+  if (values.size() != z.size()) return Eigen::ArrayXXf::Zero(z.rows(), z.cols());
+  return z.isNaN().select(0.0F, values);
 }
 
 /// -1 in the hole, 1 in spill and heap, 0 elsewhere.
@@ -428,7 +427,7 @@ double ratio(double part, double all) { return all > 0.0 ? part / all : 0.0; }
 /// With the ground beside them whose doubt grew: the lower of its two surfaces may be the ground
 /// before.
 Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& area,
-                                 const Eigen::ArrayXXd& growth) {
+                                 const Eigen::ArrayXXf& growth) {
   Eigen::ArrayXXi part = parts_of(change, area);
   std::vector<Cell> front;
   for_each_cell(part, [&](Cell at) {
@@ -437,7 +436,7 @@ Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& a
   for (std::size_t next = 0; next < front.size(); ++next) {
     const int here = part(front[next].row, front[next].col);
     for_each_neighbour(part, front[next], [&](Cell n) {
-      if (part(n.row, n.col) != 0 || !(growth(n.row, n.col) > 0.0)) return;
+      if (part(n.row, n.col) != 0 || !(growth(n.row, n.col) > 0.0F)) return;
       part(n.row, n.col) = here;
       front.push_back(n);
     });
@@ -451,8 +450,8 @@ std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeCha
   constexpr double doubtful = 0.03;  // ours, likewise
   constexpr double weight_of_new =
       3.0;  // ours: nothing grows on dug soil, so that either may be it
-  const Eigen::ArrayXXd of_before = known(surfaces.before.doubt, surfaces.before);
-  const Eigen::ArrayXXd of_after = known(surfaces.after.doubt, surfaces.after);
+  const Eigen::ArrayXXf of_before = known(surfaces.before.doubt, surfaces.before);
+  const Eigen::ArrayXXf of_after = known(surfaces.after.doubt, surfaces.after);
   const Eigen::ArrayXXi part = parts_with_doubt(change, area, of_after - of_before);
   double hole = 0.0;
   double soil = 0.0;
@@ -460,8 +459,8 @@ std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeCha
   const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
   for_each_cell(part, [&](Cell at) {
     if (part(at.row, at.col) == 0) return;
-    const double before = cell_area * of_before(at.row, at.col);
-    const double after = cell_area * of_after(at.row, at.col);
+    const double before = cell_area * static_cast<double>(of_before(at.row, at.col));
+    const double after = cell_area * static_cast<double>(of_after(at.row, at.col));
     const double grown = std::max(0.0, after - before);
     (part(at.row, at.col) < 0 ? hole : soil) += before + after + (weight_of_new - 1.0) * grown;
     in_after += after;
@@ -482,17 +481,18 @@ std::vector<Warning> check_outliers(const SurfacePair& surfaces, const VolumeCha
                                     const AreaChange& area) {
   constexpr double noted = 0.01;     // ours, of the bulking factor
   constexpr double doubtful = 0.02;  // ours: twice the error of a good survey
-  const Eigen::ArrayXXd of_before = known(surfaces.before.outlier_bias, surfaces.before);
-  const Eigen::ArrayXXd of_after = known(surfaces.after.outlier_bias, surfaces.after);
+  const Eigen::ArrayXXf of_before = known(surfaces.before.outlier_bias, surfaces.before);
+  const Eigen::ArrayXXf of_after = known(surfaces.after.outlier_bias, surfaces.after);
   const Eigen::ArrayXXi part = parts_of(change, area);
   double hole = 0.0;
   double soil = 0.0;
   double in_after = 0.0;
   for_each_cell(part, [&](Cell at) {
     if (part(at.row, at.col) == 0) return;
-    const double raised = of_after(at.row, at.col) - of_before(at.row, at.col);
-    (part(at.row, at.col) < 0 ? hole : soil) += raised;
-    in_after += std::abs(of_after(at.row, at.col)) - std::abs(of_before(at.row, at.col));
+    const auto after = static_cast<double>(of_after(at.row, at.col));
+    const auto before = static_cast<double>(of_before(at.row, at.col));
+    (part(at.row, at.col) < 0 ? hole : soil) += after - before;
+    in_after += std::abs(after) - std::abs(before);
   });
   const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
   hole *= cell_area;
@@ -519,12 +519,13 @@ std::vector<Warning> check_floor(const SurfacePair& surfaces, const VolumeChange
   constexpr double floor = 2.0;          // ours, likewise
   constexpr double most = 0.25;  // ours: noise leaves some 0.03 of the cells so near the lowest
   const Surface& after = surfaces.after;
-  if (after.lowest.size() != after.height.z.size()) return {};
+  if (after.below.size() != after.height.z.size()) return {};
   const Eigen::ArrayXXi part = parts_of(change, area);
   std::vector<double> lowest;
   std::vector<double> scatter;
   for_each_cell(part, [&](Cell at) {
-    const double here = after.lowest(at.row, at.col);
+    const double here =
+        after.height.z(at.row, at.col) - static_cast<double>(after.below(at.row, at.col));
     if (part(at.row, at.col) >= 0 || std::isnan(here)) return;
     lowest.push_back(here);
     const double variance = after.points(at.row, at.col) * after.variance(at.row, at.col);

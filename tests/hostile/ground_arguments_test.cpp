@@ -212,9 +212,9 @@ TEST(HostileChange, LayersMayBeMissing) {
         if (is_given(0)) surface.variance = Eigen::ArrayXXd::Constant(rows, cols, 1e-6);
         if (is_given(1)) surface.points = Eigen::ArrayXXi::Constant(rows, cols, 4);
         if (is_given(2)) surface.seen_from = Eigen::ArrayXXi::Constant(rows, cols, 1);
-        if (is_given(3)) surface.doubt = Eigen::ArrayXXd::Zero(rows, cols);
-        if (is_given(4)) surface.outlier_bias = Eigen::ArrayXXd::Zero(rows, cols);
-        if (is_given(5)) surface.lowest = surface.height.z - 0.001;
+        if (is_given(3)) surface.doubt = Eigen::ArrayXXf::Zero(rows, cols);
+        if (is_given(4)) surface.outlier_bias = Eigen::ArrayXXf::Zero(rows, cols);
+        if (is_given(5)) surface.below = Eigen::ArrayXXf::Constant(rows, cols, 0.001F);
         for (std::size_t i = 0; i < sensors; ++i) {
           surface.sensors.emplace_back(-3.0 + 6.0 * static_cast<double>(i), 0.0, 2.0);
         }

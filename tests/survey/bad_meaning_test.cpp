@@ -374,7 +374,9 @@ TEST(BadMeaning, BentScans) {
   for (const auto& [height, length] :
        {std::pair(0.02, 6.0), std::pair(0.02, 1.5), std::pair(0.04, 3.0)}) {
     bent("waves of " + std::to_string(height) + " m by " + std::to_string(length) + " m",
-         [=](double x, double) { return height * std::sin(2.0 * pi * x / length); });
+         [height = height, length = length](double x, double) {
+           return height * std::sin(2.0 * pi * x / length);
+         });
   }
   bent("oblique waves", [](double x, double y) { return 0.02 * std::sin(pi * (x + 0.6 * y)); });
   bent("waves in both directions",

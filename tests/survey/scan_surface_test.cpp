@@ -627,7 +627,7 @@ TEST(ScanSurface, OutliersOnASlopeAreTold) {
       }
     }
     EXPECT_NEAR(miss / static_cast<double>(inside.size()), 0.0, 0.0005) << off;
-    EXPECT_LT(std::abs(surface.outlier_bias.block(2, 2, 36, 36).mean()), 0.0005) << off;
+    EXPECT_LT(std::abs(surface.outlier_bias.block(2, 2, 36, 36).mean()), 0.0005F) << off;
   }
 }
 
@@ -656,8 +656,8 @@ TEST(ScanSurface, KnowsTheLowestPointOfEachCell) {
   Points points = sampled(level, patch, 2000, 0.003, 1);
   for (Eigen::Vector3d& p : points) p.z() = std::max(p.z(), -0.002);
   const Surface surface = surface_of(points, patch, 0.05);
-  EXPECT_NEAR(surface.lowest.minCoeff(), -0.002, 1e-6);
-  EXPECT_TRUE((surface.lowest < surface.height.z).all());
+  EXPECT_NEAR((surface.height.z - surface.below.cast<double>()).minCoeff(), -0.002, 1e-6);
+  EXPECT_TRUE((surface.below > 0.0F).all());
 }
 
 TEST(ScanSurface, RoundedHeightsAreTold) {

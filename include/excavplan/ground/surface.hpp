@@ -24,12 +24,13 @@ struct Surface {
   Eigen::ArrayXXi seen_from = {};
   /// By how much a height may be wrong because the points of its cell lie on two surfaces, one
   /// above the other [m]: 0 where they lie on one. Empty where the points are not known.
-  Eigen::ArrayXXd doubt = {};
+  Eigen::ArrayXXf doubt = {};
   /// Mean offset that outliers leave in a height [m], if they are as many as on even ground, where
   /// they are told from it. Empty where the points are not known.
-  Eigen::ArrayXXd outlier_bias = {};
-  /// Height of the lowest accepted point of each cell [m]. Empty where the points are not known.
-  Eigen::ArrayXXd lowest = {};
+  Eigen::ArrayXXf outlier_bias = {};
+  /// By how much the lowest accepted point of each cell lies below its height [m]. Empty where the
+  /// points are not known.
+  Eigen::ArrayXXf below = {};
 };
 
 }  // namespace excavplan
