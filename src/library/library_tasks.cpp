@@ -76,7 +76,7 @@ DigSearchOptions warm_search(const LibrarySearch& search,
                              const std::vector<DigParameters>& starts) {
   const int evaluations = std::get<AnchoredSearch>(search.method).inherited_evaluations;
   DigSearchOptions options = polish_search(0, 1, evaluations / 2);
-  options.start = starts;
+  options.start.assign(starts.begin(), starts.end());
   options.stop.evaluations = evaluations;
   return options;
 }

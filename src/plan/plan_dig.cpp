@@ -207,7 +207,7 @@ void look_up_plan(const Task& task, DigPlan& plan) {
 }
 
 /// The library's dig to begin with, if there is one.
-std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
+std::vector<KnownDig> known_start(const Task& task, DigPlan& plan) {
   try {
     const auto library = library_of(task);
     const auto known = known_dig(*library, task, slope_in(*library, task));
@@ -223,16 +223,15 @@ std::vector<DigParameters> known_start(const Task& task, DigPlan& plan) {
   return {};
 }
 
-DigSearchOptions search_options(const Task& task, DigPlan& plan) {
-  DigSearchOptions options = task.options.search;
-  if (options.start.empty()) options.start = known_start(task, plan);
+/// With the digs of the default method, unless the caller said how many.
+DigSearchOptions within_budget(const DigSearchOptions& search, bool uncertain) {
+  DigSearchOptions options = search;
   auto* memetic = std::get_if<MemeticSearch>(&options.method);
-  if (options.stop.evaluations == 0 && memetic) {
-    options.stop.evaluations = evaluation_budget(task.uncertain(), !options.start.empty());
-    if (!task.uncertain()) {  // slopes and pits have more valleys than level ground
-      memetic->first_generation = 48;
-      memetic->polish_evaluations = 30;
-    }
+  if (options.stop.evaluations != 0 || !memetic) return options;
+  options.stop.evaluations = evaluation_budget(uncertain, !options.start.empty());
+  if (!uncertain) {  // slopes and pits have more valleys than level ground
+    memetic->first_generation = 48;
+    memetic->polish_evaluations = 30;
   }
   return options;
 }
@@ -316,14 +315,45 @@ void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchO
   if (first && !ended) plan.evaluations += digs_of(*first);
 }
 
+/// The few digs for each soil do not find the valley on uneven ground: those for the most likely
+/// one do, as many as for a density that is known.
+DigPlan search_most_likely(const Task& task, const std::vector<PossibleSoil>& soils,
+                           const DigSearchOptions& options) {
+  const auto& likely = *std::max_element(
+      soils.begin(), soils.end(),
+      [](const PossibleSoil& a, const PossibleSoil& b) { return a.probability < b.probability; });
+  DigSearchOptions certain = within_budget(options, false);
+  certain.checkpoint = {};
+  DigPlan found;
+  search_certain(task, *likely.simulator, certain, found);
+  return found;
+}
+
+void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
+                      DigSearchOptions options, DigPlan& plan) {
+  int digs_of_likely = 0;
+  if (!task.level) {
+    const DigPlan likely = search_most_likely(task, soils, options);
+    digs_of_likely = likely.evaluations;
+    if (likely.dig) {
+      options.start.emplace(options.start.begin(), likely.dig->parameters, likely.dig->start_x);
+    }
+  }
+  options = within_budget(options, true);
+  const auto found = search_dig(task.machine, soils, task.ground, options);
+  take(found, found ? &found->expected : nullptr, plan);
+  plan.evaluations += digs_of_likely;
+  if (plan.dig && !plan.stopped) plan.search->value_of_knowing = found->value_of_knowing();
+}
+
 void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
-  DigSearchOptions options = search_options(task, plan);
+  DigSearchOptions options = task.options.search;
+  if (options.start.empty()) options.start = known_start(task, plan);
   plan.start_rule = describe(options.start_rule);
   if (task.uncertain()) {
-    const auto found = search_dig(task.machine, soils, task.ground, options);
-    take(found, found ? &found->expected : nullptr, plan);
-    if (plan.dig && !plan.stopped) plan.search->value_of_knowing = found->value_of_knowing();
+    search_uncertain(task, soils, options, plan);
   } else {
+    options = within_budget(options, false);
     search_certain(task, *soils.front().simulator, options, plan);
   }
 }
@@ -371,7 +401,7 @@ void judge_fill(const Task& task, DigPlan& plan) {
   if (plan.dig->fill >= asked) return;
   warn(plan, "min_fill_relaxed",
        "no dig was found that fills " + readable(100.0 * asked) +
-           " % of the heaped capacity of the bucket; the most that can be reached is about " +
+           " % of the heaped capacity of the bucket; the fullest that was found fills " +
            readable(100.0 * plan.dig->fill) + " %");
 }
 

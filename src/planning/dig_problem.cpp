@@ -147,7 +147,7 @@ DigProblem::DigProblem(const Machine& machine, const std::vector<PossibleSoil>& 
 
 SearchResult DigProblem::run() {
   SearchOptions search_options{options_, {}};
-  for (const DigParameters& dig : options_.start) search_options.start.push_back(point_of(dig));
+  for (const KnownDig& dig : options_.start) search_options.start.push_back(point_of(dig));
   SearchProblem problem{box(), [this](const VectorXd& point) { return simulate(point); },
                         [this](const VectorXd& point) { return lay_out(point); }};
   if (!options_.checkpoint.empty()) problem.fingerprint = fingerprint();
@@ -203,9 +203,12 @@ SearchBox DigProblem::box() const {
   return box;
 }
 
-VectorXd DigProblem::point_of(const DigParameters& dig) const {
+VectorXd DigProblem::point_of(const KnownDig& known) const {
+  const DigParameters& dig = known.parameters;
   VectorXd point = to_vector(dig);
-  if (start_is_searched()) {
+  if (start_is_searched() && known.start_x) {
+    append(point, *known.start_x);
+  } else if (start_is_searched()) {
     const auto path = layout_.path(dig, StartRule::Kind::least_work);
     const auto* drivable = std::get_if<DigPath>(&path);
     append(point,

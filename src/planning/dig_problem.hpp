@@ -49,7 +49,7 @@ class DigProblem {
   bool start_is_searched() const { return options_.start_rule.kind == StartRule::Kind::searched; }
   SearchBox box() const;
   std::vector<const DigParameterInfo*> at_bound(const DigParameters& best) const;
-  Eigen::VectorXd point_of(const DigParameters& dig) const;
+  Eigen::VectorXd point_of(const KnownDig& known) const;
   std::variant<Eigen::VectorXd, Evaluation> lay_out(const Eigen::VectorXd& point);
   Evaluation simulate(const Eigen::VectorXd& point) const;
   double mean_worth(const DigsInEach& digs) const;

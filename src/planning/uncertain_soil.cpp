@@ -46,10 +46,10 @@ struct BestForEach {
   std::vector<Found<DigSearchResult>> soils;
   bool stopped = false;  ///< by `progress`, which then is not called again
 
-  std::vector<DigParameters> digs() const {
-    std::vector<DigParameters> all;
+  std::vector<KnownDig> digs() const {
+    std::vector<KnownDig> all;
     for (const auto& found : soils) {
-      if (found) all.push_back(found->dig.parameters);
+      if (found) all.emplace_back(found->dig.parameters, found->dig.start_x);
     }
     return all;
   }
@@ -94,7 +94,7 @@ BestForEach best_for_each(const Machine& machine, const std::vector<PossibleSoil
 }
 
 /// Nothing but a polish of the digs given, by the default method.
-DigSearchOptions from_known(const DigSearchOptions& options, std::vector<DigParameters> start) {
+DigSearchOptions from_known(const DigSearchOptions& options, std::vector<KnownDig> start) {
   DigSearchOptions polish = options;
   if (auto* memetic = std::get_if<MemeticSearch>(&polish.method)) {
     memetic->generations = 0;
@@ -106,7 +106,7 @@ DigSearchOptions from_known(const DigSearchOptions& options, std::vector<DigPara
 
 /// Nothing but the digs given. They are those of searches not finished: a checkpoint of this one
 /// would be of no use to the next.
-DigSearchOptions only_known(const DigSearchOptions& options, std::vector<DigParameters> start) {
+DigSearchOptions only_known(const DigSearchOptions& options, std::vector<KnownDig> start) {
   DigSearchOptions known = options;
   MemeticSearch no_search;
   no_search.first_generation = no_search.generations = no_search.basins = 0;

@@ -287,7 +287,8 @@ TEST_F(PlanDig, ASearchThatFindsNothingBetterEndsAndDoesNotBeginAgain) {
   options.simulator = own_simulator();
   options.search.objective = DigObjective::Goal::energy;
   options.search.bounds.lower.drag_length = options.search.bounds.upper.drag_length = 1.5;
-  options.search.start = {{0.7, 0.3, 1.5}};  // all digs of this drag are worth the same
+  options.search.start = {
+      DigParameters{0.7, 0.3, 1.5}};  // all digs of this drag are worth the same
   options.search.stop.stall = 10;
   auto& method = std::get<MemeticSearch>(options.search.method);
   method.polish_evaluations = 12;
@@ -430,6 +431,26 @@ TEST_F(PlanDig, SearchForAnUncertainDensitySaysWhatKnowingItIsWorth) {
   EXPECT_LT(*found.search->value_of_knowing, 0.05);
   EXPECT_GT(found.spread.energy, 0.0);
   EXPECT_FALSE(plan(40.0, searched(5)).search->value_of_knowing);
+}
+
+TEST_F(PlanDig, OnUnevenGroundAnUncertainDensityIsSearchedAsThoroughlyAsAKnownOne) {
+  Terrain ground = level_planning_ground(machine_);
+  for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
+    for (Eigen::Index row = 0; row < ground.bank.z.rows(); ++row) {
+      const double x = (ground.bank.x(col) - 6.0) / 0.9;
+      const double y = ground.bank.y(row) / 0.55;
+      ground.bank.z(row, col) = 0.14 * 0.9 * x - 0.4 * std::max(0.0, 1.0 - x * x - y * y);
+    }
+  }
+  PlanOptions options;
+  options.method = PlanMethod::search;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    options.search.seed = seed;
+    const DigPlan known = plan_dig(machine_, loam_, {40.0}, ground, options);
+    const DigPlan uncertain = plan_dig(machine_, loam_, {40.0, 2.0}, ground, options);
+    ASSERT_TRUE(known.dig && uncertain.dig) << seed << uncertain.reason;
+    EXPECT_GT(uncertain.search->worth, 0.9 * known.search->worth) << seed;
+  }
 }
 
 TEST_F(PlanDig, ADensityThatIsNotTrustedIsPassedOn) {

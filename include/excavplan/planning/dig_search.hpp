@@ -28,9 +28,19 @@ struct DigBounds {
 /// best dig known (docs/methods.md#planning). @return the bounds, with what was NaN filled in
 DigBounds machine_bounds(const Machine& machine, const DigBounds& bounds = {});
 
+/// A dig that a search may begin with.
+struct KnownDig {
+  DigParameters parameters;
+  std::optional<double> start_x = {};  ///< where starts are searched; none: that of least work [m]
+
+  // NOLINTNEXTLINE(google-explicit-constructor): most known digs are numbers alone
+  KnownDig(const DigParameters& numbers, std::optional<double> x = {})
+      : parameters(numbers), start_x(x) {}
+};
+
 /// An evaluation is a dig, its fitness the rank of the dig's worth.
 struct DigSearchOptions : SearchSettings {
-  std::vector<DigParameters> start = {};               ///< known good digs to begin with
+  std::vector<KnownDig> start = {};                    ///< known good digs to begin with
   DigObjective objective = {};                         ///< by default most mass per energy
   DigBounds bounds = {};                               ///< of the numbers of the path
   StartRule start_rule = StartRule::Kind::least_work;  ///< where digs begin
