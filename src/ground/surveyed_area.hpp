@@ -44,6 +44,7 @@ struct Area {
   std::vector<ZoneSum> zones;
   std::vector<ZoneKind> kinds;
   ZoneErrors errors;
+  Eigen::VectorXd outliers;     // what they leave in each zone, in `errors` too [m^3]
   NoiseModel noise;             // of stable cells
   double systematic_rms = 0.0;  // of stripes and doming that were taken off [m]
   std::vector<Object> objects;

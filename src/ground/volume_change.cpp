@@ -59,9 +59,11 @@ void check(const ChangeOptions& options) {
           "not below max_unknown_share (" + number_text(options.max_unknown_share) + ")");
 }
 
-/// Sums excavated, spilled and dumped over all areas; the errors of areas are independent.
+/// Sums excavated, spilled and dumped over all areas. Outliers are the same in all of them; their
+/// other errors are independent.
 void sum_volumes(const std::vector<Area>& areas, VolumeChange& change) {
   Eigen::Vector3d volume = Eigen::Vector3d::Zero();
+  Eigen::Vector3d of_outliers = Eigen::Vector3d::Zero();
   for (const Area& area : areas) {
     const auto count = static_cast<Eigen::Index>(area.zones.size());
     Eigen::MatrixXd part = Eigen::MatrixXd::Zero(3, count);
@@ -78,6 +80,9 @@ void sum_volumes(const std::vector<Area>& areas, VolumeChange& change) {
       change.errors.thin += zone.thin * part.col(i) * part.col(i).transpose();
     }
     change.errors.correlated += part * area.errors.correlated * part.transpose();
+    const Eigen::Vector3d here = part * area.outliers;
+    change.errors.correlated += here * of_outliers.transpose() + of_outliers * here.transpose();
+    of_outliers += here;
     change.errors.datum += part * area.errors.datum * part.transpose();
   }
   change.excavated.value = volume(0);

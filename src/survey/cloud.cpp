@@ -171,6 +171,30 @@ Eigen::Vector3d normal_of(const Cloud& cloud, const Eigen::AlignedBox3d& box) {
   return normal.z() < 0.0 ? Eigen::Vector3d(-normal) : normal;
 }
 
+/// Heights that three points and more share, but for a few points all of them; none else.
+std::vector<double> shared_heights(const Cloud& cloud, double same) {
+  constexpr std::size_t fewest_sharing = 3;  // ours
+  constexpr double most_alone = 0.05;        // of the points, ours
+  std::vector<double> heights;
+  for (const Eigen::Vector3d& point : cloud.points) heights.push_back(point.z());
+  std::sort(heights.begin(), heights.end());
+  std::vector<double> shared;
+  std::size_t alone = 0;
+  for (auto from = heights.begin(); from != heights.end();) {
+    auto to = from + 1;
+    while (to != heights.end() && *to - *(to - 1) <= same) ++to;
+    const auto count = static_cast<std::size_t>(to - from);
+    if (count >= fewest_sharing) {
+      shared.push_back(*from);
+    } else {
+      alone += count;
+    }
+    from = to;
+  }
+  const double most = most_alone * static_cast<double>(heights.size());
+  return static_cast<double>(alone) > most ? std::vector<double>() : shared;
+}
+
 /// The step of rounded heights: the least distance of successive ones, where eight points share
 /// each height, there are five heights, and 95 % of the distances are multiples of it; 0 else.
 double height_step_of(const Cloud& cloud) {
@@ -178,16 +202,11 @@ double height_step_of(const Cloud& cloud) {
   constexpr std::size_t fewest_steps = 4;    // ours
   constexpr double same = 1e-5;              // [m]: heights of float32 a hundred metres up
   constexpr double most_other = 0.05;        // ours
-  std::vector<double> heights;
-  for (const Eigen::Vector3d& point : cloud.points) heights.push_back(point.z());
-  std::sort(heights.begin(), heights.end());
+  const std::vector<double> heights = shared_heights(cloud, same);
+  const bool are_few = heights.size() * fewest_at_each <= cloud.points.size();
+  if (!are_few || heights.size() <= fewest_steps) return 0.0;
   std::vector<double> steps;
-  for (std::size_t i = 1; i < heights.size(); ++i) {
-    const double step = heights[i] - heights[i - 1];
-    if (step > same) steps.push_back(step);
-  }
-  const bool are_few = (steps.size() + 1) * fewest_at_each <= heights.size();
-  if (!are_few || steps.size() < fewest_steps) return 0.0;
+  for (std::size_t i = 1; i < heights.size(); ++i) steps.push_back(heights[i] - heights[i - 1]);
   const double least = *std::min_element(steps.begin(), steps.end());
   const auto others = std::count_if(steps.begin(), steps.end(), [&](double step) {
     return std::abs(step - least * std::round(step / least)) > same + 0.01 * least;

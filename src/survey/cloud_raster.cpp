@@ -90,8 +90,9 @@ Surface surface_of(const PointSource& source, const HeightMap& map, const Raster
     reach(cell) = static_cast<float>(band.farthest());
     outliers.add(in_cell, band);
   });
-  surface.outlier_bias = reach.unaryExpr(
-      [&](float r) { return static_cast<float>(outliers.bias_within(static_cast<double>(r))); });
+  surface.outlier_bias = reach.unaryExpr([bias = outliers.bias()](float r) {
+    return static_cast<float>(bias.within(static_cast<double>(r)));
+  });
   return surface;
 }
 

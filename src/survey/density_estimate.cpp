@@ -105,14 +105,6 @@ VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
   }
 }
 
-std::vector<Warning> doubts_about_points(const Surfaces& surfaces, const VolumeChange& change) {
-  std::vector<Warning> doubts = check_points(surfaces.dig.surfaces, change, change.areas.front());
-  if (surfaces.dump) {
-    append(check_points(surfaces.dump->surfaces, change, change.areas.back()), doubts);
-  }
-  return doubts;
-}
-
 struct SurfaceVolumes {
   VolumeChange change;
   std::vector<Warning> of_points;  ///< doubts
@@ -127,7 +119,7 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
     return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
                          : measure_change(surfaces.dig.surfaces, options);
   });
-  volumes.of_points = doubts_about_points(surfaces, change);
+  volumes.of_points = check_points(surfaces.pairs(), change);
   volumes.of_cover = check_cover(surfaces.pairs(), change);
   std::vector<Warning> doubts = volumes.of_points;
   append(volumes.of_cover, doubts);

@@ -225,7 +225,7 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
       throw Error(ErrorKind::bad_file, "no ground rose by more than the noise of the scans");
     }
     add(doubts);
-    add(check_points(surfaces, change, change.areas.front()));
+    add(check_points({nullptr, &surfaces}, change));
     add(check_volumes(change));
     add(change.warnings);
     return {Lifted::volume, change.dumped};

@@ -17,6 +17,19 @@ using Eigen::Index;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t trusted = 5;  // points, whose median is hardly ever an outlier; ours
 
+/// By the distances from the level, and of rounded heights at least as large as that leaves it.
+double noise_of(std::vector<float>& heights, double level) {
+  std::sort(heights.begin(), heights.end());
+  float step = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 1; i < heights.size(); ++i) {
+    if (heights[i] > heights[i - 1]) step = std::min(step, heights[i] - heights[i - 1]);
+  }
+  for (float& value : heights) value = std::abs(value - static_cast<float>(level));
+  const double scatter = 1.4826 * mean_median(heights);
+  if (std::isinf(step)) return scatter;
+  return std::max(scatter, static_cast<double>(step) / std::sqrt(12.0));
+}
+
 /// Medians of all groups, from 64 to 128 points where there are more, and the noise: lower
 /// quartile of the robust standard deviation (1.4826 times the median absolute deviation) of some
 /// thousand groups spread over the map, which is that of level ground without outliers.
@@ -42,13 +55,14 @@ GroundLevels find_levels(PointsByCell& points) {
     const double level = mean_median(values);
     levels.height(group) = level;
     if (in_group.size() < fewest_points || seen++ % stride != 0) return;
-    for (float& value : values) value = std::abs(value - static_cast<float>(level));
-    noise.push_back(1.4826 * mean_median(values));
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    if (*low < *high) noise.push_back(noise_of(values, level));
   });
   if (groups < fewest_groups) {
     levels.noise = std::numeric_limits<double>::infinity();
     return levels;
   }
+  if (noise.empty()) return levels;  // rounded to one height in every group
   const auto quartile = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 4);
   std::nth_element(noise.begin(), quartile, noise.end());
   levels.noise = *quartile;
@@ -188,24 +202,42 @@ void GroundBands::find_fine_levels() {
   fine_ = fine;
 }
 
+DistanceBins::DistanceBins(double gap) : per_bin_(4.0 / std::max(gap, 1e-6)) {}
+
+std::size_t DistanceBins::of(double distance) const {
+  const double bin = distance * per_bin_;
+  return bin < static_cast<double>(count) ? static_cast<std::size_t>(bin) : count;
+}
+
 void OutlierTally::add(CellRange points, const Band& band) {
-  constexpr double even = 1.5;  // ours: of the gap
-  if (!(band.reach < even * gap_)) return;
-  on_even_ground_ += static_cast<double>(points.size());
+  const std::size_t reach = bins_.of(band.farthest());
+  if (reach >= DistanceBins::count) return;
+  Class& alike = by_reach_[reach];
+  alike.points += static_cast<double>(points.size());
   for (const CellPoint& point : points) {
     if (band.contains(point)) continue;
     const double off = band.from_plane(point);
-    const double bin = std::abs(off) / gap_ * per_gap;
-    if (bin < static_cast<double>(off_.size())) off_[static_cast<std::size_t>(bin)] += off;
+    if (const std::size_t bin = bins_.of(std::abs(off)); bin < DistanceBins::count) {
+      alike.off[bin] += off;
+    }
   }
 }
 
-double OutlierTally::bias_within(double reach) const {
-  if (!(on_even_ground_ > 0.0)) return 0.0;
-  const double bins = std::min(reach / gap_ * per_gap, static_cast<double>(off_.size()));
+OutlierBias OutlierTally::bias() const {
+  constexpr double most_even = 0.1;  // ours: of the points
+  double all = 0.0;
+  for (const Class& alike : by_reach_) all += alike.points;
+  OutlierBias bias{bins_};
+  double points = 0.0;
+  for (const Class& alike : by_reach_) {
+    if (points > 0.0 && points >= most_even * all) break;
+    points += alike.points;
+    for (std::size_t i = 0; i < DistanceBins::count; ++i) bias.at[i + 1] += alike.off[i];
+  }
+  if (!(points > 0.0)) return bias;
   double sum = 0.0;
-  for (std::size_t i = 0; static_cast<double>(i) < bins; ++i) sum += off_[i];
-  return sum / on_even_ground_;
+  for (double& at : bias.at) at = (sum += at) / points;
+  return bias;
 }
 
 }  // namespace excavplan

@@ -53,24 +53,45 @@ class GroundBands {
   Eigen::ArrayXXd fine_;  ///< of the cells alone, at their centres; NaN where points are few
 };
 
-/// The points that are cut off even ground, and what like ones do where the ground is uneven, so
-/// that they are not told from it.
-class OutlierTally {
+/// Distances from the ground in quarters of its gap, up to sixteen gaps.
+class DistanceBins {
  public:
-  explicit OutlierTally(double gap) : gap_(gap) {}
+  static constexpr std::size_t count = 64;
 
-  void add(CellRange points, const Band& band);
-
-  /// Mean offset of the heights of cells that keep points up to `reach` from the ground [m].
-  double bias_within(double reach) const;
+  explicit DistanceBins(double gap);
+  std::size_t of(double distance) const;  ///< `count` for all beyond
 
  private:
-  static constexpr std::size_t per_gap = 4;
-  static constexpr std::size_t most_gaps = 16;
+  double per_bin_;
+};
 
-  double gap_;
-  double on_even_ground_ = 0.0;                      ///< points
-  std::array<double, per_gap* most_gaps> off_ = {};  ///< their sum by distance [m]
+/// The mean offset that outliers give to the heights of cells.
+struct OutlierBias {
+  DistanceBins bins;
+  std::array<double, DistanceBins::count + 1> at = {};  ///< [m]
+
+  /// Of cells that keep points up to `reach` from the ground [m].
+  double within(double reach) const { return at[bins.of(reach)]; }
+};
+
+/// The points that are cut off the most even ground, and what like ones do where the ground is
+/// uneven, so that they are not told from it.
+class OutlierTally {
+ public:
+  explicit OutlierTally(double gap) : bins_(gap) {}
+
+  void add(CellRange points, const Band& band);
+  OutlierBias bias() const;
+
+ private:
+  /// Of cells that are about as even.
+  struct Class {
+    double points = 0.0;
+    std::array<double, DistanceBins::count> off = {};  ///< sum of those cut off, by distance [m]
+  };
+
+  DistanceBins bins_;
+  std::array<Class, DistanceBins::count> by_reach_ = {};
 };
 
 }  // namespace excavplan

@@ -13,7 +13,7 @@ namespace excavplan {
 namespace {
 
 /// Points that are kept of a cell: more make its mean no better than a scan is. Ours.
-constexpr std::size_t most_kept = 256;
+constexpr std::size_t most_kept = most_points_of_cell;
 constexpr double enough_in_group = 12.0;  // points, for a level that outliers do not move; ours
 constexpr double largest_side = 4.0;      // ours
 

@@ -19,6 +19,9 @@
 
 namespace excavplan {
 
+/// Points of a cell that its height and variance are of, at most; ours.
+constexpr int most_points_of_cell = 256;
+
 /// The points of a scan by cell, and by group of cells where cells hold few points; both are
 /// counted as Eigen stores a map, column by column. Of a cell with many points an even random
 /// choice is kept. What does not fit into memory at a time is read in bands of cells, each from

@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "survey/points_by_cell.hpp"
 
 namespace excavplan {
 namespace {
@@ -444,73 +445,98 @@ Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& a
   return part;
 }
 
-std::vector<Warning> check_overlays(const SurfacePair& surfaces, const VolumeChange& change,
-                                    const AreaChange& area) {
-  constexpr double noted = 0.01;     // ours, of the bulking factor
-  constexpr double doubtful = 0.03;  // ours, likewise
+/// Volumes that points put in doubt [m^3].
+struct DoubtfulVolume {
+  double hole = 0.0;
+  double soil = 0.0;  ///< spill and heap
+  double in_before = 0.0;
+  double in_after = 0.0;
+
+  double& of(int part) { return part < 0 ? hole : soil; }
+  double sum() const { return hole + soil; }
+  const char* scan() const { return in_after > in_before ? "after" : "before"; }
+  double share_of(const VolumeChange& change) const {
+    return std::abs(ratio(hole, change.before.value) + ratio(soil, change.after.value));
+  }
+};
+
+void add_overlays(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
+                  DoubtfulVolume& doubt) {
   constexpr double weight_of_new =
       3.0;  // ours: nothing grows on dug soil, so that either may be it
   const Eigen::ArrayXXf of_before = known(surfaces.before.doubt, surfaces.before);
   const Eigen::ArrayXXf of_after = known(surfaces.after.doubt, surfaces.after);
   const Eigen::ArrayXXi part = parts_with_doubt(change, area, of_after - of_before);
-  double hole = 0.0;
-  double soil = 0.0;
-  double in_after = 0.0;
   const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
   for_each_cell(part, [&](Cell at) {
     if (part(at.row, at.col) == 0) return;
     const double before = cell_area * static_cast<double>(of_before(at.row, at.col));
     const double after = cell_area * static_cast<double>(of_after(at.row, at.col));
     const double grown = std::max(0.0, after - before);
-    (part(at.row, at.col) < 0 ? hole : soil) += before + after + (weight_of_new - 1.0) * grown;
-    in_after += after;
+    doubt.of(part(at.row, at.col)) += before + after + (weight_of_new - 1.0) * grown;
+    doubt.in_before += before;
+    doubt.in_after += after;
   });
-  const double share = ratio(hole, change.before.value) + ratio(soil, change.after.value);
+}
+
+std::vector<Warning> warning_of_overlays(const DoubtfulVolume& doubt, const VolumeChange& change) {
+  constexpr double noted = 0.01;     // ours, of the bulking factor
+  constexpr double doubtful = 0.03;  // ours, likewise
+  const double share = doubt.share_of(change);
   if (!(share > noted)) return {};
   return {{"two_surfaces",
-           std::string("points of the scan ") +
-               (in_after > 0.5 * (hole + soil) ? "after" : "before") +
-               " lie on two surfaces, one above the other, which leaves " + readable(hole, 2) +
-               " m^3 of the hole and " + readable(soil, 2) +
+           std::string("points of the scan ") + doubt.scan() +
+               " lie on two surfaces, one above the other, which leaves " +
+               readable(doubt.hole, 2) + " m^3 of the hole and " + readable(doubt.soil, 2) +
                " m^3 of spill and heap in doubt: leave out dust, plants and what else is above the "
                "ground, and points that were taken at other times",
            share > doubtful}};
 }
 
-std::vector<Warning> check_outliers(const SurfacePair& surfaces, const VolumeChange& change,
-                                    const AreaChange& area) {
-  constexpr double noted = 0.01;     // ours, of the bulking factor
-  constexpr double doubtful = 0.02;  // ours: twice the error of a good survey
+/// What outliers that are not told from the ground raise.
+void add_outliers(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
+                  DoubtfulVolume& doubt) {
   const Eigen::ArrayXXf of_before = known(surfaces.before.outlier_bias, surfaces.before);
   const Eigen::ArrayXXf of_after = known(surfaces.after.outlier_bias, surfaces.after);
   const Eigen::ArrayXXi part = parts_of(change, area);
-  double hole = 0.0;
-  double soil = 0.0;
-  double in_after = 0.0;
+  const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
   for_each_cell(part, [&](Cell at) {
     if (part(at.row, at.col) == 0) return;
-    const auto after = static_cast<double>(of_after(at.row, at.col));
-    const auto before = static_cast<double>(of_before(at.row, at.col));
-    (part(at.row, at.col) < 0 ? hole : soil) += after - before;
-    in_after += std::abs(after) - std::abs(before);
+    const double before = cell_area * static_cast<double>(of_before(at.row, at.col));
+    const double after = cell_area * static_cast<double>(of_after(at.row, at.col));
+    doubt.of(part(at.row, at.col)) += after - before;
+    doubt.in_before += std::abs(before);
+    doubt.in_after += std::abs(after);
   });
-  const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
-  hole *= cell_area;
-  soil *= cell_area;
-  const double share = std::abs(ratio(hole, change.before.value) + ratio(soil, change.after.value));
+}
+
+std::vector<Warning> warning_of_outliers(const DoubtfulVolume& doubt, const VolumeChange& change) {
+  constexpr double noted = 0.01;     // ours, of the bulking factor
+  constexpr double doubtful = 0.02;  // ours: twice the error of a good survey
+  const double share = doubt.share_of(change);
   if (!(share > noted)) return {};
+  const bool are_above = (doubt.sum() > 0.0) == (doubt.in_after > doubt.in_before);
   return {{"outliers",
-           std::string("points of the scan ") + (in_after > 0.0 ? "after" : "before") +
-               " lie off the ground, " + (soil > 0.0 ? "above" : "below") +
-               " it in the main; where it is uneven they are not told from it, which may change " +
-               "hole by " + readable(-hole, 2) + " m^3 and spill and heap by " + readable(soil, 2) +
-               " m^3: scan again without dust, rain or vibration, or clean the cloud",
+           std::string("points of the scan ") + doubt.scan() + " lie off the ground, " +
+               (are_above ? "above" : "below") +
+               " it in the main; where it is uneven they are not told from it, which may change "
+               "the bulking factor by " +
+               readable(100.0 * share, 2) +
+               " %: scan again without dust, rain or vibration, or clean the cloud",
            share > doubtful}};
 }
 
+/// Rounded heights of several cells are the same.
+bool are_rounded(const std::vector<double>& sorted) {
+  constexpr double same = 1e-6;  // [m]
+  std::size_t alike = 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) alike += sorted[i] - sorted[i - 1] < same ? 1 : 0;
+  return 2 * alike > sorted.size();
+}
+
 /// A floor that a limit of heights cuts: cells of the hole whose lowest points lie at one height,
-/// as no noise leaves them.
-std::vector<Warning> check_floor(const SurfacePair& surfaces, const VolumeChange& change,
+/// as no noise leaves them. Nothing of rounded heights, which do.
+std::optional<Warning> floor_cut(const SurfacePair& surfaces, const VolumeChange& change,
                                  const AreaChange& area) {
   constexpr std::size_t blunders = 2;    // below the floor; ours
   constexpr std::ptrdiff_t fewest = 20;  // ours
@@ -528,13 +554,14 @@ std::vector<Warning> check_floor(const SurfacePair& surfaces, const VolumeChange
         after.height.z(at.row, at.col) - static_cast<double>(after.below(at.row, at.col));
     if (part(at.row, at.col) >= 0 || std::isnan(here)) return;
     lowest.push_back(here);
-    const double variance = after.points(at.row, at.col) * after.variance(at.row, at.col);
+    const int points = std::min(after.points(at.row, at.col), most_points_of_cell);
+    const double variance = points * after.variance(at.row, at.col);
     if (!std::isnan(variance)) scatter.push_back(variance);
   });
   if (lowest.size() <= blunders || scatter.empty()) return {};
   std::sort(lowest.begin(), lowest.end());
   const double noise = std::sqrt(quantile(scatter, 0.5));
-  if (noise < least_noise) return {};
+  if (noise < least_noise || are_rounded(lowest)) return {};
   const auto up_to = [&](double height) {
     return std::upper_bound(lowest.begin(), lowest.end(), lowest[blunders] + height) -
            lowest.begin();  // cells
@@ -544,21 +571,30 @@ std::vector<Warning> check_floor(const SurfacePair& surfaces, const VolumeChange
       static_cast<double>(at_edge) < most * static_cast<double>(up_to(floor * noise))) {
     return {};
   }
-  return {{"floor_cut",
-           "the lowest points of " + std::to_string(at_edge) + " cells of the hole lie at " +
-               readable(lowest[blunders], 4) +
-               " m, as where a limit of heights or depths cuts "
-               "the floor off: what lies deeper is missing; widen the limit",
-           true}};
+  return Warning{"floor_cut",
+                 "the lowest points of " + std::to_string(at_edge) + " cells of the hole lie at " +
+                     readable(lowest[blunders], 4) +
+                     " m, as where a limit of heights or depths cuts "
+                     "the floor off: what lies deeper is missing; widen the limit",
+                 true};
 }
 
 }  // namespace
 
-std::vector<Warning> check_points(const SurfacePair& surfaces, const VolumeChange& change,
-                                  const AreaChange& area) {
-  std::vector<Warning> found = check_overlays(surfaces, change, area);
-  for (const auto& more :
-       {check_outliers(surfaces, change, area), check_floor(surfaces, change, area)}) {
+std::vector<Warning> check_points(const std::vector<const SurfacePair*>& pairs,
+                                  const VolumeChange& change) {
+  DoubtfulVolume overlays;
+  DoubtfulVolume outliers;
+  std::vector<Warning> floors;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i] == nullptr) continue;
+    const AreaChange& area = change.areas[i];
+    add_overlays(*pairs[i], change, area, overlays);
+    add_outliers(*pairs[i], change, area, outliers);
+    if (auto cut = floor_cut(*pairs[i], change, area)) floors.push_back(std::move(*cut));
+  }
+  std::vector<Warning> found = warning_of_overlays(overlays, change);
+  for (const auto& more : {warning_of_outliers(outliers, change), floors}) {
     found.insert(found.end(), more.begin(), more.end());
   }
   return found;

@@ -178,7 +178,7 @@ Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// The points must be as far from each other in the scan as in the site, to a tenth.
+/// The points must be as far from their middle in the scan as in the site, to a tenth.
 void check_lengths(const std::vector<Eigen::Vector3d>& in_scan, const Eigen::Vector3d& scan_mean,
                    const std::vector<Eigen::Vector3d>& in_site, const Eigen::Vector3d& site_mean) {
   constexpr double most = 1.1;  // ours
@@ -191,8 +191,23 @@ void check_lengths(const std::vector<Eigen::Vector3d>& in_scan, const Eigen::Vec
   const double factor = std::sqrt(site / scan);
   if (factor <= most && factor >= 1.0 / most) return;
   refuse("the known points are " + readable(factor) +
-         " times as far from each other in the site as in the scan: one of them is in other units, "
-         "or points are exchanged");
+         " times as far from each other in the site as in the scan: one of them is in other units");
+}
+
+/// Points that no motion brings together have others' places.
+void check_fit(const PointPose& pose, const std::vector<Eigen::Vector3d>& in_site,
+               const Eigen::Vector3d& site_mean) {
+  constexpr double most = 0.1;  // ours: of the distance from their middle (rms)
+  double squares = 0.0;
+  for (const Eigen::Vector3d& p : in_site) squares += (p - site_mean).squaredNorm();
+  const double spread = std::sqrt(squares / static_cast<double>(in_site.size()));
+  if (pose.rms <= most * spread) return;
+  const auto worst = std::max_element(pose.residuals.begin(), pose.residuals.end());
+  refuse("the known points come to lie " + readable(pose.rms, 2) +
+         " m (rms) from their places, more than a tenth of their distance from their middle, " +
+         readable(spread, 2) + " m; the worst is point " +
+         std::to_string(worst - pose.residuals.begin() + 1) + ", " + readable(*worst, 2) +
+         " m off: points are exchanged, mirrored or wrong");
 }
 
 /// Which axis of the sensor shows ahead.
@@ -289,6 +304,7 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
     squares += (placed - in_site[i]).squaredNorm();
   }
   pose.rms = std::sqrt(squares / static_cast<double>(in_scan.size()));
+  check_fit(pose, in_site, site_mean);
   return pose;
 }
 

@@ -236,8 +236,13 @@ TEST(PoseOfPoints, ResidualsTellTheErrorAndTheBadPoint) {
 TEST(PoseOfPoints, NeverMirrors) {
   std::vector<Eigen::Vector3d> mirrored = targets;
   for (Eigen::Vector3d& p : mirrored) p.x() = -p.x();
-  const PointPose pose = pose_of_points(mirrored, targets);
+  EXPECT_THROW(pose_of_points(mirrored, targets), Error);
+  std::vector<Eigen::Vector3d> flat = targets;  // which a turn mirrors too
+  for (Eigen::Vector3d& p : flat) p.z() = 0.0;
+  for (std::size_t i = 0; i < flat.size(); ++i) mirrored[i] = {-flat[i].x(), flat[i].y(), 0.0};
+  const PointPose pose = pose_of_points(mirrored, flat);
   EXPECT_NEAR((pose.site_from_scan.topLeftCorner<3, 3>().determinant()), 1.0, 1e-12);
+  EXPECT_LT(pose.rms, 1e-9);
 }
 
 TEST(PoseOfPoints, RefusesWhatLeavesItFree) {
@@ -256,6 +261,13 @@ TEST(PoseOfPoints, RefusesWhatLeavesItFree) {
   for (Eigen::Vector3d& p : in_mm) p *= 1000.0;
   EXPECT_NE(error(in_mm, targets).find("0.00100 times as far from each other in the site"),
             std::string::npos);
+  std::vector<Eigen::Vector3d> exchanged = targets;
+  std::swap(exchanged[0], exchanged[2]);
+  EXPECT_NE(error(exchanged, targets).find("points are exchanged, mirrored or wrong"),
+            std::string::npos);
+  std::vector<Eigen::Vector3d> one_wrong = targets;
+  one_wrong[1].z() += 0.8;
+  EXPECT_NE(error(one_wrong, targets).find("the worst is point 2"), std::string::npos);
   EXPECT_NE(error({{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})
                 .find("known point 3 has a coordinate that is not finite"),
             std::string::npos);

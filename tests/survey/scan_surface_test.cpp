@@ -651,6 +651,30 @@ TEST(ScanSurface, OutliersOfEvenGroundAreExpectedWhereItIsUneven) {
   EXPECT_NEAR(bias(0.0).second, 0.0, 0.0002);
 }
 
+TEST(ScanSurface, OutliersOfFewPointsOnGroundThatIsNowhereEvenAreExpectedToo) {
+  const Rectangle patch{0.0, 0.0, 6.0, 4.0};
+  const Shape half_rough = [](double x, double y) {
+    const double relief =
+        std::sin(7.0 * x) * std::cos(9.0 * y) + 0.7 * std::sin(15.0 * x + 4.0 * y);
+    return x < 4.0 ? 0.015 * relief : 0.2 * std::sin(20.0 * x) * std::sin(20.0 * y);
+  };
+  for (const double off : {-0.08, 0.08}) {
+    Points points = sampled(half_rough, patch, 24000, 0.003, 1);
+    for (std::size_t i = 0; i < points.size(); i += 20) points[i].z() += off;
+    const Surface surface = surface_of(points, patch, 0.1);
+    const auto rough = static_cast<double>(surface.outlier_bias.block(2, 42, 36, 16).mean());
+    EXPECT_NEAR(rough, 0.05 * off, 0.3 * std::abs(0.05 * off));
+  }
+}
+
+TEST(ScanSurface, RoundingCutsNoPoints) {
+  const Rectangle patch{0.0, 0.0, 2.0, 2.0};
+  Points points = sampled(level, patch, 16000, 0.003, 1);
+  const int kept = surface_of(points, patch, 0.05).points.sum();
+  for (Eigen::Vector3d& p : points) p.z() = 0.01 * std::round(p.z() / 0.01);
+  EXPECT_GT(surface_of(points, patch, 0.05).points.sum(), 0.995 * kept);
+}
+
 TEST(ScanSurface, KnowsTheLowestPointOfEachCell) {
   const Rectangle patch{0.0, 0.0, 0.5, 0.5};
   Points points = sampled(level, patch, 2000, 0.003, 1);
@@ -662,16 +686,17 @@ TEST(ScanSurface, KnowsTheLowestPointOfEachCell) {
 
 TEST(ScanSurface, RoundedHeightsAreTold) {
   const Folder folder;
-  const auto step_of = [&](double step) {
+  const auto step_of = [&](double step, std::size_t apart = 0) {
     Points points =
         sampled([](double x, double y) { return 0.3 * x + 0.1 * y; }, field, 4000, 0.005, 1);
-    for (Eigen::Vector3d& p : points) {
-      if (step > 0.0) p.z() = step * std::round(p.z() / step);
+    for (std::size_t i = apart; i < points.size(); ++i) {
+      if (step > 0.0) points[i].z() = step * std::round(points[i].z() / step);
     }
     return outline(scan_of({folder.write("rounded.pcd", points)})).height_step;
   };
   EXPECT_EQ(step_of(0.0), 0.0);
   for (const double step : {0.01, 0.03, 0.1}) EXPECT_NEAR(step_of(step), step, 1e-6);
+  EXPECT_NEAR(step_of(0.03, 40), 0.03, 1e-6) << "but for 40 points";
 }
 
 }  // namespace

@@ -124,7 +124,9 @@ struct RasterOptions {
 /// high the extreme medians of the 3 x 3 neighbourhood but for one on each side, which counts only
 /// if it is that of the cell itself and of five points at least; g = outlier_distance * noise +
 /// (high - low) / 2, noise the lower quartile of the cells' robust sd: the two levels of a cell
-/// that a wall crosses both lie inside it, so that the volume between two maps stays unbiased.
+/// that a wall crosses both lie inside it, so that the volume between two maps stays unbiased. They
+/// also lie farther from the plane through the medians around than outlier_distance * noise and
+/// three times what these are off it.
 /// Where few cells hold five points nothing is left out. survey_surface() says more, of which this
 /// is the height.
 ///

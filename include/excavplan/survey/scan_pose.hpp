@@ -70,7 +70,8 @@ struct PointPose {
 /// (Kabsch 1976, Umeyama 1991).
 ///
 /// @throws Error (bad_input) with fewer than three pairs, lists of different length, a coordinate
-/// that is not finite, points on one line, or distances between them that differ by over 10 %
+/// that is not finite, points on one line, or points that stay over a tenth of their distance from
+/// their middle away from their places (rms): of other units, exchanged, mirrored
 PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
                          const std::vector<Eigen::Vector3d>& in_site);
 
