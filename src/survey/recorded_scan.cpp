@@ -280,7 +280,7 @@ class ScanReader {
     const std::int64_t lag = lag_of(head);
     if (lag >= -longest_lag && lag <= longest_lag) return false;
     const std::int64_t stamp = head.header.stamp;
-    const auto [from, to] = std::minmax(stamp, later(stamp, -lag));
+    const auto [from, to] = std::minmax({stamp, later(stamp, -lag)});
     return tree_.moved(target_, head.header.frame, from, to);
   }
   void add_doubts(std::vector<Warning>& warnings) const {

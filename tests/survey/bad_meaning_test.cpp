@@ -214,7 +214,7 @@ TEST(BadMeaning, OrderAndUnits) {
   const double foot = 1.0 / 0.3048;
   add(
       inputs, "both in feet: k has no unit", [=](DigScans& s, auto&) { map_both(s, scaled(foot)); },
-      {"units", "zone_partly_unseen"}, may_be_right);
+      {"units", "zone_partly_unseen", "scans_do_not_fit"}, may_be_right);
   add(inputs, "the one before in feet",
       [=](DigScans& s, auto&) { map_points(s.before, scaled(foot)); }, {"units", "-unit"});
   add(inputs, "metres said to be millimetres",
