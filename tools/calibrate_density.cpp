@@ -8,6 +8,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/table.hpp"
+#include "shared/calibration_results.hpp"
 #include "shared/results.hpp"
 #include "shared/tool.hpp"
 
@@ -80,6 +81,21 @@ DensityCalibration from_simulator(const Inputs& inputs) {
   });
 }
 
+/// Samples are of the soil, path and machine that they were measured with.
+std::vector<Warning> ignored(const Inputs& inputs) {
+  if (!inputs.samples) return {};
+  const Inputs usual;
+  IgnoredOptions options;
+  options.add(inputs.soil != usual.soil, "--soil");
+  options.add(inputs.machine != usual.machine, "--machine");
+  options.add(inputs.simulator != usual.simulator, "--simulator");
+  options.add(inputs.densities != usual.densities, "--densities");
+  options.add(inputs.path.has_value(), "--path");
+  options.add(inputs.draws != usual.draws, "--draws");
+  options.add(inputs.cell_size != usual.cell_size, "--cell");
+  return options.warnings("a law of --samples is of the digs measured and states no soil and path");
+}
+
 /// The formula of a form with its numbers, which the law file holds under the form's key.
 std::string text(const DensityFit& fit, const nlohmann::ordered_json& file) {
   std::string text = formula(fit.form);
@@ -90,38 +106,13 @@ std::string text(const DensityFit& fit, const nlohmann::ordered_json& file) {
   return text;
 }
 
-nlohmann::ordered_json difference_json(const BulkingDifference& difference) {
-  return {{"density_percent", difference.largest.density_percent},
-          {"bulking_factor_true", difference.largest.bulking_factor_true},
-          {"bulking_factor_measured", difference.largest.bulking_factor_measured},
-          {"fallback_fraction", difference.largest.fallback_fraction},
-          {"density_points_percent", difference.density_points},
-          {"unexplained", difference.unexplained}};
-}
-
-std::vector<std::string> difference_lines(const BulkingDifference& difference) {
-  const DensityCalibration::Sample& at = difference.largest;
-  if (std::abs(difference.density_points) < 0.05) {
-    return {"true and measured k      agree at every density within 0.05 points of density"};
-  }
-  return {"true and measured k      largest difference at " + readable(at.density_percent) +
-              " %: " + readable(at.bulking_factor_true, 4) + " by dry mass, " +
-              readable(at.bulking_factor_measured, 4) + " from the height maps; density " +
-              readable(std::abs(difference.density_points), 2) + " points too " +
-              (difference.density_points > 0.0 ? "high" : "low"),
-          "why                      " + readable(100.0 * at.fallback_fraction) +
-              " % of the cut soil fell back into the hole, where height maps cannot measure it",
-          "                         corrected for it, k is within " +
-              (difference.unexplained < 1e-5 ? "0.00001" : readable(difference.unexplained, 2)) +
-              " of the true one at every density"};
-}
-
 Outcome work(const Inputs& inputs) {
   const DensityCalibration calibration =
       inputs.samples ? from_samples(*inputs.samples) : from_simulator(inputs);
   const std::string file = to_json(calibration);
   if (inputs.out) write_file(*inputs.out, file);
   Outcome outcome;
+  outcome.warnings = ignored(inputs);
   outcome.json = parse_ordered_json("the law", file);
   outcome.json.erase("format");
   outcome.json.erase("version");

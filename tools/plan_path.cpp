@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <memory>
 
 #include <excavplan/plan/plan_dig.hpp>
@@ -72,12 +73,6 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.plot(inputs.plot, "the section of the dig");
 }
 
-/// Checks made before anything is read.
-void check(const Inputs& inputs) {
-  check(inputs.density);
-  check(inputs.dig_search);
-}
-
 PlanOptions options_of(const Inputs& inputs, Console& console) {
   PlanOptions options;
   options.method = inputs.search ? PlanMethod::search : PlanMethod::library;
@@ -90,14 +85,18 @@ PlanOptions options_of(const Inputs& inputs, Console& console) {
   return options;
 }
 
-void write_trajectory(const std::string& file, const Trajectory& trajectory) {
-  const bool json = file.size() >= 5 && file.compare(file.size() - 5, 5, ".json") == 0;
-  write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
+/// What an earlier plan left must not be taken for that of this ground.
+void withdraw(const Inputs& inputs, const Machine& machine, Outcome& outcome) {
+  if (inputs.trajectory) write_trajectory(*inputs.trajectory, {machine.name, {}});
+  if (!inputs.plot || !std::filesystem::exists(*inputs.plot)) return;
+  outcome.warnings.push_back(
+      {"plot_not_written", *inputs.plot + ": is of an earlier run, as there is no dig to draw"});
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
-  check(inputs);
+  check(inputs.density);
+  check(inputs.dig_search);
   const GroundDensity density = density_of(inputs.density);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
@@ -120,8 +119,15 @@ Outcome work(const Inputs& inputs, Console& console) {
   }
   outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);
   outcome.json = plan_json(plan, density, options.search.objective);
-  if (!plan.dig) return outcome;
-  outcome.json["wall_time_s"] = watch.seconds();
+  outcome.json.update({{"trustworthy", outcome.trustworthy},
+                       {"soil", soil.name},
+                       {"machine", machine.name},
+                       {"simulator", inputs.simulator},
+                       {"wall_time_s", watch.seconds()}});
+  if (!plan.dig) {
+    if (!plan.stopped) withdraw(inputs, machine, outcome);
+    return outcome;
+  }
   if (inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);
   if (inputs.plot) {
     write_file(*inputs.plot, dig_figure(machine, plan.path, {boom_plane_profile(site.ground)},

@@ -65,9 +65,9 @@ void judge_density(const Task& task, DigPlan& plan) {
              "the density is not trustworthy, so the path may be wrong for the soil");
   }
   if (!soil.empty() && soil != task.soil.name) {
-    warn(plan, "law_of_other_soil",
-         "the density was estimated by the law of " + soil + ", the path is planned in " +
-             task.soil.name);
+    distrust(plan, "law_of_other_soil",
+             "the density was estimated by the law of " + soil + ", the path is planned in " +
+                 task.soil.name);
   }
 }
 

@@ -462,8 +462,9 @@ TEST_F(PlanDig, ADensityThatIsNotTrustedIsPassedOn) {
   EXPECT_TRUE(warns(found, "density_not_trustworthy") && warns(found, "law_of_other_soil"));
   EXPECT_TRUE(found.look_up->error) << "the ground is the library's";
   density.trustworthy = true;
-  EXPECT_TRUE(plan(density).trustworthy);
+  EXPECT_FALSE(plan(density).trustworthy) << "of sand";
   density.soil = "loam";
+  EXPECT_TRUE(plan(density).trustworthy);
   EXPECT_TRUE(plan(density).warnings.empty());
 }
 

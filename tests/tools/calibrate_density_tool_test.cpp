@@ -95,6 +95,16 @@ TEST_F(Tools, CalibrateDensityPrintsSmallNumbersAndNoRoundingErrors) {
   EXPECT_EQ(exact.substr(exact.rfind(' ')), " 0.0000") << exact;
 }
 
+TEST_F(Tools, MeasuredSamplesHaveTheirOwnSoilAndPath) {
+  const std::string samples =
+      folder.write("digs.csv", "bulking_factor,density_percent\n1,10\n1.1,30\n1.2,52\n1.3,70\n");
+  const Words words = {"--samples", samples};
+  EXPECT_TRUE(answer("calibrate-density", words).at("warnings").empty());
+  const json ignored = answer("calibrate-density", words + Words{"--soil", "sand", "--draws", "5"});
+  ASSERT_TRUE(warns(ignored, "options_ignored")) << ignored;
+  EXPECT_TRUE(contains(ignored.at("warnings")[0].at("message"), "--soil, --draws"));
+}
+
 TEST_F(BadInput, TablesThatHoldNoSamplesAreRefused) {
   refused(3, "letter.txt: ", "calibrate-density", {"--samples", letter});
   const std::string one = folder.write("one.csv", "bulking_factor,density_percent\n1.1,20\n");

@@ -482,6 +482,30 @@ TEST_F(Tools, SearchWithoutADigNamesTheNearestAndItsLimit) {
   }
 }
 
+TEST_F(Tools, WithoutADigNoTrajectoryOfAnEarlierPlanStays) {
+  const auto plan_to = [&](const std::string& name, const Words& more) {
+    return answer("plan-path", Words{"--density", "40", "--trajectory", folder.file(name), "--plot",
+                                     folder.file("dig.svg")} +
+                                   more);
+  };
+  const Words none = {"--search",      "--evaluations", "5",
+                      "--angle-range", "1.4,1.4",       "--penetration-range",
+                      "0.9,0.9",       "--drag-range",  "3,3"};
+  for (const std::string name : {"dig.csv", "dig.json"}) {
+    const json made = plan_to(name, {});
+    EXPECT_EQ(made.at("trustworthy"), true);
+    EXPECT_EQ(made.at("soil"), "loam");
+    EXPECT_EQ(made.at("machine"), "zx120");
+    EXPECT_EQ(made.at("simulator"), "height-map");
+    const std::size_t size = content_of(folder.file(name)).size();
+    const json left = plan_to(name, none);
+    EXPECT_EQ(left.at("trustworthy"), false);
+    EXPECT_TRUE(warns(left, "plot_not_written"));
+    EXPECT_LT(content_of(folder.file(name)).size(), size / 10) << name;
+  }
+  EXPECT_EQ(json::parse(content_of(folder.file("dig.json"))).at("points"), json::array());
+}
+
 TEST_F(Tools, ADigThatLiftsNextToNothingIsNotWorthMaking) {
   const json none =
       answer("plan-path",

@@ -163,8 +163,10 @@ GroundDensity read_density(const std::string& file) {
   GroundDensity density(field->get<double>(), sd_in(json, file));
   const auto trustworthy = json.find("trustworthy");
   density.trustworthy = trustworthy == json.end() || *trustworthy == true;
-  const auto soil = json.find("law_soil");
-  if (soil != json.end() && soil->is_string()) density.soil = soil->get<std::string>();
+  for (const char* key : {"law_soil", "soil"}) {  // the one that was said decides
+    const auto soil = json.find(key);
+    if (soil != json.end() && soil->is_string()) density.soil = soil->get<std::string>();
+  }
   return density;
 }
 
@@ -236,6 +238,11 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
   if (plan.look_up) json.update(look_up_json(*plan.look_up));
   if (uncertain) json.update(spread_json(plan.spread, density.sd_percent));
   return json;
+}
+
+void write_trajectory(const std::string& file, const Trajectory& trajectory) {
+  const bool json = file.size() >= 5 && file.compare(file.size() - 5, 5, ".json") == 0;
+  write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
 }
 
 std::vector<std::string> plan_lines(const DigPlan& plan, const GroundDensity& density,

@@ -90,7 +90,7 @@ struct DigPlan {
 
   bool stopped = false;     ///< the search was cancelled; the dig is the best until then
   bool trustworthy = true;  ///< false after a warning marked * below
-  /// density_as_fraction *, density_not_trustworthy *, law_of_other_soil, library_unreadable (the
+  /// density_as_fraction *, density_not_trustworthy *, law_of_other_soil *, library_unreadable (the
   /// search began with nothing), simulator_failed (at some digs of the search, which were left
   /// out), min_fill_relaxed (no dig was found that fills the bucket as asked),
   /// slope_outside_library *, ground_unlike_library *, may_stall *, approach_blocked (the

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/simulation/calibration.hpp>
+
+#include "base/json.hpp"
+
+namespace excavplan::tools {
+
+/// Where true and measured bulking factors differ most.
+nlohmann::ordered_json difference_json(const BulkingDifference& difference);
+std::vector<std::string> difference_lines(const BulkingDifference& difference);
+
+}  // namespace excavplan::tools
