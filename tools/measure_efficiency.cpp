@@ -39,6 +39,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   inputs.first.declare(arguments, "", "");
   inputs.second.declare(arguments, "second-", ", second dig");
   declare_frames(arguments, inputs.frames);
+  declare_units(arguments, inputs.frames);
   arguments.option("cell", inputs.cell_size, Quantity::length,
                    "cell size of the height maps (default: from the point density, at least 0.05)");
 }
