@@ -15,6 +15,7 @@
 #include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "ground/robust.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
 #include "simulation/checked_dig.hpp"
@@ -69,6 +70,30 @@ void judge_density(const Task& task, DigPlan& plan) {
              "the density was estimated by the law of " + soil + ", the path is planned in " +
                  task.soil.name);
   }
+}
+
+/// Machines stand at z = 0, and so does the ground just ahead of them, or lower: not far above.
+void judge_ground(const Task& task, DigPlan& plan) {
+  constexpr double ahead = 1.0;  // of the tracks, and to both sides [m]; ours
+  constexpr double most = 0.5;   // [m]; ours: a slope of 30 degrees rises so far
+  const HeightMap map = task.ground.surface();
+  const double front = task.machine.track_front;
+  std::vector<double> heights;
+  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+    if (map.x(col) < front || map.x(col) > front + ahead) continue;
+    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+      if (std::abs(map.y(row)) > ahead || std::isnan(map.z(row, col))) continue;
+      heights.push_back(map.z(row, col));
+    }
+  }
+  if (heights.empty()) return;
+  const double height = median(heights);
+  if (height <= most) return;
+  distrust(plan, "ground_above_tracks",
+           "the ground ahead of the tracks, x = " + readable(front) + " .. " +
+               readable(front + ahead) + " m, lies " + readable(height, 2) +
+               " m above the ground that the machine stands on, z = 0: are the heights of the "
+               "terrain those of the site frame?");
 }
 
 std::shared_ptr<const PathLibrary> library_of(const Task& task) {
@@ -418,6 +443,7 @@ DigPlan plan_dig(const Task& task) {
   DigPlan plan;
   plan.method = task.options.method;
   judge_density(task, plan);
+  if (!task.level) judge_ground(task, plan);
   std::optional<PossibleGround> ground;  // not for a density taken as known that is looked up
   if (plan.method == PlanMethod::search || task.uncertain()) {
     ground.emplace(task.options.simulator, task.machine, task.soil, task.density);

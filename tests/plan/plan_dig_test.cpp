@@ -187,6 +187,16 @@ TEST_F(PlanDig, DistrustsGroundThatTheLibraryDoesNotCover) {
   EXPECT_FALSE(found.trustworthy || found.look_up->error);
 }
 
+TEST_F(PlanDig, DistrustsGroundFarAboveTheTracks) {
+  for (const double height : {-1.5, 0.0, 0.3, 0.8, 1.4}) {
+    Terrain ground = level_planning_ground(machine_);
+    ground.bank.z += height;
+    const DigPlan found = plan_dig(machine_, loam_, 40.0, ground);
+    EXPECT_EQ(warns(found, "ground_above_tracks"), height > 0.5) << height;
+    EXPECT_TRUE(found.trustworthy <= (height <= 0.5)) << height;
+  }
+}
+
 TEST_F(PlanDig, ADensityThatTheLibraryLacksIsAReasonNotAnError) {
   PathLibrary part = shipped_library(machine_, loam_);
   const auto soft = [](const PathLibraryEntry& entry) { return entry.density_percent < 50.0; };
