@@ -30,10 +30,11 @@ DigBounds machine_bounds(const Machine& machine, const DigBounds& bounds = {});
 
 /// A dig that a search may begin with.
 struct KnownDig {
-  DigParameters parameters;
+  DigParameters parameters;            ///< of its path
   std::optional<double> start_x = {};  ///< where starts are searched; none: that of least work [m]
 
-  // NOLINTNEXTLINE(google-explicit-constructor): most known digs are numbers alone
+  /// Not explicit: most known digs are numbers alone.
+  // NOLINTNEXTLINE(google-explicit-constructor)
   KnownDig(const DigParameters& numbers, std::optional<double> x = {})
       : parameters(numbers), start_x(x) {}
 };
