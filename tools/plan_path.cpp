@@ -88,7 +88,8 @@ PlanOptions options_of(const Inputs& inputs, Console& console) {
 /// What an earlier plan left must not be taken for that of this ground.
 void withdraw(const Inputs& inputs, const Machine& machine, Outcome& outcome) {
   if (inputs.trajectory) write_trajectory(*inputs.trajectory, {machine.name, {}});
-  if (!inputs.plot || !std::filesystem::exists(*inputs.plot)) return;
+  std::error_code unknown;
+  if (!inputs.plot || !std::filesystem::exists(*inputs.plot, unknown)) return;
   outcome.warnings.push_back(
       {"plot_not_written", *inputs.plot + ": is of an earlier run, as there is no dig to draw"});
 }

@@ -178,29 +178,25 @@ Eigen::Vector3d mean_of(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
+/// Distance of points from their mean (rms) [m].
+double spread_about(const Eigen::Vector3d& mean, const std::vector<Eigen::Vector3d>& points) {
+  double squares = 0.0;
+  for (const Eigen::Vector3d& p : points) squares += (p - mean).squaredNorm();
+  return std::sqrt(squares / static_cast<double>(points.size()));
+}
+
 /// The points must be as far from their middle in the scan as in the site, to a tenth.
-void check_lengths(const std::vector<Eigen::Vector3d>& in_scan, const Eigen::Vector3d& scan_mean,
-                   const std::vector<Eigen::Vector3d>& in_site, const Eigen::Vector3d& site_mean) {
+void check_lengths(double in_scan, double in_site) {
   constexpr double most = 1.1;  // ours
-  double scan = 0.0;
-  double site = 0.0;
-  for (std::size_t i = 0; i < in_scan.size(); ++i) {
-    scan += (in_scan[i] - scan_mean).squaredNorm();
-    site += (in_site[i] - site_mean).squaredNorm();
-  }
-  const double factor = std::sqrt(site / scan);
+  const double factor = in_site / in_scan;
   if (factor <= most && factor >= 1.0 / most) return;
   refuse("the known points are " + readable(factor) +
          " times as far from each other in the site as in the scan: one of them is in other units");
 }
 
 /// Points that no motion brings together have others' places.
-void check_fit(const PointPose& pose, const std::vector<Eigen::Vector3d>& in_site,
-               const Eigen::Vector3d& site_mean) {
+void check_fit(const PointPose& pose, double spread) {
   constexpr double most = 0.1;  // ours: of the distance from their middle (rms)
-  double squares = 0.0;
-  for (const Eigen::Vector3d& p : in_site) squares += (p - site_mean).squaredNorm();
-  const double spread = std::sqrt(squares / static_cast<double>(in_site.size()));
   if (pose.rms <= most * spread) return;
   const auto worst = std::max_element(pose.residuals.begin(), pose.residuals.end());
   refuse("the known points come to lie " + readable(pose.rms, 2) +
@@ -290,7 +286,8 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
   if (!(svd.singularValues()(1) > thin * thin * svd.singularValues()(0))) {
     refuse("the known points lie on one line, so the rotation about it is undetermined");
   }
-  check_lengths(in_scan, scan_mean, in_site, site_mean);
+  const double spread = spread_about(site_mean, in_site);
+  check_lengths(spread_about(scan_mean, in_scan), spread);
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();
   sign.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   const Eigen::Matrix3d rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
@@ -304,7 +301,7 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
     squares += (placed - in_site[i]).squaredNorm();
   }
   pose.rms = std::sqrt(squares / static_cast<double>(in_scan.size()));
-  check_fit(pose, in_site, site_mean);
+  check_fit(pose, spread);
   return pose;
 }
 

@@ -124,11 +124,10 @@ struct RasterOptions {
 /// high the extreme medians of the 3 x 3 neighbourhood but for one on each side, which counts only
 /// if it is that of the cell itself and of five points at least; g = outlier_distance * noise +
 /// (high - low) / 2, noise the lower quartile of the cells' robust sd: the two levels of a cell
-/// that a wall crosses both lie inside it, so that the volume between two maps stays unbiased. They
-/// also lie farther from the plane through the medians around than outlier_distance * noise and
-/// three times what these are off it.
-/// Where few cells hold five points nothing is left out. survey_surface() says more, of which this
-/// is the height.
+/// that a wall crosses both lie inside it, so that the volume between two maps stays unbiased.
+/// Points farther from the plane through these medians than outlier_distance * noise and three
+/// times what the medians are off it are outliers too. Where few cells hold five points nothing is
+/// left out. survey_surface() says more, of which this is the height.
 ///
 /// @throws Error (bad_input) if an option is out of range or the map would hold more than 100
 /// million cells
