@@ -6,6 +6,7 @@
 #include "shared/estimate.hpp"
 #include "shared/method_inputs.hpp"
 #include "shared/recordings.hpp"
+#include "shared/results.hpp"
 #include "shared/scans.hpp"
 #include "shared/soil_inputs.hpp"
 #include "shared/survey_planning.hpp"
@@ -27,8 +28,7 @@ const About about = {
       "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
       "without scans: expected density error of a D435i on a 2.5 m mast"},
-     {"estimate-density before.pcd after.pcd --json --plot change.svg",
-      "JSON output, and a plot of the height change"}},
+     {"estimate-density before.pcd after.pcd --json --plot change.svg", "JSON, and a plot"}},
     true};
 
 struct Inputs {
@@ -122,6 +122,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   Outcome outcome = estimate_outcome(counts, options.soil);
   if (const auto warning = many_buckets(counts, machine)) outcome.warnings.push_back(*warning);
   for (Warning& each : warnings_of(inputs.method, inputs.compare)) outcome.warnings.push_back(each);
+  for (Warning& each : unlike_law(law, machine.name)) outcome.warnings.push_back(each);
   report.add_to(outcome);
   if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
   if (inputs.compare) add_comparison(both, counts, outcome);

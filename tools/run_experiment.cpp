@@ -107,6 +107,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const ExperimentOptions options = options_of(inputs, machine, soil);
   const std::vector<Condition> conditions = conditions_of(inputs);
   Outcome outcome;
+  outcome.warnings = unlike_law(law, machine.name, soil.name);
   outcome.json["conditions"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     console.progress(static_cast<double>(i) / static_cast<double>(conditions.size()),

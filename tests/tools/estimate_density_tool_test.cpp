@@ -132,6 +132,16 @@ TEST_F(Tools, AHoleOfManyBucketsIsSaidAndTrusted) {
   EXPECT_EQ(found["trustworthy"], true);
 }
 
+TEST_F(Tools, ALawOfAnotherMachineIsSaidAndTrusted) {
+  EXPECT_FALSE(warns(answer("estimate-density", quickstart(folder)), "law_of_other_machine"));
+  json machine = json::parse(content_of(shipped("machines/zx120.json")));
+  machine["name"] = "larger";
+  const std::string larger = folder.write("larger.json", machine.dump());
+  const json found = answer("estimate-density", quickstart(folder) + Words{"--machine", larger});
+  EXPECT_TRUE(warns(found, "law_of_other_machine")) << found["warnings"];
+  EXPECT_EQ(found["trustworthy"], true);
+}
+
 TEST_F(Tools, APathThatWasNotDugEndsTrust) {
   const Words words = quickstart(folder) + Words{"--soil", "loam", "--dug-start", "6.05"};
   const json dug =
