@@ -248,7 +248,7 @@ TEST_F(BadInput, ThePathOfAPlanIsDugAndNothingElseTaken) {
   refused(2, "--path-from excludes --path and --start", "simulate-dig",
           dig + Words{"--start", "5"});
   const std::string other = folder.write("other.json", R"({"path": {"start_x_m": 5}})");
-  refused(3, other + ": path.penetration_angle_rad must be a number, it is missing", "simulate-dig",
+  refused(3, other + ": path.penetration_angle_rad: is missing", "simulate-dig",
           {"--density", "40", "--path-from", other});
 }
 

@@ -442,7 +442,7 @@ TEST_F(BadInput, FilesThatAreNoCloudsAreRefused) {
 
 TEST_F(BadInput, ValuesOutOfRangeAreRefused) {
   refused(2, "--density: 140 % is outside 0 .. 100", "plan-path", {"--density", "140"});
-  refused(2, "--density-sd: -3 must be at least 0", "plan-path",
+  refused(2, "--density-sd: -3 % is outside 0 .. 1000", "plan-path",
           {"--density", "40", "--density-sd=-3"});
   refused(2, "140 %, must be in 0 .. 100 %", "simulate-dig", {"--density", "140", "--plot", plot});
   refused(2, "0 .. 100", "build-path-library", {"--densities", "140", "--out", plot});
