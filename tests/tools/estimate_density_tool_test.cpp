@@ -455,6 +455,8 @@ std::string scattered(int points, unsigned seed) {
 }
 
 TEST_F(BadInput, ScansTooSparseForTheirCellsAreNamed) {
+  refused(2, "--plan-survey: 'k' is given more than once", tool, {"--plan-survey", "k=1.2,k=1.3"});
+  refused(2, "bulking factor is 120, must be in 0.9 .. 3", tool, {"--plan-survey", "k=120"});
   const std::string before = folder.write("before.xyz", scattered(400, 1));
   const std::string after = folder.write("after.xyz", scattered(400, 2));
   const std::string names = before + ", " + after + ": ";
