@@ -43,8 +43,10 @@ void check_scans(const SceneScanInputs& inputs) {
 }
 
 void write_scans(const SceneScanInputs& inputs, const DigScene& scene, std::uint64_t seed) {
-  if (!inputs.before && !inputs.after) return;
-  SceneScans scans = scan_scene(scene, inputs.camera, seed, inputs.places);
+  if (!inputs.any()) return;
+  SceneScans scans = naming_options({{"the camera at", "--camera: the one at"}}, [&] {
+    return scan_scene(scene, inputs.camera, seed, inputs.places);
+  });
   write_scan(inputs.before, std::move(scans.before), inputs.places);
   write_scan(inputs.after, std::move(scans.after), inputs.places);
 }
