@@ -18,6 +18,7 @@
 #include "ground/robust.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/dig_problem.hpp"
 #include "simulation/checked_dig.hpp"
 #include "simulation/terrain_check.hpp"
 
@@ -333,6 +334,7 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
 
 void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchOptions& options,
                     DigPlan& plan) {
+  require_own_checkpoint(task.machine, simulator, task.ground, options);
   const auto first = search_by_least_work(task, simulator, options);
   const bool ended = first && was_stopped(*first);
   const auto found = ended ? *first : search_dig(task.machine, simulator, task.ground, options);
@@ -356,6 +358,7 @@ DigPlan search_most_likely(const Task& task, const std::vector<PossibleSoil>& so
 
 void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
                       DigSearchOptions options, DigPlan& plan) {
+  require_own_checkpoint(task.machine, soils, task.ground, within_budget(options, true));
   int digs_of_likely = 0;
   if (!task.level) {
     const DigPlan likely = search_most_likely(task, soils, options);
