@@ -398,6 +398,15 @@ TEST_F(Tools, AnOutputThatReplacesTheFileOfStandardOutputIsRefused) {
   }
 }
 
+TEST_F(Tools, AnEmptyFolderOfTemporaryFilesIsAsGoodAsNone) {
+  const char* const usual = std::getenv("TMPDIR");
+  const std::string before = usual == nullptr ? "" : usual;
+  ::setenv("TMPDIR", "", 1);
+  const ProgramResult piped = run_program("inspect-cloud", {"-"}, shipped("quickstart/before.pcd"));
+  usual == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before.c_str(), 1);
+  EXPECT_EQ(piped.code, 0) << piped.err;
+}
+
 TEST_F(BadInput, StandardInputIsATransformButNoDatabase) {
   const std::string frame = folder.write("frame.txt", "1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   const Words words = {scan, "--json", "--frame"};
