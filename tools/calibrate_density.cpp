@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 
 #include <excavplan/simulation/calibration.hpp>
 
@@ -100,8 +99,7 @@ std::vector<Warning> ignored(const Inputs& inputs) {
 std::string text(const DensityFit& fit, const nlohmann::ordered_json& file) {
   std::string text = formula(fit.form);
   for (const auto& [key, value] : file.at(fit.key).items()) {
-    const double number = std::abs(value.get<double>()) < 1e-9 ? 0.0 : value.get<double>();
-    text += ", " + key + " " + readable(number, 5);
+    text += ", " + key + " " + readable(value.get<double>(), 5);
   }
   return text;
 }

@@ -536,7 +536,9 @@ TEST_F(BadInput, OptionsOfTheGoalThatHaveNoEffectOrNoLibraryAreRefused) {
   }
   refused(2, "no library of zx120 in loam for the goal time is shipped", "plan-path",
           plan + Words{"--goal", "time"});
-  refused(2, "the smallest fill of the bucket, as a fraction of its heaped capacity is 2, must be",
+  refused(2,
+          "the smallest fill of the bucket, as a fraction of its heaped capacity is 2, must be in "
+          "0 .. 1\nSee",
           "plan-path", plan + Words{"--min-fill", "2"});
   refused(2, "the dump height is 12 m, the bucket pin reaches", "plan-path",
           plan + Words{"--search", "--dump-height", "12"});
