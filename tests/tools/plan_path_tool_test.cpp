@@ -64,6 +64,9 @@ TEST_F(Tools, TrajectoryIsJsonIfItsFileEndsInJson) {
   EXPECT_EQ(trajectory.points.front().phase, DigPhase::approach);
   EXPECT_GT(trajectory.points.front().bucket.z, 0.3);
   EXPECT_EQ(trajectory.points.back().phase, DigPhase::lift);
+  const std::string capital = folder.file("capital.JSON");
+  answer("plan-path", {"--density", "40", "--trajectory", capital});
+  EXPECT_EQ(content_of(capital), content_of(file));
 }
 
 TEST_F(Tools, ALinkIsWrittenThrough) {
@@ -311,6 +314,18 @@ TEST_F(Tools, OptionsWithoutEffectAreWarnedOf) {
   EXPECT_FALSE(warns(answer("plan-path", {"--density", "40"}), "options_ignored"));
 }
 
+TEST_F(Tools, ACellSizeIsOfUseOnlyWhereDigsAreSimulated) {
+  const auto ignores = [](const Words& words) {
+    return warns(answer("plan-path", Words{"--density", "40", "--cell", "0.06"} + words),
+                 "options_ignored");
+  };
+  EXPECT_TRUE(ignores({}));
+  EXPECT_TRUE(ignores({"--density-sd", "0"}));
+  EXPECT_FALSE(ignores({"--density-sd", "5"}));
+  EXPECT_FALSE(ignores({"--search", "--evaluations", "20"}));
+  EXPECT_FALSE(ignores({"--terrain", shipped("quickstart/before.pcd")}));
+}
+
 TEST_F(Tools, PlanForAnUncertainDensityGivesTheValueOfKnowingIt) {
   const Words few = {"--search", "--evaluations", "30", "--goal", "energy"};
   const json plan = answer("plan-path", few + Words{"--density", "40", "--density-sd", "8"});
@@ -428,8 +443,23 @@ TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
            {R"({"density_percent": 140})", "density_percent: is 140, must be in 0 .. 100"},
            {R"({"bulking_factor": 1.2})", "density_percent: is missing"},
            {R"({"tool": "estimate-density", "density_percent": 40, "law_soil": null})",
-            "density_sd_percent is missing"},
-           {"[40]", "it is missing"},
+            "density_sd_percent: is missing"},
+           {R"({"tool": "plan-path", "density_percent": 40})",
+            "tool: is \"plan-path\", expected a result of estimate-density --json"},
+           {R"({"format": "excavplan-law", "density_percent": 40})",
+            "format: is \"excavplan-law\", expected a result of estimate-density --json"},
+           {R"({"density_percent": 40, "density_sd_percent": 1e9})",
+            "density_sd_percent: is 1e+09, must be in 0 .. 1000"},
+           {R"({"density_percent": 40, "trustworthy": "yes"})",
+            "trustworthy: is \"yes\", expected true or false"},
+           {R"({"density_percent": 40, "law_soil": 3})", "law_soil: is 3, expected a text"},
+           {R"({"density_percent": 40, "law": {}})", "law: is {}, expected a text"},
+           {R"({"density_percent": 40, "zones": "here"})", "zones: expected a list of objects"},
+           {R"({"density_percent": 40, "zones": [{"kind": "dig", "extent_m": [1, 2]}]})",
+            "zones[0].extent_m: expected a list of 4 numbers, got [1,2]"},
+           {R"({"density_percent": 40, "zones": [{"kind": "dig", "extent_m": [2, 0, 1, 1]}]})",
+            "zones[0].extent_m: must be [x_min, y_min, x_max, y_max]"},
+           {"[40]", "expected a result of estimate-density --json"},
            {R"({"density_percent": 40, "density_percent": 80})", "appears twice"},
            {"{\"zones\": " + std::string(100000, '['), "more than 64 levels"},
            {"", "not valid JSON"}}) {

@@ -499,6 +499,8 @@ TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
   refused(2, "must end in .svg", "estimate-density", {scan, later_scan, "--plot", png});
   refused(2, "must end in .svg", "simulate-dig", {"--density", "40", "--plot", png});
   refused(2, "must end in .svg", "plan-path", {"--density", "40", "--plot", png});
+  refused(2, "--trajectory: '" + png + "' must end in .csv or .json", "plan-path",
+          {"--density", "40", "--trajectory", png});
   refused(2, "must end in .pcd, .ply", "inspect-cloud", {scan, "--out", png});
   refused(2, "must end in .pcd, .ply", "simulate-dig",
           {"--density", "40", "--before", folder.file("b.pcd"), "--after", png});

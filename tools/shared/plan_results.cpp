@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
-
 #include <utility>
+
 #include <excavplan/error.hpp>
 
 #include "base/files.hpp"
@@ -134,8 +135,8 @@ std::vector<Rectangle> holes_in(JsonObject& result) {
     }
     if (is_hole) holes.push_back({edge[0], edge[1], edge[2], edge[3]});
   }
-}
   return holes;
+}
 
 StatedDensity read_density(const std::string& file) {
   JsonObject result = JsonObject::result_of("estimate-density", file);
@@ -188,7 +189,6 @@ std::vector<Warning> source_warnings(const DigPlan& plan, const std::string& fil
 
 }  // namespace
 
-void check(const DensityInput& input) {
 void declare_density(Arguments& arguments, DensityInput& input) {
   arguments.option("density", input.percent, Quantity::percent, "relative density of the ground");
   arguments.option(
@@ -200,6 +200,7 @@ void declare_density(Arguments& arguments, DensityInput& input) {
       "take the density and its uncertainty from this result of estimate-density --json");
 }
 
+void check(const DensityInput& input) {
   if (input.sd && !(*input.sd >= 0.0 && *input.sd <= most_density_sd)) {
     usage_error("--density-sd: " + number_text(*input.sd) + " % is outside 0 .. " +
                 number_text(most_density_sd));
@@ -260,7 +261,7 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
 }
 
 void write_trajectory(const std::string& file, const Trajectory& trajectory) {
-  const bool json = file.size() >= 5 && file.compare(file.size() - 5, 5, ".json") == 0;
+  const bool json = small_letters(std::filesystem::path(file).extension().string()) == ".json";
   write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
 }
 
