@@ -39,7 +39,6 @@ struct Inputs {
   ScanFrames frames;
   DensityOptions options;
   MethodInputs method;
-  bool compare = false;
   bool still = false;
   std::optional<std::string> plan_survey;
   std::optional<DigParameters> dug_path;
@@ -48,7 +47,7 @@ struct Inputs {
   std::optional<std::string> plot;
 };
 
-void declare(Arguments& arguments, Inputs& inputs) {
+void declare_estimate(Arguments& arguments, Inputs& inputs) {
   arguments.positional(
       "BEFORE", inputs.before,
       "cloud before the dig: PCD, PLY, LAS or XYZ, or " + std::string(recording_form));
@@ -67,11 +66,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_method(arguments, inputs.method);
   arguments.flag("no-register", inputs.still,
                  "do not register the scans: the sensor did not move between them");
-  arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
   arguments.option("cell", inputs.options.cell_size, Quantity::length,
                    "cell size of the height map, voxel size of --method paper (default: from the "
                    "point density, at least 0.05)");
   declare_soil(arguments, inputs.soil);
+  arguments.only_if({[&inputs] { return inputs.method.uses("surface"); },
+                     "--method paper has no error to weigh a second density by"},
+                    [&] { declare_payload(arguments, inputs.soil); });
   arguments.option("dug-path", inputs.dug_path,
                    "the path that was dug: takes a law of digs along it");
   arguments.option("dug-start", inputs.dug_start, Quantity::length,
@@ -79,6 +80,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "the cut; needs scans in the site frame");
   declare_machine_in_view(arguments, inputs.frames.view);
   arguments.plot(inputs.plot, "the height change and its zones");
+}
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  arguments.only_if(
+      {[&inputs] { return !inputs.plan_survey; }, "a survey is planned by its keys alone"},
+      [&] { declare_estimate(arguments, inputs); });
+  declare_law(arguments, inputs.soil);
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
 
@@ -109,23 +117,16 @@ Outcome work_on_scans(const Inputs& inputs) {
   const Machine machine = machine_named(inputs.frames.view.machine);
   DensityOptions options = options_of(inputs, machine);
   const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
-  BothEstimates both;
-  DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
-  const auto estimate = [&] {
-    if (inputs.compare) {
-      both = estimate_by_both(scans, law, options);
-    } else {
-      counts = estimate_density(scans, law, options);
-    }
-  };
-  naming_options(estimate_options, [&] { with_frame_hint(pair_frame_hint, estimate); });
+  const auto by_method = [&] { return estimate(inputs.method, scans, law, options); };
+  const BothEstimates both =
+      naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
+  const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   Outcome outcome = estimate_outcome(counts, options.soil);
   if (const auto warning = many_buckets(counts, machine)) outcome.warnings.push_back(*warning);
-  for (Warning& each : warnings_of(inputs.method, inputs.compare)) outcome.warnings.push_back(each);
   for (Warning& each : unlike_law(law, machine.name)) outcome.warnings.push_back(each);
   report.add_to(outcome);
   if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
-  if (inputs.compare) add_comparison(both, counts, outcome);
+  if (inputs.method.compare) add_comparison(both, counts, outcome);
   return outcome;
 }
 

@@ -53,8 +53,11 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
-  arguments.option("seed", inputs.seed, "seed of the searches");
-  arguments.threads(inputs.threads, "");
+  arguments.only_if({[&inputs] { return inputs.search; }, "nothing is searched without --search"},
+                    [&] {
+                      arguments.option("seed", inputs.seed, "seed of the searches");
+                      arguments.threads(inputs.threads, "");
+                    });
 }
 
 struct Condition {

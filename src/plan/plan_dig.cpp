@@ -18,7 +18,11 @@
 #include "ground/robust.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
+<<<<<<< HEAD
 #include "planning/front_room.hpp"
+=======
+#include "planning/dig_problem.hpp"
+>>>>>>> 01fc300e31cd48e85f8f8fbfa0af0e7345dcb827
 #include "simulation/checked_dig.hpp"
 #include "simulation/terrain_check.hpp"
 
@@ -356,6 +360,7 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
 
 void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchOptions& options,
                     DigPlan& plan) {
+  require_own_checkpoint(task.machine, simulator, task.ground, options);
   const auto first = search_by_least_work(task, simulator, options);
   const bool ended = first && was_stopped(*first);
   const auto found = ended ? *first : search_dig(task.machine, simulator, task.ground, options);
@@ -379,6 +384,7 @@ DigPlan search_most_likely(const Task& task, const std::vector<PossibleSoil>& so
 
 void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
                       DigSearchOptions options, DigPlan& plan) {
+  require_own_checkpoint(task.machine, soils, task.ground, within_budget(options, true));
   int digs_of_likely = 0;
   if (!task.level) {
     const DigPlan likely = search_most_likely(task, soils, options);

@@ -10,6 +10,8 @@
 
 #include <excavplan/plan/plan_dig.hpp>
 
+#include "shared/arguments.hpp"
+
 /// @file
 /// A plan as JSON and as text lines, and the density it is made for from an estimate's JSON.
 
@@ -22,6 +24,7 @@ struct DensityInput {
   std::optional<std::string> file;
 };
 
+void declare_density(Arguments& arguments, DensityInput& input);
 /// Checks made before the file is read. @throws Error (bad_input)
 void check(const DensityInput& input);
 /// @throws Error (bad_file) naming file, key, value and rule
