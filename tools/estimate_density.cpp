@@ -27,8 +27,7 @@ const About about = {
      {"estimate-density run.db3:/points@0s+2s run.db3:/points@95s+2s --tf-frame map",
       "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
-      "without scans: expected density error of a D435i on a 2.5 m mast"},
-     {"estimate-density before.pcd after.pcd --json --plot change.svg", "JSON, and a plot"}},
+      "without scans: expected density error of a D435i on a 2.5 m mast"}},
     true};
 
 struct Inputs {
