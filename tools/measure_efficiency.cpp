@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <limits>
 
 #include <excavplan/survey/efficiency.hpp>
 
 #include "base/json.hpp"
+#include "shared/efficiency_results.hpp"
 #include "shared/logged_dig.hpp"
 #include "shared/tool.hpp"
 
@@ -16,8 +18,10 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 const About about = {
     "measure-efficiency",
     "measures the soil that a real dig lifts per fuel or energy, and the gain of a second dig. A "
-    "log is a CSV file with the column time_s and one of: fuel_flow_ml_per_s; fuel_flow_l_per_h; "
-    "power_w; boom_power_w, arm_power_w and bucket_power_w (negative joint power counts as 0).",
+    "log is a table as spreadsheets and loggers write it, with a time and one of: fuel flow "
+    "(fuel_flow_ml_per_s, 'fuel flow [L/h]' and so on); power; power of each joint; torque and "
+    "rate "
+    "of each joint; pressures and piston speed of each cylinder. Negative joint power counts as 0.",
     {{"measure-efficiency fixed.csv planned.csv --volume 0.42 --second-volume 0.41",
       "fuel logs of two digs and the soil volume in the bucket after each"},
      {"measure-efficiency day.csv --from 61.5 --to 70 --mass 780kg", "one dig of a longer log"},
@@ -28,6 +32,8 @@ const About about = {
 struct Inputs {
   RunInputs first;
   RunInputs second;
+  LogInputs logs;
+  bool own_meters = false;
   ScanFrames frames;
   std::optional<double> cell_size;
 };
@@ -38,10 +44,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("SECOND.csv", inputs.second.log, "log of a second dig to compare");
   inputs.first.declare(arguments, "", "");
   inputs.second.declare(arguments, "second-", ", second dig");
+  inputs.logs.declare(arguments);
+  arguments.flag("own-meters", inputs.own_meters,
+                 "each run had its own meter, whose errors are part of that of the gain");
   const auto has_scans = [&inputs] {
-    return inputs.first.dump_before.has_value() || inputs.second.dump_before.has_value();
+    return inputs.first.has_scans() || inputs.second.has_scans();
   };
-  arguments.only_if({has_scans, "there are no scans of a dump area"}, [&] {
+  arguments.only_if({has_scans, "there are no scans"}, [&] {
     declare_frames(arguments, inputs.frames);
     declare_units(arguments, inputs.frames);
     arguments.option("cell", inputs.cell_size, Quantity::length,
@@ -50,41 +59,16 @@ void declare(Arguments& arguments, Inputs& inputs) {
   });
 }
 
-nlohmann::ordered_json to_json(const DigEfficiency& run) {
-  nlohmann::ordered_json json = {{"file", run.file}, {"duration_s", run.duration}};
-  for (const char* key :
-       {"volume_m3", "volume_sd_m3", "mass_kg", "mass_sd_kg", "fuel_ml", "energy_kj", "efficiency",
-        "efficiency_sd", "efficiency_unit", "efficiency_m3_per_ml", "efficiency_m3_per_kj",
-        "efficiency_kg_per_ml", "efficiency_kg_per_kj"}) {
-    json[key] = nullptr;
-  }
-  const bool is_volume = run.payload.kind == Lifted::volume;
-  json[is_volume ? "volume_m3" : "mass_kg"] = run.payload.amount.value;
-  json[is_volume ? "volume_sd_m3" : "mass_sd_kg"] = run.payload.amount.sd;
-  json[run.spent == Spent::fuel ? "fuel_ml" : "energy_kj"] = run.cost;
-  json["efficiency"] = run.value().value;
-  json["efficiency_sd"] = run.value().sd;
-  json["efficiency_unit"] = run.unit();
-  json["efficiency_" + run.unit()] = run.value().value;
-  return json;
-}
-
-std::string line(const DigEfficiency& run) {
-  const Measured& payload = run.payload.amount;
-  return run.file + ": " + readable(payload.value, payload.sd) +
-         (run.payload.kind == Lifted::volume ? " m3, " : " kg, ") + readable(run.cost) +
-         (run.spent == Spent::fuel ? " mL in " : " kJ in ") + readable(run.duration) +
-         " s: " + readable(run.value().value, run.value().sd) + " " + run.symbol();
-}
-
 DigEfficiency measure(const RunInputs& inputs, const Inputs& all, Outcome& outcome) {
-  LoggedDig dig = inputs.dig(all.frames);
+  LoggedDig dig = inputs.dig(all.frames, all.logs);
   dig.cell_size = all.cell_size;
-  DigEfficiency run = naming_options(cell_option, [&] {
+  OptionNames names = cell_option;
+  names.insert(names.end(), log_options.begin(), log_options.end());
+  DigEfficiency run = naming_options(names, [&] {
     return with_frame_hint(pair_frame_hint, [&] { return measure_efficiency(dig); });
   });
   outcome.json["runs"].push_back(to_json(run));
-  outcome.lines.push_back(line(run));
+  for (std::string& line : run_lines(run)) outcome.lines.push_back(std::move(line));
   outcome.warnings.insert(outcome.warnings.end(), run.warnings.begin(), run.warnings.end());
   outcome.trustworthy = outcome.trustworthy && run.trustworthy;
   return run;
@@ -99,11 +83,16 @@ Outcome work(const Inputs& inputs) {
   const DigEfficiency first = measure(inputs.first, inputs, outcome);
   Measured better{unknown, unknown};
   if (inputs.second.log) {
-    better = efficiency_gain(first, measure(inputs.second, inputs, outcome));
+    better = efficiency_gain(first, measure(inputs.second, inputs, outcome), inputs.own_meters);
     outcome.lines.push_back("gain of the second: " + readable(better.value, better.sd) + " %");
+  }
+  const auto [low, high] = gain_interval(better);
+  if (std::isfinite(low)) {
+    outcome.lines.back() += ", 95 % interval " + readable(low) + " .. " + readable(high) + " %";
   }
   outcome.json["gain_percent"] = better.value;
   outcome.json["gain_sd_percent"] = better.sd;
+  outcome.json["gain_interval_percent"] = {low, high};
   outcome.json["trustworthy"] = outcome.trustworthy;
   return outcome;
 }

@@ -35,6 +35,8 @@ class Table {
   const std::vector<double>& column(const std::string& name) const;
   /// The same column as it is written. @throws Error (bad_file) if there is no such column
   std::vector<std::string> texts(const std::string& name) const;
+  /// Name of the file.
+  const std::string& path() const { return path_; }
   std::size_t rows() const { return lines_.size(); }
   const std::vector<std::string>& names() const { return names_; }
   /// Line of the file in which a row begins.
