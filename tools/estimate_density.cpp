@@ -120,7 +120,8 @@ Outcome work_on_scans(const Inputs& inputs) {
   };
   naming_options(estimate_options, [&] { with_frame_hint(pair_frame_hint, estimate); });
   Outcome outcome = estimate_outcome(counts, options.soil);
-  if (const auto warning = many_buckets(counts, machine)) outcome.warnings.push_back(*warning);
+  if (const auto warning = many_buckets(counts, machine, scans.before.unit))
+    outcome.warnings.push_back(*warning);
   for (Warning& each : warnings_of(inputs.method, inputs.compare)) outcome.warnings.push_back(each);
   report.add_to(outcome);
   if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));

@@ -59,10 +59,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("library", inputs.library,
                  "path library (default: the shipped one of machine, soil and goal)");
   arguments.flag("search", inputs.search, "search for the path instead of looking it up");
-  arguments.file("terrain", inputs.terrain.cloud,
-                 "cloud of the ground in the site frame (default: level)");
-  arguments.file("terrain-frame", inputs.terrain.frame,
-                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  declare_terrain(arguments, inputs.terrain);
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);

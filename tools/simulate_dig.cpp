@@ -54,10 +54,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);
-  arguments.file("terrain", inputs.terrain.cloud,
-                 "cloud of the ground in the site frame (default: level)");
-  arguments.file("terrain-frame", inputs.terrain.frame,
-                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  declare_terrain(arguments, inputs.terrain);
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   declare_scans(arguments, inputs.scans);

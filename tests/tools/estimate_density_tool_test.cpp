@@ -132,6 +132,16 @@ TEST_F(Tools, AHoleOfManyBucketsIsSaidAndTrusted) {
   EXPECT_EQ(found["trustworthy"], true);
 }
 
+TEST_F(Tools, OneWarningNamesTheUnitOfAllClouds) {
+  Words scans;
+  for (const std::string& scan : quickstart(folder)) scans.push_back(in_millimetres(folder, scan));
+  EXPECT_EQ(warning_codes(answer("estimate-density", scans)), Words({"units", "soil_assumed"}));
+  const json in_cm = answer("estimate-density", scans + Words{"--unit", "cm"});
+  EXPECT_TRUE(contains(in_cm["warnings"].dump(), "in mm: --unit mm")) << in_cm["warnings"];
+  EXPECT_EQ(warning_codes(answer("estimate-density", scans + Words{"--unit", "mm"})),
+            Words{"soil_assumed"});
+}
+
 TEST_F(Tools, APathThatWasNotDugEndsTrust) {
   const Words words = quickstart(folder) + Words{"--soil", "loam", "--dug-start", "6.05"};
   const json dug =

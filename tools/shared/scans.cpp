@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/scans.hpp"
 
+#include <algorithm>
 #include <array>
-#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -11,16 +11,10 @@
 #include "base/text.hpp"
 #include "shared/recordings.hpp"
 #include "shared/tool.hpp"
+#include "survey/cloud_units.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-/// Length of a unit [m].
-const std::map<std::string, double>& units() {
-  static const std::map<std::string, double> lengths = {
-      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"ft", 0.3048}, {"in", 0.0254}};
-  return lengths;
-}
 
 /// One side of a pair, as its options say.
 struct Side {
@@ -62,7 +56,7 @@ Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
     scan.files = {side.text};
   }
   scan.area = frames.area;
-  scan.unit = units().at(side.unit.empty() ? frames.unit : side.unit);
+  scan.unit = unit_length(side.unit.empty() ? frames.unit : side.unit);
   scan.sensor_origin = side.origin ? side.origin : frames.sensor_origin;
   if (posture) {
     const Machine machine = machine_named(frames.view.machine);
@@ -109,13 +103,25 @@ void declare_frames(Arguments& arguments, ScanFrames& frames) {
   arguments.option("after-origin", frames.after_origin, "the same of the clouds after alone");
 }
 
-void declare_units(Arguments& arguments, ScanFrames& frames) {
+void declare_unit(Arguments& arguments, const std::string& name, std::string& unit,
+                  const std::string& help) {
   std::vector<std::string> words;
-  for (const auto& [word, length] : units()) words.push_back(word);
-  arguments.choice("unit", frames.unit, words, "unit of the coordinates in all clouds");
-  arguments.choice("before-unit", frames.before_unit, words,
-                   "of those before (default: as --unit)");
-  arguments.choice("after-unit", frames.after_unit, words, "of those after (default: as --unit)");
+  for (const CloudUnit& each : cloud_units()) words.push_back(each.word);
+  arguments.choice(name, unit, words, help);
+}
+
+void declare_units(Arguments& arguments, ScanFrames& frames) {
+  declare_unit(arguments, "unit", frames.unit, "unit of the coordinates in all clouds");
+  declare_unit(arguments, "before-unit", frames.before_unit,
+               "of those before (default: as --unit)");
+  declare_unit(arguments, "after-unit", frames.after_unit, "of those after (default: as --unit)");
+}
+
+double unit_length(const std::string& word) {
+  const std::vector<CloudUnit>& all = cloud_units();
+  return std::find_if(all.begin(), all.end(),
+                      [&](const CloudUnit& unit) { return unit.word == word; })
+      ->length;
 }
 
 void declare_machine_in_view(Arguments& arguments, MachineInView& view) {

@@ -6,7 +6,6 @@
 
 #include <excavplan/survey/scan_terrain.hpp>
 
-#include "shared/arguments.hpp"
 #include "shared/found_pose.hpp"
 #include "shared/scans.hpp"
 
@@ -16,6 +15,7 @@ namespace {
 Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
   Scan scan;
   scan.files = {*terrain.cloud};
+  scan.unit = unit_length(terrain.unit);
   if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
   ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
                                         [&] { return terrain_from_scan(scan, extent, cell_size); });
@@ -24,10 +24,19 @@ Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_s
 
 }  // namespace
 
+void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
+  arguments.file("terrain", terrain.cloud,
+                 "cloud of the ground in the site frame (default: level)");
+  arguments.file("terrain-frame", terrain.frame,
+                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");
+}
+
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
   if (terrain.frame && !terrain.cloud) {
     usage_error("--terrain-frame needs --terrain");
   }
+  if (terrain.unit != TerrainInput{}.unit && !terrain.cloud) usage_error("--unit needs --terrain");
   return naming_options(cell_option, [&] {
     require_simulated_cell(cell_size);
     return terrain.cloud ? scanned(terrain, extent, cell_size)
