@@ -72,10 +72,8 @@ Outcome inspect(const Inputs& inputs) {
   format.text = inputs.ascii;
   auto recorded = recorded_input(inputs.file, inputs.tf_frame);
   if (!recorded && !inputs.tf_frame.empty()) usage_error("--tf-frame needs a recording");
-  Scan scan;
+  Scan scan = scan_of_input(inputs.file, recorded);
   scan.unit = unit_length(inputs.unit);
-  if (!recorded) scan.files = {inputs.file};
-  if (recorded) scan.clouds = {std::make_shared<const Cloud>(std::move(recorded->scan.cloud))};
   const auto pose = find_pose(
       placed, [&] { return level_on_ground(scan); },
       [](const std::string& path) { return read_known_points(path); });

@@ -45,6 +45,19 @@ TEST_F(Recordings, InspectCloudListsWhatIsThere) {
   }
 }
 
+TEST_F(Recordings, TheTerrainMayBeAScanOfARecording) {
+  const std::string recorded = dig + ":/merged/points@0s+1s";
+  const std::string cloud = folder.file("scan.pcd");
+  answer("inspect-cloud", {recorded, "--out", cloud});
+  const Words words = {"--density", "40", "--terrain"};
+  EXPECT_NEAR(number(answer("plan-path", words + Words{recorded}), "/path/start_x_m"),
+              number(answer("plan-path", words + Words{cloud}), "/path/start_x_m"), 1e-3);
+  refused(3, "found no topic '/nope'", "plan-path", words + Words{dig + ":/nope"});
+  refused(2, "behind a recording", "simulate-dig", words + Words{dig + "@0s+1s"});
+  refused(2, "--tf-frame needs a recording", "plan-path",
+          words + Words{cloud, "--tf-frame", "map"});
+}
+
 TEST_F(Recordings, AScanIsWrittenInTheFrameAskedFor) {
   const std::string points = recording("scene.db3") + ":/lidar/points@1s+2s";
   const std::string out = folder.file("scan.pcd");

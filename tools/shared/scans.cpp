@@ -43,17 +43,13 @@ void require_within(const Machine& machine, const MachinePosture& posture) {
 
 /// Reads the scan if it is of a recording; a file is left where it is.
 Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
-  Scan scan;
   std::optional<MachinePosture> posture = side.posture ? side.posture : frames.view.both;
-  if (auto input = recorded_input(side.text, frames.tf_frame)) {
-    scan.name = side.text;
+  auto input = recorded_input(side.text, frames.tf_frame);
+  Scan scan = scan_of_input(side.text, input);
+  if (input) {
     if (frames.view.recorded) posture = recorded_posture(*input);
-    scan.clouds = {std::make_shared<const Cloud>(std::move(input->scan.cloud))};
-    scan.doubts = std::move(input->scan.warnings);
     report.recordings.push_back(std::move(input->json));
     report.lines.push_back("recorded   " + input->line);
-  } else {
-    scan.files = {side.text};
   }
   scan.area = frames.area;
   scan.unit = unit_length(side.unit.empty() ? frames.unit : side.unit);

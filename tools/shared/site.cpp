@@ -7,14 +7,16 @@
 #include <excavplan/survey/scan_terrain.hpp>
 
 #include "shared/found_pose.hpp"
+#include "shared/recordings.hpp"
 #include "shared/scans.hpp"
 
 namespace excavplan::tools {
 namespace {
 
 Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
-  Scan scan;
-  scan.files = {*terrain.cloud};
+  auto recorded = recorded_input(*terrain.cloud, terrain.tf_frame);
+  if (!recorded && !terrain.tf_frame.empty()) usage_error("--tf-frame needs a recording");
+  Scan scan = scan_of_input(*terrain.cloud, recorded);
   scan.unit = unit_length(terrain.unit);
   if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
   ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
@@ -26,9 +28,12 @@ Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_s
 
 void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
   arguments.file("terrain", terrain.cloud,
-                 "cloud of the ground in the site frame (default: level)");
+                 "cloud of the ground in the site frame, or " + std::string(recording_form) +
+                     " (default: level)");
   arguments.file("terrain-frame", terrain.frame,
                  "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  arguments.text("tf-frame", "NAME", terrain.tf_frame,
+                 "frame of the transforms of a recording into which its scan is put");
   declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");
 }
 
@@ -36,6 +41,7 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
   if (terrain.frame && !terrain.cloud) {
     usage_error("--terrain-frame needs --terrain");
   }
+  if (!terrain.tf_frame.empty() && !terrain.cloud) usage_error("--tf-frame needs --terrain");
   if (terrain.unit != TerrainInput{}.unit && !terrain.cloud) usage_error("--unit needs --terrain");
   return naming_options(cell_option, [&] {
     require_simulated_cell(cell_size);

@@ -15,13 +15,14 @@ namespace excavplan::tools {
 
 /// A measured ground from the command line.
 struct TerrainInput {
-  std::optional<std::string> cloud;
+  std::optional<std::string> cloud;  ///< a file, or a scan of a recording
   std::optional<std::string>
-      frame;               ///< file with the matrix that transforms the cloud into the site frame
-  std::string unit = "m";  ///< of the coordinates in the cloud
+      frame;  ///< file with the matrix that transforms the cloud into the site frame
+  std::string tf_frame = {};  ///< of the transforms of a recording
+  std::string unit = "m";     ///< of the coordinates in the cloud
 };
 
-/// --terrain, --terrain-frame and --unit.
+/// --terrain, --terrain-frame, --tf-frame and --unit.
 void declare_terrain(Arguments& arguments, TerrainInput& terrain);
 
 /// Ground to dig on, with its warnings.
