@@ -66,14 +66,14 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_units(arguments, inputs.frames);
   declare_method(arguments, inputs.method);
   arguments.flag("no-register", inputs.still,
-                 "do not register the scans: the sensor did not move between them");
+                 "do not look for a motion of the sensor between the scans: there was none");
   arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
   arguments.option("cell", inputs.options.cell_size, Quantity::length,
                    "cell size of the height map, voxel size of --method paper (default: from the "
                    "point density, at least 0.05)");
   declare_soil(arguments, inputs.soil);
   arguments.option("dug-path", inputs.dug_path,
-                   "the path that was dug: takes a law of digs along it");
+                   "the path that was dug: the law is then one of digs along it");
   arguments.option("dug-start", inputs.dug_start, Quantity::length,
                    "x at which that path enters the ground: measures the soil that fell back into "
                    "the cut; needs scans in the site frame");

@@ -48,7 +48,7 @@ struct Inputs {
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("density", inputs.density.percent, Quantity::percent,
-                   "relative density of the ground");
+                   "relative density of the ground; this or --density-from is needed");
   arguments.option(
       "density-sd", inputs.density.sd, Quantity::percent,
       "standard deviation of the density, propagated to the results; --search then finds the "

@@ -30,8 +30,11 @@ void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
   arguments.file("terrain", terrain.cloud,
                  "cloud of the ground in the site frame, or " + std::string(recording_form) +
                      " (default: level)");
-  arguments.file("terrain-frame", terrain.frame,
-                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  arguments.text(
+      "terrain-frame", "FRAME", terrain.frame,
+      std::string("transforms the terrain cloud into the site frame, of which the origin "
+                  "is on the swing axis at ground level, x forward, z up: ") +
+          frame_forms);
   arguments.text("tf-frame", "NAME", terrain.tf_frame,
                  "frame of the transforms of a recording into which its scan is put");
   declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");

@@ -17,7 +17,7 @@ namespace excavplan::tools {
 struct TerrainInput {
   std::optional<std::string> cloud;  ///< a file, or a scan of a recording
   std::optional<std::string>
-      frame;  ///< file with the matrix that transforms the cloud into the site frame
+      frame;  ///< that transforms the cloud into the site frame, as frame_named() takes it
   std::string tf_frame = {};  ///< of the transforms of a recording
   std::string unit = "m";     ///< of the coordinates in the cloud
 };
