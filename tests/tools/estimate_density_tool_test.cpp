@@ -352,6 +352,9 @@ TEST_F(Tools, BothMethodsAreShownWhenAsked) {
 
 TEST_F(Tools, ASurveyIsPlannedWithoutScans) {
   const json near = answer("estimate-density", {"--plan-survey", "height=2,offset=1"});
+  const std::string poor =
+      run_program("estimate-density", {"--plan-survey", "sensor=lidar,height=2.5,offset=3"}).out;
+  EXPECT_TRUE(contains(poor, "frames   is not enough alone")) << poor;
   const json far = answer("estimate-density", {"--plan-survey", "height=4,offset=2,target=1"});
   EXPECT_LT(number(near, "/density_sd_percent"), 0.4 * number(far, "/density_sd_percent"));
   EXPECT_NEAR(number(near, "/range_m"), std::sqrt(5.0), 0.05);
