@@ -8,8 +8,8 @@
 #include "shared/cloud_results.hpp"
 #include "shared/found_pose.hpp"
 #include "shared/recordings.hpp"
-#include "shared/scans.hpp"
 #include "shared/tool.hpp"
+#include "shared/unit_inputs.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/scans.hpp"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "base/text.hpp"
 #include "shared/recordings.hpp"
 #include "shared/tool.hpp"
-#include "survey/cloud_units.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -99,25 +97,11 @@ void declare_frames(Arguments& arguments, ScanFrames& frames) {
   arguments.option("after-origin", frames.after_origin, "the same of the clouds after alone");
 }
 
-void declare_unit(Arguments& arguments, const std::string& name, std::string& unit,
-                  const std::string& help) {
-  std::vector<std::string> words;
-  for (const CloudUnit& each : cloud_units()) words.push_back(each.word);
-  arguments.choice(name, unit, words, help);
-}
-
 void declare_units(Arguments& arguments, ScanFrames& frames) {
   declare_unit(arguments, "unit", frames.unit, "unit of the coordinates in all clouds");
   declare_unit(arguments, "before-unit", frames.before_unit,
                "of those before (default: as --unit)");
   declare_unit(arguments, "after-unit", frames.after_unit, "of those after (default: as --unit)");
-}
-
-double unit_length(const std::string& word) {
-  const std::vector<CloudUnit>& all = cloud_units();
-  return std::find_if(all.begin(), all.end(),
-                      [&](const CloudUnit& unit) { return unit.word == word; })
-      ->length;
 }
 
 void declare_machine_in_view(Arguments& arguments, MachineInView& view) {

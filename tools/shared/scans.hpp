@@ -11,6 +11,7 @@
 #include "shared/arguments.hpp"
 #include "shared/found_pose.hpp"
 #include "shared/tool.hpp"
+#include "shared/unit_inputs.hpp"
 
 namespace excavplan::tools {
 
@@ -49,11 +50,6 @@ struct ScanFrames {
 void declare_frames(Arguments& arguments, ScanFrames& frames);
 /// --machine, --machine-pose, --before-machine-pose and --after-machine-pose.
 void declare_machine_in_view(Arguments& arguments, MachineInView& view);
-/// An option for the unit of coordinates: m, mm and others.
-void declare_unit(Arguments& arguments, const std::string& name, std::string& unit,
-                  const std::string& help);
-/// Length of the unit that such an option names [m].
-double unit_length(const std::string& word);
 /// --unit, --before-unit and --after-unit.
 void declare_units(Arguments& arguments, ScanFrames& frames);
 

@@ -2,21 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/site.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include <excavplan/survey/scan_terrain.hpp>
 
 #include "shared/found_pose.hpp"
-#include "shared/recordings.hpp"
 #include "shared/scans.hpp"
+#include "shared/unit_inputs.hpp"
 
 namespace excavplan::tools {
 namespace {
 
+/// FILE:TOPIC@TIME of a file that is there: what reads recordings is not part of the tools that
+/// plan.
+void refuse_recording(const std::string& text) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const std::size_t end = text.find_first_of(":@", 1);
+  if (end == text.npos || fs::exists(text, ignored) || !fs::exists(text.substr(0, end), ignored)) {
+    return;
+  }
+  throw Error(ErrorKind::bad_file,
+              text +
+                  ": --terrain takes a cloud, no scan of a recording; inspect-cloud "
+                  "FILE:TOPIC@TIME+SPAN --out scan.pcd writes one as a cloud");
+}
+
 Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
-  auto recorded = recorded_input(*terrain.cloud, terrain.tf_frame);
-  if (!recorded && !terrain.tf_frame.empty()) usage_error("--tf-frame needs a recording");
-  Scan scan = scan_of_input(*terrain.cloud, recorded);
+  refuse_recording(*terrain.cloud);
+  Scan scan;
+  scan.files = {*terrain.cloud};
   scan.unit = unit_length(terrain.unit);
   if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
   ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
@@ -28,15 +44,12 @@ Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_s
 
 void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
   arguments.file("terrain", terrain.cloud,
-                 "cloud of the ground in the site frame, or " + std::string(recording_form) +
-                     " (default: level)");
+                 "cloud of the ground in the site frame (default: level)");
   arguments.text(
       "terrain-frame", "FRAME", terrain.frame,
       std::string("transforms the terrain cloud into the site frame, of which the origin "
                   "is on the swing axis at ground level, x forward, z up: ") +
           frame_forms);
-  arguments.text("tf-frame", "NAME", terrain.tf_frame,
-                 "frame of the transforms of a recording into which its scan is put");
   declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");
 }
 
@@ -44,7 +57,6 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
   if (terrain.frame && !terrain.cloud) {
     usage_error("--terrain-frame needs --terrain");
   }
-  if (!terrain.tf_frame.empty() && !terrain.cloud) usage_error("--tf-frame needs --terrain");
   if (terrain.unit != TerrainInput{}.unit && !terrain.cloud) usage_error("--unit needs --terrain");
   return naming_options(cell_option, [&] {
     require_simulated_cell(cell_size);

@@ -15,14 +15,13 @@ namespace excavplan::tools {
 
 /// A measured ground from the command line.
 struct TerrainInput {
-  std::optional<std::string> cloud;  ///< a file, or a scan of a recording
+  std::optional<std::string> cloud;
   std::optional<std::string>
       frame;  ///< that transforms the cloud into the site frame, as frame_named() takes it
-  std::string tf_frame = {};  ///< of the transforms of a recording
-  std::string unit = "m";     ///< of the coordinates in the cloud
+  std::string unit = "m";  ///< of the coordinates in the cloud
 };
 
-/// --terrain, --terrain-frame, --tf-frame and --unit.
+/// --terrain, --terrain-frame and --unit.
 void declare_terrain(Arguments& arguments, TerrainInput& terrain);
 
 /// Ground to dig on, with its warnings.
