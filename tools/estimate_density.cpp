@@ -121,9 +121,7 @@ Outcome work_on_scans(const Inputs& inputs) {
       naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
   const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   Outcome outcome = estimate_outcome(counts, options.soil);
-  for (Warning& each : machine_warnings(counts, law, machine, scans.before.unit)) {
-    outcome.warnings.push_back(each);
-  }
+  add_machine_warnings(counts, law, machine, scans.before.unit, outcome);
   report.add_to(outcome);
   if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
   if (inputs.method.compare) add_comparison(both, counts, outcome);

@@ -288,11 +288,11 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
   return outcome;
 }
 
-std::vector<Warning> machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
-                                      const Machine& machine, double unit) {
-  std::vector<Warning> warnings = unlike_law(law, machine.name);
-  if (const auto many = many_buckets(estimate, machine, unit)) warnings.push_back(*many);
-  return warnings;
+void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
+                          const Machine& machine, double unit, Outcome& outcome) {
+  for (Warning& each : unlike_law(law, machine.name)) outcome.warnings.push_back(each);
+  const auto many = many_buckets(estimate, machine, unit);
+  if (many) outcome.warnings.push_back(*many);
 }
 
 std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome) {

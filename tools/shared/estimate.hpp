@@ -26,8 +26,8 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
 /// is measured as well as that of one, and bulking factor and density have no unit.
 /// @param unit  that was taken for that of the coordinates [m]
 /// And those of unlike_law().
-std::vector<Warning> machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
-                                      const Machine& machine, double unit);
+void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
+                          const Machine& machine, double unit, Outcome& outcome);
 
 /// The figure of an estimate, as SVG.
 std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome);
