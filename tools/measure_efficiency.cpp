@@ -51,6 +51,9 @@ void declare(Arguments& arguments, Inputs& inputs) {
     return inputs.first.has_scans() || inputs.second.has_scans();
   };
   arguments.only_if({has_scans, "there are no scans"}, [&] {
+    arguments.option(
+        "area", inputs.frames.area,
+        "ignore points of the clouds outside this area (default: where both have points)");
     declare_frames(arguments, inputs.frames);
     declare_units(arguments, inputs.frames);
     arguments.option("cell", inputs.cell_size, Quantity::length,
@@ -59,17 +62,27 @@ void declare(Arguments& arguments, Inputs& inputs) {
   });
 }
 
+/// Of one area alone, what the library says of dig and dump area.
+const OptionNames heap_options = {
+    {"; --dig-area and --dump-area take it in, if it belongs to them", ""},
+    {"--dig-area and --dump-area", "--area"},
+    {"BEFORE and AFTER", "--dump-before and --dump-after"},
+    cell_option.back()};
+
 DigEfficiency measure(const RunInputs& inputs, const Inputs& all, Outcome& outcome) {
   LoggedDig dig = inputs.dig(all.frames, all.logs);
   dig.cell_size = all.cell_size;
-  OptionNames names = cell_option;
+  OptionNames names = heap_options;
   names.insert(names.end(), log_options.begin(), log_options.end());
   DigEfficiency run = naming_options(names, [&] {
     return with_frame_hint(pair_frame_hint, [&] { return measure_efficiency(dig); });
   });
   outcome.json["runs"].push_back(to_json(run));
   for (std::string& line : run_lines(run)) outcome.lines.push_back(std::move(line));
-  outcome.warnings.insert(outcome.warnings.end(), run.warnings.begin(), run.warnings.end());
+  for (const Warning& each : run.warnings) {
+    outcome.warnings.push_back(
+        {each.code, with_option_names(each.message, heap_options), each.ends_trust});
+  }
   outcome.trustworthy = outcome.trustworthy && run.trustworthy;
   return run;
 }

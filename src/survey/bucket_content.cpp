@@ -90,7 +90,7 @@ ScannedChange change_between(const ScanPair& scans, const LoggedDig& dig, bool i
     add(doubts);
     add(is_hole ? check_points({&surfaces, nullptr}, change)
                 : check_points({nullptr, &surfaces}, change));
-    if (!is_hole) add(check_volumes(change));
+    if (!is_hole) add(check_volumes(change, scans.after.unit));
     add(change.warnings);
     return result;
   } catch (const TooFewCells& few) {

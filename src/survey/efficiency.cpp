@@ -9,6 +9,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "survey/bucket_content.hpp"
+#include "survey/scan_checks.hpp"
 
 namespace excavplan {
 namespace {
@@ -189,6 +190,7 @@ DigEfficiency measure_efficiency(const LoggedDig& dig) {
   result.bank_volume = lifted.bank_volume;
   result.warnings.insert(result.warnings.end(), lifted.warnings.begin(), lifted.warnings.end());
   if (auto warning = implausible(result)) result.warnings.push_back(std::move(*warning));
+  result.warnings = causes_of(std::move(result.warnings));
   result.trustworthy = std::none_of(result.warnings.begin(), result.warnings.end(), casts_doubt);
   return result;
 }
