@@ -274,8 +274,13 @@ LogInterval interval_of(const DigLogSource& source, const std::vector<double>& t
   return interval;
 }
 
+LogInterval overlap(const LogInterval& a, const LogInterval& b) {
+  return {std::max(a.from, b.from), std::min(a.to, b.to)};
+}
+
 void find_digs(const LogTable& log, DigLog& result) {
   result.digs = {result.whole};
+  result.cycle = result.whole;
   const auto& names = log.table.names();
   const auto column = std::find_if(names.begin(), names.end(), [](const std::string& name) {
     return column_name(name).base == "phase";
@@ -286,7 +291,9 @@ void find_digs(const LogTable& log, DigLog& result) {
   if (wanted == PhaseSource::none) return;
   std::vector<LogInterval> digs;
   if (wanted == PhaseSource::marked) {
-    digs = marked_digs(log.table, is_marked ? *column : "phase", result.time);
+    MarkedPhases marked = marked_phases(log.table, is_marked ? *column : "phase", result.time);
+    digs = std::move(marked.digs);
+    result.cycle = overlap(marked.cycle, result.whole);
   } else {
     const auto arm = log.find({Measure::angle, {"arm", "arm_angle", "arm_joint"}});
     const auto bucket = log.find({Measure::angle, {"bucket", "bucket_angle", "bucket_joint"}});
@@ -298,8 +305,7 @@ void find_digs(const LogTable& log, DigLog& result) {
   }
   std::vector<LogInterval> counted;
   for (const LogInterval& dig : digs) {
-    const LogInterval part{std::max(dig.from, result.whole.from),
-                           std::min(dig.to, result.whole.to)};
+    const LogInterval part = overlap(dig, result.whole);
     if (part.from < part.to) counted.push_back(part);
   }
   if (counted.empty()) {

@@ -16,8 +16,9 @@ namespace excavplan {
 namespace {
 
 constexpr std::array<const char*, 3> dig_words = {"penetrate", "drag", "scoop"};
-constexpr std::array<const char*, 9> other_words = {"approach", "lift", "swing", "dump", "return",
-                                                    "lower",    "idle", "rest",  ""};
+constexpr std::array<const char*, 6> other_words = {"approach", "lift",   "swing",
+                                                    "dump",     "return", "lower"};
+constexpr std::array<const char*, 3> rest_words = {"idle", "rest", ""};
 
 template <typename List>
 bool holds(const List& list, const std::string& word) {
@@ -28,30 +29,43 @@ double half_way(const std::vector<double>& time, std::size_t row) {
   return 0.5 * (time[row - 1] + time[row]);
 }
 
+[[noreturn]] void refuse_phase(const Table& table, std::size_t row, const std::string& word) {
+  throw Error(ErrorKind::bad_file,
+              table.path() + ": line " + std::to_string(table.line(row)) + ": phase is " +
+                  quoted(word) +
+                  ", expected penetrate, drag, scoop, or one of approach, lift, swing, dump, "
+                  "return, lower, idle, rest");
+}
+
 }  // namespace
 
-std::vector<LogInterval> marked_digs(const Table& table, const std::string& column,
-                                     const std::vector<double>& time) {
+MarkedPhases marked_phases(const Table& table, const std::string& column,
+                           const std::vector<double>& time) {
   const std::vector<std::string> words = table.texts(column);
-  std::vector<LogInterval> digs;
+  const std::size_t rows = words.size();
+  const auto begin_of = [&](std::size_t i) { return i == 0 ? time[0] : half_way(time, i); };
+  const auto end_of = [&](std::size_t i) {
+    return i + 1 == rows ? time.back() : half_way(time, i + 1);
+  };
+  MarkedPhases found{{}, {time.back(), time.front()}};
   std::string before;
-  for (std::size_t i = 0; i < words.size(); ++i) {
+  for (std::size_t i = 0; i < rows; ++i) {
     const std::string word = small_letters(words[i]);
-    const bool digs_here = holds(dig_words, word);
-    if (!digs_here && !holds(other_words, word)) {
-      throw Error(ErrorKind::bad_file,
-                  table.path() + ": line " + std::to_string(table.line(i)) + ": phase is " +
-                      quoted(words[i]) +
-                      ", expected penetrate, drag, scoop, or one of approach, lift, swing, dump, "
-                      "return, lower, idle, rest");
+    if (!holds(dig_words, word) && !holds(other_words, word) && !holds(rest_words, word)) {
+      refuse_phase(table, i, words[i]);
     }
-    const bool is_new = !holds(dig_words, before) || (before == "scoop" && word != "scoop");
-    if (digs_here && is_new) digs.push_back({i == 0 ? time[0] : half_way(time, i), time.back()});
-    if (digs_here && i + 1 < words.size()) digs.back().to = half_way(time, i + 1);
-    if (digs_here && i + 1 == words.size()) digs.back().to = time.back();
+    if (holds(dig_words, word)) {
+      const bool is_new = !holds(dig_words, before) || (before == "scoop" && word != "scoop");
+      if (is_new) found.digs.push_back({begin_of(i), 0.0});
+      found.digs.back().to = end_of(i);
+    }
+    if (!holds(rest_words, word)) {
+      found.cycle.from = std::min(found.cycle.from, begin_of(i));
+      found.cycle.to = end_of(i);
+    }
     before = word;
   }
-  return digs;
+  return found;
 }
 
 std::vector<LogInterval> found_digs(const std::vector<double>& time, const std::vector<double>& arm,

@@ -52,7 +52,7 @@ void warn_of_rate(const DigLog& log, double scale, DigEfficiency& result) {
   const LogInterval all{log.time.front(), log.time.back()};
   const double rest = (all.to - all.from) - dig.duration;
   const double beside = (scale * log.integral(all) - dig.cost) / rest;
-  if (rest >= dig.duration && rate < much_less * beside) {
+  if (log.phases == PhaseSource::none && rest >= dig.duration && rate < much_less * beside) {
     result.warnings.push_back(
         {"dig_below_rest", log.file + ": " + readable(rate) + unit + " on average from " +
                                number_text(log.digs.front().from) + " to " +
@@ -108,7 +108,7 @@ void read_cost(const LoggedDig& dig, DigEfficiency& result) {
   result.digs = log.digs.size();
   result.idle = idle_rate(dig, log);
   result.dig = share_of(log, log.digs, scale, result.idle);
-  const RunShare all = share_of(log, {log.whole}, scale, result.idle);
+  const RunShare all = share_of(log, {log.cycle}, scale, result.idle);
   if (log.phases != PhaseSource::none) result.cycle = all;
   const RunShare& counted = dig.counted == Counted::cycle ? all : result.dig;
   result.cost = dig.subtracts_idle ? *counted.above_idle : counted.cost;

@@ -74,7 +74,8 @@ struct DigLog {
   std::vector<std::vector<double>> rates;
   PhaseSource phases = PhaseSource::none;  ///< how the digs are known
   std::vector<LogInterval> digs;           ///< penetrate, drag and scoop of each; one or more
-  LogInterval whole;                       ///< what counts of the log
+  LogInterval cycle;  ///< all but idling before and behind it, as far as phases tell
+  LogInterval whole;  ///< what counts of the log
 
   /// Rate of the machine at each time: the sum of the parts that count [mL/s] or [W]. For figures.
   std::vector<double> rate() const;

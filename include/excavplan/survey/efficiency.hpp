@@ -46,7 +46,7 @@ using BucketContent = std::variant<Payload, BankVolume, ScanPair, PitScans, Buck
 /// What of a log counts.
 enum class Counted {
   dig,   ///< penetrate, drag and scoop; all of a log without phases
-  cycle  ///< all of it
+  cycle  ///< all of it, but idling before and behind a log with marked phases
 };
 
 /// One run: a log, and what it lifted.
@@ -91,7 +91,7 @@ struct DigEfficiency {
   PhaseSource phases = PhaseSource::none;  ///< how the dig is known in the log
   std::size_t digs = 1;                    ///< in the log
   RunShare dig;                            ///< penetrate, drag and scoop of all digs
-  std::optional<RunShare> cycle;           ///< the whole log, if it has phases
+  std::optional<RunShare> cycle;           ///< of Counted::cycle, if the log has phases
   std::optional<IdleRate> idle;            ///< nothing: neither stated nor in the log
   bool trustworthy = true;                 ///< false after a warning that casts doubt on it
   std::vector<Warning> warnings;           ///< of the log and the payload
@@ -107,9 +107,9 @@ struct DigEfficiency {
 ///
 /// Warnings, after each of which it is not trustworthy: gap_in_log (a pause of more than 10 usual
 /// steps), implausible_fuel and implausible_energy (a payload or a rate far beyond those of
-/// excavators), dig_below_rest (the machine took less per second in the dig than in the rest of the
-/// log, which is at least as long), bucket_partly_unseen. Of scans also those of measure_change(),
-/// units and frame.
+/// excavators), dig_below_rest (in a log without phases: the machine took less per second in the
+/// dig than in the rest of the log, which is at least as long), bucket_partly_unseen. Of scans also
+/// those of measure_change(), units and frame.
 ///
 /// @throws Error (bad_file) as read_dig_log() or naming the rule if it adds up to nothing, or as
 /// estimate_density() for scans; (bad_input) if the dig lies outside the log, the payload is not
