@@ -1,54 +1,41 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-#include <limits>
-
-#include <excavplan/survey/efficiency.hpp>
-
-#include "base/json.hpp"
-#include "shared/efficiency_results.hpp"
-#include "shared/logged_dig.hpp"
+#include "shared/efficiency_runs.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 const About about = {
     "measure-efficiency",
     "measures the soil that a real dig lifts per fuel or energy, and the gain of a second dig. A "
     "log is a table as spreadsheets and loggers write it, with a time and one of: fuel flow "
     "(fuel_flow_ml_per_s, 'fuel flow [L/h]' and so on); power; power of each joint; torque and "
-    "rate "
-    "of each joint; pressures and piston speed of each cylinder. Negative joint power counts as 0.",
+    "rate of each joint; pressures and piston speed of each cylinder. Negative joint power counts "
+    "as 0.",
     {{"measure-efficiency fixed.csv planned.csv --volume 0.42 --second-volume 0.41",
       "fuel logs of two digs and the soil volume in the bucket after each"},
      {"measure-efficiency day.csv --from 61.5 --to 70 --mass 780kg", "one dig of a longer log"},
      {"measure-efficiency dig.csv --dump-before heap0.pcd --dump-after heap1.pcd",
-      "the volume from scans of the dump area"}},
+      "the volume from scans of the dump area"},
+     {"measure-efficiency --runs plan.csv --against operator.csv",
+      "two sets of runs, with a test"}},
     true};
 
-struct Inputs {
-  RunInputs first;
-  RunInputs second;
-  LogInputs logs;
-  bool own_meters = false;
-  ScanFrames frames;
-  std::optional<double> cell_size;
-};
-
-void declare(Arguments& arguments, Inputs& inputs) {
+void declare(Arguments& arguments, EfficiencyInputs& inputs) {
   arguments.positional("RUN.csv", inputs.first.log, "log of a dig");
-  arguments.require("RUN.csv");
   arguments.positional("SECOND.csv", inputs.second.log, "log of a second dig to compare");
   inputs.first.declare(arguments, "", "");
   inputs.second.declare(arguments, "second-", ", second dig");
+  arguments.text(
+      "runs", "TABLE|FOLDER", inputs.runs,
+      "instead of RUN.csv a set of runs: a table with a column file, or a folder of logs");
+  arguments.text("against", "TABLE|FOLDER", inputs.against, "set of runs to compare it with");
   inputs.logs.declare(arguments);
   arguments.flag("own-meters", inputs.own_meters,
                  "each run had its own meter, whose errors are part of that of the gain");
   const auto has_scans = [&inputs] {
-    return inputs.first.has_scans() || inputs.second.has_scans();
+    return inputs.first.has_scans() || inputs.second.has_scans() || inputs.runs;
   };
   arguments.only_if({has_scans, "there are no scans"}, [&] {
     arguments.option(
@@ -62,50 +49,14 @@ void declare(Arguments& arguments, Inputs& inputs) {
   });
 }
 
-/// Of one area alone, what the library says of dig and dump area.
-const OptionNames heap_options = {
-    {"; --dig-area and --dump-area take it in, if it belongs to them", ""},
-    {"--dig-area and --dump-area", "--area"},
-    {"BEFORE and AFTER", "--dump-before and --dump-after"},
-    cell_option.back()};
-
-DigEfficiency measure(const RunInputs& inputs, const Inputs& all, Outcome& outcome) {
-  LoggedDig dig = inputs.dig(all.frames, all.logs);
-  dig.cell_size = all.cell_size;
-  OptionNames names = heap_options;
-  names.insert(names.end(), log_options.begin(), log_options.end());
-  DigEfficiency run = naming_options(names, [&] {
-    return with_frame_hint(pair_frame_hint, [&] { return measure_efficiency(dig); });
-  });
-  outcome.json["runs"].push_back(to_json(run));
-  for (std::string& line : run_lines(run)) outcome.lines.push_back(std::move(line));
-  for (const Warning& each : run.warnings) {
-    outcome.warnings.push_back(
-        {each.code, with_option_names(each.message, heap_options), each.ends_trust});
-  }
-  outcome.trustworthy = outcome.trustworthy && run.trustworthy;
-  return run;
-}
-
-Outcome work(const Inputs& inputs) {
-  if (inputs.second.any() && !inputs.second.log) {
-    usage_error("SECOND.csv is missing, but options of a second dig are given");
-  }
+Outcome work(const EfficiencyInputs& inputs) {
   Outcome outcome;
   outcome.json["runs"] = nlohmann::ordered_json::array();
-  const DigEfficiency first = measure(inputs.first, inputs, outcome);
-  Measured better{unknown, unknown};
-  if (inputs.second.log) {
-    better = efficiency_gain(first, measure(inputs.second, inputs, outcome), inputs.own_meters);
-    outcome.lines.push_back("gain of the second: " + readable(better.value, better.sd) + " %");
+  if (inputs.runs || inputs.against) {
+    compare_sets(inputs, outcome);
+  } else {
+    compare_two(inputs, outcome);
   }
-  const auto [low, high] = gain_interval(better);
-  if (std::isfinite(low)) {
-    outcome.lines.back() += ", 95 % interval " + readable(low) + " .. " + readable(high) + " %";
-  }
-  outcome.json["gain_percent"] = better.value;
-  outcome.json["gain_sd_percent"] = better.sd;
-  outcome.json["gain_interval_percent"] = {low, high};
   outcome.json["trustworthy"] = outcome.trustworthy;
   return outcome;
 }

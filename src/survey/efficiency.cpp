@@ -100,7 +100,8 @@ void require_cost(const LoggedDig& dig, const DigLog& log, double cost) {
 }
 
 void read_cost(const LoggedDig& dig, DigEfficiency& result) {
-  const DigLog log = read_dig_log(dig);
+  result.log = read_dig_log(dig);
+  const DigLog& log = result.log;
   const double scale = log.spent == Spent::fuel ? 1.0 : 0.001;
   result.spent = log.spent;
   result.meter = log.meter;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
@@ -33,6 +34,8 @@ class Efficiency : public testing::Test {
 TEST_F(Efficiency, IsPayloadOverEnergyWithItsError) {
   const DigEfficiency found = measure_efficiency(dig(2000.0));
   EXPECT_DOUBLE_EQ(found.cost, 20.0);
+  EXPECT_EQ(found.log.time, (std::vector<double>{0.0, 10.0}));
+  EXPECT_EQ(found.log.rate(), (std::vector<double>{2000.0, 2000.0}));
   EXPECT_DOUBLE_EQ(found.value().value, 25.0);
   EXPECT_DOUBLE_EQ(found.value().sd, 25.0 * std::hypot(0.01, 0.02));
   EXPECT_EQ(found.unit(), "kg_per_kj");

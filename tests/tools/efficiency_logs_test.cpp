@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/run_program.hpp"
+#include "support/tool_answers.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -345,6 +348,114 @@ TEST_F(BucketContents, TheHoleTimesTheFactorIsWhatWasLifted) {
   EXPECT_NEAR(run.at("volume_m3").get<double>(), 1.2 * hole, 0.01 * hole);
   EXPECT_NEAR(run.at("bank_volume_m3").get<double>(), hole, 0.01 * hole);
   EXPECT_GE(run.at("volume_sd_m3").get<double>(), 0.03 * 0.99 * hole);
+}
+
+// ---- Sets of runs -----------------------------------------------------------------------------
+
+class RunSets : public testing::Test {
+ protected:
+  /// A table of runs of 10 s, each of one log of so much flow [mL/s].
+  std::string table(const std::string& name, const std::vector<double>& flows) const {
+    std::string rows = "file;volume_m3;note\n";
+    for (std::size_t i = 0; i < flows.size(); ++i) {
+      const std::string log = name + std::to_string(i) + ".csv";
+      const std::string flow = std::to_string(flows[i]);
+      folder.write(log, "time_s,fuel_flow_ml_per_s\n0," + flow + "\n10," + flow + "\n");
+      rows += log + ";0,4;a " + std::to_string(i) + "\n";
+    }
+    return folder.write(name + ".csv", rows);
+  }
+  ProgramResult run(Words words) const {
+    return run_program("measure-efficiency", std::move(words));
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(RunSets, GainOfOneSetOverAnotherHasItsTest) {
+  const std::string operators = table("operator", {2.0, 2.1, 1.9, 2.2});
+  const std::string plan = table("plan", {1.6, 1.7, 1.5, 1.55});
+  const ProgramResult result = run({"--runs", plan, "--against", operators, "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json found = json::parse(result.out);
+  EXPECT_EQ(found.at("runs").size(), 8U);
+  EXPECT_EQ(found.at("sets").at("against").at("runs"), 4);
+  const double against = std::pow(2.0 * 2.1 * 1.9 * 2.2, 0.25);
+  const double ours = std::pow(1.6 * 1.7 * 1.5 * 1.55, 0.25);
+  EXPECT_NEAR(found.at("gain_percent").get<double>(), 100.0 * (against / ours - 1.0), 1e-9);
+  EXPECT_LT(found.at("gain_interval_percent").at(0).get<double>(),
+            found.at("gain_percent").get<double>());
+  EXPECT_EQ(found.at("sets").at("test"), "permutation");
+  EXPECT_NEAR(found.at("sets").at("p_value").get<double>(), 2.0 / 70.0, 1e-12);
+  EXPECT_EQ(run({"--runs", plan, "--against", operators, "--json"}).out, result.out);
+  const ProgramResult text = run({"--runs", plan, "--against", operators});
+  EXPECT_NE(text.out.find("p = 0.029 (permutation test over all 70 divisions)"), std::string::npos)
+      << text.out;
+}
+
+TEST_F(RunSets, FoldersOfLogsShareTheirPayload) {
+  const auto folder_of = [&](const std::string& name, double flow) {
+    const std::string place = folder.file(name);
+    std::filesystem::create_directory(place);
+    for (const char* log : {"/a.csv", "/b.csv"}) {
+      std::ofstream(place + log) << "time_s,fuel_flow_ml_per_s\n0," << flow << "\n10," << flow
+                                 << "\n";
+      flow *= 1.01;
+    }
+    return place;
+  };
+  const ProgramResult result = run({"--runs", folder_of("plan", 1.0), "--against",
+                                    folder_of("operator", 2.0), "--volume", "0.1", "--json"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_NEAR(json::parse(result.out).at("gain_percent").get<double>(), 100.0, 1e-9);
+}
+
+TEST_F(RunSets, FaultsAreNamedByTheLineOfTheTable) {
+  const std::string good = table("good", {2.0, 2.1});
+  const auto message = [&](Words words) {
+    std::string text = run(std::move(words)).err;
+    text = text.substr(0, text.find('\n'));
+    const std::string place = folder.file("");
+    for (auto at = text.find(place); at != text.npos; at = text.find(place)) {
+      text.erase(at, place.size());
+    }
+    return text.substr(text.find(' ') + 1);
+  };
+  const std::string bad = folder.write("bad.csv", "file,volume_m3\ngood0.csv,0.4\nno.csv,0.4\n");
+  EXPECT_EQ(message({"--runs", good, "--against", bad}),
+            "bad.csv: line 3: no.csv: cannot be opened: No such file or directory");
+  const std::string odd = folder.write("odd.csv", "file,volum_m3\ngood0.csv,0.4\n");
+  EXPECT_EQ(message({"--runs", good, "--against", odd}),
+            "odd.csv: column 'volum_m3' is none of a table of runs, expected of: file, note, "
+            "bulking_factor, volume_m3, volume_sd_m3, bank_volume_m3, bank_volume_sd_m3, mass_kg, "
+            "mass_sd_kg, from_s, to_s, dump_before, dump_after, pit_before, pit_after, "
+            "bucket_before, bucket_after");
+  const std::string one = table("one", {2.0});
+  EXPECT_EQ(message({"--runs", one, "--against", good}),
+            "the set of --runs has 1 run, a comparison needs 2 or more");
+  EXPECT_EQ(message({"--runs", good}), "--runs and --against go together");
+  EXPECT_EQ(message({good, "--runs", good, "--against", good}),
+            "--runs and --against exclude RUN.csv, SECOND.csv and options of a second dig");
+}
+
+TEST(SampleRecordings, RepeatTheFieldExperiment) {
+  const json truth = json::parse(content_of(shipped("recordings/truth.json")));
+  const auto volume = [&](const char* run) {
+    return std::to_string(truth.at(run).at("payload_volume_m3").get<double>());
+  };
+  const ProgramResult result =
+      run_program("measure-efficiency",
+                  {shipped("recordings/fixed.csv"), shipped("recordings/planned.csv"), "--volume",
+                   volume("fixed"), "--second-volume", volume("planned"), "--json", "--strict"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json found = json::parse(result.out);
+  // As in section 4.3: a similar volume for less fuel.
+  EXPECT_NEAR(found["runs"][1].at("volume_m3").get<double>(),
+              found["runs"][0].at("volume_m3").get<double>(), 0.02);
+  EXPECT_GT(found.at("gain_percent").get<double>(), 30.0);
+  for (const json& run : found.at("runs")) {
+    EXPECT_NEAR(run.at("idle").at("fuel_flow_ml_per_s").get<double>(), 2.8 / 3.6, 0.01);
+  }
 }
 
 }  // namespace

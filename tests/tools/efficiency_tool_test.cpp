@@ -355,7 +355,8 @@ TEST_F(MeasureEfficiency, MissingAndForeignFilesAreNamed) {
   EXPECT_EQ(refusal(3, {a, "--dump-before", a, "--dump-after", a}),
             "a.csv: line 1: found 'time_s,power_w', expected numbers, or names of columns with x, "
             "y and z");
-  EXPECT_EQ(refusal(2, {}), "RUN.csv is missing: log of a dig");
+  EXPECT_EQ(refusal(2, {}),
+            "RUN.csv is missing: log of a dig; or a set of runs by --runs and --against");
   EXPECT_EQ(refusal(2, {a, "--volumes", "1"}), "unknown option --volumes, did you mean --volume?");
 }
 

@@ -118,6 +118,44 @@ std::vector<std::string> run_lines(const DigEfficiency& run) {
   return lines;
 }
 
+nlohmann::ordered_json to_json(const SetComparison& sets) {
+  const auto set = [](const RunSet& runs) -> Json {
+    return {{"runs", runs.runs},
+            {"efficiency_mean", runs.mean},
+            {"efficiency_sd", runs.sd},
+            {"efficiency_geometric_mean", runs.geometric_mean}};
+  };
+  return {{"against", set(sets.first)},
+          {"runs", set(sets.second)},
+          {"test", sets.by_permutation ? "permutation" : "welch"},
+          {"p_value", sets.p_value()},
+          {"welch",
+           {{"t", sets.welch.t},
+            {"degrees_of_freedom", sets.welch.degrees_of_freedom},
+            {"p_value", sets.welch.p_value}}},
+          {"permutation",
+           {{"p_value", sets.permutation.p_value},
+            {"exact", sets.permutation.is_exact},
+            {"divisions", sets.permutation.divisions}}}};
+}
+
+std::vector<std::string> set_lines(const SetComparison& sets, const std::string& symbol) {
+  const auto line = [&](const char* name, const RunSet& set) {
+    return name + std::to_string(set.runs) + " runs, " + readable(set.mean) + " " + symbol +
+           " on average, standard deviation " + readable(set.sd, 2);
+  };
+  const std::string divisions = std::to_string(sets.permutation.divisions);
+  const std::string test = sets.by_permutation
+                               ? "permutation test over " +
+                                     std::string(sets.permutation.is_exact ? "all " : "") +
+                                     divisions + " divisions"
+                               : std::string("Welch's t-test");
+  return {line("against: ", sets.first), line("runs:    ", sets.second),
+          "gain: " + readable(sets.gain_percent) + " %, 95 % interval " +
+              readable(sets.gain_low_percent) + " .. " + readable(sets.gain_high_percent) +
+              " %; p = " + readable(sets.p_value(), 2) + " (" + test + ")"};
+}
+
 std::pair<double, double> gain_interval(const Measured& gain_percent) {
   constexpr double normal_quantile = 1.959963984540054;  // of 0.975
   const double ratio = 1.0 + gain_percent.value / 100.0;

@@ -81,6 +81,7 @@ struct IdleRate {
 /// Payload per fuel or energy.
 struct DigEfficiency {
   std::string file;                        ///< the log
+  DigLog log;                              ///< what it holds: time and rate, for figures
   Spent spent = Spent::fuel;               ///< what the log records
   LogMeter meter = LogMeter::fuel_flow;    ///< the columns it is from
   double cost = 0.0;                       ///< fuel [mL] or energy [kJ] that counts
