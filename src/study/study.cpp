@@ -176,7 +176,9 @@ StudyRun single_dig(const Machine& machine, const StudySetting& setting, const S
   options.survey = [&](const DigScene&) { return energy.estimate; };
   plan_for_cycle(energy, options);
   const ExperimentResult cycle = run_experiment(machine, soil, law, density, options);
+  run.held_down = !energy.held_because.empty();
   run.energy_gain = energy.gain_percent();
+  run.path_gain = energy.path_gain_percent();
   run.energy_payload = energy.planned.payload_mass / energy.fixed.payload_mass;
   run.cycle_gain = cycle.gain_percent();
   run.cycle_payload = cycle.planned.payload_mass / cycle.fixed.payload_mass;
@@ -194,22 +196,23 @@ StudyRun digs_in_a_row(const Machine& machine, const StudySetting& setting, cons
     return surveyed_density(scene, setting.sensor, soil, law, seed);
   };
   const ExperimentResult first = run_experiment(machine, soil, law, density, options);
-  const RowTotal fixed = DigRow(machine, soil, density, options).fixed(setting.row);
+  plan_for_cycle(first, options);
+  const DigRow row(machine, soil, density, options);
+  const RowTotal fixed = row.fixed(setting.row);
   StudyRun run;
   RelativeDensity last;
-  const RowTotal energy =
-      DigRow(machine, soil, density, options).planned(setting.row, first.estimate, &last);
+  const RowTotal planned = row.planned(fixed.digs, first.estimate, last);
   run.estimate_percent = last.percent;
   run.estimate_sd = last.sd_percent;
   run.interval = last.interval_percent;
   run.trustworthy = last.trustworthy;
-  plan_for_cycle(first, options);
-  const RowTotal cycle =
-      DigRow(machine, soil, density, options).planned(setting.row, first.estimate, nullptr);
-  run.energy_gain = percent_over(energy.mass / energy.energy, fixed.mass / fixed.energy);
-  run.energy_payload = energy.mass / fixed.mass;
-  run.cycle_gain = percent_over(cycle.mass / cycle.cycle_energy, fixed.mass / fixed.cycle_energy);
-  run.cycle_payload = cycle.mass / fixed.mass;
+  run.held_down = !first.held_because.empty();
+  run.energy_gain = percent_over(planned.mass / planned.energy, fixed.mass / fixed.energy);
+  run.path_gain = run.energy_gain;
+  run.energy_payload = planned.mass / fixed.mass;
+  run.cycle_gain =
+      percent_over(planned.mass / planned.cycle_energy, fixed.mass / fixed.cycle_energy);
+  run.cycle_payload = run.energy_payload;
   return run;
 }
 
@@ -229,7 +232,7 @@ StudyRun run_once(const Machine& machine, const StudySetting& setting, const She
 }
 
 void summarise(StudyResult& result, std::uint64_t seed) {
-  std::vector<double> energy, cycle, energy_payload, cycle_payload;
+  std::vector<double> energy, path, cycle, energy_payload, cycle_payload;
   double squares = 0.0, sum = 0.0, inside = 0.0;
   for (const StudyRun& run : result.runs) {
     if (!run.failure.empty()) {
@@ -241,16 +244,22 @@ void summarise(StudyResult& result, std::uint64_t seed) {
     sum += error;
     inside += run.density_percent >= run.interval[0] && run.density_percent <= run.interval[1];
     result.untrusted += run.trustworthy ? 0 : 1;
+    if (run.held_down) {
+      ++result.held_down;
+      continue;
+    }
     energy.push_back(run.energy_gain);
+    path.push_back(run.path_gain);
     energy_payload.push_back(run.energy_payload);
     cycle.push_back(run.cycle_gain);
     cycle_payload.push_back(run.cycle_payload);
   }
-  const auto count = static_cast<double>(energy.size());
+  const auto count = static_cast<double>(result.runs.size()) - result.failed;
   result.rms = std::sqrt(squares / count);
   result.bias = sum / count;
   result.inside = inside / count;
   result.energy_gain = bootstrap_mean(energy, seed);
+  result.path_gain = bootstrap_mean(path, seed);
   result.cycle_gain = bootstrap_mean(cycle, seed);
   result.energy_payload = bootstrap_mean(energy_payload, seed);
   result.cycle_payload = bootstrap_mean(cycle_payload, seed);

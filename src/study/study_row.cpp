@@ -2,17 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/study_row.hpp"
 
-#include <utility>
+#include <algorithm>
+#include <string>
 #include <variant>
 
 #include <excavplan/simulation/dig_ground.hpp>
 
-#include "base/text.hpp"
 #include "planning/dig_layout.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 namespace {
+
+constexpr int most_attempts = 3;     // at a dig that stalls; ours
+constexpr double start_step = 0.25;  // between starts of the fixed path [m]; ours
 
 Terrain level_scene_ground(const Machine& machine, double cell_size) {
   return undisturbed(flat_ground(scene_extent(machine, default_dump_point()), cell_size));
@@ -38,9 +41,7 @@ DigScene DigRow::dug(const Terrain& ground, const DigParameters& path,
   options.start_x = start_x;
   options.rules = rules_for_planned_path();
   options.simulator = digs_;
-  DigScene scene = run_scene(machine_, dug_soil_, density_, ground, options);
-  if (scene.dig.stall) throw Error(ErrorKind::bad_input, describe(DigFailure(*scene.dig.stall)));
-  return scene;
+  return run_scene(machine_, dug_soil_, density_, ground, options);
 }
 
 Terrain DigRow::without_heap(const DigScene& scene) const {
@@ -52,45 +53,74 @@ void DigRow::add(const DigScene& scene, RowTotal& total) const {
   PlannedDig dig{scene.path.parameters,    scene.path.start_x,     scene.dig.payload_mass,
                  scene.dig.payload_volume, scene.dig.energy.total, scene.duration};
   add_cycle(dig, machine_, scene.path, options_.plan.search.objective);
+  ++total.digs;
   total.mass += dig.payload_mass;
   total.energy += dig.energy;
   total.cycle_energy += dig.cycle_energy;
 }
 
+/// Where the fixed path lifts most, as an operator would choose; nothing if it stalls everywhere.
+std::optional<double> DigRow::fullest_start(const Terrain& ground) const {
+  const DigLayout layout(machine_, ground);
+  const auto simulator = make_simulator(digs_, machine_, dug_soil_, density_);
+  std::optional<double> best;
+  double most = 0.0;
+  const double reach = machine_.boom_pin.x() + machine_.full_length();
+  for (double x = machine_.track_front; x < reach; x += start_step) {
+    const auto laid = layout.path_from(options_.fixed_path, x);
+    const auto* path = std::get_if<DigPath>(&laid);
+    if (!path) continue;
+    const auto outcome = dig_along(machine_, *simulator, ground, *path);
+    const auto* dig = std::get_if<PlannedDig>(&outcome);
+    if (!dig || dig->payload_mass <= most) continue;
+    most = dig->payload_mass;
+    best = x;
+  }
+  return best;
+}
+
 RowTotal DigRow::fixed(int digs) const {
   RowTotal total;
   Terrain ground = ground_;
-  for (int i = 0; i < digs; ++i) {
-    const auto laid =
-        DigLayout(machine_, ground).path(options_.fixed_path, StartRule::Kind::least_work);
-    if (const auto* infeasible = std::get_if<Infeasible>(&laid)) {
-      throw Error(ErrorKind::bad_input,
-                  "fixed path, dig " + std::to_string(i + 1) + ": " + infeasible->message);
-    }
-    const DigScene scene = dug(ground, options_.fixed_path, std::get<DigPath>(laid).start_x);
+  while (total.digs < digs) {
+    const std::optional<double> start_x = fullest_start(ground);
+    if (!start_x) break;
+    const DigScene scene = dug(ground, options_.fixed_path, start_x);
     add(scene, total);
     ground = without_heap(scene);
   }
+  if (total.digs == 0) throw Error(ErrorKind::bad_input, "the fixed path cannot be dug");
   return total;
 }
 
-RowTotal DigRow::planned(int digs, const RelativeDensity& first, RelativeDensity* last) const {
+/// Where the machine stalls in soil harder than it was estimated, the dig is planned again for soil
+/// harder by a standard deviation.
+DigScene DigRow::dug_as_planned(const Terrain& ground, const RelativeDensity& estimate) const {
+  const Terrain seen = options_.seen ? options_.seen(ground) : ground;
+  std::string why = "the machine stalls in each dig that is planned";
+  for (int harder = 0; harder <= most_attempts; ++harder) {
+    const double density = std::min(100.0, estimate.percent + harder * estimate.sd_percent);
+    const DigPlan plan = plan_dig(machine_, soil_, density, seen, options_.plan);
+    if (!plan.dig) {
+      why = plan.reason;
+      continue;
+    }
+    DigScene scene = dug(ground, plan.dig->parameters, plan.dig->start_x);
+    if (!scene.dig.stall) return scene;
+  }
+  throw Error(ErrorKind::bad_input, why);
+}
+
+RowTotal DigRow::planned(int digs, const RelativeDensity& first, RelativeDensity& last) const {
   RowTotal total;
   Terrain ground = ground_;
-  RelativeDensity estimate = first;
-  for (int i = 0; i < digs; ++i) {
-    const Terrain seen = options_.seen ? options_.seen(ground) : ground;
-    const DigPlan plan = plan_dig(machine_, soil_, estimate.percent, seen, options_.plan);
-    if (!plan.dig) {
-      throw Error(ErrorKind::bad_input,
-                  "planned path, dig " + std::to_string(i + 1) + ": " + plan.reason);
-    }
-    const DigScene scene = dug(ground, plan.dig->parameters, plan.dig->start_x);
+  last = first;
+  while (total.digs < digs) {
+    const DigScene scene = dug_as_planned(ground, last);
     add(scene, total);
-    estimate = options_.survey(scene);
+    last = options_.survey(scene);
     ground = without_heap(scene);
   }
-  if (last) *last = estimate;
   return total;
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
+#include <optional>
 
 #include <excavplan/study/study.hpp>
 
@@ -10,6 +10,7 @@ namespace excavplan {
 
 /// What digs in a row lifted and cost.
 struct RowTotal {
+  int digs = 0;               ///< that were made
   double mass = 0.0;          ///< [kg]
   double energy = 0.0;        ///< of the digs [J]
   double cycle_energy = 0.0;  ///< [J]
@@ -22,19 +23,21 @@ class DigRow {
   DigRow(const Machine& machine, const SoilKind& soil, double density_percent,
          const ExperimentOptions& options);
 
-  /// Digs along the fixed path, each from where the links do least work.
-  /// @throws Error (bad_input) where that cannot be driven or stalls
+  /// Digs along the fixed path, each from where it lifts most, until it cannot be dug any more.
+  /// @throws Error (bad_input) if it cannot be dug at all
   RowTotal fixed(int digs) const;
 
   /// Digs each along the path that is planned from the survey of the one before, the first from
   /// `first`, on the ground as it is seen.
   /// @param last  estimate from the last dig
   /// @throws Error (bad_input) where there is no plan, or no estimate
-  RowTotal planned(int digs, const RelativeDensity& first, RelativeDensity* last) const;
+  RowTotal planned(int digs, const RelativeDensity& first, RelativeDensity& last) const;
 
  private:
   DigScene dug(const Terrain& ground, const DigParameters& path,
                std::optional<double> start_x) const;
+  DigScene dug_as_planned(const Terrain& ground, const RelativeDensity& estimate) const;
+  std::optional<double> fullest_start(const Terrain& ground) const;
   Terrain without_heap(const DigScene& scene) const;
   void add(const DigScene& scene, RowTotal& total) const;
 

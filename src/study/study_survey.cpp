@@ -22,6 +22,7 @@ DepthCamera study_camera(StudySensor sensor) {
   DepthCamera camera = with_errors_of(sensor_of_word("d435i"), {});
   camera.width /= 2;
   camera.height /= 2;
+  camera.pattern_length /= 2.0;
   camera.frames = averaged_frames;
   if (sensor == StudySensor::poor) {
     camera.noise *= poor_share;

@@ -86,7 +86,11 @@ struct StudyRun {
   double estimate_sd = 0.0;
   std::array<double, 2> interval = {0.0, 100.0};  ///< 95 %
   bool trustworthy = true;                        ///< the estimate
+  /// The fixed path would lift or drag the machine, which is held down in all digs of the run: no
+  /// gain can be told from it.
+  bool held_down = false;
   double energy_gain = 0.0;     ///< planned for mass per energy of the dig, the paper's f
+  double path_gain = 0.0;       ///< its part that is the path's, both begun by one rule
   double energy_payload = 0.0;  ///< payload of that dig over that of the fixed one [-]
   double cycle_gain = 0.0;      ///< planned for mass per energy of the whole cycle
   double cycle_payload = 0.0;   ///< payload of that dig over that of the fixed one [-]
@@ -108,11 +112,13 @@ struct StudyResult {
   StudyCondition condition;
   std::vector<StudyRun> runs;
   int failed = 0;                 ///< runs without a result
+  int held_down = 0;              ///< runs that tell no gain
   int untrusted = 0;              ///< runs whose estimate is not trustworthy, failed ones aside
   double rms = 0.0;               ///< error of the estimated density, failed runs aside [points]
   double bias = 0.0;              ///< likewise [points]
   double inside = 0.0;            ///< share of the runs whose 95 % interval holds the density [-]
   StudyMean energy_gain = {};     ///< [%]
+  StudyMean path_gain = {};       ///< [%]
   StudyMean cycle_gain = {};      ///< [%]
   StudyMean energy_payload = {};  ///< [-]
   StudyMean cycle_payload = {};   ///< [-]
