@@ -146,17 +146,20 @@ ExperimentOptions options_of(const Machine& machine, const StudySetting& setting
   return options;
 }
 
-/// As before, for most mass per energy of a whole cycle at no less payload than that of the fixed
-/// dig. Searched, from the dig found for the paper's goal.
-void plan_for_cycle(const ExperimentResult& by_energy, ExperimentOptions& options) {
+/// As before, for another goal at no less payload than that of the fixed dig. Searched, from the
+/// dig found for the paper's goal.
+ExperimentOptions at_equal_payload(DigObjective::Goal goal, const ExperimentResult& found,
+                                   ExperimentOptions options) {
   constexpr int digs = 200;  // of a search that begins warm; ours
   PlanOptions& plan = options.plan;
   plan.method = PlanMethod::search;
   plan.library.reset();
-  plan.search.objective = DigObjective::Goal::cycle;
-  plan.search.objective.min_fill = std::min(1.0, by_energy.fixed.fill);
+  plan.search.objective = goal;
+  plan.search.objective.min_fill = std::min(1.0, found.fixed.fill);
   plan.search.stop.evaluations = digs;
-  plan.search.start = {{by_energy.planned.parameters, by_energy.planned.start_x}};
+  plan.search.start = {{found.planned.parameters, found.planned.start_x}};
+  options.survey = [estimate = found.estimate](const DigScene&) { return estimate; };
+  return options;
 }
 
 StudyRun single_dig(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
@@ -173,13 +176,17 @@ StudyRun single_dig(const Machine& machine, const StudySetting& setting, const S
   run.estimate_sd = energy.estimate.sd_percent;
   run.interval = energy.estimate.interval_percent;
   run.trustworthy = energy.estimate.trustworthy;
-  options.survey = [&](const DigScene&) { return energy.estimate; };
-  plan_for_cycle(energy, options);
-  const ExperimentResult cycle = run_experiment(machine, soil, law, density, options);
+  const auto at_equal = [&](DigObjective::Goal goal) {
+    return run_experiment(machine, soil, law, density, at_equal_payload(goal, energy, options));
+  };
+  const ExperimentResult equal = at_equal(DigObjective::Goal::energy);
+  const ExperimentResult cycle = at_equal(DigObjective::Goal::cycle);
   run.held_down = !energy.held_because.empty();
   run.energy_gain = energy.gain_percent();
   run.path_gain = energy.path_gain_percent();
   run.energy_payload = energy.planned.payload_mass / energy.fixed.payload_mass;
+  run.equal_gain = equal.gain_percent();
+  run.equal_payload = equal.planned.payload_mass / equal.fixed.payload_mass;
   run.cycle_gain = cycle.gain_percent();
   run.cycle_payload = cycle.planned.payload_mass / cycle.fixed.payload_mass;
   return run;
@@ -196,7 +203,9 @@ StudyRun digs_in_a_row(const Machine& machine, const StudySetting& setting, cons
     return surveyed_density(scene, setting.sensor, soil, law, seed);
   };
   const ExperimentResult first = run_experiment(machine, soil, law, density, options);
-  plan_for_cycle(first, options);
+  const auto survey = options.survey;
+  options = at_equal_payload(DigObjective::Goal::cycle, first, options);
+  options.survey = survey;
   const DigRow row(machine, soil, density, options);
   const RowTotal fixed = row.fixed(setting.row);
   StudyRun run;
@@ -208,11 +217,11 @@ StudyRun digs_in_a_row(const Machine& machine, const StudySetting& setting, cons
   run.trustworthy = last.trustworthy;
   run.held_down = !first.held_because.empty();
   run.energy_gain = percent_over(planned.mass / planned.energy, fixed.mass / fixed.energy);
-  run.path_gain = run.energy_gain;
+  run.path_gain = run.equal_gain = run.energy_gain;
   run.energy_payload = planned.mass / fixed.mass;
   run.cycle_gain =
       percent_over(planned.mass / planned.cycle_energy, fixed.mass / fixed.cycle_energy);
-  run.cycle_payload = run.energy_payload;
+  run.cycle_payload = run.equal_payload = run.energy_payload;
   return run;
 }
 
@@ -232,7 +241,7 @@ StudyRun run_once(const Machine& machine, const StudySetting& setting, const She
 }
 
 void summarise(StudyResult& result, std::uint64_t seed) {
-  std::vector<double> energy, path, cycle, energy_payload, cycle_payload;
+  std::vector<double> energy, path, equal, cycle, energy_payload, equal_payload, cycle_payload;
   double squares = 0.0, sum = 0.0, inside = 0.0;
   for (const StudyRun& run : result.runs) {
     if (!run.failure.empty()) {
@@ -251,6 +260,8 @@ void summarise(StudyResult& result, std::uint64_t seed) {
     energy.push_back(run.energy_gain);
     path.push_back(run.path_gain);
     energy_payload.push_back(run.energy_payload);
+    equal.push_back(run.equal_gain);
+    equal_payload.push_back(run.equal_payload);
     cycle.push_back(run.cycle_gain);
     cycle_payload.push_back(run.cycle_payload);
   }
@@ -260,6 +271,8 @@ void summarise(StudyResult& result, std::uint64_t seed) {
   result.inside = inside / count;
   result.energy_gain = bootstrap_mean(energy, seed);
   result.path_gain = bootstrap_mean(path, seed);
+  result.equal_gain = bootstrap_mean(equal, seed);
+  result.equal_payload = bootstrap_mean(equal_payload, seed);
   result.cycle_gain = bootstrap_mean(cycle, seed);
   result.energy_payload = bootstrap_mean(energy_payload, seed);
   result.cycle_payload = bootstrap_mean(cycle_payload, seed);

@@ -2,11 +2,88 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/experiment_results.hpp"
 
+#include <algorithm>
+#include <string>
+#include <variant>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
 #include "base/text.hpp"
 #include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
 
 namespace excavplan::tools {
+
+namespace {
+
+/// Of Fig. 9: the tip, and what it sweeps below the ground at its start.
+nlohmann::ordered_json tip_json(const DigPath& path) {
+  constexpr double step = 0.01;  // of the integral [m]
+  nlohmann::ordered_json tip = nlohmann::ordered_json::array();
+  double lowest = path.ground_z, near = path.start_x, far = path.start_x;
+  for (const DigPose& pose : path.poses) {
+    if (pose.phase == DigPhase::lift) break;
+    tip.push_back({pose.bucket.x, pose.bucket.z});
+    lowest = std::min(lowest, pose.bucket.z);
+    near = std::min(near, pose.bucket.x);
+    far = std::max(far, pose.bucket.x);
+  }
+  double section = 0.0;
+  for (double x = near + 0.5 * step; x < far; x += step) {
+    const double z = swept_height(path, x);
+    if (z < path.ground_z) section += step * (path.ground_z - z);
+  }
+  return {{"depth_m", path.ground_z - lowest}, {"section_m2", section}, {"tip_path_m", tip}};
+}
+
+nlohmann::ordered_json with_tip(const PlannedDig& dig, const DigPath& path) {
+  nlohmann::ordered_json json = dig_json(dig);
+  json.update(tip_json(path));
+  return json;
+}
+
+nlohmann::ordered_json line_json(const DensityLine& line) {
+  return {{"a_percent", line.a}, {"b_percent", line.b}, {"r2", line.r2}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json regression_json(const Machine& machine, const SoilKind& soil,
+                                       const ExperimentOptions& options) {
+  CalibrationOptions digs;
+  digs.path = options.fixed_path;
+  digs.simulator = options.plan.simulator;
+  digs.draws = 0;
+  digs.any_path = false;
+  const DensityCalibration calibration = calibrate_density(machine, soil, digs);
+  nlohmann::ordered_json samples = nlohmann::ordered_json::array();
+  for (const DensityCalibration::Sample& sample : calibration.samples) {
+    samples.push_back({{"density_percent", sample.density_percent},
+                       {"bulking_factor", sample.bulking_factor_measured}});
+  }
+  const auto line = [&](const std::string& ending) {
+    return line_json(std::get<DensityLine>(calibration.form("line" + ending)));
+  };
+  const DensityLaw paper = load_density_law(shipped_or_file("laws", "paper"));
+  return {{"samples", samples},
+          {"line", line(as_measured)},
+          {"line_without_fallback", line("")},
+          {"paper_line", line_json(std::get<DensityLine>(paper.form))}};
+}
+
+std::string regression_line(const nlohmann::ordered_json& regression) {
+  const auto text = [](const nlohmann::ordered_json& line) {
+    return "d = " + decimals(line["a_percent"], 2) + " k - " +
+           decimals(-line["b_percent"].get<double>(), 2) + ", R2 " + decimals(line["r2"], 4);
+  };
+  return "regression of " + std::to_string(regression["samples"].size()) +
+         " digs along the fixed path: " + text(regression["line"]) +
+         "; without the soil that fell back: " + text(regression["line_without_fallback"]) +
+         "; the paper's: " + text(regression["paper_line"]) +
+         " (void ratios of loam were derived from it)";
+}
 
 nlohmann::ordered_json experiment_json(const std::string& condition,
                                        const ExperimentResult& result) {
@@ -19,8 +96,8 @@ nlohmann::ordered_json experiment_json(const std::string& condition,
             {"dumped_m3", volumes.dumped}}},
           {"bulking_factor", volumes.bulking_factor},
           {"density_estimated_percent", result.estimate.percent},
-          {"fixed", dig_json(result.fixed)},
-          {"planned", dig_json(result.planned)},
+          {"fixed", with_tip(result.fixed, result.fixed_path)},
+          {"planned", with_tip(result.planned, result.planned_path)},
           {"gain_percent", result.gain_percent()},
           {"gain_path_percent", result.path_gain_percent()},
           {"gain_start_percent", result.start_gain_percent()},

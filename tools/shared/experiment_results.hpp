@@ -17,4 +17,10 @@ nlohmann::ordered_json experiment_json(const std::string& condition,
                                        const ExperimentResult& result);
 std::string experiment_line(const std::string& condition, const ExperimentResult& result);
 
+/// The paper's Fig. 7: bulking factors of digs along the fixed path at 0, 5 .. 100 %, the
+/// regression of the density on them, and that of the paper.
+nlohmann::ordered_json regression_json(const Machine& machine, const SoilKind& soil,
+                                       const ExperimentOptions& options);
+std::string regression_line(const nlohmann::ordered_json& regression);
+
 }  // namespace excavplan::tools

@@ -92,9 +92,11 @@ struct StudyRun {
   double energy_gain = 0.0;     ///< planned for mass per energy of the dig, the paper's f
   double path_gain = 0.0;       ///< its part that is the path's, both begun by one rule
   double energy_payload = 0.0;  ///< payload of that dig over that of the fixed one [-]
-  double cycle_gain = 0.0;      ///< planned for mass per energy of the whole cycle
-  double cycle_payload = 0.0;   ///< payload of that dig over that of the fixed one [-]
-  std::string failure = {};     ///< why there is no result; empty if there is
+  double equal_gain = 0.0;      ///< planned for the same at no less payload than the fixed dig's
+  double equal_payload = 0.0;   ///< payload of that dig over that of the fixed one [-]
+  double cycle_gain = 0.0;  ///< planned for mass per energy of the whole cycle, at no less payload
+  double cycle_payload = 0.0;  ///< payload of that dig over that of the fixed one [-]
+  std::string failure = {};    ///< why there is no result; empty if there is
 };
 
 /// Mean with its 95 % interval.
@@ -119,6 +121,8 @@ struct StudyResult {
   double inside = 0.0;            ///< share of the runs whose 95 % interval holds the density [-]
   StudyMean energy_gain = {};     ///< [%]
   StudyMean path_gain = {};       ///< [%]
+  StudyMean equal_gain = {};      ///< [%]
+  StudyMean equal_payload = {};   ///< [-]
   StudyMean cycle_gain = {};      ///< [%]
   StudyMean energy_payload = {};  ///< [-]
   StudyMean cycle_payload = {};   ///< [-]
