@@ -32,7 +32,8 @@ constexpr int waves = 200;                // of rough ground; ours
 /// Soils, laws and libraries of a study, each made once.
 class Shelf {
  public:
-  explicit Shelf(const Machine& machine) : machine_(machine) {}
+  Shelf(const Machine& machine, const StudyOptions& options)
+      : machine_(machine), draws_(options.draws), threads_(options.threads) {}
 
   /// Call for all conditions before the runs begin, which then only read.
   void prepare(const StudySetting& setting) {
@@ -59,6 +60,8 @@ class Shelf {
   DensityCalibration calibrated(const SoilKind& soil, const std::string& simulator) const {
     CalibrationOptions options;
     options.simulator = simulator_of_word(simulator);
+    options.draws = draws_;
+    options.threads = threads_;
     return calibrate_density(machine_, soil, options);
   }
 
@@ -76,7 +79,7 @@ class Shelf {
       case StudyLaw::paper:
         return load_density_law(shipped_or_file("laws", "paper"));
       case StudyLaw::other_path:
-        return law_of(calibrate_path(machine_, soil, paper_field_path()));
+        return law_of(calibrate_path(machine_, soil, paper_field_path(), threads_));
       case StudyLaw::other_soil:
         return load_density_law(
             shipped_or_file("laws", machine_.name + (setting.soil == "sand" ? "-loam" : "-sand")));
@@ -85,6 +88,8 @@ class Shelf {
   }
 
   const Machine& machine_;
+  int draws_;
+  unsigned threads_;
   std::map<std::string, SoilKind> soils_;
   std::map<Key, DensityLaw> laws_;
   std::map<std::string, std::shared_ptr<const PathLibrary>> libraries_;
@@ -299,7 +304,7 @@ std::vector<StudyResult> run_study(const Machine& machine,
   require_machine(machine);
   require(options.runs > 0.0 && options.runs <= 1e4, "study: factor on the runs", options.runs,
           "above 0 and at most 1e4");
-  Shelf shelf(machine);
+  Shelf shelf(machine, options);
   std::vector<StudyResult> results;
   std::vector<std::pair<std::size_t, std::uint64_t>> tasks;
   for (const StudyCondition& condition : conditions) {

@@ -132,6 +132,7 @@ struct StudyOptions {
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< 0: one per core; the result is the same for any number
   double runs = 1.0;     ///< factor on the number of runs of each condition
+  int draws = 200;       ///< digs behind the scatter of each law, CalibrationOptions::draws
   /// Called from any thread after each run with the share that is done; true goes on.
   std::function<bool(double done, const std::string& condition)> progress = {};
 };
