@@ -7,6 +7,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "shared/dig_report.hpp"
 #include "shared/figures.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/results.hpp"
@@ -43,7 +44,7 @@ struct Inputs {
   double cell_size = PlanOptions{}.cell_size;
   SearchInputs dig_search;
   std::optional<std::string> trajectory;
-  std::optional<std::string> plot;
+  std::optional<std::string> plot, report;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -71,6 +72,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.output("trajectory", inputs.trajectory,
                    "write the joint trajectory, CSV, or JSON as .json");
   arguments.plot(inputs.plot, "the section of the dig");
+  arguments.report(inputs.report);
 }
 
 PlanOptions options_of(const Inputs& inputs, Console& console) {
@@ -125,17 +127,22 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"machine", machine.name},
                        {"simulator", inputs.simulator},
                        {"wall_time_s", watch.seconds()}});
+  const std::string title =
+      "Planned dig in " + soil.name + " at " + readable(density.percent) + " % relative density";
+  const std::string figure =
+      plan.dig
+          ? dig_figure(machine, plan.path, {boom_plane_profile(site.ground)}, title, outcome.lines)
+          : "";
+  if (inputs.report) {
+    const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
+    outcome.report = titled(plan_report(machine, plan, dug), *inputs.report, title, figure);
+  }
   if (!plan.dig) {
     if (!plan.stopped) withdraw(inputs, machine, outcome);
     return outcome;
   }
   if (inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);
-  if (inputs.plot) {
-    write_file(*inputs.plot, dig_figure(machine, plan.path, {boom_plane_profile(site.ground)},
-                                        "Planned dig in " + soil.name + " at " +
-                                            readable(density.percent) + " % relative density",
-                                        outcome.lines));
-  }
+  if (inputs.plot) write_file(*inputs.plot, figure);
   return outcome;
 }
 
