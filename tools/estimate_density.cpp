@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/survey/density_estimate.hpp>
 
-#include "base/files.hpp"
 #include "shared/estimate.hpp"
 #include "shared/method_inputs.hpp"
 #include "shared/recordings.hpp"
@@ -27,8 +26,8 @@ const About about = {
       "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
       "without scans: expected density error of a D435i on a 2.5 m mast"},
-     {"estimate-density before.pcd after.pcd --json --plot change.svg",
-      "JSON output, and a plot of the height change"}},
+     {"estimate-density before.pcd after.pcd --json --report density.html",
+      "JSON output, and a page that shows the change in a browser"}},
     true};
 
 struct Inputs {
@@ -45,7 +44,7 @@ struct Inputs {
   std::optional<DigParameters> dug_path;
   std::optional<double> dug_start;
   SoilInputs soil;
-  std::optional<std::string> plot;
+  std::optional<std::string> plot, report;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -79,6 +78,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "the cut; needs scans in the site frame");
   declare_machine_in_view(arguments, inputs.frames.view);
   arguments.plot(inputs.plot, "the height change and its zones");
+  arguments.report(inputs.report);
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
 
@@ -123,7 +123,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   if (const auto warning = many_buckets(counts, machine)) outcome.warnings.push_back(*warning);
   for (Warning& each : warnings_of(inputs.method, inputs.compare)) outcome.warnings.push_back(each);
   report.add_to(outcome);
-  if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
+  draw_estimate(inputs.plot, inputs.report, counts, outcome);
   if (inputs.compare) add_comparison(both, counts, outcome);
   return outcome;
 }

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
 #include <memory>
 
 #include <excavplan/plan/plan_dig.hpp>
@@ -87,15 +86,6 @@ PlanOptions options_of(const Inputs& inputs, Console& console) {
   return options;
 }
 
-/// What an earlier plan left must not be taken for that of this ground.
-void withdraw(const Inputs& inputs, const Machine& machine, Outcome& outcome) {
-  if (inputs.trajectory) write_trajectory(*inputs.trajectory, {machine.name, {}});
-  std::error_code unknown;
-  if (!inputs.plot || !std::filesystem::exists(*inputs.plot, unknown)) return;
-  outcome.warnings.push_back(
-      {"plot_not_written", *inputs.plot + ": is of an earlier run, as there is no dig to draw"});
-}
-
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
   check(inputs.density);
@@ -138,7 +128,7 @@ Outcome work(const Inputs& inputs, Console& console) {
     outcome.report = titled(plan_report(machine, plan, dug), *inputs.report, title, figure);
   }
   if (!plan.dig) {
-    if (!plan.stopped) withdraw(inputs, machine, outcome);
+    if (!plan.stopped) withdraw(inputs.trajectory, inputs.plot, machine, outcome);
     return outcome;
   }
   if (inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);

@@ -214,7 +214,7 @@
     const i = Math.min(Math.floor(at), stops.length - 2);
     return stops[i].map((value, k) => value + (at - i) * (stops[i + 1][k] - value));
   };
-  const soilRamp = ["#4a3b30", "#7d6145", "#b1916a", "#d9c29c", "#f1e8d6"].map(rgb);
+  const soilRamp = ["#5d4a3a", "#937354", "#c0a17a", "#dec8a5", "#f4ebda"].map(rgb);
   const fell = ["#f6d9cb", "#f4a582", "#d6604d", "#b2182b", "#67001f"].map(rgb);
   const rose = ["#d6e7f1", "#92c5de", "#4393c3", "#2166ac", "#053061"].map(rgb);
   const still = rgb("#cfc7ba");
@@ -263,8 +263,8 @@
     canvas.addEventListener("blur", () => { controls.enableZoom = false; });
     canvas.addEventListener("touchstart", () => { controls.enableZoom = true; }, { passive: true });
 
-    world.add(new T.HemisphereLight(0xffffff, 0x8a8378, 1.5));
-    const sun = new T.DirectionalLight(0xffffff, 2.1);
+    world.add(new T.HemisphereLight(0xffffff, 0xb8b0a4, 2.0));
+    const sun = new T.DirectionalLight(0xffffff, 1.7);
     sun.position.set(-4, -6, 9);
     world.add(sun);
     const tall = new T.Group();  // all that the vertical scale stretches
@@ -378,10 +378,10 @@
       return meshes.get(name);
     };
 
-    const lines = (points, colour, overlay) => {
+    const lines = (points, colour) => {
       const geometry = new T.BufferGeometry();
       geometry.setAttribute("position", new T.BufferAttribute(new Float32Array(points), 3));
-      const line = new T.LineSegments(geometry, new T.LineBasicMaterial({ color: colour, transparent: true, depthTest: !overlay }));
+      const line = new T.LineSegments(geometry, new T.LineBasicMaterial({ color: colour, transparent: true }));
       tall.add(line);
       return line;
     };
@@ -402,7 +402,7 @@
     for (let y = bounds.y0; y <= bounds.y1; y += pitch) {
       for (let x = bounds.x0; x < bounds.x1; x += pitch) gridLine(x, y, pitch, 0);
     }
-    const grid = lines(gridPoints, 0x888888, false);
+    const grid = lines(gridPoints, 0x888888);
     grid.material.opacity = 0.35;
 
     // -- Zones of the change, drawn on the ground after
@@ -424,7 +424,7 @@
           if (here !== inZone(row, col - 1)) edge(at(row - 0.5, col - 0.5), at(row + 0.5, col - 0.5));
         }
       }
-      return lines(points, zoneColours[zone.kind], false);
+      return lines(points, zoneColours[zone.kind]);
     }));
 
     // -- Machine
@@ -649,20 +649,40 @@
       }
     };
 
-    // -- Path of the tip, in front of everything
+    // -- Path of the tip, in front of everything: two ribbons across each other
     const phaseColours = { approach: 0x8a8a8a, penetrate: 0xd55e00, drag: 0x2a86c8, scoop: 0x009e73, lift: 0xcc79a7 };
     let path = [];
+    const ribbons = (stretch) => {
+      const half = 0.018;
+      const corners = [];
+      for (const [a, b] of stretch) {
+        const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+        const across = [-(b[1] - a[1]) * half / length, (b[0] - a[0]) * half / length];
+        for (const [x, y, z] of [[across[0], 0, across[1]], [0, half, 0]]) {
+          const quad = [[a, 1], [b, 1], [b, -1], [a, 1], [b, -1], [a, -1]];
+          for (const [p, sign] of quad) corners.push(p[0] + sign * x, sign * y, p[1] + sign * z);
+        }
+      }
+      return new Float32Array(corners);
+    };
     const drawPath = () => {
-      for (const line of path) { tall.remove(line); line.geometry.dispose(); }
+      for (const mesh of path) { tall.remove(mesh); mesh.geometry.dispose(); }
       path = [];
       if (!dig) return;
-      const strokes = {};
+      const stretches = {};
       for (let i = 1; i < dig.time_s.length; ++i) {
-        (strokes[dig.phase[i]] = strokes[dig.phase[i]] || []).push(
-          dig.tip_x_m[i - 1], 0, dig.tip_z_m[i - 1], dig.tip_x_m[i], 0, dig.tip_z_m[i]);
+        (stretches[dig.phase[i]] = stretches[dig.phase[i]] || []).push(
+          [[dig.tip_x_m[i - 1], dig.tip_z_m[i - 1]], [dig.tip_x_m[i], dig.tip_z_m[i]]]);
       }
-      for (const phase in strokes) path.push(lines(strokes[phase], phaseColours[phase], true));
-      path.forEach((line) => { line.renderOrder = 5; });
+      for (const phase in stretches) {
+        const geometry = new T.BufferGeometry();
+        geometry.setAttribute("position", new T.BufferAttribute(ribbons(stretches[phase]), 3));
+        const material = new T.MeshBasicMaterial({ color: phaseColours[phase], side: T.DoubleSide, depthTest: false, transparent: true, opacity: 0.85 });
+        const mesh = new T.Mesh(geometry, material);
+        mesh.renderOrder = 5;
+        tall.add(mesh);
+        path.push(mesh);
+      }
     };
     drawPath();
 
@@ -672,19 +692,14 @@
       node: htmlElement("span", { textContent: text, className: kind || "" }, element("marks")), at: [x, y, z],
     });
     const makeMarks = () => {
-      const xs = ticks(extent.x0, extent.x1, 7);
-      const z = (x, y) => {
-        for (const area of areas) {
-          const here = heightAt(area, area.states[0], x, y);
-          if (!Number.isNaN(here)) return here;
-        }
-        return level;
-      };
-      for (const x of xs.list) mark(`${signed(x, xs.digits)}`, x, extent.y0 - 0.25, z(x, extent.y0));
-      const ys = ticks(extent.y0, extent.y1, 5);
-      for (const y of ys.list) mark(`${signed(y, ys.digits)}`, extent.x1 + 0.3, y, z(extent.x1, y));
-      mark("x [m]", (extent.x0 + extent.x1) / 2, extent.y0 - 0.8, level);
-      mark("y [m]", extent.x1 + 0.9, (extent.y0 + extent.y1) / 2, level);
+      const span = Math.max(extent.x1 - extent.x0, extent.y1 - extent.y0);
+      const narrow = stage.clientWidth < 560;
+      const xs = ticks(extent.x0, extent.x1, narrow ? 4 : 7);
+      for (const x of xs.list) mark(`${signed(x, xs.digits)}`, x, extent.y0 - 0.03 * span, floor);
+      const ys = ticks(extent.y0, extent.y1, narrow ? 3 : 5);
+      for (const y of ys.list) mark(`${signed(y, ys.digits)}`, extent.x1 + 0.03 * span, y, floor);
+      mark("x [m]", (extent.x0 + extent.x1) / 2, extent.y0 - (narrow ? 0.16 : 0.1) * span, floor);
+      mark("y [m]", extent.x1 + (narrow ? 0.16 : 0.1) * span, (extent.y0 + extent.y1) / 2, floor);
       const names = { dig: "hole", spill: "spill", dump: "heap", other: "left out" };
       const labelled = new Set();
       for (const zone of scene.zones) {
@@ -711,25 +726,42 @@
 
     // -- Camera
     const home = () => {
-      const box = machine
-        ? { x0: Math.min(-2.2, extent.x0), x1: Math.max(extent.x1, 0), y0: extent.y0, y1: extent.y1, z0: floor, z1: 3.2 * machine.boom_pin_m[1] / 1.424 }
-        : { ...extent, z0: floor, z1: range.high };
-      const centre = [(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2, (box.z0 + box.z1) / 2 * tall.scale.z];
+      const corners = [];
+      const addBox = (x0, x1, y0, y1, z0, z1) => {
+        for (const x of [x0, x1]) for (const y of [y0, y1]) for (const z of [z0, z1]) corners.push(new T.Vector3(x, y, z * tall.scale.z));
+      };
+      addBox(extent.x0, extent.x1, extent.y0, extent.y1, floor, areas.length ? range.high : 0);
+      if (machine) {
+        const s = machine.track_front_m / 1.8;
+        const h = machine.boom_pin_m[1] / 1.424;
+        addBox(-2.2 * s, s, -1.3 * s, 1.3 * s, 0, 2.8 * h);
+        addBox(s, machine.boom_pin_m[0] + 0.9 * machine.lengths_m[0], 0, 0, 0, machine.boom_pin_m[1] + 0.55 * machine.lengths_m[0]);
+      }
+      const box = new T.Box3().setFromPoints(corners);
+      box.getCenter(controls.target);
       const direction = new T.Vector3(0.42, -1, machine ? 0.5 : 0.8).normalize();
-      controls.target.set(...centre);
       // As near as all corners of the box allow.
       const half = Math.tan(camera.fov / 2 / degrees);
       const ahead = direction.clone().negate();
       const right = new T.Vector3().crossVectors(ahead, camera.up).normalize();
       const up = new T.Vector3().crossVectors(right, ahead);
-      let distance = 0;
-      for (const x of [box.x0, box.x1]) for (const y of [box.y0, box.y1]) for (const z of [box.z0, box.z1]) {
-        const corner = new T.Vector3(x - centre[0], y - centre[1], z * tall.scale.z - centre[2]);
-        distance = Math.max(distance,
-          -corner.dot(ahead) + Math.abs(corner.dot(up)) / half,
-          -corner.dot(ahead) + Math.abs(corner.dot(right)) / (half * camera.aspect));
+      // The middle of what is seen, then the distance.
+      const seen = { right: [Infinity, -Infinity], up: [Infinity, -Infinity] };
+      for (const [name, axis] of [["right", right], ["up", up]]) {
+        for (const corner of corners) {
+          const at = corner.clone().sub(controls.target).dot(axis);
+          seen[name] = [Math.min(seen[name][0], at), Math.max(seen[name][1], at)];
+        }
       }
-      camera.position.copy(controls.target).addScaledVector(direction, distance * 1.04);
+      controls.target.addScaledVector(right, (seen.right[0] + seen.right[1]) / 2).addScaledVector(up, (seen.up[0] + seen.up[1]) / 2);
+      let distance = 0;
+      for (const corner of corners) {
+        const from = corner.clone().sub(controls.target);
+        distance = Math.max(distance,
+          -from.dot(ahead) + Math.abs(from.dot(up)) / half,
+          -from.dot(ahead) + Math.abs(from.dot(right)) / (half * camera.aspect));
+      }
+      camera.position.copy(controls.target).addScaledVector(direction, distance * 1.05);
       camera.near = distance / 100;
       camera.far = distance * 10;
       camera.updateProjectionMatrix();
@@ -808,7 +840,7 @@
     element("exaggerate").addEventListener("click", (event) => {
       const scale = scales[(scales.indexOf(tall.scale.z) + 1) % scales.length];
       tall.scale.z = scale;
-      event.currentTarget.textContent = `× ${scale}`;
+      event.currentTarget.textContent = `Heights × ${scale}`;
       event.currentTarget.setAttribute("aria-pressed", String(scale !== 1));
       ask();
     });
@@ -894,6 +926,10 @@
       const left = 46;
       const bottom = 38;
       const scale = (width - left - 14) / (box.x1 - box.x0);
+      // Beside the view in three dimensions, as tall as that.
+      const stage = element("stage");
+      const beside = stage.clientWidth > 0 && stage.clientWidth < 0.8 * element("scene").clientWidth && !printing;
+      if (beside) box.z1 = Math.max(box.z1, box.z0 + (stage.clientHeight - bottom - 14) / scale);
       const height = Math.round(scale * (box.z1 - box.z0) + bottom + 12);
       const X = (x) => left + scale * (x - box.x0);
       const Z = (z) => 12 + scale * (box.z1 - z);
@@ -1015,7 +1051,7 @@
         { name: "forward", colour: "boom", values: loads.soil_x_kn },
         { name: "up", colour: "arm", values: loads.soil_z_kn }] },
       { title: "Power of the joints", unit: "kW", digits: 1, times: loads.time_s, series: [{ name: "power", colour: "total", values: loads.power_kw }] },
-      { title: "Energy since the start", unit: "kJ", digits: 1, times: loads.energy_time_s, series: [{ name: "energy", colour: "total", values: loads.energy_kj }] },
+      { title: "Energy of the dig so far", unit: "kJ", digits: 1, times: loads.energy_time_s, series: [{ name: "energy", colour: "total", values: loads.energy_kj }] },
       { title: "Soil in the bucket", unit: "m³", digits: 3, times: loads.time_s, series: [{ name: "loose volume", colour: "total", values: loads.fill_m3 }] });
     return list;
   };
@@ -1113,6 +1149,9 @@
 
   // ---- Time -------------------------------------------------------------------------------------
 
+  const playable = machine && dig && dig.time_s.length > 1;
+  element("scene").classList.toggle("played", Boolean(playable));
+
   let view = null;
   try {
     view = makeView();
@@ -1123,7 +1162,6 @@
   }
 
   let time = 0;
-  const playable = machine && dig && dig.time_s.length > 1;
 
   const jointsAt = (t) => dig.joints_rad.map((list) => valueAt(dig.time_s, list, t));
   const fillAt = (t) => (dig.loads && dig.loads.time_s.length ? (t < dig.loads.time_s[0] ? 0 : valueAt(dig.loads.time_s, dig.loads.fill_m3, t)) : 0);
@@ -1196,17 +1234,17 @@
         choose();
       });
     }
-    element("playing").hidden = false;
+    for (const id of ["section", "charts", "player"]) element(id).hidden = false;
     choose();
 
     let width = 0;
     new ResizeObserver(() => {
-      if (printing || element("playing").clientWidth === width) return;
-      width = element("playing").clientWidth;
+      if (printing || element("scene").clientWidth === width) return;
+      width = element("scene").clientWidth;
       section.lay();
       charts.fit();
       show();
-    }).observe(element("playing"));
+    }).observe(element("scene"));
     return {
       redraw: (paperWidth) => { section.lay(); charts.build(paperWidth); show(); },
       setTime,

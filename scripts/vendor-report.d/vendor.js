@@ -3,20 +3,20 @@
 
 // What data/report/app.js uses of three.js and uPlot; esbuild leaves out the rest.
 import {
-  AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry,
+  Box3, BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry,
   DirectionalLight, DoubleSide, ExtrudeGeometry, Group, HemisphereLight, LineBasicMaterial,
-  LineSegments, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, Scene, Shape,
-  SphereGeometry, Vector3, WebGLRenderer,
+  LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, Object3D, PerspectiveCamera, Scene, Shape,
+  Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import uPlot from "uplot";
 
 globalThis.excavplanVendor = {
   three: {
-    AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry,
+    Box3, BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry,
     DirectionalLight, DoubleSide, ExtrudeGeometry, Group, HemisphereLight, LineBasicMaterial,
-    LineSegments, Mesh, MeshLambertMaterial, Object3D, OrbitControls, PerspectiveCamera, Scene,
-    Shape, SphereGeometry, Vector3, WebGLRenderer,
+    LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, Object3D, OrbitControls, PerspectiveCamera, Scene,
+    Shape, Vector3, WebGLRenderer,
   },
   uPlot,
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include <excavplan/error.hpp>
@@ -238,6 +239,15 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
   if (plan.look_up) json.update(look_up_json(*plan.look_up));
   if (uncertain) json.update(spread_json(plan.spread, density.sd_percent));
   return json;
+}
+
+void withdraw(const std::optional<std::string>& trajectory, const std::optional<std::string>& plot,
+              const Machine& machine, Outcome& outcome) {
+  if (trajectory) write_trajectory(*trajectory, {machine.name, {}});
+  std::error_code unknown;
+  if (!plot || !std::filesystem::exists(*plot, unknown)) return;
+  outcome.warnings.push_back(
+      {"plot_not_written", *plot + ": is of an earlier run, as there is no dig to draw"});
 }
 
 void write_trajectory(const std::string& file, const Trajectory& trajectory) {

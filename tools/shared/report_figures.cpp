@@ -102,7 +102,7 @@ std::string interval_key(const std::string& key) {
   return stem_of(key) + "_interval" + suffix_of(key);
 }
 
-Entry figure_of(const Json& object, const std::string& key) {
+Entry entry_of(const Json& object, const std::string& key) {
   Entry figure = {key, &object.at(key)};
   if (const auto sd = object.find(sd_key(key)); sd != object.end() && sd->is_number()) {
     figure.sd = sd->get<double>();
@@ -172,6 +172,7 @@ class Rows {
  public:
   void add(const std::string& path, const std::string& before, const Json& object) {
     const std::set<std::string> shown_with = companions(object);
+    const std::string unit_of_all = shown_unit(path);
     for (const auto& [key, value] : object.items()) {
       const std::string here = path.empty() ? key : path + '.' + key;
       const std::string label = before + words_of(stem_of(key));
@@ -179,7 +180,9 @@ class Rows {
       if (value.is_object()) {
         add(here, label + ", ", value);
       } else if (!value.is_array()) {
-        add_row(here, label, figure_of(object, key));
+        const Entry entry = entry_of(object, key);
+        const std::string unit = unit_text(entry);
+        add_row(here, label, entry, unit.empty() && value.is_number() ? unit_of_all : unit);
       } else if (!value.empty() && is_flat(value)) {
         rows_ += "<tr><th scope=\"row\">" + xml_escaped(capital(label)) + "</th>" +
                  cell(attribute("data-key", here) + attribute("data-value", value.dump()) +
@@ -193,11 +196,12 @@ class Rows {
   const std::string& text() const { return rows_; }
 
  private:
-  void add_row(const std::string& path, const std::string& label, const Entry& figure) {
+  void add_row(const std::string& path, const std::string& label, const Entry& figure,
+               const std::string& unit) {
     rows_ += "<tr><th scope=\"row\">" + xml_escaped(capital(label)) + "</th>" +
              cell(exact(path, figure) + attribute("class", "value"), value_text(figure)) +
-             cell("", unit_text(figure)) +
-             cell("", figure.interval ? list_text(*figure.interval, " .. ") : "") + "</tr>\n";
+             cell("", unit) + cell("", figure.interval ? list_text(*figure.interval, " .. ") : "") +
+             "</tr>\n";
   }
 
   std::string rows_;
@@ -217,10 +221,11 @@ std::string head_cell(const std::string& text) {
 std::string figure_table(const std::string& title, const std::string& path, const Json& object) {
   Rows rows;
   rows.add(path, "", object);
-  const bool intervals = rows.text().find(" .. ") != std::string::npos;
+  const auto have = [&](const char* text) { return rows.text().find(text) != std::string::npos; };
   return table(title,
-               head_cell("figure") + head_cell("value ± standard deviation") + head_cell("unit") +
-                   head_cell(intervals ? "95 % interval" : ""),
+               head_cell("figure") +
+                   head_cell(have(" ± ") ? "value ± standard deviation" : "value") +
+                   head_cell("unit") + head_cell(have(" .. ") ? "95 % interval" : ""),
                rows.text());
 }
 
@@ -246,7 +251,7 @@ std::string list_cell(const std::string& path, const Json& object, const std::st
     return cell(attribute("data-key", path) + attribute("data-value", value->dump()),
                 list_text(*value, "; "));
   }
-  const Entry figure = figure_of(object, key);
+  const Entry figure = entry_of(object, key);
   return cell(exact(path, figure), value_text(figure));
 }
 
@@ -291,7 +296,7 @@ std::optional<Entry> found(const Json& result, const std::string& path) {
   }
   const std::string key = path.substr(start);
   if (!object->contains(key) || !object->at(key).is_number()) return std::nullopt;
-  return figure_of(*object, key);
+  return entry_of(*object, key);
 }
 
 }  // namespace
