@@ -36,14 +36,14 @@
     return [10, 5, 2, 1].find((factor) => factor * power <= value * 1.0001) * power;
   };
 
+  // At most `count` + 1 round values in low .. high.
   const ticks = (low, high, count) => {
-    const step = roundStep((high - low) / count) * (roundStep((high - low) / count) > 0 ? 1 : NaN);
+    const power = 10 ** Math.floor(Math.log10((high - low) / count));
+    const step = [1, 2, 5, 10].find((factor) => factor * power >= ((high - low) / count) * 0.9999) * power;
     const list = [];
     for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) list.push(i * step);
     return { list, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
   };
-
-  const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 
   const dark = matchMedia("(prefers-color-scheme: dark)");
   let printing = false;
@@ -74,17 +74,36 @@
     return z;
   };
 
-  const areas = scene.areas.map((area) => ({
-    x0: area.origin_m[0] + area.cell_m / 2,
-    y0: area.origin_m[1] + area.cell_m / 2,
-    cell: area.cell_m,
-    rows: area.rows,
-    cols: area.cols,
-    coarse: area.cell_m > area.surveyed_cell_m * 1.5,
-    names: area.states.map((state) => state.name),
-    states: area.states.map(heightsOf),
-    zone: area.zone ? bytesOf(area.zone) : null,
-  }));
+  // The part of an area that has a known cell in any state.
+  const areas = scene.areas.map((area) => {
+    const states = area.states.map(heightsOf);
+    const box = { row: [Infinity, -Infinity], col: [Infinity, -Infinity] };
+    const grow = (pair, i) => { pair[0] = Math.min(pair[0], i); pair[1] = Math.max(pair[1], i); };
+    for (const z of states) {
+      z.forEach((value, i) => {
+        if (Number.isNaN(value)) return;
+        grow(box.row, Math.floor(i / area.cols));
+        grow(box.col, i % area.cols);
+      });
+    }
+    const [rows, cols] = [box.row[1] - box.row[0] + 1, box.col[1] - box.col[0] + 1];
+    const cut = (list) => {
+      const part = new list.constructor(Math.max(0, rows * cols));
+      for (let i = 0; i < part.length; ++i) {
+        part[i] = list[(box.row[0] + Math.floor(i / cols)) * area.cols + box.col[0] + i % cols];
+      }
+      return part;
+    };
+    return {
+      x0: area.origin_m[0] + (box.col[0] + 0.5) * area.cell_m,
+      y0: area.origin_m[1] + (box.row[0] + 0.5) * area.cell_m,
+      cell: area.cell_m, rows, cols,
+      coarse: area.cell_m > area.surveyed_cell_m * 1.5,
+      names: area.states.map((state) => state.name),
+      states: states.map(cut),
+      zone: area.zone ? cut(bytesOf(area.zone)) : null,
+    };
+  }).filter((area) => area.rows > 1 && area.cols > 1);
 
   // Bilinear between the centres of cells; NaN outside and beside unknown cells.
   const heightAt = (area, z, x, y) => {
@@ -210,14 +229,15 @@
 
   const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);
   const mix = (stops, share) => {
+    if (Number.isNaN(share)) return still;
     const at = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
     const i = Math.min(Math.floor(at), stops.length - 2);
     return stops[i].map((value, k) => value + (at - i) * (stops[i + 1][k] - value));
   };
+  const still = rgb("#cfc7ba");
   const soilRamp = ["#5d4a3a", "#937354", "#c0a17a", "#dec8a5", "#f4ebda"].map(rgb);
   const fell = ["#f6d9cb", "#f4a582", "#d6604d", "#b2182b", "#67001f"].map(rgb);
   const rose = ["#d6e7f1", "#92c5de", "#4393c3", "#2166ac", "#053061"].map(rgb);
-  const still = rgb("#cfc7ba");
   const changeBounds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
 
   const range = (() => {
@@ -252,7 +272,10 @@
     const T = globalThis.excavplanVendor.three;
     const canvas = element("canvas");
     const stage = element("stage");
-    const renderer = new T.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    const settings = { antialias: true, alpha: true, preserveDrawingBuffer: true };
+    const context = canvas.getContext("webgl2", settings);
+    if (!context) return null;
+    const renderer = new T.WebGLRenderer({ canvas, context, ...settings });
     const world = new T.Scene();
     const camera = new T.PerspectiveCamera(32, 1, 0.1, 500);
     camera.up.set(0, 0, 1);
@@ -281,9 +304,10 @@
     if (!areas.length) Object.assign(extent, { x0: -3, y0: -3, x1: 9, y1: 3 });
     const flat = !(range.high - range.low > 1e-3);
     const floor = (areas.length ? range.low : 0) - Math.max(0.25, 0.05 * (extent.x1 - extent.x0));
-    const contourStep = flat ? 0.1 : Math.max(0.05, roundStep((range.high - range.low) / 8));
+    const contourStep = flat ? 0.1 : Math.max(0.05, roundStep((range.high - range.low) / 6));
 
-    // Lines of equal height on a material that is shaded by height.
+    // Lines of equal height. They lie half a step beside round heights, where level ground would be
+    // full of them.
     const withContours = (material) => {
       material.onBeforeCompile = (shader) => {
         shader.uniforms.contour = { value: contourStep };
@@ -292,7 +316,7 @@
         shader.fragmentShader = "varying float vHeight;\nuniform float contour;\n" + shader.fragmentShader.replace(
           "#include <color_fragment>",
           `#include <color_fragment>
-          float level = vHeight / contour;
+          float level = vHeight / contour + 0.5;
           float slope = fwidth(level);
           float away = abs(fract(level - 0.5) - 0.5) / max(slope, 1e-5);
           float line = (1.0 - smoothstep(0.4, 1.2, away)) * (1.0 - smoothstep(0.25, 0.5, slope));
@@ -322,6 +346,13 @@
         const [p, q] = [a, b].map((i) => [position[3 * i], position[3 * i + 1], position[3 * i + 2]]);
         skirt.push(...p, ...q, q[0], q[1], floor, ...p, q[0], q[1], floor, p[0], p[1], floor);
       };
+      // Walls down to the floor, unless the border of the ground is ragged.
+      let open = 0;
+      for (let i = 0; i < count; ++i) {
+        const [row, col] = [Math.floor(i / area.cols), i % area.cols];
+        if ((row === 0 || col === 0 || row === area.rows - 1 || col === area.cols - 1) && !known(i)) ++open;
+      }
+      const closed = open < 0.1 * (area.rows + area.cols);
       for (let row = 0; row + 1 < area.rows; ++row) {
         for (let col = 0; col + 1 < area.cols; ++col) {
           const a = row * area.cols + col;
@@ -330,6 +361,7 @@
           const d = c + 1;
           if (!(known(a) && known(b) && known(c) && known(d))) continue;
           if ((row + col) % 2) index.push(a, b, d, a, d, c); else index.push(a, b, c, b, d, c);
+          if (!closed) continue;
           if (row === 0) wall(a, b);
           if (row + 2 === area.rows) wall(c, d);
           if (col === 0) wall(a, c);
@@ -429,7 +461,7 @@
 
     // -- Machine
     const paints = {
-      body: new T.MeshLambertMaterial({ color: 0xd9a02b }),
+      body: new T.MeshLambertMaterial({ color: 0xe6ae34 }),
       dark: new T.MeshLambertMaterial({ color: 0x3a3e44 }),
       steel: new T.MeshLambertMaterial({ color: 0x8b9097, side: T.DoubleSide }),
       rod: new T.MeshLambertMaterial({ color: 0xd5d8dc }),
@@ -694,9 +726,9 @@
     const makeMarks = () => {
       const span = Math.max(extent.x1 - extent.x0, extent.y1 - extent.y0);
       const narrow = stage.clientWidth < 560;
-      const xs = ticks(extent.x0, extent.x1, narrow ? 4 : 7);
+      const xs = ticks(extent.x0, extent.x1, narrow ? 6 : 10);
       for (const x of xs.list) mark(`${signed(x, xs.digits)}`, x, extent.y0 - 0.03 * span, floor);
-      const ys = ticks(extent.y0, extent.y1, narrow ? 3 : 5);
+      const ys = ticks(extent.y0, extent.y1, narrow ? 4 : 7);
       for (const y of ys.list) mark(`${signed(y, ys.digits)}`, extent.x1 + 0.03 * span, y, floor);
       mark("x [m]", (extent.x0 + extent.x1) / 2, extent.y0 - (narrow ? 0.16 : 0.1) * span, floor);
       mark("y [m]", extent.x1 + (narrow ? 0.16 : 0.1) * span, (extent.y0 + extent.y1) / 2, floor);
@@ -714,12 +746,17 @@
 
     const projected = new T.Vector3();
     const placeMarks = () => {
+      const taken = [];
       for (const { node, at } of marks) {
         projected.set(at[0], at[1], at[2] * tall.scale.z).project(camera);
         const visible = Math.abs(projected.x) < 0.98 && Math.abs(projected.y) < 0.96 && projected.z < 1;
         node.style.visibility = visible ? "visible" : "hidden";
         const x = (projected.x + 1) / 2 * stage.clientWidth;
-        const y = (1 - projected.y) / 2 * stage.clientHeight;
+        let y = (1 - projected.y) / 2 * stage.clientHeight;
+        if (node.className === "zone") {
+          while (taken.some((other) => Math.abs(other[0] - x) < 190 && Math.abs(other[1] - y) < 22)) y -= 4;
+          taken.push([x, y]);
+        }
         node.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
       }
     };
@@ -739,7 +776,9 @@
       }
       const box = new T.Box3().setFromPoints(corners);
       box.getCenter(controls.target);
-      const direction = new T.Vector3(0.42, -1, machine ? 0.5 : 0.8).normalize();
+      // The longer side across; of ground that lies across, what the operator sees.
+      const across = !machine && extent.y1 - extent.y0 > extent.x1 - extent.x0;
+      const direction = new T.Vector3(...(across ? [-1, -0.35, 0.8] : [0.42, -1, machine ? 0.5 : 0.8])).normalize();
       // As near as all corners of the box allow.
       const half = Math.tan(camera.fov / 2 / degrees);
       const ahead = direction.clone().negate();
@@ -807,14 +846,13 @@
         const list = [...range.bands.slice().reverse().map((b) => [b, 1]), ...range.bands.map((b) => [b, -1])];
         const colours = [...range.bands.slice().reverse().map((b) => css(changeColour(b * 1.001))), css(still),
           ...range.bands.map((b) => css(changeColour(-b * 1.001)))];
-        strip.style.background = `linear-gradient(${colours.map((c, i) => `${c} ${100 * i / colours.length}%, ${c} ${100 * (i + 1) / colours.length}%`).join(",")})`;
-        const rows = colours.length;
-        texts.style.height = `${rows * 15}px`;
-        texts.style.padding = "8px 0";
+        const share = (i) => `${(100 * i / colours.length).toFixed(2)}%`;
+        strip.style.setProperty("--stops", colours.map((c, i) => `${c} ${share(i)}, ${c} ${share(i + 1)}`).join(","));
+        ramp.style.setProperty("--length", `${colours.length * 15}px`);
+        texts.className = "between";
         for (const [bound, sign] of list) htmlElement("span", { textContent: `${sign > 0 ? "+" : "−"}${+(bound * 100).toFixed(0)}` }, texts);
       } else {
-        strip.style.background = `linear-gradient(${[4, 3, 2, 1, 0].map((i) => css(soilRamp[i])).join(",")})`;
-        texts.style.height = "84px";
+        strip.style.setProperty("--stops", [4, 3, 2, 1, 0].map((i) => css(soilRamp[i])).join(","));
         for (const share of [1, 0.5, 0]) htmlElement("span", { textContent: signed(range.low + share * (range.high - range.low), 2) }, texts);
         htmlElement("div", { textContent: `lines every ${+contourStep.toFixed(2)} m` }, node);
       }
@@ -840,7 +878,7 @@
     element("exaggerate").addEventListener("click", (event) => {
       const scale = scales[(scales.indexOf(tall.scale.z) + 1) % scales.length];
       tall.scale.z = scale;
-      event.currentTarget.textContent = `Heights × ${scale}`;
+      event.currentTarget.textContent = `z × ${scale}`;
       event.currentTarget.setAttribute("aria-pressed", String(scale !== 1));
       ask();
     });
@@ -871,7 +909,7 @@
       event.preventDefault();
     });
 
-    element("view").hidden = false;
+    element("view").hidden = false;  // or it has no size
     resize();
     home();
     if (stateNames.length) show(hasChange ? stateNames[1] : stateNames[0]); else legend("");
@@ -938,8 +976,8 @@
       svg.style.height = `${height}px`;
       const clip = svgElement("clipPath", { id: "inside" }, svgElement("defs", {}, svg));
       svgElement("rect", { x: left, y: 12, width: width - left - 14, height: height - bottom - 12 }, clip);
-      const xs = ticks(box.x0, box.x1, Math.min(8, width / 70));
-      const zs = ticks(box.z0, box.z1, Math.max(2, Math.min(7, height / 55)));
+      const xs = ticks(box.x0, box.x1, Math.min(12, width / 50));
+      const zs = ticks(box.z0, box.z1, Math.max(3, Math.min(9, height / 40)));
       const line = (x0, y0, x1, y1) => svgElement("line", { x1: x0, y1: y0, x2: x1, y2: y1, stroke: "var(--line)" }, svg);
       for (const x of xs.list) {
         line(X(x), 12, X(x), height - bottom);
@@ -1152,14 +1190,11 @@
   const playable = machine && dig && dig.time_s.length > 1;
   element("scene").classList.toggle("played", Boolean(playable));
 
-  let view = null;
-  try {
-    view = makeView();
-    document.body.classList.add("drawn");
-  } catch (error) {
-    element("view").hidden = true;
-    element("no-view").hidden = false;
-  }
+  const view = makeView();
+  document.body.classList.toggle("drawn", view !== null);
+  element("view").hidden = view === null;
+  element("no-view").hidden = view !== null;
+  if (!machine) element("view-title").textContent = "Ground";
 
   let time = 0;
 
@@ -1256,13 +1291,17 @@
   // ---- Page -------------------------------------------------------------------------------------
 
   dark.addEventListener("change", () => { if (player) player.redraw(); });
+  // On paper the canvas has the size of the page, not of the screen.
+  const setStage = (width, height) => Object.assign(element("stage").style, { width, height });
   addEventListener("beforeprint", () => {
     printing = true;
-    if (player) player.redraw(310);
+    setStage("680px", "340px");
+    if (player) player.redraw(290);
     if (view) view.render();
   });
   addEventListener("afterprint", () => {
     printing = false;
+    setStage("", "");
     if (player) player.redraw();
     if (view) view.render();
   });

@@ -85,7 +85,7 @@ std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_number_integer()) return value.dump();
-  return readable(value.get<double>());
+  return readable(value.get<double>() + 0.0);  // no minus zero
 }
 
 /// A number with what is known about its error.
@@ -186,7 +186,7 @@ class Rows {
       } else if (!value.empty() && is_flat(value)) {
         rows_ += "<tr><th scope=\"row\">" + xml_escaped(capital(label)) + "</th>" +
                  cell(attribute("data-key", here) + attribute("data-value", value.dump()) +
-                          attribute("class", "value"),
+                          attribute("class", "value list"),
                       list_text(value, "; ")) +
                  cell("", shown_unit(key)) + "<td></td></tr>\n";
       }
@@ -223,8 +223,7 @@ std::string figure_table(const std::string& title, const std::string& path, cons
   rows.add(path, "", object);
   const auto have = [&](const char* text) { return rows.text().find(text) != std::string::npos; };
   return table(title,
-               head_cell("figure") +
-                   head_cell(have(" ± ") ? "value ± standard deviation" : "value") +
+               head_cell("figure") + head_cell(have(" ± ") ? "value ± sd" : "value") +
                    head_cell("unit") + head_cell(have(" .. ") ? "95 % interval" : ""),
                rows.text());
 }
