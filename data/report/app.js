@@ -821,12 +821,12 @@
     controls.addEventListener("change", ask);
 
     const resize = () => {
-      const first = renderer.getPixelRatio() === 0;
+      if (printing) return;
       renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
       renderer.setSize(stage.clientWidth, stage.clientHeight, false);
       camera.aspect = stage.clientWidth / stage.clientHeight;
       camera.updateProjectionMatrix();
-      if (!first) ask();
+      ask();
     };
 
     // -- Legend
@@ -917,7 +917,6 @@
     return {
       pose: (joints, fill) => { pose(joints, fill); ask(); },
       changed: () => { drawPath(); ask(); },
-      render: () => { resize(); render(); },
       // Where the tip is drawn, x and z in metres.
       tip: () => {
         tip.updateWorldMatrix(true, false);
@@ -1291,19 +1290,26 @@
   // ---- Page -------------------------------------------------------------------------------------
 
   dark.addEventListener("change", () => { if (player) player.redraw(); });
-  // On paper the canvas has the size of the page, not of the screen.
-  const setStage = (width, height) => Object.assign(element("stage").style, { width, height });
+  // On paper the view is the picture that is on the screen, scaled: a canvas drawn anew is not yet
+  // there when the browser prints.
+  const fitPaper = () => {
+    const stage = element("stage");
+    const [width, height] = [stage.clientWidth, stage.clientHeight];
+    const scale = 650 / width;
+    Object.assign(stage.style, { width: "650px", height: `${height * scale}px` });
+    Object.assign(element("marks").style, {
+      width: `${width}px`, height: `${height}px`, transformOrigin: "0 0", transform: `scale(${scale})`,
+    });
+  };
   addEventListener("beforeprint", () => {
     printing = true;
-    setStage("680px", "340px");
-    if (player) player.redraw(290);
-    if (view) view.render();
+    if (view) fitPaper();
+    if (player) player.redraw(285);
   });
   addEventListener("afterprint", () => {
     printing = false;
-    setStage("", "");
+    for (const id of ["stage", "marks"]) element(id).removeAttribute("style");
     if (player) player.redraw();
-    if (view) view.render();
   });
 
   element("copy").addEventListener("click", () => {
