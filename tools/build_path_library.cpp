@@ -93,7 +93,6 @@ Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
                                   : written_libraries(build.libraries, inputs.out);
   if (own) build.stopped ? own->keep() : own->clear();
   outcome.json["wall_time_s"] = watch.seconds();
-  outcome.warnings = warnings_of(inputs.library);
   return outcome;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 
 #include <excavplan/simulation/calibration.hpp>
 
@@ -39,17 +38,24 @@ struct Inputs {
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.file("samples", inputs.samples,
                  "measured samples, CSV with the columns bulking_factor,density_percent");
-  arguments.soil(inputs.soil);
-  arguments.machine(inputs.machine);
-  arguments.simulator(inputs.simulator);
-  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
-                 "relative densities of the simulated digs [%], or a list a,b,c");
-  arguments.option("path", inputs.path,
-                   "dig path that the law is for (default: the paper's, with the scatter of digs "
-                   "along others)");
-  arguments.option("draws", inputs.draws,
-                   "digs in drawn soils, for the scatter of the law; 0: none");
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
+  arguments.only_if(
+      {[&inputs] { return !inputs.samples; },
+       "a law of --samples is of the digs measured and states no soil and path"},
+      [&] {
+        arguments.soil(inputs.soil);
+        arguments.machine(inputs.machine);
+        arguments.simulator(inputs.simulator);
+        arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
+                       "relative densities of the simulated digs [%], or a list a,b,c");
+        arguments.option(
+            "path", inputs.path,
+            "dig path that the law is for (default: the paper's, with the scatter of digs "
+            "along others)");
+        arguments.option("draws", inputs.draws,
+                         "digs in drawn soils, for the scatter of the law; 0: none");
+        arguments.option("cell", inputs.cell_size, Quantity::length,
+                         "cell size of the simulated ground");
+      });
   arguments.output("out", inputs.out, "law file to write, for estimate-density --law");
 }
 
@@ -81,27 +87,11 @@ DensityCalibration from_simulator(const Inputs& inputs) {
   });
 }
 
-/// Samples are of the soil, path and machine that they were measured with.
-std::vector<Warning> ignored(const Inputs& inputs) {
-  if (!inputs.samples) return {};
-  const Inputs usual;
-  IgnoredOptions options;
-  options.add(inputs.soil != usual.soil, "--soil");
-  options.add(inputs.machine != usual.machine, "--machine");
-  options.add(inputs.simulator != usual.simulator, "--simulator");
-  options.add(inputs.densities != usual.densities, "--densities");
-  options.add(inputs.path.has_value(), "--path");
-  options.add(inputs.draws != usual.draws, "--draws");
-  options.add(inputs.cell_size != usual.cell_size, "--cell");
-  return options.warnings("a law of --samples is of the digs measured and states no soil and path");
-}
-
 /// The formula of a form with its numbers, which the law file holds under the form's key.
 std::string text(const DensityFit& fit, const nlohmann::ordered_json& file) {
   std::string text = formula(fit.form);
   for (const auto& [key, value] : file.at(fit.key).items()) {
-    const double number = std::abs(value.get<double>()) < 1e-9 ? 0.0 : value.get<double>();
-    text += ", " + key + " " + readable(number, 5);
+    text += ", " + key + " " + readable(value.get<double>(), 5);
   }
   return text;
 }
@@ -112,7 +102,6 @@ Outcome work(const Inputs& inputs) {
   const std::string file = to_json(calibration);
   if (inputs.out) write_file(*inputs.out, file);
   Outcome outcome;
-  outcome.warnings = ignored(inputs);
   outcome.json = parse_ordered_json("the law", file);
   outcome.json.erase("format");
   outcome.json.erase("version");

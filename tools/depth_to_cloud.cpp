@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "base/text.hpp"
 #include "shared/found_pose.hpp"
 #include "shared/tool.hpp"
 
@@ -63,7 +64,8 @@ std::vector<std::string> frames_of(const Inputs& inputs) {
     if (std::filesystem::is_directory(word, none)) {
       files.clear();
       for (const auto& entry : std::filesystem::directory_iterator(word)) {
-        if (entry.path().extension() == ".png") files.push_back(entry.path().string());
+        if (small_letters(entry.path().extension().string()) == ".png")
+          files.push_back(entry.path().string());
       }
       std::sort(files.begin(), files.end());
     }

@@ -5,6 +5,7 @@
 #include "shared/estimate.hpp"
 #include "shared/method_inputs.hpp"
 #include "shared/recordings.hpp"
+#include "shared/results.hpp"
 #include "shared/scans.hpp"
 #include "shared/soil_inputs.hpp"
 #include "shared/survey_planning.hpp"
@@ -25,9 +26,7 @@ const About about = {
      {"estimate-density run.db3:/points@0s+2s run.db3:/points@95s+2s --tf-frame map",
       "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
-      "without scans: expected density error of a D435i on a 2.5 m mast"},
-     {"estimate-density before.pcd after.pcd --json --report density.html",
-      "JSON output, and a page that shows the change in a browser"}},
+      "without scans: expected density error of a D435i on a 2.5 m mast"}},
     true};
 
 struct Inputs {
@@ -38,7 +37,6 @@ struct Inputs {
   ScanFrames frames;
   DensityOptions options;
   MethodInputs method;
-  bool compare = false;
   bool still = false;
   std::optional<std::string> plan_survey;
   std::optional<DigParameters> dug_path;
@@ -47,7 +45,7 @@ struct Inputs {
   std::optional<std::string> plot, report;
 };
 
-void declare(Arguments& arguments, Inputs& inputs) {
+void declare_estimate(Arguments& arguments, Inputs& inputs) {
   arguments.positional(
       "BEFORE", inputs.before,
       "cloud before the dig: PCD, PLY, LAS or XYZ, or " + std::string(recording_form));
@@ -66,11 +64,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_method(arguments, inputs.method);
   arguments.flag("no-register", inputs.still,
                  "do not register the scans: the sensor did not move between them");
-  arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
   arguments.option("cell", inputs.options.cell_size, Quantity::length,
                    "cell size of the height map, voxel size of --method paper (default: from the "
                    "point density, at least 0.05)");
   declare_soil(arguments, inputs.soil);
+  arguments.only_if({[&inputs] { return inputs.method.uses("surface"); },
+                     "--method paper has no error to weigh a second density by"},
+                    [&] { declare_payload(arguments, inputs.soil); });
   arguments.option("dug-path", inputs.dug_path,
                    "the path that was dug: takes a law of digs along it");
   arguments.option("dug-start", inputs.dug_start, Quantity::length,
@@ -79,6 +79,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_machine_in_view(arguments, inputs.frames.view);
   arguments.plot(inputs.plot, "the height change and its zones");
   arguments.report(inputs.report);
+}
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  arguments.only_if(
+      {[&inputs] { return !inputs.plan_survey; }, "a survey is planned by its keys alone"},
+      [&] { declare_estimate(arguments, inputs); });
+  declare_law(arguments, inputs.soil);
   arguments.text("plan-survey", "KEY=VALUE,..", inputs.plan_survey, survey_keys());
 }
 
@@ -109,22 +116,16 @@ Outcome work_on_scans(const Inputs& inputs) {
   const Machine machine = machine_named(inputs.frames.view.machine);
   DensityOptions options = options_of(inputs, machine);
   const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
-  BothEstimates both;
-  DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
-  const auto estimate = [&] {
-    if (inputs.compare) {
-      both = estimate_by_both(scans, law, options);
-    } else {
-      counts = estimate_density(scans, law, options);
-    }
-  };
-  naming_options(estimate_options, [&] { with_frame_hint(pair_frame_hint, estimate); });
+  const auto by_method = [&] { return estimate(inputs.method, scans, law, options); };
+  const BothEstimates both =
+      naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
+  const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   Outcome outcome = estimate_outcome(counts, options.soil);
   if (const auto warning = many_buckets(counts, machine)) outcome.warnings.push_back(*warning);
-  for (Warning& each : warnings_of(inputs.method, inputs.compare)) outcome.warnings.push_back(each);
+  for (Warning& each : unlike_law(law, machine.name)) outcome.warnings.push_back(each);
   report.add_to(outcome);
   draw_estimate(inputs.plot, inputs.report, counts, outcome);
-  if (inputs.compare) add_comparison(both, counts, outcome);
+  if (inputs.method.compare) add_comparison(both, counts, outcome);
   return outcome;
 }
 

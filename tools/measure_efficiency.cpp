@@ -38,10 +38,16 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("SECOND.csv", inputs.second.log, "log of a second dig to compare");
   inputs.first.declare(arguments, "", "");
   inputs.second.declare(arguments, "second-", ", second dig");
-  declare_frames(arguments, inputs.frames);
-  declare_units(arguments, inputs.frames);
-  arguments.option("cell", inputs.cell_size, Quantity::length,
-                   "cell size of the height maps (default: from the point density, at least 0.05)");
+  const auto has_scans = [&inputs] {
+    return inputs.first.dump_before.has_value() || inputs.second.dump_before.has_value();
+  };
+  arguments.only_if({has_scans, "there are no scans of a dump area"}, [&] {
+    declare_frames(arguments, inputs.frames);
+    declare_units(arguments, inputs.frames);
+    arguments.option("cell", inputs.cell_size, Quantity::length,
+                     "cell size of the height maps (default: from the point density, at least "
+                     "0.05)");
+  });
 }
 
 nlohmann::ordered_json to_json(const DigEfficiency& run) {

@@ -46,30 +46,37 @@ struct Inputs {
   std::optional<std::string> plot, report;
 };
 
+SearchUse use_of(const Inputs& inputs) {
+  if (inputs.search) return SearchUse::all;
+  return inputs.terrain.cloud ? SearchUse::start_only : SearchUse::none;
+}
+
+/// Whether any dig is simulated; a density from a file mostly has an error.
+bool simulates(const Inputs& inputs) {
+  const double sd = inputs.density.sd.value_or(inputs.density.file ? 1.0 : 0.0);
+  return use_of(inputs) != SearchUse::none || sd > 0.0 ||
+         inputs.simulator != default_simulator().word;
+}
+
 void declare(Arguments& arguments, Inputs& inputs) {
-  arguments.option("density", inputs.density.percent, Quantity::percent,
-                   "relative density of the ground");
-  arguments.option(
-      "density-sd", inputs.density.sd, Quantity::percent,
-      "standard deviation of the density, propagated to the results; --search then finds the "
-      "path with the best expected goal value");
-  arguments.file(
-      "density-from", inputs.density.file,
-      "take the density and its uncertainty from this result of estimate-density --json");
+  declare_density(arguments, inputs.density);
   arguments.file("library", inputs.library,
                  "path library (default: the shipped one of machine, soil and goal)");
   arguments.flag("search", inputs.search, "search for the path instead of looking it up");
-  arguments.file("terrain", inputs.terrain.cloud,
-                 "cloud of the ground in the site frame (default: level)");
-  arguments.file("terrain-frame", inputs.terrain.frame,
-                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  declare_terrain(arguments, inputs.terrain);
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
-  declare_search(arguments, inputs.dig_search);
+  arguments.only_if({[&inputs] { return simulates(inputs); },
+                     "nothing is simulated: a library has the digs of level ground"},
+                    [&] {
+                      arguments.option("cell", inputs.cell_size, Quantity::length,
+                                       "cell size of the simulated ground");
+                    });
+  declare_search(arguments, inputs.dig_search, [&inputs] { return use_of(inputs); });
   arguments.output("trajectory", inputs.trajectory,
                    "write the joint trajectory, CSV, or JSON as .json");
+  arguments.require_ending({".csv", ".json", ""});
   arguments.plot(inputs.plot, "the section of the dig");
   arguments.report(inputs.report);
 }
@@ -102,14 +109,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();
-  const SearchUse use = inputs.search          ? SearchUse::all
-                        : inputs.terrain.cloud ? SearchUse::start_only
-                                               : SearchUse::none;
-  for (const auto& warnings :
-       {site.warnings, warnings_of(inputs.dig_search, use),
-        plan_warnings(plan, inputs.density, inputs.terrain.cloud.has_value())}) {
-    outcome.warnings.insert(outcome.warnings.end(), warnings.begin(), warnings.end());
-  }
+  outcome.warnings = plan_warnings(plan, inputs.density, inputs.terrain.cloud.has_value());
+  outcome.warnings.insert(outcome.warnings.begin(), site.warnings.begin(), site.warnings.end());
   outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);
   outcome.json = plan_json(plan, density, options.search.objective);
   outcome.json.update({{"trustworthy", outcome.trustworthy},

@@ -53,8 +53,11 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
-  arguments.option("seed", inputs.seed, "seed of the searches");
-  arguments.threads(inputs.threads, "");
+  arguments.only_if({[&inputs] { return inputs.search; }, "nothing is searched without --search"},
+                    [&] {
+                      arguments.option("seed", inputs.seed, "seed of the searches");
+                      arguments.threads(inputs.threads, "");
+                    });
 }
 
 struct Condition {
@@ -107,6 +110,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const ExperimentOptions options = options_of(inputs, machine, soil);
   const std::vector<Condition> conditions = conditions_of(inputs);
   Outcome outcome;
+  outcome.warnings = unlike_law(law, machine.name, soil.name);
   outcome.json["conditions"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     console.progress(static_cast<double>(i) / static_cast<double>(conditions.size()),

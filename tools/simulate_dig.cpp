@@ -55,20 +55,25 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   arguments.simulator(inputs.simulator);
-  arguments.file("terrain", inputs.terrain.cloud,
-                 "cloud of the ground in the site frame (default: level)");
-  arguments.file("terrain-frame", inputs.terrain.frame,
-                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  declare_terrain(arguments, inputs.terrain);
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   declare_scans(arguments, inputs.scans);
   arguments.flag(
       "blocks", inputs.broken,
       "ground of 80 % relative density and more falls as blocks with voids between them");
-  arguments.option("block-size", inputs.blocks.size, Quantity::length, "mean edge of the blocks");
-  arguments.option("block-swell", inputs.blocks.swell, Quantity::ratio,
-                   "0: the blocks are undisturbed soil, 1: soil as loose as other dumped soil");
-  arguments.option("seed", inputs.seed, "seed of the scans' noise and of the blocks");
+  arguments.only_if(
+      {[&inputs] { return inputs.broken; }, "there are no blocks without --blocks"}, [&] {
+        arguments.option("block-size", inputs.blocks.size, Quantity::length,
+                         "mean edge of the blocks");
+        arguments.option(
+            "block-swell", inputs.blocks.swell, Quantity::ratio,
+            "0: the blocks are undisturbed soil, 1: soil as loose as other dumped soil");
+      });
+  arguments.only_if(
+      {[&inputs] { return inputs.broken || inputs.scans.any(); },
+       "there are neither scans (--before, --after) nor --blocks"},
+      [&] { arguments.option("seed", inputs.seed, "seed of the scans' noise and of the blocks"); });
   arguments.output("history", inputs.history, "write the loads of each step, CSV");
   arguments.plot(inputs.plot, "the section of the dig");
   arguments.report(inputs.report);
@@ -88,15 +93,6 @@ SceneOptions options_of(const Inputs& inputs) {
   std::tie(options.path, options.start_x) = read_planned_path(*inputs.path_from);
   options.rules = rules_for_planned_path();
   return options;
-}
-
-/// Of the blocks that the ground does not fall as.
-std::vector<Warning> warnings_of(const Inputs& inputs) {
-  const BlockSettings usual;
-  IgnoredOptions ignored;
-  ignored.add(!inputs.broken && inputs.blocks.size != usual.size, "--block-size");
-  ignored.add(!inputs.broken && inputs.blocks.swell != usual.swell, "--block-swell");
-  return ignored.warnings("there are no blocks without --blocks");
 }
 
 void write_files(const Inputs& inputs, const Machine& machine, const DigScene& scene,
@@ -131,7 +127,6 @@ Outcome work(const Inputs& inputs) {
   outcome.warnings = std::move(site.warnings);
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
-  for (const Warning& each : warnings_of(inputs)) outcome.warnings.push_back(each);
   if (scene.dig.stall) outcome.warnings.push_back({"stalled", describe(*scene.dig.stall)});
   write_files(inputs, machine, scene, outcome);
   return outcome;

@@ -24,8 +24,8 @@ constexpr const char* data_folder_of_package = EXCAVPLAN_DATA_DIR;
 ///  3. `package_folder`: programs compiled with the CMake or the pkg-config package know it;
 ///  4. share/excavplan of the installation that the running program is in (bin/..).
 ///
-/// @throws Error (bad_file) naming every folder that was searched; (bad_input) if the path is
-/// absolute or has a part ".."
+/// @throws Error (bad_file) naming every folder that was searched, or EXCAVPLAN_DATA if it names
+/// no folder; (bad_input) if the path is absolute or has a part ".."
 std::string find_data_file(const std::string& relative_path,
                            const std::string& package_folder = data_folder_of_package);
 

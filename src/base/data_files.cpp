@@ -35,11 +35,19 @@ fs::path shared_library_file() {
   return none || file == program_file() ? fs::path() : file;
 }
 
+/// The folder of the environment variable, if it is set. @throws Error (bad_file) if there is none
+fs::path named_folder() {
+  const char* const named = std::getenv("EXCAVPLAN_DATA");
+  if (named == nullptr || *named == '\0') return {};
+  std::error_code none;
+  if (fs::is_directory(named, none)) return named;
+  throw Error(ErrorKind::bad_file, "the environment variable EXCAVPLAN_DATA: found " +
+                                       excavplan::quoted(named) + ", expected a folder");
+}
+
 std::vector<fs::path> data_folders(const std::string& package_folder) {
   std::vector<fs::path> folders;
-  if (const char* named = std::getenv("EXCAVPLAN_DATA"); named != nullptr && *named != '\0') {
-    folders.emplace_back(named);
-  }
+  if (const fs::path named = named_folder(); !named.empty()) folders.push_back(named);
   if (const fs::path library = shared_library_file(); !library.empty()) {
     folders.push_back(library.parent_path() / EXCAVPLAN_DATA_FROM_LIBRARY);
   }

@@ -163,6 +163,15 @@ JsonObject JsonObject::of_others(const std::string& name, const std::string& con
              "keys with values, as JSON or YAML");
 }
 
+JsonObject JsonObject::result_of(const std::string& tool, const std::string& path) {
+  const std::string expected = "a result of " + tool + " --json";
+  JsonObject result = top(path, parse_json(path, read_file(path)), expected.c_str());
+  const bool has_tool = result.has("tool");
+  if (has_tool ? result.text("tool") == tool : !result.has("format")) return result;
+  const char* key = has_tool ? "tool" : "format";
+  result.fail(key, "is " + shown(result.at(key)) + ", expected " + expected);
+}
+
 void JsonObject::require_format(const std::string& format, int version) {
   if (const std::string found = text("format"); found != format) {
     fail("format", "is " + excavplan::quoted(found) + ", expected '" + format + "'");
@@ -189,6 +198,10 @@ void JsonObject::fail(const std::string& key, const std::string& message) const 
 }
 
 bool JsonObject::has(const std::string& key) const { return json_->contains(key); }
+
+bool JsonObject::states(const std::string& key) const {
+  return has(key) && !json_->at(key).is_null();
+}
 
 const json& JsonObject::at(const std::string& key) {
   read_.insert(key);

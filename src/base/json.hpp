@@ -53,10 +53,16 @@ class JsonObject {
   /// it is no error. @throws Error (bad_file)
   static JsonObject of_others(const std::string& name, const std::string& content);
 
+  /// What a tool printed with --json, or an object with keys of the same names that does not say
+  /// where it is from. @throws Error (bad_file) if it is of another tool or a file with a "format"
+  static JsonObject result_of(const std::string& tool, const std::string& path);
+
   /// @throws Error (bad_file) unless "format" and "version" are these
   void require_format(const std::string& format, int version = 1);
 
   bool has(const std::string& key) const;
+  /// Whether it has the key with a value other than null.
+  bool states(const std::string& key) const;
   double number(const std::string& key, double lowest = -std::numeric_limits<double>::max(),
                 double highest = std::numeric_limits<double>::max());
   double number_or(const std::string& key, double fallback,

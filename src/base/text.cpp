@@ -9,6 +9,8 @@
 namespace excavplan {
 namespace {
 
+constexpr double negligible = 1e-9;  // of a number to read; ours
+
 /// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other
 /// (optimal string alignment).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -105,6 +107,7 @@ std::string decimals(double value, int digits) {
 
 std::string readable(double value, int digits) {
   if (!std::isfinite(value)) return "unknown";
+  if (std::abs(value) < negligible) value = 0.0;
   const double magnitude = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)));
   int places = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
   const double rounding = 0.5 * std::pow(10.0, -places);
@@ -114,12 +117,13 @@ std::string readable(double value, int digits) {
 }
 
 std::string readable(double value, double sd) {
-  if (!std::isfinite(sd) || sd <= 0.0) return readable(value);
+  if (!std::isfinite(sd) || sd < negligible) return readable(value);
   const std::string deviation = readable(sd, 2);
   const std::size_t point = deviation.find('.');
   const int places =
       point == std::string::npos ? 0 : static_cast<int>(deviation.size() - point - 1);
-  return decimals(value, places) + " ± " + deviation;
+  const bool is_zero = std::abs(value) < 0.5 * std::pow(10.0, -places);  // which has no sign
+  return decimals(is_zero ? 0.0 : value, places) + " ± " + deviation;
 }
 
 std::optional<std::size_t> first_not_utf8(std::string_view text) {

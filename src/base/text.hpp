@@ -24,8 +24,8 @@ std::string number_text(double value);
 std::string plain_number(double value);
 /// The number with so many digits after the point: "0.350".
 std::string decimals(double value, int digits);
-/// A human-readable number: at least so many significant digits, never an exponent; "unknown" if
-/// NaN.
+/// A human-readable number: at least so many significant digits, never an exponent; 0 if it is less
+/// than 1e-9, which is rounding in any unit that is shown; "unknown" if NaN.
 std::string readable(double value, int digits = 3);
 /// "0.451 ± 0.012": the standard deviation with two digits, the value with as many decimals.
 std::string readable(double value, double sd);

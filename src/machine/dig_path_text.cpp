@@ -2,16 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "machine/dig_path_text.hpp"
 
-#include <excavplan/error.hpp>
-
 #include "base/angles.hpp"
-#include "base/files.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr const char* start_key = "start_x_m";
+constexpr double longest_path = 100.0;  // of any machine [m]; ours
+
+std::pair<DigParameters, double> read_numbers(JsonObject& path) {
+  DigParameters parameters;
+  for (const DigParameterInfo& info : dig_parameter_table()) {
+    const bool angle = info.unit == std::string("rad");
+    parameters.*info.field = path.number(info.name, 0.0, angle ? 0.5 * pi : longest_path);
+  }
+  return {parameters, path.number(start_key, -longest_path, longest_path)};
+}
 
 }  // namespace
 
@@ -24,34 +31,17 @@ nlohmann::ordered_json path_json(const DigParameters& parameters, double start_x
   return json;
 }
 
-constexpr double longest_path = 100.0;  // of any machine [m]; ours
-
 std::pair<DigParameters, double> read_path(JsonObject path) {
-  DigParameters parameters;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    const bool angle = info.unit == std::string("rad");
-    parameters.*info.field = path.number(info.name, 0.0, angle ? 0.5 * pi : longest_path);
-  }
-  const double start_x = path.number(start_key);
+  auto read = read_numbers(path);
   path.done();
-  return {parameters, start_x};
+  return read;
 }
 
 std::pair<DigParameters, double> read_planned_path(const std::string& file) {
-  const nlohmann::json json = parse_json(file, read_file(file));
-  const auto number = [&](const std::string& key) {
-    const nlohmann::json::json_pointer place("/path/" + key);
-    const bool there = json.is_object() && json.contains(place);
-    if (there && json.at(place).is_number()) return json.at(place).get<double>();
-    throw Error(ErrorKind::bad_file, file + ": path." + key + " must be a number, it is " +
-                                         (there ? shown(json.at(place)) : "missing") +
-                                         "; expected a result of plan-path --json");
-  };
-  DigParameters parameters;
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    parameters.*info.field = number(info.name);
-  }
-  return {parameters, number(start_key)};
+  JsonObject plan = JsonObject::result_of("plan-path", file);
+  if (plan.has("path") && !plan.states("path")) plan.fail("path", "is null, this plan has no dig");
+  JsonObject path = plan.object("path");
+  return read_numbers(path);
 }
 
 std::string path_text(const DigParameters& parameters, std::optional<double> start_x) {

@@ -20,12 +20,11 @@ namespace excavplan {
 /// {"penetration_angle_rad": ..., ..., "start_x_m": ...}, the "path" of results and libraries.
 nlohmann::ordered_json path_json(const DigParameters& parameters, double start_x);
 
-/// Parameters and start of such an object in a file of ours. Takes the parameters inside their
-/// search ranges alone. @throws Error (bad_file)
+/// Parameters and start of such an object in a file of ours. @throws Error (bad_file)
 std::pair<DigParameters, double> read_path(JsonObject path);
 
-/// The same of a result of plan-path --json, where the ranges may be wider.
-/// @throws Error (bad_file) naming file, key and value
+/// The same of a result of plan-path --json.
+/// @throws Error (bad_file) naming file, key, value and rule
 std::pair<DigParameters, double> read_planned_path(const std::string& file);
 
 /// "45.0 deg, 0.350 m, 1.50 m from x = 6.05 m", the last part where the start is known.

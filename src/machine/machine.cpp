@@ -292,6 +292,8 @@ Machine load_machine(const std::string& path) {
     object->ignore("sources");
     object->done();
   }
+  check_units(machine,
+              [&](const std::string& key, const std::string& what) { file.fail(key, what); });
   return machine;
 }
 

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
+#include <excavplan/machine/kinematics.hpp>
 #include <excavplan/machine/machine.hpp>
 
 #include "base/angles.hpp"
@@ -118,6 +120,69 @@ void check_rest(const Rules& rules, const Machine& machine) {
   }
 }
 
+/// A number of the file, measured by others that grow with the machine as it does.
+struct UnitRule {
+  std::string key;
+  double value;
+  double measure;
+  const char* of;  ///< what the measure is, after its number; empty: it is the value
+  double lowest;
+  double highest;
+  const char* hint;
+};
+
+// Ours: machines of 1 to 100 t, with long fronts too, lie inside by a factor of 2 or more; a wrong
+// unit is a factor of 57 (degrees) or 1000.
+std::vector<UnitRule> unit_rules(const Machine& machine) {
+  constexpr const char* if_degrees = "is it in degrees or turns?";
+  constexpr const char* if_tonnes = "is it in t?";
+  constexpr const char* if_kilo = "is it in kN m?";
+  const JointAngles stretched = JointAngles::Zero();
+  const JointAngles own_weight =
+      torque_against_link_weight(machine, link_positions(machine, stretched)).cwiseAbs();
+  const double length = machine.boom_length + machine.arm_length;
+  double front = 0.0;
+  std::vector<UnitRule> rules = {{"geometry.boom_pin_m[1]", machine.boom_pin.y(),
+                                  machine.boom_pin.y() / machine.boom_length,
+                                  "of boom_length_m above the ground", 0.01, 2.0,
+                                  "the ground that the machine stands on is z = 0"}};
+  for (const Joint joint : {Joint::boom, Joint::arm, Joint::bucket}) {
+    const auto i = static_cast<std::size_t>(joint);
+    const JointLimits& limits = machine.limits[i];
+    const double mass = machine.links[i].mass;
+    const double load = own_weight(static_cast<Eigen::Index>(i));
+    const std::string key = std::string(name(joint)) + '.';
+    front += mass;
+    rules.push_back({"links." + key + "mass_kg", mass, mass / std::pow(length, 3),
+                     "kg per cubed length of boom and arm", 0.02, 50.0, if_tonnes});
+    rules.push_back({"joints." + key + "speed_rad_per_s", limits.speed, limits.speed, "", 0.01, 5.0,
+                     if_degrees});
+    rules.push_back({"joints." + key + "torque_n_m", limits.torque, load / limits.torque,
+                     "of which holds the links stretched out level", 0.0, 1.0, if_kilo});
+  }
+  if (const auto& body = machine.body) {
+    rules.push_back({"body.mass_kg", body->mass, body->mass / front, "of boom, arm and bucket", 1.0,
+                     100.0, if_tonnes});
+  }
+  if (const auto& swing = machine.swing) {
+    rules.push_back(
+        {"swing.speed_rad_per_s", swing->speed, swing->speed, "", 0.01, 5.0, if_degrees});
+    rules.push_back({"swing.torque_n_m", swing->torque, own_weight(0) / swing->torque,
+                     "of which holds boom, arm and bucket stretched out level", 0.0, 50.0,
+                     if_kilo});
+    rules.push_back(
+        {"swing.inertia_kg_m2", swing->inertia, swing->inertia / (front * length * length),
+         "of boom, arm and bucket at the length of both", 0.002, 20.0, "is it in t m2?"});
+  }
+  if (const auto& engine = machine.engine) {
+    rules.push_back({"engine.power_w", engine->power, engine->power / front,
+                     "W per kg of boom, arm and bucket", 2.0, 1000.0, "is it in kW?"});
+    rules.push_back({"engine.idle_power_w", engine->idle_power, engine->idle_power / engine->power,
+                     "of power_w", 0.0, 1.0, "an idling engine takes less than it can give"});
+  }
+  return rules;
+}
+
 }  // namespace
 
 void check_shape(const Bucket& bucket, double bucket_length, double boom_length,
@@ -149,6 +214,17 @@ void check_shape(const Bucket& bucket, double bucket_length, double boom_length,
     fail("teeth.width_m",
          "is " + number_text(teeth->width) + ", " + number_text(teeth->count) +
              " teeth must not exceed width_outside_m = " + number_text(bucket.width_outside));
+  }
+}
+
+void check_units(const Machine& machine,
+                 const std::function<void(const std::string& key, const std::string& what)>& fail) {
+  for (const UnitRule& rule : unit_rules(machine)) {
+    if (rule.measure >= rule.lowest && rule.measure <= rule.highest) continue;
+    const std::string is = "is " + number_text(rule.value);
+    const std::string range = number_text(rule.lowest) + " .. " + number_text(rule.highest);
+    fail(rule.key, is + (*rule.of ? ", " + readable(rule.measure) + " " + rule.of : "") +
+                       ", must be in " + range + ": " + rule.hint);
   }
 }
 

@@ -17,4 +17,9 @@ namespace excavplan {
 void check_shape(const Bucket& bucket, double bucket_length, double boom_length,
                  const std::function<void(const char* key, const std::string& what)>& fail);
 
+/// The same of a machine whose numbers each keep their rules, with keys from the top of the file:
+/// relations that every excavator of 1 to 100 t keeps, and that a number in another unit breaks.
+void check_units(const Machine& machine,
+                 const std::function<void(const std::string& key, const std::string& what)>& fail);
+
 }  // namespace excavplan

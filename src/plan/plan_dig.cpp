@@ -18,6 +18,11 @@
 #include "ground/robust.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
+<<<<<<< HEAD
+#include "planning/front_room.hpp"
+=======
+#include "planning/dig_problem.hpp"
+>>>>>>> 01fc300e31cd48e85f8f8fbfa0af0e7345dcb827
 #include "simulation/checked_dig.hpp"
 #include "simulation/terrain_check.hpp"
 
@@ -94,6 +99,28 @@ void judge_ground(const Task& task, DigPlan& plan) {
                readable(front + ahead) + " m, lies " + readable(height, 2) +
                " m above the ground that the machine stands on, z = 0: are the heights of the "
                "terrain those of the site frame?");
+}
+
+/// The simulators dig all ground as soil: they do not know a post or a rock.
+void judge_strip(const Task& task, DigPlan& plan) {
+  constexpr double inner = 0.7;  // of the bucket's width: beside it a wall may stand; ours
+  constexpr double most = 0.5;   // above the median of the width [m]; ours
+  const HeightMap map = task.ground.surface();
+  const Rectangle strip = swept_strip(task.machine, plan.path);
+  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+    if (map.x(col) < strip.x_min || map.x(col) > strip.x_max) continue;
+    std::vector<double> heights;
+    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+      if (std::abs(map.y(row)) <= inner * strip.y_max) heights.push_back(map.z(row, col));
+    }
+    if (heights.empty()) continue;
+    const double above = *std::max_element(heights.begin(), heights.end()) - median(heights);
+    if (!(above > most)) continue;
+    distrust(plan, "obstacle_in_strip",
+             "at x = " + readable(map.x(col)) + " m something stands " + readable(above, 2) +
+                 " m above the ground that the bucket passes; the plan takes it for soil");
+    return;
+  }
 }
 
 std::shared_ptr<const PathLibrary> library_of(const Task& task) {
@@ -333,6 +360,7 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
 
 void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchOptions& options,
                     DigPlan& plan) {
+  require_own_checkpoint(task.machine, simulator, task.ground, options);
   const auto first = search_by_least_work(task, simulator, options);
   const bool ended = first && was_stopped(*first);
   const auto found = ended ? *first : search_dig(task.machine, simulator, task.ground, options);
@@ -356,6 +384,7 @@ DigPlan search_most_likely(const Task& task, const std::vector<PossibleSoil>& so
 
 void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
                       DigSearchOptions options, DigPlan& plan) {
+  require_own_checkpoint(task.machine, soils, task.ground, within_budget(options, true));
   int digs_of_likely = 0;
   if (!task.level) {
     const DigPlan likely = search_most_likely(task, soils, options);
@@ -393,12 +422,25 @@ void add_spread(const Task& task, const std::vector<PossibleSoil>& soils, DigPla
                " %; the results are those of the digs without a stall");
 }
 
+/// The way down to the path, or what is in its way.
+std::variant<std::vector<DigPose>, std::string> free_way_down(const Task& task,
+                                                              const DigPath& path) {
+  auto found = way_down(task.machine, path, boom_plane_profile(task.ground));
+  if (const auto* blocked = std::get_if<Infeasible>(&found)) return blocked->message;
+  auto& way = std::get<std::vector<DigPose>>(found);
+  const FrontRoom room(task.ground, task.machine);
+  for (const DigPose& pose : way) {
+    const auto contact = room.contact(link_positions(task.machine, pose.joints));
+    if (contact) return describe(*contact);
+  }
+  return std::move(way);
+}
+
 void add_trajectory(const Task& task, DigPlan& plan) {
-  auto approach = way_down(task.machine, plan.path, boom_plane_profile(task.ground));
-  if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
+  auto approach = free_way_down(task, plan.path);
+  if (const auto* blocked = std::get_if<std::string>(&approach)) {
     warn(plan, "approach_blocked",
-         "the trajectory begins on the ground, because the approach is blocked: " +
-             blocked->message);
+         "the trajectory begins on the ground, because the approach is blocked: " + *blocked);
   } else {
     plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
   }
@@ -452,6 +494,7 @@ DigPlan plan_dig(const Task& task) {
   if (plan.method == PlanMethod::search) search_plan(task, ground->soils(), plan);
   if (!is_worth_making(plan)) return plan;
   judge_fill(task, plan);
+  if (!task.level) judge_strip(task, plan);
   plan.cycle = cycle_of(task.machine, plan.path, *plan.dig, task.objective());
   if (task.uncertain()) add_spread(task, ground->soils(), plan);
   add_trajectory(task, plan);

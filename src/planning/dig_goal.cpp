@@ -96,8 +96,10 @@ std::string describe(const DigObjective& objective) {
 void check(const DigObjective& objective, const Machine& machine) {
   for (const DigObjectiveParameter& parameter : objective_parameters()) {
     const double value = objective.*parameter.field;
+    const std::string unit =
+        parameter.unit == std::string("-") ? "" : std::string(" ") + parameter.unit;
     require(value >= 0.0 && value <= parameter.highest, std::string("the ") + parameter.text, value,
-            "in 0 .. " + number_text(parameter.highest) + " " + parameter.unit);
+            "in 0 .. " + number_text(parameter.highest) + unit);
   }
   if (info_of(objective.goal).of_cycle) require_cycle(machine, objective);
 }

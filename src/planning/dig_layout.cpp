@@ -74,12 +74,15 @@ bool KnownStrip::is_known(double x_min, double x_max) const {
 }
 
 DigLayout::DigLayout(const Machine& machine, const Terrain& terrain)
-    : machine_(required(machine)), ground_(boom_plane_profile(terrain)), strip_(terrain, machine) {}
+    : machine_(required(machine)),
+      ground_(boom_plane_profile(terrain)),
+      strip_(terrain, machine),
+      room_(terrain, machine) {}
 
 std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& parameters,
                                                        double start_x,
                                                        const DigPathOptions& options) const {
-  return known(make_dig_path(machine_, parameters, start_x, ground_, options));
+  return checked(make_dig_path(machine_, parameters, start_x, ground_, options));
 }
 
 std::variant<DigPath, Infeasible> DigLayout::path_near(const DigParameters& parameters,
@@ -90,26 +93,44 @@ std::variant<DigPath, Infeasible> DigLayout::path_near(const DigParameters& para
 
 std::variant<DigPath, Infeasible> DigLayout::path_of_largest_margin(
     const DigParameters& parameters) const {
-  return known(make_dig_path_anywhere(machine_, parameters, ground_));
+  return checked(make_dig_path_anywhere(machine_, parameters, ground_));
 }
 
-/// The path, if every cell the bucket passes and those just ahead of it are known.
-std::variant<DigPath, Infeasible> DigLayout::known(std::variant<DigPath, Infeasible> found) const {
+/// What a profile of the ground does not tell: a cell that the bucket passes, or one just ahead of
+/// it, is unknown, or the ground is in the way of the links.
+std::optional<Infeasible> DigLayout::obstacle(const DigPose& pose, double x_max) const {
+  Infeasible stop;
+  stop.phase = pose.phase;
+  if (!strip_.is_known(pose.bucket.x - looked_ahead, x_max)) {
+    stop.reason = Infeasible::Reason::unknown_ground;
+    stop.value = x_max - strip_.cell_size();
+    stop.message = "the path runs over ground that is unknown or off the map";
+    return stop;
+  }
+  if (const auto contact = room_.contact(link_positions(machine_, pose.joints))) {
+    stop.reason = Infeasible::Reason::front_contact;
+    stop.value = contact->lowest;
+    stop.limit = contact->z;
+    stop.message = describe(*contact);
+    return stop;
+  }
+  return std::nullopt;
+}
+
+/// The path, if nothing of that stops it.
+std::variant<DigPath, Infeasible> DigLayout::checked(
+    std::variant<DigPath, Infeasible> found) const {
   const auto* path = std::get_if<DigPath>(&found);
   if (!path) return found;
   const double x_max = path->start_x + strip_.cell_size();
   const DigPose* phase_start = &path->poses.front();
   for (const DigPose& pose : path->poses) {
     if (pose.phase != phase_start->phase) phase_start = &pose;
-    if (strip_.is_known(pose.bucket.x - looked_ahead, x_max)) continue;
-    Infeasible stop;
-    stop.reason = Infeasible::Reason::unknown_ground;
-    stop.phase = pose.phase;
-    stop.distance =
+    auto stop = obstacle(pose, x_max);
+    if (!stop) continue;
+    stop->distance =
         std::hypot(pose.bucket.x - phase_start->bucket.x, pose.bucket.z - phase_start->bucket.z);
-    stop.value = path->start_x;
-    stop.message = "the path runs over ground that is unknown or off the map";
-    return stop;
+    return *std::move(stop);
   }
   return found;
 }

@@ -7,6 +7,8 @@
 
 #include <excavplan/planning/planned_dig.hpp>
 
+#include "planning/front_room.hpp"
+
 namespace excavplan {
 
 /// Which columns of a terrain are known over the whole width of the bucket.
@@ -43,11 +45,13 @@ class DigLayout {
 
  private:
   std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
-  std::variant<DigPath, Infeasible> known(std::variant<DigPath, Infeasible> found) const;
+  std::variant<DigPath, Infeasible> checked(std::variant<DigPath, Infeasible> found) const;
+  std::optional<Infeasible> obstacle(const DigPose& pose, double x_max) const;
 
   const Machine& machine_;
   GroundProfile ground_;
   KnownStrip strip_;
+  FrontRoom room_;
 };
 
 /// How far a dig is from feasible, >= 0: the share of the path that a stall leaves; more than 1 for

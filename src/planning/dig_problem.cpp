@@ -10,6 +10,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "optimisation/search_checkpoint.hpp"
 #include "planning/planned_digs.hpp"
 #include "simulation/checked_dig.hpp"
 
@@ -148,10 +149,18 @@ DigProblem::DigProblem(const Machine& machine, const std::vector<PossibleSoil>& 
 SearchResult DigProblem::run() {
   SearchOptions search_options{options_, {}};
   for (const KnownDig& dig : options_.start) search_options.start.push_back(point_of(dig));
+  return search(as_search(), search_options);
+}
+
+void DigProblem::require_own_checkpoint() {
+  if (options_.resume) SearchCheckpoint(as_search(), {options_, {}});
+}
+
+SearchProblem DigProblem::as_search() {
   SearchProblem problem{box(), [this](const VectorXd& point) { return simulate(point); },
                         [this](const VectorXd& point) { return lay_out(point); }};
   if (!options_.checkpoint.empty()) problem.fingerprint = fingerprint();
-  return search(problem, search_options);
+  return problem;
 }
 
 DigProblem::Best DigProblem::best_of(const SearchResult& found) const {

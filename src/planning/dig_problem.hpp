@@ -35,6 +35,8 @@ class DigProblem {
              const DigSearchOptions& options);
 
   SearchResult run();
+  /// @throws Error (bad_file) if the search is to be resumed from a checkpoint of another
+  void require_own_checkpoint();
 
   /// The dig of a result that is feasible, with its figures in every soil.
   struct Best {
@@ -48,6 +50,7 @@ class DigProblem {
  private:
   bool start_is_searched() const { return options_.start_rule.kind == StartRule::Kind::searched; }
   SearchBox box() const;
+  SearchProblem as_search();
   std::vector<const DigParameterInfo*> at_bound(const DigParameters& best) const;
   Eigen::VectorXd point_of(const KnownDig& known) const;
   std::variant<Eigen::VectorXd, Evaluation> lay_out(const Eigen::VectorXd& point);
@@ -66,5 +69,12 @@ class DigProblem {
   mutable std::mutex mutex_;
   std::map<PointKey, double> starts_;  ///< of the drivable paths asked for
 };
+
+/// The same before work that precedes the search, of search_dig() with the same arguments: of
+/// several soils the checkpoint of each too.
+void require_own_checkpoint(const Machine& machine, const SoilSimulator& simulator,
+                            const Terrain& terrain, const DigSearchOptions& options);
+void require_own_checkpoint(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                            const Terrain& terrain, const DigSearchOptions& options);
 
 }  // namespace excavplan

@@ -53,6 +53,12 @@ int evaluation_budget(bool uncertain, bool from_known) {
   return from_known ? 100 : 200;
 }
 
+void require_own_checkpoint(const Machine& machine, const SoilSimulator& simulator,
+                            const Terrain& terrain, const DigSearchOptions& options) {
+  const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
+  DigProblem(machine, soils, terrain, options).require_own_checkpoint();
+}
+
 Found<DigSearchResult> search_dig(const Machine& machine, const SoilSimulator& simulator,
                                   const Terrain& terrain, const DigSearchOptions& options) {
   const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};

@@ -69,6 +69,14 @@ struct BestForEach {
   }
 };
 
+/// A basin that one search misses another may find.
+DigSearchOptions of_soil(const DigSearchOptions& options, std::size_t soil) {
+  DigSearchOptions one = options;
+  one.seed = options.seed + soil;
+  one.checkpoint = checkpoint_of_soil(options.checkpoint, soil);
+  return one;
+}
+
 /// In parallel, without a warm start: the best digs of two soils may be far apart.
 BestForEach best_for_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
                           const Terrain& terrain, const DigSearchOptions& options) {
@@ -85,10 +93,7 @@ BestForEach best_for_each(const Machine& machine, const std::vector<PossibleSoil
   }
   best.soils.resize(soils.size());
   parallel_for(soils.size(), options.threads, [&](std::size_t i) {
-    DigSearchOptions one = shared;
-    one.seed = options.seed + i;  // a basin that one search misses another may find
-    one.checkpoint = checkpoint_of_soil(options.checkpoint, i);
-    best.soils[i] = search_dig(machine, *soils[i].simulator, terrain, one);
+    best.soils[i] = search_dig(machine, *soils[i].simulator, terrain, of_soil(shared, i));
   });
   return best;
 }
@@ -126,6 +131,15 @@ Found<UncertainDigSearchResult> nothing(std::optional<NearestDig> nearest, bool 
 
 }  // namespace
 
+void require_own_checkpoint(const Machine& machine, const std::vector<PossibleSoil>& soils,
+                            const Terrain& terrain, const DigSearchOptions& options) {
+  for (std::size_t i = 0; i < soils.size(); ++i) {
+    require_own_checkpoint(machine, *soils[i].simulator, terrain, of_soil(options, i));
+  }
+  const DigSearchOptions together = from_known(options, {});
+  DigProblem(machine, soils, terrain, together).require_own_checkpoint();
+}
+
 std::string checkpoint_of_soil(const std::string& checkpoint, std::size_t soil) {
   return checkpoint.empty() ? checkpoint : checkpoint + ".soil" + std::to_string(soil + 1);
 }
@@ -137,6 +151,7 @@ Found<UncertainDigSearchResult> search_dig(const Machine& machine,
   check(soils);
   check(options, machine);
   prepare_checkpoints(options, soils.size());
+  require_own_checkpoint(machine, soils, terrain, options);
   const BestForEach best = best_for_each(machine, soils, terrain, options);
   if (best.digs().empty()) return nothing(best.nearest(), best.stopped);
   const DigSearchOptions from_bests =

@@ -43,6 +43,10 @@ std::string text(const Eigen::Vector2d& point) {
   return number_text(point.x()) + "," + number_text(point.y());
 }
 
+std::string text(const Eigen::Vector3d& point) {
+  return text(Eigen::Vector2d(point.head<2>())) + "," + number_text(point.z());
+}
+
 void require_clear_of_dig(const Eigen::Vector2d& dump_at, const Machine& machine,
                           const SoilKind& soil, const DigPath& path) {
   const Rectangle strip = swept_strip(machine, path);
@@ -110,6 +114,16 @@ void break_up(const BlockSettings& blocks, const SoilKind& soil, DigScene& scene
                                      undisturbed(scene.blocks->after), scene.dump_at);
 }
 
+void require_sight(const std::vector<Eigen::Vector3d>& seen, const HeightMap& surface,
+                   const DepthCamera& camera) {
+  if (!seen.empty()) return;
+  const Eigen::Vector3d& at = camera.position;
+  const double below = height_at(surface, at.x(), at.y()) - at.z();
+  refuse("the camera at " + text(at) + " that faces " + text(camera.target) + " sees no ground: " +
+         (below >= 0.0 ? "it stands " + readable(below) + " m below it, must be above"
+                       : "none lies in its view within " + readable(camera.max_range) + " m"));
+}
+
 }  // namespace
 
 DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& ground,
@@ -155,6 +169,7 @@ SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uin
       placed.position = place.position;
       placed.target = place.target;
       const auto seen = scan_surface(surface, placed, Random(seed, epoch, index++).bits());
+      require_sight(seen, surface, placed);
       points.insert(points.end(), seen.begin(), seen.end());
     }
     return points;

@@ -28,6 +28,10 @@ void require(bool holds, const char* name, double value, const char* rule) {
                      rule);
 }
 
+void require_in(const char* name, double value, double lowest, double highest) {
+  excavplan::require_in(std::string("survey plan: ") + name, value, lowest, highest);
+}
+
 void check(const Sensor& sensor) {
   require(sensor.noise >= 0.0, "noise of the sensor", sensor.noise, ">= 0 m");
   require(sensor.pattern >= 0.0, "pattern of the sensor", sensor.pattern, ">= 0 m");
@@ -42,18 +46,20 @@ void check(const Sensor& sensor) {
 }
 
 void check(const SurveyPlan& plan) {
-  require(plan.dig_volume > 0.0, "dig volume", plan.dig_volume, "> 0 m^3");
-  require(plan.dig_depth > 0.0, "dig depth", plan.dig_depth, "> 0 m");
-  require(plan.bulking_factor > 0.0, "bulking factor", plan.bulking_factor, "> 0");
+  // Of volumes as estimate_density() takes them for a dig, of k with what it takes for likely;
+  // the others ours.
+  require_in("dig volume [m^3]", plan.dig_volume, 0.001, 1000.0);
+  require_in("dig depth [m]", plan.dig_depth, 0.01, 30.0);
+  require_in("bulking factor", plan.bulking_factor, 0.9, 3.0);
   require(plan.spill_share >= 0.0 && plan.spill_share < 1.0, "share of spill", plan.spill_share,
           "in [0, 1)");
   require(plan.wall_angle > 0.0 && plan.wall_angle <= 0.5 * pi, "wall angle", plan.wall_angle,
           "in 0 .. pi/2 rad");
   require(plan.angle_of_repose > 0.0 && plan.angle_of_repose < 1.5, "angle of repose",
           plan.angle_of_repose, "in 0 .. 1.5 rad");
-  require(plan.surveyed_area > 0.0, "surveyed area", plan.surveyed_area, "> 0 m^2");
-  require(plan.height > 0.0, "height of the sensor", plan.height, "> 0 m");
-  require(plan.offset >= 0.0, "offset of the sensor", plan.offset, ">= 0 m");
+  require_in("surveyed area [m^2]", plan.surveyed_area, 0.1, 1e4);
+  require_in("height of the sensor [m]", plan.height, 0.1, 100.0);
+  require_in("offset of the sensor [m]", plan.offset, 0.0, 100.0);
   require(plan.frames >= 1, "number of frames", plan.frames, ">= 1");
   require(plan.density_slope > 0.0, "slope of the density law", plan.density_slope, "> 0 %");
   check(plan.sensor);
@@ -239,10 +245,7 @@ double last_that(double low, double high, const Holds& holds) {
   return low;
 }
 
-}  // namespace
-
-SurveyForecast plan_survey(const SurveyPlan& plan) {
-  check(plan);
+SurveyForecast forecast_of(const SurveyPlan& plan) {
   const Shapes shapes = shapes_of(plan);
   const View view = view_of(plan);
   const Budgets budgets = budgets_of(plan, view, shapes);
@@ -279,13 +282,21 @@ SurveyForecast plan_survey(const SurveyPlan& plan) {
   return forecast;
 }
 
+}  // namespace
+
+SurveyForecast plan_survey(const SurveyPlan& plan) {
+  check(plan);
+  return forecast_of(plan);
+}
+
 SurveyNeeds survey_needs(const SurveyPlan& plan, double density_sd_percent) {
-  require(density_sd_percent > 0.0, "target", density_sd_percent, "> 0 points of density");
+  require(density_sd_percent > 0.0 && density_sd_percent <= 100.0, "target", density_sd_percent,
+          "> 0 and at most 100 points of density");
   const SurveyForecast planned = plan_survey(plan);
   const Shapes shapes = shapes_of(plan);
   constexpr double nearest = 0.01;
   const auto sd_at = [&](double range) {
-    return plan_survey(at_range(plan, range)).density_sd_percent;
+    return forecast_of(at_range(plan, range)).density_sd_percent;
   };
   SurveyNeeds needs;
   needs.nearest_range = last_that(nearest, farthest, [&](double range) {
@@ -297,7 +308,7 @@ SurveyNeeds survey_needs(const SurveyPlan& plan, double density_sd_percent) {
   }
   SurveyPlan still = plan;
   for (still.frames = 1; still.frames <= most_frames && !needs.frames; ++still.frames) {
-    if (plan_survey(still).density_sd_percent <= density_sd_percent) needs.frames = still.frames;
+    if (forecast_of(still).density_sd_percent <= density_sd_percent) needs.frames = still.frames;
   }
   const double variance = std::pow(planned.density_sd_percent, 2);
   const double left = std::pow(density_sd_percent, 2) - variance * planned.occlusion_share;

@@ -63,6 +63,19 @@ TEST_F(DataFiles, AFolderThatLacksTheFileIsPassedOver) {
             fs::canonical(EXCAVPLAN_BIN).parent_path() / "share/excavplan/soils/loam.json");
 }
 
+TEST_F(DataFiles, AVariableThatNamesNoFolderIsAnErrorUnlessItIsEmpty) {
+  const std::string file = temporary_.write("file", "{}");
+  for (const std::string& named : {temporary_.file("none"), file}) {
+    const DataVariable variable(named);
+    const std::string text =
+        error_of([] { find_data_file("soils/loam.json"); }, ErrorKind::bad_file);
+    EXPECT_EQ(text.rfind("the environment variable EXCAVPLAN_DATA: found ", 0), 0U) << text;
+    EXPECT_EQ(error_of([] { has_data_folder("soils"); }, ErrorKind::bad_file), text);
+  }
+  const DataVariable empty("");
+  EXPECT_EQ(fs::path(find_data_file("soils/loam.json")).filename(), "loam.json");
+}
+
 TEST_F(DataFiles, WhatIsNowhereIsAnErrorThatNamesEveryFolder) {
   const std::string named = folder_with("named", "loam.json");
   const DataVariable variable(named);

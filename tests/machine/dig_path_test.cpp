@@ -121,11 +121,26 @@ TEST(DigParameters, OfAPlanComeBackFromItsJson) {
   const auto [parameters, start_x] = read_planned_path(file);
   EXPECT_EQ(to_vector(parameters), to_vector(dig));
   EXPECT_EQ(start_x, 6.05);
-  write_file(file, R"({"path": {"penetration_angle_rad": "steep"}})");
-  EXPECT_EQ(test::error_of([&] { read_planned_path(file); }, ErrorKind::bad_file),
-            file +
-                ": path.penetration_angle_rad must be a number, it is \"steep\"; expected a "
-                "result of plan-path --json");
+}
+
+TEST(DigParameters, OfNoPlanAreRefused) {
+  const std::string file = testing::TempDir() + "dig_path_test_no_plan.json";
+  const auto refused = [&](const std::string& text) {
+    write_file(file, text);
+    return test::error_about([&] { read_planned_path(file); }, file);
+  };
+  EXPECT_EQ(refused(R"({"path": {"penetration_angle_rad": "steep"}})"),
+            "path.penetration_angle_rad: is \"steep\", expected a number");
+  EXPECT_EQ(refused(R"({"path": {"penetration_angle_rad": 45}})"),
+            "path.penetration_angle_rad: is 45, must be in 0 .. 1.5707963267948966");
+  EXPECT_EQ(refused(R"({"path": {"penetration_angle_rad": 1, "penetration_length_m": 0.35,
+                        "drag_length_m": 1, "start_x_m": 6050}})"),
+            "path.start_x_m: is 6050, must be in -100 .. 100");
+  EXPECT_EQ(refused(R"({"path": "dig"})"), "path: expected an object");
+  EXPECT_EQ(refused(R"({"path": null})"), "path: is null, this plan has no dig");
+  EXPECT_EQ(refused("{}"), "path: is missing");
+  EXPECT_EQ(refused(R"({"tool": "simulate-dig", "path": {}})"),
+            "tool: is \"simulate-dig\", expected a result of plan-path --json");
 }
 
 TEST(DigParameters, AsTextHaveTheirUnits) {

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -509,6 +510,58 @@ TEST(MachineFile, NamesKeyValueAndRuleOfSwingAndEngineItRefuses) {
   EXPECT_EQ(set("/engine/idle_power_w", 0), "no error");
   EXPECT_EQ(set("/engine/idle_power_w", -1).rfind("engine.idle_power_w: is -1, must be in 0", 0),
             0u);
+}
+
+TEST(MachineFile, RefusesNumbersInOtherUnits) {
+  EXPECT_EQ(set("/engine/power_w", 63.8),
+            "engine.power_w: is 63.8, 0.0360 W per kg of boom, arm and bucket, must be in 2 .. "
+            "1000: is it in kW?");
+  EXPECT_EQ(set("/engine/idle_power_w", 70000),
+            "engine.idle_power_w: is 70000, 1.10 of power_w, must be in 0 .. 1: an idling engine "
+            "takes less than it can give");
+  EXPECT_EQ(set("/geometry/boom_pin_m/1", -1.424),
+            "geometry.boom_pin_m[1]: is -1.424, -0.310 of boom_length_m above the ground, must be "
+            "in 0.01 .. 2: the ground that the machine stands on is z = 0");
+  EXPECT_EQ(set("/joints/boom/speed_rad_per_s", 25.8),
+            "joints.boom.speed_rad_per_s: is 25.8, must be in 0.01 .. 5: is it in degrees or "
+            "turns?");
+  const std::pair<const char*, double> others[] = {
+      {"/swing/torque_n_m", 34},        {"/swing/inertia_kg_m2", 15},
+      {"/swing/speed_rad_per_s", 14.3}, {"/joints/arm/torque_n_m", 236},
+      {"/links/arm/mass_kg", 0.392},    {"/body/mass_kg", 10.93}};
+  for (const auto& [pointer, value] : others) {
+    std::string key = std::string(pointer).substr(1);
+    std::replace(key.begin(), key.end(), '/', '.');
+    const std::string complaint = set(pointer, value);
+    EXPECT_EQ(complaint.rfind(key + ": is ", 0), 0u) << complaint;
+    EXPECT_NE(complaint.find(": is it in "), std::string::npos) << complaint;
+  }
+}
+
+/// Of a machine of other size and the same shape, whose links weigh as much of its torques.
+void scale(json& value, const std::string& key, double size) {
+  const std::pair<const char*, double> powers[] = {
+      {"_kg_m2", 5}, {"_n_m", 4}, {"_m3_per_s", 2.5}, {"_rad_per_s", -0.5},
+      {"_w", 3},     {"_kg", 3},  {"_m", 1}};
+  if (value.is_object()) {
+    for (auto& [name, member] : value.items()) scale(member, name, size);
+  } else if (value.is_array()) {
+    for (json& member : value) scale(member, key, size);
+  } else if (value.is_number()) {
+    for (const auto& [end, power] : powers) {
+      const std::size_t length = std::string(end).size();
+      if (key.size() <= length || key.substr(key.size() - length) != end) continue;
+      value = value.get<double>() * std::pow(size, power);
+      return;
+    }
+  }
+}
+
+TEST(MachineFile, OfOneToAHundredTonnesAreTaken) {
+  for (const double tonnes : {0.8, 3.0, 12.7, 40.0, 120.0}) {
+    const double size = std::cbrt(tonnes / 12.7);
+    EXPECT_EQ(complaint_about([&](json& f) { scale(f, "", size); }), "no error") << tonnes;
+  }
 }
 
 TEST(Machine, FingerprintDependsOnBodySwingAndEngine) {

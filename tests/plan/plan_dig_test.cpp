@@ -127,6 +127,27 @@ TEST_F(PlanDig, ASearchRefusesALibraryThatLacksItsDensity) {
             std::string::npos);
 }
 
+TEST_F(PlanDig, ACheckpointOfAnotherSearchIsRefusedBeforeAnyDigOfTheSearch) {
+  constexpr std::size_t most_probes = 10;  // that tell simulators apart
+  const test::TemporaryFolder folder;
+  for (const double sd : {0.0, 8.0}) {
+    std::vector<DigPath> dug;
+    PlanOptions options = searched(60, 1);
+    options.simulator = recording_simulator(dug);
+    options.search.checkpoint = folder.file("search.json");
+    const GroundDensity density(40.0, sd);
+    plan_dig(machine_, loam_, density, rising(0.1), options);
+    EXPECT_GT(dug.size(), 3 * most_probes);
+    dug.clear();
+    options.search.resume = true;
+    ++options.search.seed;
+    const auto resumed = [&] { plan_dig(machine_, loam_, density, rising(0.1), options); };
+    EXPECT_NE(test::error_of(resumed, ErrorKind::bad_file).find("which differs from"),
+              std::string::npos);
+    EXPECT_LT(dug.size(), most_probes) << sd;
+  }
+}
+
 // ---- Looking up -------------------------------------------------------------------------------
 
 TEST_F(PlanDig, LooksUpOnLevelGroundWithoutADig) {

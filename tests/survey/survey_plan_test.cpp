@@ -312,17 +312,21 @@ TEST(SurveyPlan, RefusesWhatBreaksARule) {
     plan.*member = value;
     return test::error_of([&] { plan_survey(plan); });
   };
-  EXPECT_EQ(error(&SurveyPlan::dig_volume, 0.0), "survey plan: dig volume is 0, must be > 0 m^3");
-  EXPECT_EQ(error(&SurveyPlan::height, -1.0),
-            "survey plan: height of the sensor is -1, must be > 0 m");
+  EXPECT_EQ(error(&SurveyPlan::dig_volume, 0.0),
+            "survey plan: dig volume [m^3] is 0, must be in 0.001 .. 1000");
+  EXPECT_EQ(error(&SurveyPlan::height, 250.0),
+            "survey plan: height of the sensor [m] is 250, must be in 0.1 .. 100");
+  EXPECT_EQ(error(&SurveyPlan::bulking_factor, 120.0),
+            "survey plan: bulking factor is 120, must be in 0.9 .. 3");
   EXPECT_EQ(error(&SurveyPlan::spill_share, 1.0),
             "survey plan: share of spill is 1, must be in [0, 1)");
   EXPECT_EQ(error(&SurveyPlan::offset, std::numeric_limits<double>::quiet_NaN()),
-            "survey plan: offset of the sensor is nan, must be >= 0 m");
+            "survey plan: offset of the sensor [m] is nan, must be in 0 .. 100");
   SurveyPlan plan;
   plan.sensor.ray_angle = 0.0;
   EXPECT_THROW(plan_survey(plan), Error);
   EXPECT_THROW(survey_needs({}, 0.0), Error);
+  EXPECT_THROW(survey_needs({}, 101.0), Error);
 }
 
 }  // namespace

@@ -74,6 +74,16 @@ TEST_F(MeasureEfficiency, FindsTheGainOfThePaper) {
   EXPECT_EQ(codes(result), Words(2, "implausible_fuel"));
 }
 
+TEST_F(MeasureEfficiency, WarnsOfOptionsOfScansThatAreNotGiven) {
+  const std::string file = log("a.csv", "fuel_flow_ml_per_s", "10,1\n18,1\n");
+  const json plain = measured({file, "--mass", "480"});
+  const json ignored = measured({file, "--mass", "480", "--level", "--cell", "0.1"});
+  ASSERT_EQ(codes(ignored).back(), "options_ignored");
+  EXPECT_EQ(ignored["warnings"].back()["message"],
+            "without effect: --level, --cell; there are no scans of a dump area");
+  EXPECT_EQ(ignored["warnings"].size(), plain["warnings"].size() + 1);
+}
+
 TEST_F(MeasureEfficiency, IntegratesFuelByTheTrapezoidRule) {
   const std::string file = log("a.csv", "fuel_flow_ml_per_s", "10,0\n12,4\n13,4\n17,0\n");
   const json run = measured({file, "--volume", "0.4"}).at("runs").at(0);

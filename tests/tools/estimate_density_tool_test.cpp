@@ -132,6 +132,16 @@ TEST_F(Tools, AHoleOfManyBucketsIsSaidAndTrusted) {
   EXPECT_EQ(found["trustworthy"], true);
 }
 
+TEST_F(Tools, ALawOfAnotherMachineIsSaidAndTrusted) {
+  EXPECT_FALSE(warns(answer("estimate-density", quickstart(folder)), "law_of_other_machine"));
+  json machine = json::parse(content_of(shipped("machines/zx120.json")));
+  machine["name"] = "larger";
+  const std::string larger = folder.write("larger.json", machine.dump());
+  const json found = answer("estimate-density", quickstart(folder) + Words{"--machine", larger});
+  EXPECT_TRUE(warns(found, "law_of_other_machine")) << found["warnings"];
+  EXPECT_EQ(found["trustworthy"], true);
+}
+
 TEST_F(Tools, APathThatWasNotDugEndsTrust) {
   const Words words = quickstart(folder) + Words{"--soil", "loam", "--dug-start", "6.05"};
   const json dug =
@@ -143,6 +153,29 @@ TEST_F(Tools, APathThatWasNotDugEndsTrust) {
     EXPECT_TRUE(warns(other, "dug_path_doubtful")) << path << other["warnings"];
     EXPECT_TRUE(other["fallback"].is_null());
   }
+}
+
+TEST_F(Tools, AWeighedPayloadIsOfNoUseToTheMethodOfThePaper) {
+  const Words words =
+      quickstart(folder) + Words{"--payload-mass", "480", "--moisture", "0.1", "--soil", "loam"};
+  EXPECT_FALSE(warns(answer("estimate-density", words), "options_ignored"));
+  const Words paper = words + Words{"--method", "paper"};
+  const json ignored = answer("estimate-density", paper);
+  EXPECT_TRUE(ignored["payload"].is_null());
+  ASSERT_TRUE(warns(ignored, "options_ignored")) << ignored["warnings"];
+  EXPECT_TRUE(contains(ignored["warnings"].back()["message"], "--payload-mass, --moisture; "));
+  EXPECT_FALSE(
+      warns(answer("estimate-density", paper + Words{"--compare-methods"}), "options_ignored"));
+}
+
+TEST_F(Tools, OptionsOfAnEstimateAreOfNoUseToAPlannedSurvey) {
+  const Words plan = {"--plan-survey", "height=2", "--law", "paper"};
+  EXPECT_FALSE(warns(answer("estimate-density", plan), "options_ignored"));
+  const json ignored =
+      answer("estimate-density", plan + Words{"--cell", "0.1", "--level", "--moisture", "0.1"});
+  ASSERT_TRUE(warns(ignored, "options_ignored"));
+  EXPECT_EQ(ignored["warnings"].back()["message"],
+            "without effect: --level, --cell, --moisture; a survey is planned by its keys alone");
 }
 
 TEST_F(Tools, SettingsOfTheOtherMethodAreReported) {
@@ -432,6 +465,8 @@ TEST_F(BadInput, IncompleteOptionsAreRefused) {
           tool, {"--plan-survey", "hight=2"});
   refused(2, "frames is 1.5, must be a whole number", tool, {"--plan-survey", "frames=1.5"});
   refused(2, "'height' must be KEY=VALUE", tool, {"--plan-survey", "height"});
+  refused(2, "--plan-survey: 'k' is given more than once", tool, {"--plan-survey", "k=1.2,k=1.3"});
+  refused(2, "bulking factor is 120, must be in 0.9 .. 3", tool, {"--plan-survey", "k=120"});
 }
 
 TEST_F(BadInput, SwappedScansAreRefused) {

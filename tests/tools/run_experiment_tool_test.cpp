@@ -39,6 +39,15 @@ TEST_F(Tools, ExperimentPlansForThePapersGoalUnlessToldOtherwise) {
               1e-9);
 }
 
+TEST_F(Tools, ExperimentSaysWhereItsLawIsOfAnotherSoilOrMachine) {
+  const Words sand = {"--densities", "40", "--soil", "sand"};
+  const json own = answer("run-experiment", sand);
+  EXPECT_FALSE(warns(own, "law_of_other_soil") || warns(own, "law_of_other_machine"));
+  const json other = answer("run-experiment", sand + Words{"--law", "zx120-clay"});
+  EXPECT_TRUE(warns(other, "law_of_other_soil")) << other["warnings"];
+  EXPECT_FALSE(warns(other, "law_of_other_machine"));
+}
+
 TEST_F(Tools, ExperimentSplitsItsGainIntoPathAndStart) {
   const json result = answer("run-experiment", {"--search", "--densities", "10"});
   const json condition = result.at("conditions").at(0);

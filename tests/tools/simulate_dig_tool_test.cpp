@@ -248,7 +248,7 @@ TEST_F(BadInput, ThePathOfAPlanIsDugAndNothingElseTaken) {
   refused(2, "--path-from excludes --path and --start", "simulate-dig",
           dig + Words{"--start", "5"});
   const std::string other = folder.write("other.json", R"({"path": {"start_x_m": 5}})");
-  refused(3, other + ": path.penetration_angle_rad must be a number, it is missing", "simulate-dig",
+  refused(3, other + ": path.penetration_angle_rad: is missing", "simulate-dig",
           {"--density", "40", "--path-from", other});
 }
 
@@ -317,6 +317,27 @@ TEST_F(BadInput, CamerasThatMakeNoSense) {
           {"--density", "40", "--camera", "5,3,2.5"});
   refused(2, "distance from position to target", "simulate-dig",
           {"--density", "40", "--before", folder.file("b.pcd"), "--camera", "5,3,2,5,3,2"});
+  const auto placed = [&](const std::string& place) {
+    return Words{"--density", "40",       "--before",    folder.file("b.pcd"), "--history",
+                 plot,        "--camera", "5,0,3,5,0,0", "--camera",           place};
+  };
+  refused(2,
+          "--camera: the one at 5,3,-2 that faces 5,3,0 sees no ground: it stands 2.00 m below it, "
+          "must be above",
+          "simulate-dig", placed("5,3,-2,5,3,0"));
+  refused(2, "--camera: the one at 5,3,2 that faces 5,3,9 sees no ground: none lies in its view",
+          "simulate-dig", placed("5,3,2,5,3,9"));
+}
+
+TEST_F(Tools, SettingsOfScansThatAreNotWrittenAreReported) {
+  const Words words = {"--density", "40", "--seed", "7", "--noise", "0.01"};
+  const json ignored = answer("simulate-dig", words);
+  ASSERT_EQ(warning_codes(ignored), (Words{"options_ignored", "options_ignored"}));
+  EXPECT_EQ(ignored["warnings"][0]["message"], "without effect: --noise; no scans are written");
+  EXPECT_EQ(ignored["warnings"][1]["message"],
+            "without effect: --seed; there are neither scans (--before, --after) nor --blocks");
+  const json used = answer("simulate-dig", words + Words{"--after", folder.file("after.pcd")});
+  EXPECT_FALSE(warns(used, "options_ignored"));
 }
 
 TEST_F(Tools, SettingsOfBlocksThatAreNotThereAreReported) {

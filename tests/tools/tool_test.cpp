@@ -81,6 +81,14 @@ TEST(Readable, KeepsDigitsWithoutExponents) {
   EXPECT_EQ(readable(46.4, 7.3), "46.4 ± 7.3");
 }
 
+TEST(Readable, RoundingIsZeroWithoutASign) {
+  EXPECT_EQ(readable(-4.3e-16), "0.00");
+  EXPECT_EQ(readable(-0.0), "0.00");
+  EXPECT_EQ(readable(-2e-9), "-0.00000000200");
+  EXPECT_EQ(readable(-0.0004, 0.012), "0.000 ± 0.012");
+  EXPECT_EQ(readable(0.4512, 1e-12), "0.451");
+}
+
 /// A tool that takes a bit of everything, run in this process.
 struct Probe {
   int code = -1;
@@ -204,8 +212,7 @@ TEST(Tool, WrongUsageEndsWithTwoAndSaysWhy) {
        "--seed: 99999999999999999999 is too large"},
       {{"a", "--density", "4", "--method", "papr"},
        "--method: 'papr' is not one of surface, paper"},
-      {{"a", "--density", "4", "--plot", "x.png"},
-       "--plot: 'x.png' must end in .svg, plots are written as SVG only"}};
+      {{"a", "--density", "4", "--plot", "x.png"}, "--plot: 'x.png' must end in .svg"}};
   for (const auto& [words, message] : cases) {
     const Probe probe = run(words);
     EXPECT_EQ(probe.code, 2);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <functional>
 #include <ostream>
 
@@ -398,6 +399,11 @@ TEST_F(Tools, AnOutputThatReplacesTheFileOfStandardOutputIsRefused) {
   }
 }
 
+TEST_F(Tools, AnEmptyFolderOfTemporaryFilesIsAsGoodAsNone) {
+  const std::string tool = EXCAVPLAN_BIN "/inspect-cloud --quiet - <";
+  EXPECT_EQ(std::system(("TMPDIR= " + tool + shipped("quickstart/before.pcd")).c_str()), 0);
+}
+
 TEST_F(BadInput, StandardInputIsATransformButNoDatabase) {
   const std::string frame = folder.write("frame.txt", "1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   const Words words = {scan, "--json", "--frame"};
@@ -442,7 +448,7 @@ TEST_F(BadInput, FilesThatAreNoCloudsAreRefused) {
 
 TEST_F(BadInput, ValuesOutOfRangeAreRefused) {
   refused(2, "--density: 140 % is outside 0 .. 100", "plan-path", {"--density", "140"});
-  refused(2, "--density-sd: -3 must be at least 0", "plan-path",
+  refused(2, "--density-sd: -3 % is outside 0 .. 1000", "plan-path",
           {"--density", "40", "--density-sd=-3"});
   refused(2, "140 %, must be in 0 .. 100 %", "simulate-dig", {"--density", "140", "--plot", plot});
   refused(2, "0 .. 100", "build-path-library", {"--densities", "140", "--out", plot});
@@ -490,6 +496,8 @@ TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
   refused(2, "must end in .svg", "estimate-density", {scan, later_scan, "--plot", png});
   refused(2, "must end in .svg", "simulate-dig", {"--density", "40", "--plot", png});
   refused(2, "must end in .svg", "plan-path", {"--density", "40", "--plot", png});
+  refused(2, "--trajectory: '" + png + "' must end in .csv or .json", "plan-path",
+          {"--density", "40", "--trajectory", png});
   refused(2, "must end in .pcd, .ply", "inspect-cloud", {scan, "--out", png});
   refused(2, "must end in .pcd, .ply", "simulate-dig",
           {"--density", "40", "--before", folder.file("b.pcd"), "--after", png});

@@ -260,14 +260,22 @@ void Arguments::machine(std::string& name) {
 }
 
 void Arguments::plot(std::optional<std::string>& path, const std::string& shows) {
-  add({"plot", "FILE.svg", "plot " + shows + " into this file", "", false, false,
-       [&path](const std::string& text) {
-         if (std::filesystem::path(text).extension() != ".svg") {
-           usage_error("--plot: '" + text + "' must end in .svg, plots are written as SVG only");
-         }
-         path = text;
-       }});
-  entries_.back().output = true;
+  output("plot", path, "plot " + shows + " into this file");
+  entries_.back().placeholder = "FILE.svg";
+  require_ending({".svg"});
+}
+
+void Arguments::require_ending(const std::vector<std::string>& endings) {
+  entries_.back().endings = endings;
+}
+
+void Arguments::only_if(const Use& use, const std::function<void()>& declare) {
+  const std::size_t first = entries_.size();
+  declare();
+  for (std::size_t i = first; i < entries_.size(); ++i) {
+    std::vector<Use>& uses = entries_[i].uses;
+    uses.insert(uses.begin(), use);  // the outer before the inner
+  }
 }
 
 void Arguments::require(const std::string& name) {

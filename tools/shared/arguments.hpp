@@ -48,6 +48,11 @@ class Arguments {
   using Assign = std::function<void(const std::string& text)>;
   /// The names of the files that are written with one.
   using Beside = std::function<std::vector<std::string>(const std::string& name)>;
+  /// When an option has an effect, asked once all are read, and the reason why else not.
+  struct Use {
+    std::function<bool()> holds;
+    std::string otherwise;
+  };
   struct Entry {
     std::string name;
     std::string placeholder;  ///< "LENGTH"; empty for a flag
@@ -61,6 +66,8 @@ class Arguments {
     bool place = false;     ///< a file or folder to write, which the tool checks
     bool repeated = false;  ///< may be given several times, `assign` is called for each
     Beside beside = {};
+    std::vector<Use> uses = {};             ///< all must hold
+    std::vector<std::string> endings = {};  ///< of the name of a file to write; empty: any
   };
 
   void positional(const std::string& name, std::string& value, const std::string& help);
@@ -121,6 +128,12 @@ class Arguments {
 
   /// The option must be given.
   void require(const std::string& name);
+
+  /// The file of the last option must end so, in letters of either size; "" is no ending.
+  void require_ending(const std::vector<std::string>& endings);
+
+  /// Those that `declare` declares have an effect only if this holds. May be nested.
+  void only_if(const Use& use, const std::function<void()>& declare);
 
   const std::vector<Entry>& entries() const { return entries_; }
 

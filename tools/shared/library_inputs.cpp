@@ -20,14 +20,22 @@ void declare_library(Arguments& arguments, LibraryInputs& inputs) {
   arguments.choice("method", inputs.method, {"memetic", "paper"},
                    "memetic: three densities without a warm start, the others from neighbours; "
                    "paper: a genetic algorithm for each");
-  arguments.option("points", inputs.anchored.points,
-                   "memetic: initial digs of a search without a warm start");
-  arguments.option("polish", inputs.anchored.polish_evaluations,
-                   "memetic: simulated digs of one Nelder-Mead search");
-  arguments.option("inherited", inputs.anchored.inherited_evaluations,
-                   "memetic: simulated digs of a density that starts from its neighbours");
-  arguments.option("population", inputs.genetic.population, "paper: population of a generation");
-  arguments.option("generations", inputs.genetic.generations, "paper: generations of a search");
+  const auto if_method = [&](const std::string& word, const std::string& other) {
+    return Arguments::Use{[&inputs, word] { return inputs.method == word; },
+                          "--method " + other + " has none"};
+  };
+  arguments.only_if(if_method("memetic", "paper"), [&] {
+    arguments.option("points", inputs.anchored.points,
+                     "memetic: initial digs of a search without a warm start");
+    arguments.option("polish", inputs.anchored.polish_evaluations,
+                     "memetic: simulated digs of one Nelder-Mead search");
+    arguments.option("inherited", inputs.anchored.inherited_evaluations,
+                     "memetic: simulated digs of a density that starts from its neighbours");
+  });
+  arguments.only_if(if_method("paper", "memetic"), [&] {
+    arguments.option("population", inputs.genetic.population, "paper: population of a generation");
+    arguments.option("generations", inputs.genetic.generations, "paper: generations of a search");
+  });
   arguments.option("cell", inputs.search.cell_size, Quantity::length,
                    "cell size of the simulated ground");
   arguments.option("seed", inputs.search.seed, "seed; the same seed gives the same file");
@@ -64,21 +72,6 @@ LibrarySearch search_of(const LibraryInputs& inputs) {
   search.method = inputs.anchored;
   if (inputs.method == "paper") search.method = inputs.genetic;
   return search;
-}
-
-std::vector<Warning> warnings_of(const LibraryInputs& inputs) {
-  const AnchoredSearch anchored;
-  const GeneticAlgorithm genetic;
-  const bool paper = inputs.method == "paper";
-  IgnoredOptions ignored;
-  ignored.add(paper && inputs.anchored.points != anchored.points, "--points");
-  ignored.add(paper && inputs.anchored.polish_evaluations != anchored.polish_evaluations,
-              "--polish");
-  ignored.add(paper && inputs.anchored.inherited_evaluations != anchored.inherited_evaluations,
-              "--inherited");
-  ignored.add(!paper && inputs.genetic.population != genetic.population, "--population");
-  ignored.add(!paper && inputs.genetic.generations != genetic.generations, "--generations");
-  return ignored.warnings("--method " + inputs.method + " has none");
 }
 
 }  // namespace excavplan::tools

@@ -35,7 +35,4 @@ extern const OptionNames library_option_names;
 LibraryGrid grid_of(const LibraryInputs& inputs);
 LibrarySearch search_of(const LibraryInputs& inputs);
 
-/// Of options that only the other method has.
-std::vector<Warning> warnings_of(const LibraryInputs& inputs);
-
 }  // namespace excavplan::tools

@@ -36,28 +36,36 @@ PaperOptions paper_options(const MethodInputs& inputs) {
 
 }  // namespace
 
+bool MethodInputs::uses(const std::string& word) const { return compare || method == word; }
+
 void declare_method(Arguments& arguments, MethodInputs& inputs) {
   arguments.choice("method", inputs.method, {"surface", "paper"},
                    "surface: signed change of one height map; paper: the pipeline as published");
-  arguments.choice("paper-voxels", inputs.voxels, {"columns", "cubes"},
-                   "of --method paper: one point a cell of the base plane, or one a cubic voxel");
-  arguments.text("paper-outliers", "NEIGHBOURS,DEVIATIONS|none", inputs.outliers,
-                 "of --method paper: points whose mean distance to their neighbours is this many "
-                 "standard deviations above the mean of all are removed");
-}
-
-std::vector<Warning> warnings_of(const MethodInputs& inputs, bool both) {
-  const bool used = both || inputs.method == "paper";
-  const MethodInputs usual;
-  IgnoredOptions ignored;
-  ignored.add(!used && inputs.voxels != usual.voxels, "--paper-voxels");
-  ignored.add(!used && inputs.outliers != usual.outliers, "--paper-outliers");
-  return ignored.warnings("they are of --method paper");
+  arguments.only_if(
+      {[&inputs] { return inputs.uses("paper"); }, "they are of --method paper"}, [&] {
+        arguments.choice(
+            "paper-voxels", inputs.voxels, {"columns", "cubes"},
+            "of --method paper: one point a cell of the base plane, or one a cubic voxel");
+        arguments.text(
+            "paper-outliers", "NEIGHBOURS,DEVIATIONS|none", inputs.outliers,
+            "of --method paper: points whose mean distance to their neighbours is this many "
+            "standard deviations above the mean of all are removed");
+      });
+  arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
 }
 
 void apply_method(const MethodInputs& inputs, DensityOptions& options) {
   if (inputs.method == "paper") options.method = VolumeMethod::paper;
   options.paper = paper_options(inputs);
+}
+
+BothEstimates estimate(const MethodInputs& inputs, const DigScans& scans, const DensityLaw& law,
+                       const DensityOptions& options) {
+  if (inputs.compare) return estimate_by_both(scans, law, options);
+  BothEstimates one;
+  const bool by_paper = options.method == VolumeMethod::paper;
+  (by_paper ? one.paper : one.surface) = estimate_density(scans, law, options);
+  return one;
 }
 
 }  // namespace excavplan::tools

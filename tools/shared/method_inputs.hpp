@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <excavplan/survey/density_estimate.hpp>
 
@@ -16,14 +15,19 @@ struct MethodInputs {
   std::string method = "surface";
   std::string voxels = "columns";  ///< PaperOptions::voxels
   std::string outliers = "50,1";   ///< neighbours and deviations, or "none"
+  bool compare = false;            ///< both methods
+
+  /// Whether the volumes are found by this method.
+  bool uses(const std::string& word) const;
 };
 
 void declare_method(Arguments& arguments, MethodInputs& inputs);
 
-/// Of options that have no effect. @param both  of the methods are shown
-std::vector<Warning> warnings_of(const MethodInputs& inputs, bool both);
-
 /// Sets the method and its options. @throws Error (bad_input)
 void apply_method(const MethodInputs& inputs, DensityOptions& options);
+
+/// By the method of the options, or by both to compare them.
+BothEstimates estimate(const MethodInputs& inputs, const DigScans& scans, const DensityLaw& law,
+                       const DensityOptions& options);
 
 }  // namespace excavplan::tools

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include <excavplan/error.hpp>
 
@@ -19,16 +20,8 @@
 namespace excavplan::tools {
 namespace {
 
-constexpr double near_the_hole = 5.0;  // ours [m]
-
-/// @return 0 if the estimate states none
-double sd_in(const nlohmann::json& result, const std::string& file) {
-  const auto field = result.find("density_sd_percent");
-  if (field == result.end() || field->is_null()) return 0.0;
-  if (field->is_number() && field->get<double>() >= 0.0) return field->get<double>();
-  throw Error(ErrorKind::bad_file,
-              file + ": density_sd_percent must be a number of at least 0, it is " + shown(*field));
-}
+constexpr double near_the_hole = 5.0;       // ours [m]
+constexpr double most_density_sd = 1000.0;  // ours [points]: long before, any density is as likely
 
 nlohmann::ordered_json search_json(const PlanSearch& search, const DigGoalInfo& goal) {
   nlohmann::ordered_json json = {{"stopped_by", name(search.stopped_by)},
@@ -114,68 +107,103 @@ std::string source_line(const DigPlan& plan) {
   return "source       " + std::string(name(plan.method)) + digs + "; start: " + plan.start_rule;
 }
 
-/// An estimate-density with --soil unknown.
-bool is_of_any_soil(const std::string& file) {
-  const nlohmann::json json = parse_json(file, read_file(file));
-  return json.is_object() && json.value("law", nlohmann::json()) == "any soil";
+/// What a plan takes of a result of estimate-density.
+struct StatedDensity {
+  GroundDensity density;
+  bool of_any_soil = false;      ///< by --soil unknown
+  std::vector<Rectangle> holes;  ///< that it was measured in
+};
+
+/// What estimate-density always states: of a result that lost one of these, a density would be
+/// taken as exact, as trusted or as that of any soil.
+void require_whole_estimate(const JsonObject& result) {
+  if (!result.has("tool")) return;
+  for (const char* key : {"density_sd_percent", "trustworthy", "law_soil"}) {
+    if (!result.has(key))
+      result.fail(key, "is missing, expected a result of estimate-density --json");
+  }
 }
 
-/// From (x, 0) to the nearest hole of an estimate [m]; 0 if it states none.
-double distance_to_hole(double x, const std::string& file) {
-  const nlohmann::json json = parse_json(file, read_file(file));
+std::vector<Rectangle> holes_in(JsonObject& result) {
+  std::vector<Rectangle> holes;
+  if (!result.states("zones")) return holes;
+  for (JsonObject& zone : result.objects("zones")) {
+    const bool is_hole = zone.text("kind") == name(ZoneKind::dig);
+    const auto edge = zone.numbers("extent_m", 4);
+    if (edge[0] > edge[2] || edge[1] > edge[3]) {
+      zone.fail("extent_m", "must be [x_min, y_min, x_max, y_max], each min at most its max");
+    }
+    if (is_hole) holes.push_back({edge[0], edge[1], edge[2], edge[3]});
+  }
+  return holes;
+}
+
+StatedDensity read_density(const std::string& file) {
+  JsonObject result = JsonObject::result_of("estimate-density", file);
+  StatedDensity stated{result.number("density_percent", 0.0, 100.0), false, {}};
+  require_whole_estimate(result);
+  GroundDensity& density = stated.density;
+  if (result.states("density_sd_percent")) {
+    density.sd_percent = result.number("density_sd_percent", 0.0, most_density_sd);
+  }
+  if (result.has("trustworthy")) density.trustworthy = result.flag("trustworthy");
+  for (const char* key : {"law_soil", "soil"}) {  // the one that was said decides
+    if (result.states(key)) density.soil = result.text(key);
+  }
+  stated.of_any_soil = result.text_or("law", "") == "any soil";
+  stated.holes = holes_in(result);
+  return stated;
+}
+
+/// From (x, 0) to the nearest of some holes [m]; 0 if there are none.
+double distance_to(const std::vector<Rectangle>& holes, double x) {
   double least = std::numeric_limits<double>::infinity();
-  if (!json.is_object()) return 0.0;
-  for (const auto& zone : json.value("zones", nlohmann::json())) {
-    if (!zone.is_object() || zone.value("kind", nlohmann::json()) != "dig") continue;
-    const nlohmann::json extent = zone.value("extent_m", nlohmann::json());
-    const bool numbers = std::all_of(extent.begin(), extent.end(),
-                                     [](const nlohmann::json& edge) { return edge.is_number(); });
-    if (!extent.is_array() || extent.size() != 4 || !numbers) continue;
-    const double y = std::max({extent[1].get<double>(), -extent[3].get<double>(), 0.0});
-    const double beyond = std::max({extent[0].get<double>() - x, x - extent[2].get<double>(), 0.0});
-    least = std::min(least, std::hypot(beyond, y));
+  for (const Rectangle& hole : holes) {
+    const double aside = std::max({hole.y_min, -hole.y_max, 0.0});
+    const double beyond = std::max({hole.x_min - x, x - hole.x_max, 0.0});
+    least = std::min(least, std::hypot(beyond, aside));
   }
   return std::isfinite(least) ? least : 0.0;
 }
 
-/// What estimate-density always states: of a result that lost one of these, a density would be
-/// taken as exact, as trusted or as that of any soil.
-void require_whole_estimate(const nlohmann::json& result, const std::string& file) {
-  const auto tool = result.find("tool");
-  if (tool == result.end() || *tool != "estimate-density") return;
-  for (const char* key : {"density_sd_percent", "trustworthy", "law_soil"}) {
-    if (result.contains(key)) continue;
-    throw Error(ErrorKind::bad_file,
-                file + ": " + key + " is missing, expected a result of estimate-density --json");
+/// Of a plan for the density of a file.
+std::vector<Warning> source_warnings(const DigPlan& plan, const std::string& file,
+                                     bool scanned_ground) {
+  const StatedDensity stated = read_density(file);
+  std::vector<Warning> warnings;
+  const double away =
+      scanned_ground && plan.dig ? distance_to(stated.holes, plan.dig->start_x) : 0.0;
+  if (away > near_the_hole) {
+    warnings.push_back({"density_from_elsewhere",
+                        file + ": the density was measured " + readable(away) +
+                            " m from where this dig begins; it holds for ground near its hole that "
+                            "is of the same soil"});
   }
-}
-
-GroundDensity read_density(const std::string& file) {
-  const nlohmann::json json = parse_json(file, read_file(file));
-  const auto field = json.is_object() ? json.find("density_percent") : json.end();
-  const bool there = json.is_object() && field != json.end();
-  if (!there || !field->is_number() ||
-      !(field->get<double>() >= 0.0 && field->get<double>() <= 100.0)) {
-    throw Error(ErrorKind::bad_file, file + ": density_percent must be a number in 0 .. 100" +
-                                         (there ? ", it is " + shown(*field) : ", it is missing") +
-                                         "; expected a result of estimate-density --json");
+  if (stated.of_any_soil) {
+    warnings.push_back({"density_of_unknown_soil",
+                        file + ": the soil was not known: its density is the mean over all shipped "
+                               "soils, the dig is planned in one of them"});
   }
-  require_whole_estimate(json, file);
-  GroundDensity density(field->get<double>(), sd_in(json, file));
-  const auto trustworthy = json.find("trustworthy");
-  density.trustworthy = trustworthy == json.end() || *trustworthy == true;
-  for (const char* key : {"law_soil", "soil"}) {  // the one that was said decides
-    const auto soil = json.find(key);
-    if (soil != json.end() && soil->is_string()) density.soil = soil->get<std::string>();
-  }
-  return density;
+  return warnings;
 }
 
 }  // namespace
 
+void declare_density(Arguments& arguments, DensityInput& input) {
+  arguments.option("density", input.percent, Quantity::percent, "relative density of the ground");
+  arguments.option(
+      "density-sd", input.sd, Quantity::percent,
+      "standard deviation of the density, propagated to the results; --search then finds the "
+      "path with the best expected goal value");
+  arguments.file(
+      "density-from", input.file,
+      "take the density and its uncertainty from this result of estimate-density --json");
+}
+
 void check(const DensityInput& input) {
-  if (input.sd && *input.sd < 0.0) {
-    usage_error("--density-sd: " + number_text(*input.sd) + " must be at least 0");
+  if (input.sd && !(*input.sd >= 0.0 && *input.sd <= most_density_sd)) {
+    usage_error("--density-sd: " + number_text(*input.sd) + " % is outside 0 .. " +
+                number_text(most_density_sd));
   }
   if (input.percent.has_value() == input.file.has_value()) {
     usage_error("give either --density or --density-from");
@@ -186,7 +214,8 @@ void check(const DensityInput& input) {
 }
 
 GroundDensity density_of(const DensityInput& input) {
-  GroundDensity density = input.percent ? GroundDensity(*input.percent) : read_density(*input.file);
+  GroundDensity density =
+      input.percent ? GroundDensity(*input.percent) : read_density(*input.file).density;
   density.sd_percent = input.sd.value_or(density.sd_percent);
   return density;
 }
@@ -194,20 +223,10 @@ GroundDensity density_of(const DensityInput& input) {
 std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input,
                                    bool scanned_ground) {
   std::vector<Warning> warnings = plan.warnings;
-  const double away = scanned_ground && plan.dig && input.file
-                          ? distance_to_hole(plan.dig->start_x, *input.file)
-                          : 0.0;
-  if (away > near_the_hole) {
-    warnings.push_back({"density_from_elsewhere",
-                        *input.file + ": the density was measured " + readable(away) +
-                            " m from where this dig begins; it holds for ground near its hole that "
-                            "is of the same soil"});
-  }
-  if (input.file && is_of_any_soil(*input.file)) {
-    warnings.push_back({"density_of_unknown_soil",
-                        *input.file +
-                            ": the soil was not known: its density is the mean over all shipped "
-                            "soils, the dig is planned in one of them"});
+  if (input.file) {
+    for (Warning& each : source_warnings(plan, *input.file, scanned_ground)) {
+      warnings.push_back(std::move(each));
+    }
   }
   if (!plan.reason.empty()) warnings.push_back({"no_dig", reason_of(plan)});
   for (Warning& warning : warnings) {
@@ -251,7 +270,7 @@ void withdraw(const std::optional<std::string>& trajectory, const std::optional<
 }
 
 void write_trajectory(const std::string& file, const Trajectory& trajectory) {
-  const bool json = file.size() >= 5 && file.compare(file.size() - 5, 5, ".json") == 0;
+  const bool json = small_letters(std::filesystem::path(file).extension().string()) == ".json";
   write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
 }
 

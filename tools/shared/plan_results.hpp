@@ -10,6 +10,7 @@
 
 #include <excavplan/plan/plan_dig.hpp>
 
+#include "shared/arguments.hpp"
 #include "shared/tool.hpp"
 
 /// @file
@@ -24,6 +25,7 @@ struct DensityInput {
   std::optional<std::string> file;
 };
 
+void declare_density(Arguments& arguments, DensityInput& input);
 /// Checks made before the file is read. @throws Error (bad_input)
 void check(const DensityInput& input);
 /// @throws Error (bad_file) naming file, key, value and rule

@@ -164,6 +164,23 @@ std::vector<std::string> scene_lines(const Machine& machine, const DigScene& sce
   return lines;
 }
 
+std::vector<Warning> unlike_law(const DensityLaw& law, const std::string& machine,
+                                const std::string& soil) {
+  std::vector<Warning> warnings;
+  const std::string measured = "the law '" + law.name + "' was measured on digs ";
+  if (!law.machine.empty() && law.machine != machine) {
+    warnings.push_back(
+        {"law_of_other_machine", measured + "of " + law.machine + ", not of " + machine +
+                                     ": how much soil falls back into the cut may differ; "
+                                     "calibrate-density makes a law for a machine"});
+  }
+  if (!soil.empty() && !law.soil.empty() && law.soil != soil) {
+    warnings.push_back({"law_of_other_soil", measured + "in " + law.soil + ", not in " + soil +
+                                                 ": the estimated densities are biased"});
+  }
+  return warnings;
+}
+
 std::vector<double> parse_densities(const std::string& what, const std::string& text) {
   std::vector<double> densities = parse_series(what, text, Quantity::percent);
   for (const double density : densities) {

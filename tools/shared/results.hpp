@@ -12,6 +12,7 @@
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
 #include <excavplan/simulation/scene.hpp>
+#include <excavplan/soil/density_law.hpp>
 
 #include "planning/planned_digs.hpp"  // dig_json()
 
@@ -31,6 +32,11 @@ std::vector<std::string> dig_lines(const PlannedDig& dig, const DigSpread& sprea
 /// @param scene  with the history of its dig
 nlohmann::ordered_json scene_json(const Machine& machine, const DigScene& scene);
 std::vector<std::string> scene_lines(const Machine& machine, const DigScene& scene);
+
+/// What else the law was measured on than what is worked with: law_of_other_machine,
+/// law_of_other_soil. An empty soil is not compared.
+std::vector<Warning> unlike_law(const DensityLaw& law, const std::string& machine,
+                                const std::string& soil = {});
 
 /// Densities "0:5:100", "40" or "10,40,80" [%]. @throws Error (bad_input)
 std::vector<double> parse_densities(const std::string& what, const std::string& text);

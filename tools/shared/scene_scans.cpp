@@ -29,12 +29,14 @@ void declare_scans(Arguments& arguments, SceneScanInputs& inputs) {
   arguments.option("camera", inputs.places,
                    "place of a camera of the scans and point it faces; repeated for several "
                    "(default: one over the dig and one over the heap)");
-  arguments.option("noise", inputs.camera.noise, Quantity::length,
-                   "depth noise of the scans at 1 m; grows with range squared");
+  arguments.only_if({[&inputs] { return inputs.any(); }, "no scans are written"}, [&] {
+    arguments.option("noise", inputs.camera.noise, Quantity::length,
+                     "depth noise of the scans at 1 m; grows with range squared");
+  });
 }
 
 void check_scans(const SceneScanInputs& inputs) {
-  if (!inputs.places.empty() && !inputs.before && !inputs.after) {
+  if (!inputs.places.empty() && !inputs.any()) {
     usage_error("--camera needs --before or --after");
   }
   for (const auto& file : {inputs.before, inputs.after}) {
@@ -43,8 +45,10 @@ void check_scans(const SceneScanInputs& inputs) {
 }
 
 void write_scans(const SceneScanInputs& inputs, const DigScene& scene, std::uint64_t seed) {
-  if (!inputs.before && !inputs.after) return;
-  SceneScans scans = scan_scene(scene, inputs.camera, seed, inputs.places);
+  if (!inputs.any()) return;
+  SceneScans scans = naming_options({{"the camera at", "--camera: the one at"}}, [&] {
+    return scan_scene(scene, inputs.camera, seed, inputs.places);
+  });
   write_scan(inputs.before, std::move(scans.before), inputs.places);
   write_scan(inputs.after, std::move(scans.after), inputs.places);
 }

@@ -18,6 +18,8 @@ struct SceneScanInputs {
   std::optional<std::string> before, after;
   DepthCamera camera;
   std::vector<CameraPlace> places;  ///< empty: over dig and heap
+
+  bool any() const { return before || after; }
 };
 
 void declare_scans(Arguments& arguments, SceneScanInputs& inputs);

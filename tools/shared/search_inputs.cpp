@@ -61,15 +61,7 @@ bool report(Console& console, const SearchProgress& p, const DigObjective& objec
   return !console.stop_requested();
 }
 
-}  // namespace
-
-void declare_search(Arguments& arguments, SearchInputs& inputs) {
-  declare_goal(arguments, inputs.goal);
-  arguments.text(
-      "start", "RULE|LENGTH", inputs.start,
-      "start point of the dig: work (least work of the links), margin (largest margin to "
-      "the joint limits), search (together with the path; a known path: the best of some along the "
-      "reach), or its x");
+void declare_method(Arguments& arguments, SearchInputs& inputs) {
   for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
     const DigParameterInfo& info = dig_parameter_table()[i];
     arguments.text(range_option(info), "FROM,TO", inputs.ranges[i],
@@ -77,9 +69,13 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   }
   arguments.choice("method", inputs.method, {"default", "paper"},
                    "search method; paper: the paper's genetic algorithm");
-  arguments.option("population", inputs.population,
-                   "population of --method paper (default: " +
-                       std::to_string(GeneticAlgorithm{}.population) + ")");
+  arguments.only_if({[&inputs] { return inputs.method == "paper"; },
+                     "the default method has none, --method paper has"},
+                    [&] {
+                      arguments.option("population", inputs.population,
+                                       "population of --method paper (default: " +
+                                           std::to_string(GeneticAlgorithm{}.population) + ")");
+                    });
   arguments.option(
       "generations", inputs.generations,
       "generations of the search, 0 for as many as --evaluations allows, or the paper's");
@@ -96,6 +92,23 @@ void declare_search(Arguments& arguments, SearchInputs& inputs) {
   arguments.flag("resume", inputs.resume, "continue from the checkpoint if it exists");
   arguments.option("seed", inputs.seed, "seed of the search");
   arguments.threads(inputs.threads, "; the path does not depend on it");
+}
+
+}  // namespace
+
+void declare_search(Arguments& arguments, SearchInputs& inputs,
+                    const std::function<SearchUse()>& use) {
+  const std::string no_search = "nothing is searched without --search";
+  declare_goal(arguments, inputs.goal);
+  arguments.only_if({[use] { return use() != SearchUse::none; }, no_search}, [&] {
+    arguments.text(
+        "start", "RULE|LENGTH", inputs.start,
+        "start point of the dig: work (least work of the links), margin (largest margin to "
+        "the joint limits), search (together with the path; a known path: the best of some along "
+        "the reach), or its x");
+  });
+  arguments.only_if({[use] { return use() == SearchUse::all; }, no_search},
+                    [&] { declare_method(arguments, inputs); });
 }
 
 StartRule start_rule_of(const SearchInputs& inputs) {
@@ -127,26 +140,6 @@ void check(const SearchInputs& inputs) {
   }
   objective_of(inputs.goal);
   bounds_of(inputs);
-}
-
-std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use) {
-  const bool searches = use == SearchUse::all;
-  const SearchInputs usual;
-  IgnoredOptions ignored;
-  ignored.add(inputs.population && !(searches && inputs.method == "paper"), "--population");
-  ignored.add(inputs.start != usual.start && use == SearchUse::none, "--start");
-  if (!searches) {
-    for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
-      ignored.add(inputs.ranges[i].has_value(), "--" + range_option(dig_parameter_table()[i]));
-    }
-    ignored.add(inputs.method != usual.method, "--method");
-    ignored.add(inputs.generations != usual.generations, "--generations");
-    ignored.add(inputs.evaluations != usual.evaluations, "--evaluations");
-    ignored.add(inputs.checkpoint.has_value(), "--checkpoint");
-    ignored.add(inputs.seed != usual.seed, "--seed");
-  }
-  return ignored.warnings(searches ? "the default method has none, --method paper has"
-                                   : "nothing is searched without --search");
 }
 
 }  // namespace excavplan::tools

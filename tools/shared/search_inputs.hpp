@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,16 @@ struct SearchInputs {
   std::uint64_t threads = 0;
 };
 
-void declare_search(Arguments& arguments, SearchInputs& inputs);
+/// What is done with the options of a search.
+enum class SearchUse {
+  none,
+  start_only,  ///< a path that is known is dug by its rule for the start
+  all,
+};
+
+/// @param use  asked once all options are read
+void declare_search(Arguments& arguments, SearchInputs& inputs,
+                    const std::function<SearchUse()>& use);
 
 /// What plan_dig() calls them in its messages.
 inline const OptionNames search_option_names = {{"search: population", "--population"},
@@ -40,16 +50,6 @@ inline const OptionNames search_option_names = {{"search: population", "--popula
 
 /// Checks made before anything is read. @throws Error (bad_input)
 void check(const SearchInputs& inputs);
-
-/// What is done with the options of a search.
-enum class SearchUse {
-  none,
-  start_only,  ///< a path that is known is dug by its rule for the start
-  all,
-};
-
-/// Of options that have no effect.
-std::vector<Warning> warnings_of(const SearchInputs& inputs, SearchUse use);
 
 StartRule start_rule_of(const SearchInputs& inputs);
 

@@ -24,6 +24,13 @@ Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_s
 
 }  // namespace
 
+void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
+  arguments.file("terrain", terrain.cloud,
+                 "cloud of the ground in the site frame (default: level)");
+  arguments.file("terrain-frame", terrain.frame,
+                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+}
+
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
   if (terrain.frame && !terrain.cloud) {
     usage_error("--terrain-frame needs --terrain");

@@ -9,6 +9,8 @@
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "shared/arguments.hpp"
+
 namespace excavplan::tools {
 
 /// A measured ground from the command line.
@@ -17,6 +19,9 @@ struct TerrainInput {
   std::optional<std::string>
       frame;  ///< file with the matrix that transforms the cloud into the site frame
 };
+
+/// --terrain and --terrain-frame.
+void declare_terrain(Arguments& arguments, TerrainInput& terrain);
 
 /// Ground to dig on, with its warnings.
 struct Site {

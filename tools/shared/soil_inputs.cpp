@@ -67,9 +67,15 @@ void declare_soil(Arguments& arguments, SoilInputs& inputs) {
   arguments.text("soil", "NAME|FILE|unknown", inputs.soil,
                  "soil that was dug: loam, sand, clay, gravel, a soil file, or unknown: any of the "
                  "four (default: loam is assumed, with a warning)");
+}
+
+void declare_law(Arguments& arguments, SoilInputs& inputs) {
   arguments.text("law", "NAME|FILE", inputs.law,
                  "density law: default (that of the soil by the built-in simulator), paper, or a "
                  "law file");
+}
+
+void declare_payload(Arguments& arguments, SoilInputs& inputs) {
   arguments.text("payload-mass", "MASS[,SD]", inputs.payload_mass,
                  "mass of the soil that was dumped, weighed by the machine [kg]: a second density "
                  "by weight (default SD: 1 %)");

@@ -23,6 +23,9 @@ struct SoilInputs {
 };
 
 void declare_soil(Arguments& arguments, SoilInputs& inputs);
+void declare_law(Arguments& arguments, SoilInputs& inputs);
+/// --payload-mass and --moisture.
+void declare_payload(Arguments& arguments, SoilInputs& inputs);
 
 /// The law of a file or a shipped one; "default" is that of the built-in simulator in loam.
 DensityLaw law_named(const std::string& name);

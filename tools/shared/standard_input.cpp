@@ -23,6 +23,8 @@ constexpr const char* its_name = "standard input";
 }
 
 int temporary_file() {
+  const char* const named = std::getenv("TMPDIR");
+  if (named != nullptr && *named == '\0') ::unsetenv("TMPDIR");
   std::error_code wrong;
   const auto folder = std::filesystem::temp_directory_path(wrong);
   if (wrong) {

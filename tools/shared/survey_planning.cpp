@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include <excavplan/survey/survey_plan.hpp>
@@ -60,7 +61,7 @@ void set(Request& request, const std::string& name, const std::string& value) {
   } else if (name == "frames") {
     const double frames = parse_quantity(what, value, Quantity::ratio);
     if (frames != std::floor(frames) || !(frames >= 1.0 && frames <= 1e6)) {
-      plan_error("frames is " + value + ", must be a whole number of at least 1");
+      plan_error("frames is " + value + ", must be a whole number in 1 .. 1000000");
     }
     request.plan.frames = static_cast<int>(frames);
   } else if (name == "moved") {
@@ -75,11 +76,14 @@ void set(Request& request, const std::string& name, const std::string& value) {
 
 Request parse(const std::string& text) {
   Request request;
+  std::set<std::string> names;
   std::istringstream stream(text);
   for (std::string pair; std::getline(stream, pair, ',');) {
     const std::size_t equals = pair.find('=');
     if (equals == std::string::npos) plan_error("'" + pair + "' must be KEY=VALUE");
-    set(request, pair.substr(0, equals), pair.substr(equals + 1));
+    const std::string name = pair.substr(0, equals);
+    if (!names.insert(name).second) plan_error("'" + name + "' is given more than once");
+    set(request, name, pair.substr(equals + 1));
   }
   return request;
 }

@@ -222,6 +222,16 @@ std::vector<UsedFile> used_files(const std::vector<Arguments::Entry>& entries,
   return files;
 }
 
+void require_ending(const Arguments::Entry& entry, const std::string& file) {
+  const std::string own = small_letters(std::filesystem::path(file).extension().string());
+  std::string rule;
+  for (const std::string& ending : entry.endings) {
+    if (ending == own) return;
+    if (!ending.empty()) rule += (rule.empty() ? "" : " or ") + ending;
+  }
+  if (!rule.empty()) usage_error(shown_name(entry) + ": '" + file + "' must end in " + rule);
+}
+
 void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words,
             StandardInput& input) {
   for (std::size_t i = 0; i < entries.size(); ++i) assign(entries[i], words.of_entry[i], input);
@@ -232,9 +242,36 @@ void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& wor
   }
   refuse_shared_files(used_files(entries, words));
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (entries[i].output && !words.of_entry[i].texts.empty())
-      require_writable(words.of_entry[i].text);
+    if (!entries[i].output || words.of_entry[i].texts.empty()) continue;
+    require_ending(entries[i], words.of_entry[i].text);
+    require_writable(words.of_entry[i].text);
   }
+}
+
+/// One for each reason why options that were given have no effect.
+std::vector<Warning> ignored_options(const std::vector<Arguments::Entry>& entries,
+                                     const ParsedWords& words) {
+  std::vector<std::pair<std::string, std::string>> names_of_reason;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto& uses = entries[i].uses;
+    if (words.of_entry[i].texts.empty()) continue;
+    const auto broken =
+        std::find_if(uses.begin(), uses.end(), [](const auto& use) { return !use.holds(); });
+    if (broken == uses.end()) continue;
+    const auto same =
+        std::find_if(names_of_reason.begin(), names_of_reason.end(),
+                     [&](const auto& of_reason) { return of_reason.first == broken->otherwise; });
+    if (same == names_of_reason.end()) {
+      names_of_reason.emplace_back(broken->otherwise, shown_name(entries[i]));
+    } else {
+      same->second += ", " + shown_name(entries[i]);
+    }
+  }
+  std::vector<Warning> warnings;
+  for (const auto& [reason, names] : names_of_reason) {
+    warnings.push_back({"options_ignored", "without effect: " + names + "; " + reason});
+  }
+  return warnings;
 }
 
 // ---- Running ----------------------------------------------------------------------------------
@@ -349,7 +386,10 @@ int run(int argc, const char* const* argv, const About& about,
   const Signals signals(about.can_stop_early);
   assign(arguments.entries(), words, input);
   Console console(common.quiet, ::isatty(STDERR_FILENO) == 1, signals);
-  const Outcome outcome = work(console);
+  Outcome outcome = work(console);
+  for (Warning& each : ignored_options(arguments.entries(), words)) {
+    outcome.warnings.push_back(std::move(each));
+  }
   console.clear();
   if (outcome.report) {
     write_report(about, outcome, input, settings_of(arguments.entries(), words, own));

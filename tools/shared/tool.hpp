@@ -52,7 +52,8 @@ struct Report;  // shared/report.hpp
 
 /// Result of a tool.
 struct Outcome {
-  /// Printed with --json, "tool" and "version" before it, "warnings" after it. NaN becomes null.
+  /// Printed with --json, "tool" and "version" before it, "warnings" after it, those of options
+  /// without effect (Arguments::only_if()) too. NaN becomes null.
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   std::vector<std::string> lines;  ///< printed without --json
   std::vector<Warning> warnings;
@@ -81,22 +82,6 @@ class Console {
   bool terminal_;
   const Signals& signals_;
   bool line_open_ = false;
-};
-
-/// Options that were given and have no effect.
-class IgnoredOptions {
- public:
-  void add(bool given, const std::string& option) {
-    if (given) text_ += (text_.empty() ? "" : ", ") + option;
-  }
-  /// One (options_ignored), or none.
-  std::vector<Warning> warnings(const std::string& reason) const {
-    if (text_.empty()) return {};
-    return {{"options_ignored", "without effect: " + text_ + "; " + reason}};
-  }
-
- private:
-  std::string text_;
 };
 
 /// Runs a tool: parses, works, prints. @return the exit code @throws std::bad_alloc

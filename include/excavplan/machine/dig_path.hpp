@@ -57,6 +57,7 @@ struct Infeasible {
     too_near_tracks,
     unknown_ground,  ///< at the start point, whose x is `value`
     lift_blocked,    ///< the bucket cannot be lifted clear of the ground
+    front_contact,   ///< boom or arm would pass through the ground; not told from a profile
   };
   Reason reason = Reason::bad_parameter;  ///< which rule it breaks
   DigPhase phase = DigPhase::penetrate;   ///< in which it breaks it

@@ -50,7 +50,8 @@ std::string describe(const DigFailure& failure);
 
 /// Lays out a dig, simulates it, times it and its cycle with the usual CycleOptions.
 ///
-/// Ground of unknown height under the bucket makes the path infeasible (unknown_ground).
+/// Ground of unknown height under the bucket makes the path infeasible (unknown_ground), and so
+/// does known ground in the way of boom or arm (front_contact).
 ///
 /// @throws Error (bad_input) if the start is to be searched
 std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,

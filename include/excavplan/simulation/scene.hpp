@@ -92,7 +92,7 @@ struct CameraPlace {
 /// the heap, placed by camera_above(). They have the errors, image and field of view of `camera`;
 /// its place is not used.
 ///
-/// @throws Error (bad_input) as scan_surface()
+/// @throws Error (bad_input) as scan_surface(), or if a camera sees no ground
 SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed,
                       const std::vector<CameraPlace>& places = {});
 

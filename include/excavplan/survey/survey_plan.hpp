@@ -15,16 +15,16 @@ namespace excavplan {
 /// What is to be surveyed, and how. Dig area and dump area are each seen from one such place,
 /// before and after.
 struct SurveyPlan {
-  double dig_volume = 0.50;       ///< [m^3]
-  double dig_depth = 0.30;        ///< [m]
-  double bulking_factor = 1.25;   ///< expected [-]
+  double dig_volume = 0.50;       ///< 0.001 .. 1000 [m^3]
+  double dig_depth = 0.30;        ///< 0.01 .. 30 [m]
+  double bulking_factor = 1.25;   ///< expected, 0.9 .. 3 [-]
   double spill_share = 0.10;      ///< of the loose soil that lies beside the pit, not on the heap
   double wall_angle = 1.22;       ///< of the pit [rad]
   double angle_of_repose = 0.61;  ///< of heap and spill [rad]
-  double surveyed_area = 25.0;    ///< around the dig and around the heap, each [m^2]
+  double surveyed_area = 25.0;    ///< around the dig and around the heap, each, 0.1 .. 1e4 [m^2]
   Sensor sensor = default_sensor();  ///< its error model
-  double height = 2.5;               ///< of the sensor above the ground [m]
-  double offset = 1.0;               ///< from the centre of the area, horizontal [m]
+  double height = 2.5;               ///< of the sensor above the ground, 0.1 .. 100 [m]
+  double offset = 1.0;               ///< from the centre of the area, horizontal, 0 .. 100 [m]
   int frames = 30;                   ///< averaged
   bool registered = false;        ///< the scans are registered on stable ground: the sensor moved
   double density_slope = 161.57;  ///< of the density law, dd/dk [%]; the paper's line
@@ -68,7 +68,7 @@ struct SurveyNeeds {
   double nearest_range = 0.0;   ///< from which all is in view, at the same angle [m]
 };
 
-/// @throws Error (bad_input) as plan_survey(), or unless the target is > 0
+/// @throws Error (bad_input) as plan_survey(), or unless the target is above 0 and at most 100
 SurveyNeeds survey_needs(const SurveyPlan& plan, double density_sd_percent);
 
 }  // namespace excavplan

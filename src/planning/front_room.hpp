@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/machine/kinematics.hpp>
+#include <excavplan/simulation/terrain.hpp>
+
+namespace excavplan {
+
+/// Ground that boom or arm would pass through.
+struct FrontContact {
+  const char* link = "";  ///< "boom" or "arm"
+  double x = 0.0;         ///< of the ground [m]
+  double z = 0.0;         ///< of the ground [m]
+  double lowest = 0.0;    ///< height of the link's lower side there [m]
+};
+
+/// "the boom would pass through the ground at x = 2.5 m, ..."
+std::string describe(const FrontContact& contact);
+
+/// The room that the ground ahead of the tracks leaves to boom and arm.
+///
+/// Their lower sides are the lines from pin to pin: their bodies lie above these
+/// (LinkMass::across).
+class FrontRoom {
+ public:
+  FrontRoom(const Terrain& terrain, const Machine& machine);
+
+  /// The first contact of this posture, if there is one.
+  std::optional<FrontContact> contact(const LinkPositions& at) const;
+
+ private:
+  std::optional<FrontContact> contact(const char* link, const Eigen::Vector2d& from,
+                                      const Eigen::Vector2d& to) const;
+
+  const Machine& machine_;
+  double origin_;
+  double cell_size_;
+  std::vector<double> heights_;  ///< per column: of the highest ground under the links
+  double highest_;
+};
+
+}  // namespace excavplan

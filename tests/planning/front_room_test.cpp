@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planning/front_room.hpp"
+
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "planning/dig_layout.hpp"
+
+namespace excavplan {
+namespace {
+
+class FrontRoomOf : public testing::Test {
+ protected:
+  /// Level ground with a block on it.
+  Terrain with_block(double height, double x_min, double x_max, double y_max = 2.0,
+                     double y_min = -2.0) const {
+    Terrain ground = level_planning_ground(machine_, 0.05);
+    HeightMap& bank = ground.bank;
+    for (Eigen::Index col = 0; col < bank.z.cols(); ++col) {
+      for (Eigen::Index row = 0; row < bank.z.rows(); ++row) {
+        if (bank.x(col) < x_min || bank.x(col) > x_max) continue;
+        if (bank.y(row) > y_min && bank.y(row) < y_max) bank.z(row, col) = height;
+      }
+    }
+    return ground;
+  }
+
+  std::variant<DigPath, Infeasible> laid(const Terrain& ground) const {
+    return DigLayout(machine_, ground).path_from({0.9, 0.5, 1.0}, 6.0);
+  }
+
+  DigPlan planned(const Terrain& ground) const {
+    PlanOptions options;
+    options.method = PlanMethod::search;
+    options.search.stop.evaluations = 40;
+    return plan_dig(machine_, loam_, 40.0, ground, options);
+  }
+
+  static bool warns(const DigPlan& plan, const std::string& code) {
+    for (const Warning& warning : plan.warnings) {
+      if (warning.code == code) return true;
+    }
+    return false;
+  }
+
+  /// Lowest height of boom and arm over this place in any pose, by points along the links.
+  double lowest_at(const DigPath& path, double x_min, double x_max) const {
+    double lowest = 100.0;
+    for (const auto* poses : {&path.approach, &path.poses}) {
+      for (const DigPose& pose : *poses) {
+        const LinkPositions at = link_positions(machine_, pose.joints);
+        for (double share = 0.0; share <= 1.0; share += 0.001) {
+          for (const Eigen::Vector2d& point :
+               {Eigen::Vector2d(machine_.boom_pin + share * (at.arm_pin - machine_.boom_pin)),
+                Eigen::Vector2d(at.arm_pin + share * (at.bucket_pin - at.arm_pin))}) {
+            if (point.x() > x_min && point.x() < x_max) lowest = std::min(lowest, point.y());
+          }
+        }
+      }
+    }
+    return lowest;
+  }
+
+  const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
+  const SoilKind loam_ = load_soil(find_data_file("soils/loam.json"));
+};
+
+TEST_F(FrontRoomOf, ABlockTouchesALinkThatComesWithinTheMarginOfIt) {
+  const auto free = laid(level_planning_ground(machine_));
+  const auto* path = std::get_if<DigPath>(&free);
+  ASSERT_TRUE(path);
+  const double lowest = lowest_at(*path, 3.0, 3.2);
+  ASSERT_GT(lowest, 0.5);
+  ASSERT_LT(lowest, 4.0);
+  EXPECT_TRUE(std::holds_alternative<DigPath>(laid(with_block(lowest - 0.15, 3.0, 3.2))));
+  const auto blocked = laid(with_block(lowest - 0.05, 3.0, 3.2));
+  ASSERT_TRUE(std::holds_alternative<Infeasible>(blocked));
+  const Infeasible& reason = std::get<Infeasible>(blocked);
+  EXPECT_EQ(reason.reason, Infeasible::Reason::front_contact);
+  EXPECT_NEAR(reason.limit, lowest - 0.05, 1e-12);
+  EXPECT_NE(reason.message.find(" would pass through the ground at x = 3."), std::string::npos)
+      << reason.message;
+}
+
+TEST_F(FrontRoomOf, WhatStandsBesideTheLinksOrUnderTheMachineIsNotInTheirWay) {
+  EXPECT_TRUE(std::holds_alternative<DigPath>(laid(with_block(3.0, 3.0, 3.2, 2.0, 0.35))));
+  EXPECT_TRUE(std::holds_alternative<Infeasible>(laid(with_block(3.0, 3.0, 3.2, 2.0, 0.1))));
+  EXPECT_TRUE(std::holds_alternative<DigPath>(laid(with_block(3.0, 0.9, 1.7))));
+}
+
+TEST_F(FrontRoomOf, NoPlanGoesThroughAWall) {
+  for (const double height : {0.8, 2.4, 6.0}) {
+    const DigPlan plan = planned(with_block(height, 2.9, 3.1));
+    if (!plan.dig) continue;
+    EXPECT_GT(lowest_at(plan.path, 2.9, 3.1), height) << height;
+  }
+  EXPECT_TRUE(planned(with_block(0.8, 2.9, 3.1)).dig);
+  EXPECT_FALSE(planned(with_block(6.0, 2.9, 3.1)).dig);
+}
+
+TEST_F(FrontRoomOf, APostInTheStripOfTheBucketEndsTrust) {
+  const DigPlan plan = planned(with_block(0.9, 4.6, 4.8, 0.1, -0.1));
+  ASSERT_TRUE(plan.dig);
+  const bool passed = plan.path.start_x > 4.6;
+  EXPECT_EQ(warns(plan, "obstacle_in_strip"), passed);
+  EXPECT_NE(plan.trustworthy, passed);
+  const DigPlan low = planned(with_block(0.3, 4.6, 4.8, 0.1, -0.1));
+  EXPECT_FALSE(warns(low, "obstacle_in_strip"));
+}
+
+TEST_F(FrontRoomOf, AWallBesideAPitThatIsDugDeeperIsNoObstacle) {
+  const DigPlan plan = planned(with_block(-0.8, 2.0, 8.5, 0.6, -0.6));
+  ASSERT_TRUE(plan.dig);
+  EXPECT_FALSE(warns(plan, "obstacle_in_strip"));
+}
+
+}  // namespace
+}  // namespace excavplan
