@@ -36,6 +36,7 @@ struct Inputs {
   double cell_size = 0.05;
   std::uint64_t seed = 1;
   std::uint64_t threads = 0;
+  std::optional<std::string> report;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -58,6 +59,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                       arguments.option("seed", inputs.seed, "seed of the searches");
                       arguments.threads(inputs.threads, "");
                     });
+  arguments.report(inputs.report);
 }
 
 struct Condition {
@@ -109,6 +111,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const DensityLaw law = law_of(inputs, machine, soil);
   const ExperimentOptions options = options_of(inputs, machine, soil);
   const std::vector<Condition> conditions = conditions_of(inputs);
+  std::vector<NamedExperiment> done;
   Outcome outcome;
   outcome.warnings = unlike_law(law, machine.name, soil.name);
   outcome.json["conditions"] = nlohmann::ordered_json::array();
@@ -120,6 +123,7 @@ Outcome work(const Inputs& inputs, Console& console) {
     });
     outcome.json["conditions"].push_back(experiment_json(conditions[i].name, result));
     outcome.lines.push_back(experiment_line(conditions[i].name, result));
+    done.push_back({conditions[i].name, result});
     if (result.held_because.empty()) continue;
     const std::string why = ": the machine is held down, as on the fixed path ";
     outcome.warnings.push_back(
@@ -129,6 +133,11 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.json.update(goal_json(options.plan.search.objective));
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
+  if (inputs.report) {
+    Report report = experiment_report(machine, soil, options.plan, done);
+    report.file = *inputs.report;
+    outcome.report = std::make_shared<Report>(std::move(report));
+  }
   return outcome;
 }
 

@@ -120,6 +120,8 @@
 
   const machine = scene.machine;
   let dig = scene.digs[0];
+  // The state of the ground that the dig leaves; the first is that before it.
+  const lastState = () => (dig && dig.state !== undefined ? dig.state : Math.max(0, ...areas.map((area) => area.states.length - 1)));
 
   // Index and share of the point before a time in rising times.
   const placeOf = (times, time) => {
@@ -249,8 +251,9 @@
         if (value < low) low = value;
         if (value > high) high = value;
       }
-      const [before, after] = [area.states[0], area.states[area.states.length - 1]];
-      for (let i = 0; i < before.length; ++i) change = Math.max(change, Math.abs(after[i] - before[i]) || 0);
+      for (const z of area.states) {
+        for (let i = 0; i < z.length; ++i) change = Math.max(change, Math.abs(z[i] - area.states[0][i]) || 0);
+      }
     }
     const bands = changeBounds.filter((bound, i) => i === 0 || bound < change);
     return { low, high, bands };
@@ -392,22 +395,22 @@
       attribute.needsUpdate = true;
     };
 
-    const stateNames = areas.length ? areas[0].names.slice() : [];
-    const hasChange = stateNames.length > 1;
-    if (hasChange) stateNames.push("change");
-    const meshes = new Map();  // by state, made when first shown
-    const meshesOf = (name) => {
-      if (!meshes.has(name)) {
-        meshes.set(name, areas.map((area) => {
-          const changes = name === "change";
-          const z = area.states[changes ? area.states.length - 1 : area.names.indexOf(name)];
+    const kinds = areas.length === 0 ? [] : lastState() > 0 ? ["before", "after", "change"] : ["before"];
+    const nameOf = (kind) => (kind === "change" ? kind : areas[0].names[kind === "before" ? 0 : lastState()]);
+    const meshes = new Map();  // by kind and state, made when first shown
+    const meshesOf = (kind) => {
+      const state = kind === "before" ? 0 : lastState();
+      const key = `${kind} ${state}`;
+      if (!meshes.has(key)) {
+        meshes.set(key, areas.map((area) => {
+          const z = area.states[state];
           const mesh = groundMesh(area, z);
-          paint(mesh, changes ? (i) => changeColour(z[i] - area.states[0][i]) : (i) => heightColour(z[i]));
+          paint(mesh, kind === "change" ? (i) => changeColour(z[i] - area.states[0][i]) : (i) => heightColour(z[i]));
           tall.add(mesh);
           return mesh;
         }));
       }
-      return meshes.get(name);
+      return meshes.get(key);
     };
 
     const lines = (points, colour) => {
@@ -860,18 +863,23 @@
       if (areas.some((area) => area.coarse)) htmlElement("div", { textContent: "drawn coarser than surveyed" }, node);
     };
 
-    const show = (name) => {
-      for (const [key, list] of meshes) if (key !== name) list.forEach((mesh) => { mesh.visible = false; });
-      meshesOf(name).forEach((mesh) => { mesh.visible = true; });
-      zoneLines.forEach((line) => { line.visible = name !== "before"; });
-      legend(name);
-      for (const button of element("states").children) button.setAttribute("aria-pressed", String(button.dataset.state === name));
+    let shown = kinds[Math.min(1, kinds.length - 1)];
+    const show = (kind) => {
+      shown = kind;
+      for (const list of meshes.values()) list.forEach((mesh) => { mesh.visible = false; });
+      meshesOf(kind).forEach((mesh) => { mesh.visible = true; });
+      zoneLines.forEach((line) => { line.visible = kind !== "before"; });
+      legend(kind);
+      for (const button of element("states").children) {
+        button.setAttribute("aria-pressed", String(button.dataset.state === kind));
+        button.textContent = nameOf(button.dataset.state);
+      }
       ask();
     };
-    for (const name of stateNames) {
-      const button = htmlElement("button", { type: "button", textContent: name }, element("states"));
-      button.dataset.state = name;
-      button.addEventListener("click", () => show(name));
+    for (const kind of kinds) {
+      const button = htmlElement("button", { type: "button" }, element("states"));
+      button.dataset.state = kind;
+      button.addEventListener("click", () => show(kind));
     }
 
     const scales = [1, 2, 5];
@@ -912,11 +920,11 @@
     element("view").hidden = false;  // or it has no size
     resize();
     home();
-    if (stateNames.length) show(hasChange ? stateNames[1] : stateNames[0]); else legend("");
+    if (shown) show(shown); else legend("");
     new ResizeObserver(resize).observe(stage);
     return {
       pose: (joints, fill) => { pose(joints, fill); ask(); },
-      changed: () => { drawPath(); ask(); },
+      changed: () => { drawPath(); if (shown) show(shown); },
       // Where the tip is drawn, x and z in metres.
       tip: () => {
         tip.updateWorldMatrix(true, false);
@@ -934,7 +942,6 @@
 
     const profileOf = (state) => (x) => {
       for (const area of areas) {
-        if (state >= area.states.length) continue;
         const z = heightAt(area, area.states[state], x, 0);
         if (!Number.isNaN(z)) return z;
       }
@@ -1009,9 +1016,8 @@
         }
         close();
       };
-      const states = areas.length ? areas[0].states.length : 0;
-      if (states > 0) soil(0, "soil-before", "edge-before", 1.2);
-      if (states > 1) soil(states - 1, "soil-after", "edge-after", 1.8);
+      if (areas.length) soil(0, "soil-before", "edge-before", 1.2);
+      if (lastState() > 0) soil(lastState(), "soil-after", "edge-after", 1.8);
 
       let stretch = [];
       const flush = (phase) => {
@@ -1047,7 +1053,7 @@
         item.append(text);
       };
       if (areas.length) entry(`ground ${areas[0].names[0]}`, "soil-before", "edge-before");
-      if (areas.length && areas[0].names.length > 1) entry(`ground ${areas[0].names[areas[0].names.length - 1]}`, "soil-after", "edge-after");
+      if (lastState() > 0) entry(`ground ${areas[0].names[lastState()]}`, "soil-after", "edge-after");
       for (const phase of [...new Set(dig.phase)]) entry(`tip, ${phase}`, phase);
       htmlElement("b", { id: "tip-text" }, node);
     };

@@ -2,11 +2,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/experiment_results.hpp"
 
+#include <utility>
+
+#include <excavplan/simulation/dig_ground.hpp>
+
 #include "base/text.hpp"
 #include "shared/goal_inputs.hpp"
+#include "shared/plot.hpp"
 #include "shared/results.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan::tools {
+namespace {
+
+/// Adds a dig of the experiment and the ground that it leaves.
+void add_dig(const std::string& name, const Machine& machine, const SoilSimulator& simulator,
+             const PlannedDig& planned, const Terrain& ground, ReportScene& scene) {
+  const auto laid = make_dig_path(machine, planned.parameters, planned.start_x,
+                                  boom_plane_profile(ground), rules_for_planned_path());
+  const auto* path = std::get_if<DigPath>(&laid);
+  if (path == nullptr) return;  // as none of our own digs
+  DigOptions options;
+  options.history = true;
+  const DigResult dig = checked_dig(simulator, machine, ground, *path, options);
+  std::vector<GroundState>& states = scene.areas.front().states;
+  states.push_back({"after", dig.after(ground).surface()});
+  scene.digs.push_back(played_dig(name, machine, *path, dig));
+  scene.digs.back().state = states.size() - 1;
+}
+
+/// What both digs of each condition are worth.
+Figure worth_figure(const std::vector<NamedExperiment>& experiments) {
+  Figure figure;
+  figure.title = "Digs along the fixed and along the planned path";
+  for (const auto& [condition, result] : experiments) {
+    for (const auto& [path, dig] :
+         {std::pair("fixed", result.fixed), {"planned", result.planned}}) {
+      const double worth = result.objective.worth(dig);
+      figure.bars.push_back(
+          {condition + ", " + path + ": " + worth_text(result.objective, worth), worth});
+    }
+  }
+  return figure;
+}
+
+}  // namespace
 
 nlohmann::ordered_json experiment_json(const std::string& condition,
                                        const ExperimentResult& result) {
@@ -37,6 +77,30 @@ std::string experiment_line(const std::string& condition, const ExperimentResult
          path_text(result.planned) + "), gain " + readable(result.gain_percent()) + " % (path " +
          readable(result.path_gain_percent()) + " %, start " +
          readable(result.start_gain_percent()) + " %)";
+}
+
+Report experiment_report(const Machine& machine, const SoilKind& soil, const PlanOptions& options,
+                         const std::vector<NamedExperiment>& experiments) {
+  Report report;
+  report.title = "Fixed path against planned path in " + soil.name;
+  report.plot = to_svg(worth_figure(experiments));
+  report.plot_always = true;
+  report.scene.machine = machine;
+  const Terrain ground = level_planning_ground(machine, options.cell_size);
+  report.scene.areas = {{{{"before", ground.surface()}}}};
+  for (const auto& [condition, result] : experiments) {
+    Machine standing = machine;
+    if (!result.held_because.empty()) standing.body.reset();
+    const auto simulator =
+        make_simulator(options.simulator, standing, soil, result.density_percent);
+    add_dig(condition + ", planned path", standing, *simulator, result.planned, ground,
+            report.scene);
+    add_dig(condition + ", fixed path", standing, *simulator, result.fixed, ground, report.scene);
+  }
+  report.note =
+      "Ground and loads are those of the dig that is chosen, on level ground; the payload "
+      "stays in the bucket.";
+  return report;
 }
 
 }  // namespace excavplan::tools

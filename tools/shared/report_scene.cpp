@@ -283,6 +283,7 @@ Json dig_json(const ReportDig& dig) {
                {"rates_rad_per_s", joint_numbers(points, [](const Point& p) { return p.rates; })},
                {"tip_x_m", numbers(points, [](const Point& p) { return p.bucket.x; })},
                {"tip_z_m", numbers(points, [](const Point& p) { return p.bucket.z; })}};
+  if (dig.state) json["state"] = *dig.state;
   if (!dig.history.empty()) json["loads"] = loads_json(dig);
   return json;
 }

@@ -34,7 +34,8 @@ struct ReportDig {
   std::string name;                  ///< "planned"
   DigPath path;                      ///< as far as the machine came
   Trajectory trajectory;             ///< of that path
-  std::vector<ForceSample> history;  ///< one for each step between poses; empty: no loads
+  std::vector<ForceSample> history;  ///< one for each step between poses but the lift's, or none
+  std::optional<std::size_t> state = {};  ///< of the areas, that it leaves; else the last
 };
 
 struct ReportScene {
