@@ -63,13 +63,14 @@ Report survey_page(const HeightMap& before, const HeightMap& after) {
   return report;
 }
 
-/// What the page says besides the scripts that are shipped.
-std::string own_text(std::string page) {
-  for (const char* name : {"report/vendor/vendor.js", "report/app.js"}) {
-    const std::string script = test::content_of(find_data_file(name));
-    page.erase(page.find(script), script.size());
+/// What the page says besides the scripts that are shipped, the last two.
+std::string own_text(const std::string& page) {
+  std::string text = page;
+  for (int i = 0; i < 2; ++i) {
+    const std::size_t start = text.rfind("<script nonce=");
+    text.erase(start, text.find("</script>", start) + 9 - start);
   }
-  return page;
+  return text;
 }
 
 TEST(ReportPage, LoadsNothing) {

@@ -31,6 +31,16 @@ std::string embedded(const nlohmann::ordered_json& json) {
 
 std::string shipped(const std::string& name) { return read_file(find_data_file("report/" + name)); }
 
+/// The scripts of data/report/app in the order of their dependence; they share one scope.
+std::string app() {
+  std::string text;
+  for (const char* part : {"page", "scene", "kinematics", "colours", "ground_model",
+                           "machine_model", "view", "section", "charts", "player"}) {
+    text += shipped(std::string("app/") + part + ".js");
+  }
+  return text;
+}
+
 /// Replaces "{{name}}" in the template, not in what replaces it.
 std::string filled(const std::string& page, const std::map<std::string, std::string>& parts) {
   std::string text;
@@ -124,7 +134,7 @@ std::string html_page(const Report& report, const ReportedRun& run) {
       {"data", data},
       {"style", shipped("vendor/uplot.css") + shipped("style.css")},
       {"vendor", shipped("vendor/vendor.js")},
-      {"app", shipped("app.js")}};
+      {"app", app()}};
   return filled(shipped("page.html"), parts);
 }
 

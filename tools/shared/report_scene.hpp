@@ -53,7 +53,7 @@ ReportDig played_dig(const std::string& name, const Machine& machine, const DigP
 std::vector<ReportArea> surveyed_areas(const VolumeChange& change,
                                        const std::vector<HeightMap>& before);
 
-/// For data/report/app.js. Heights are coded as 16-bit numbers in base64; maps of more than 250000
+/// For data/report/app. Heights are coded as 16-bit numbers in base64; maps of more than 250000
 /// cells are coarsened.
 nlohmann::ordered_json to_json(const ReportScene& scene);
 
