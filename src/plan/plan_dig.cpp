@@ -18,11 +18,8 @@
 #include "ground/robust.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
-<<<<<<< HEAD
 #include "planning/front_room.hpp"
-=======
 #include "planning/dig_problem.hpp"
->>>>>>> 01fc300e31cd48e85f8f8fbfa0af0e7345dcb827
 #include "simulation/checked_dig.hpp"
 #include "simulation/terrain_check.hpp"
 
