@@ -179,8 +179,7 @@ class Page(unittest.TestCase):
 
     def test_slider_moves_the_bucket_along_the_trajectory(self):
         with open(f"{FOLDER.name}/dig.json", encoding="utf-8") as file:
-            written = [(point["time_s"], [point[joint + "_rad"] for joint in ("boom", "arm", "bucket")])
-                       for point in json.load(file)["points"]]
+            written = [(point["time_s"], point["joints_rad"]) for point in json.load(file)["points"]]
         for tool in PLAYED:
             self.open(tool)
             dig = json.loads(self.script("return document.getElementById('data').textContent"))["digs"][0]

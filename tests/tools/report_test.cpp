@@ -12,7 +12,7 @@
 #include <excavplan/simulation/scene.hpp>
 
 #include "shared/dig_report.hpp"
-#include "support/run_program.hpp"
+#include "support/report_page.hpp"
 
 /// @file
 /// The page of --report as text; report_page.py opens it in a browser.
@@ -24,17 +24,6 @@ using nlohmann::json;
 
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
-}
-
-std::string between(const std::string& text, const std::string& open, const std::string& close) {
-  const std::size_t start = text.find(open);
-  if (start == std::string::npos) return "";
-  return text.substr(start + open.size(),
-                     text.find(close, start + open.size()) - start - open.size());
-}
-
-json data_of(const std::string& page) {
-  return json::parse(between(page, "id=\"data\">", "</script>"));
 }
 
 ReportedRun plain_run() {
@@ -104,7 +93,7 @@ TEST(ReportPage, RunsNoScriptOfItsTexts) {
   for (const char* markup : {"<script>", "<img", "\x1b", "\xff", "</pre></script>"}) {
     EXPECT_FALSE(contains(text, markup)) << markup;
   }
-  EXPECT_EQ(data_of(text)["areas"][0]["states"][0]["name"].get<std::string>().substr(0, 9),
+  EXPECT_EQ(test::drawn_on(text)["areas"][0]["states"][0]["name"].get<std::string>().substr(0, 9),
             "</script>");
 }
 
@@ -121,7 +110,8 @@ TEST(ReportPage, ShowsValueErrorIntervalAndUnit) {
         "class=\"value\">41.5 ± 3.1</td>"
         "<td>%</td><td>35.4 .. 47.6</td>",
         ">0.2675 ± 0.0021</td><td>m³</td>", "By phase, drag", ">12.2</td><td>kJ</td>",
-        "rad (45.0°)", "<td data-key=\"soils.0.weight\" data-value=\"0.31\">0.310</td>",
+        "rad (45.0°)",
+        "<td data-key=\"soils.0.weight\" data-value=\"0.31\" class=\"number\">0.310</td>",
         "Loam: payload", "kg/m³", "density [%]"}) {
     EXPECT_TRUE(contains(tables, part)) << part << '\n' << tables;
   }
@@ -137,6 +127,11 @@ TEST(ReportPage, HeadlineIsOfWhatThereIs) {
   EXPECT_TRUE(contains(tiles, "522.6</span><span class=\"sd\"> ± 5.8</span>"));
   EXPECT_TRUE(contains(tiles, "Cycle energy"));
   EXPECT_EQ(tiles.find("<dt>", tiles.find("Cycle energy")), std::string::npos);
+
+  const auto list =
+      nlohmann::ordered_json::parse(R"({"conditions": [{"name": "soft", "gain_percent": 41.7}]})");
+  EXPECT_TRUE(contains(headline_tiles(list, {"conditions.0.gain_percent"}), ">Gain, soft<"));
+  EXPECT_EQ(headline_tiles(list, {"conditions.1.gain_percent"}), "");
 }
 
 TEST(ReportPage, SaysWhetherToTrustAndWhy) {

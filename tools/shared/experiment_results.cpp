@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/experiment_results.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -21,7 +22,8 @@ void add_dig(const std::string& name, const Machine& machine, const SoilSimulato
   const auto laid = make_dig_path(machine, planned.parameters, planned.start_x,
                                   boom_plane_profile(ground), rules_for_planned_path());
   const auto* path = std::get_if<DigPath>(&laid);
-  if (path == nullptr) return;  // as none of our own digs
+  if (path == nullptr)
+    throw Error(ErrorKind::bad_input, name + ": " + describe(std::get<Infeasible>(laid)));
   DigOptions options;
   options.history = true;
   const DigResult dig = checked_dig(simulator, machine, ground, *path, options);
@@ -31,10 +33,25 @@ void add_dig(const std::string& name, const Machine& machine, const SoilSimulato
   scene.digs.back().state = states.size() - 1;
 }
 
-/// What both digs of each condition are worth.
-Figure worth_figure(const std::vector<NamedExperiment>& experiments) {
+Points tip_path(const DigPath& path) {
+  Points points;
+  for (const DigPose& pose : path.poses) points.emplace_back(pose.bucket.x, pose.bucket.z);
+  return points;
+}
+
+/// Both paths of each of the first conditions, and what the digs of all are worth.
+Figure experiment_figure(const std::vector<NamedExperiment>& experiments,
+                         const ReportScene& scene) {
+  constexpr std::size_t most_panels = 3;  // ours
   Figure figure;
   figure.title = "Digs along the fixed and along the planned path";
+  for (std::size_t i = 0; i < std::min(most_panels, experiments.size()); ++i) {
+    Panel panel(experiments[i].condition, "x [m]", "z [m]");
+    panel.line(tip_path(scene.digs[2 * i].path), {"#0072b2", 2.0}, "tip, planned path");
+    panel.line(tip_path(scene.digs[2 * i + 1].path), {"#d55e00", 2.0, "none", 1.0, "6 4"},
+               "tip, fixed path");
+    figure.panels.push_back(panel);
+  }
   for (const auto& [condition, result] : experiments) {
     for (const auto& [path, dig] :
          {std::pair("fixed", result.fixed), {"planned", result.planned}}) {
@@ -83,7 +100,6 @@ Report experiment_report(const Machine& machine, const SoilKind& soil, const Pla
                          const std::vector<NamedExperiment>& experiments) {
   Report report;
   report.title = "Fixed path against planned path in " + soil.name;
-  report.plot = to_svg(worth_figure(experiments));
   report.plot_always = true;
   report.scene.machine = machine;
   const Terrain ground = level_planning_ground(machine, options.cell_size);
@@ -97,6 +113,10 @@ Report experiment_report(const Machine& machine, const SoilKind& soil, const Pla
             report.scene);
     add_dig(condition + ", fixed path", standing, *simulator, result.fixed, ground, report.scene);
   }
+  for (std::size_t i = 0; i < experiments.size() && i < 6; ++i) {  // ours
+    report.headline.push_back("conditions." + std::to_string(i) + ".gain_percent");
+  }
+  report.plot = to_svg(experiment_figure(experiments, report.scene));
   report.note =
       "Ground and loads are those of the dig that is chosen, on level ground; the payload "
       "stays in the bucket.";

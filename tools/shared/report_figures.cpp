@@ -199,7 +199,9 @@ class Rows {
   void add_row(const std::string& path, const std::string& label, const Entry& figure,
                const std::string& unit) {
     rows_ += "<tr><th scope=\"row\">" + xml_escaped(capital(label)) + "</th>" +
-             cell(exact(path, figure) + attribute("class", "value"), value_text(figure)) +
+             cell(exact(path, figure) +
+                      attribute("class", figure.value->is_string() ? "value list" : "value"),
+                  value_text(figure)) +
              cell("", unit) + cell("", figure.interval ? list_text(*figure.interval, " .. ") : "") +
              "</tr>\n";
   }
@@ -207,11 +209,12 @@ class Rows {
   std::string rows_;
 };
 
-std::string table(const std::string& title, const std::string& head, const std::string& rows) {
+std::string table(const std::string& title, const std::string& head, const std::string& rows,
+                  bool wide = false) {
   if (rows.empty()) return "";
-  return "<section class=\"figures\"><h3>" + xml_escaped(capital(title)) +
-         "</h3>\n<div class=\"scroll\"><table>\n<thead><tr>" + head + "</tr></thead>\n<tbody>\n" +
-         rows + "</tbody></table></div></section>\n";
+  return std::string("<section class=\"figures") + (wide ? " wide" : "") + "\"><h3>" +
+         xml_escaped(capital(title)) + "</h3>\n<div class=\"scroll\"><table>\n<thead><tr>" + head +
+         "</tr></thead>\n<tbody>\n" + rows + "</tbody></table></div></section>\n";
 }
 
 std::string head_cell(const std::string& text) {
@@ -251,7 +254,8 @@ std::string list_cell(const std::string& path, const Json& object, const std::st
                 list_text(*value, "; "));
   }
   const Entry figure = entry_of(object, key);
-  return cell(exact(path, figure), value_text(figure));
+  return cell(exact(path, figure) + attribute("class", value->is_number() ? "number" : "text"),
+              value_text(figure));
 }
 
 /// A row for each object of a list. Objects in them get a table of their own.
@@ -275,7 +279,7 @@ std::string list_table(const std::string& name, const Json& list) {
       below += figure_table(named + ": " + words_of(stem_of(key)), path + '.' + key, value);
     }
   }
-  return table(words_of(name), head, rows) + below;
+  return table(words_of(name), head, rows, columns.size() > 5) + below;  // ours
 }
 
 bool is_list_of_objects(const Json& value) {
@@ -283,19 +287,37 @@ bool is_list_of_objects(const Json& value) {
          std::all_of(value.begin(), value.end(), [](const Json& each) { return each.is_object(); });
 }
 
-/// The object and the last key of "volume.excavated_m3".
-std::optional<Entry> found(const Json& result, const std::string& path) {
+/// A figure with its label.
+struct Headline {
+  std::string label;
+  Entry figure;
+};
+
+/// "volume.excavated_m3" is "Volume excavated"; of "conditions.0.gain_percent" the condition names
+/// itself: "Gain, soft".
+std::optional<Headline> found(const Json& result, const std::string& path) {
   const Json* object = &result;
+  std::string before;
+  std::string after;
   std::size_t start = 0;
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', start)) {
-    const auto next = object->find(path.substr(start, dot - start));
-    if (next == object->end() || !next->is_object()) return std::nullopt;
-    object = &*next;
+    const auto at = Json::json_pointer("/" + path.substr(start, dot - start));
+    if (!object->contains(at)) return std::nullopt;
+    const bool in_list = object->is_array();
+    object = &object->at(at);
+    if (in_list) {
+      before.clear();
+      after = ", " + object->value("name", "");
+    } else {
+      before += words_of(path.substr(start, dot - start)) + ' ';
+    }
     start = dot + 1;
   }
   const std::string key = path.substr(start);
-  if (!object->contains(key) || !object->at(key).is_number()) return std::nullopt;
-  return entry_of(*object, key);
+  if (!object->is_object() || !object->contains(key) || !object->at(key).is_number()) {
+    return std::nullopt;
+  }
+  return Headline{capital(before + words_of(stem_of(key))) + after, entry_of(*object, key)};
 }
 
 }  // namespace
@@ -319,22 +341,20 @@ std::string figure_tables(const Json& result) {
 std::string headline_tiles(const Json& result, const std::vector<std::string>& keys) {
   std::string tiles;
   for (const std::string& path : keys) {
-    const std::optional<Entry> figure = found(result, path);
-    if (!figure) continue;
-    std::string label = words_of(path.substr(0, path.size() - suffix_of(path).size()));
-    std::replace(label.begin(), label.end(), '.', ' ');
-    const std::string text = value_text(*figure);
+    const std::optional<Headline> headline = found(result, path);
+    if (!headline) continue;
+    const auto& [label, figure] = *headline;
+    const std::string text = value_text(figure);
     const std::size_t error = text.find(" ± ");
-    tiles += "<div class=\"tile\"><dt>" + xml_escaped(capital(label)) + "</dt><dd" +
-             exact(path, *figure) + "><span class=\"number\">" +
-             xml_escaped(text.substr(0, error)) + "</span>" +
+    tiles += "<div class=\"tile\"><dt>" + xml_escaped(label) + "</dt><dd" + exact(path, figure) +
+             "><span class=\"number\">" + xml_escaped(text.substr(0, error)) + "</span>" +
              (error == std::string::npos
                   ? ""
                   : "<span class=\"sd\">" + xml_escaped(text.substr(error)) + "</span>") +
-             " <span class=\"unit\">" + xml_escaped(shown_unit(figure->key)) + "</span>" +
-             (figure->interval ? "<span class=\"interval\">95 % interval " +
-                                     xml_escaped(list_text(*figure->interval, " .. ")) + "</span>"
-                               : "") +
+             " <span class=\"unit\">" + xml_escaped(shown_unit(figure.key)) + "</span>" +
+             (figure.interval ? "<span class=\"interval\">95 % interval " +
+                                    xml_escaped(list_text(*figure.interval, " .. ")) + "</span>"
+                              : "") +
              "</dd></div>\n";
   }
   return tiles;

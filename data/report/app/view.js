@@ -212,6 +212,8 @@ const makeView = () => {
       );
     }
     camera.position.copy(controls.target).addScaledVector(direction, distance * 1.05);
+    controls.minDistance = 0.12 * distance;
+    controls.maxDistance = 4 * distance;
     camera.near = distance / 100;
     camera.far = distance * 10;
     camera.updateProjectionMatrix();
