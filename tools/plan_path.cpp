@@ -118,8 +118,8 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"machine", machine.name},
                        {"simulator", inputs.simulator},
                        {"wall_time_s", watch.seconds()}});
-  const std::string title =
-      "Planned dig in " + soil.name + " at " + readable(density.percent) + " % relative density";
+  const std::string title = (plan.dig ? "Planned dig in " : "No dig in ") + soil.name + " at " +
+                            readable(density.percent) + " % relative density";
   const std::string figure =
       plan.dig
           ? dig_figure(machine, plan.path, {boom_plane_profile(site.ground)}, title, outcome.lines)

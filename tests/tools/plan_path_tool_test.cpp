@@ -620,7 +620,7 @@ TEST_F(Tools, ReportOfNoPlanSaysSo) {
          {"--density", "40", "--search", "--evaluations", "5", "--angle-range", "1.4,1.4",
           "--penetration-range", "0.9,0.9", "--drag-range", "3,3", "--report", file});
   const std::string page = content_of(file);
-  EXPECT_TRUE(contains(page, "Do not trust this result."));
+  EXPECT_TRUE(contains(page, "There is no dig.</strong> 1 warning"));
   EXPECT_TRUE(contains(page, "<code>no_dig</code>"));
   EXPECT_EQ(drawn_on(page)["digs"].size(), 0U);
 }

@@ -247,6 +247,7 @@ TEST(ReportScene, AStalledDigEndsWhereItStalled) {
   EXPECT_LT(played.trajectory.duration(), 0.8 * time_dig_path(machine, scene.path).duration());
   EXPECT_LT(played.history.size(), played.path.poses.size());
   EXPECT_EQ(played.path.poses.size(), scene.dig.torques.size() + 1);
+  EXPECT_TRUE(contains(html_page(scene_report(machine, scene), plain_run()), "The dig stalled."));
 }
 
 }  // namespace

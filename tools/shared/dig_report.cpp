@@ -15,6 +15,7 @@ Report scene_report(const Machine& machine, const DigScene& scene) {
   report.scene.machine = machine;
   report.scene.digs = {played_dig("dig", machine, scene.path, scene.dig)};
   report.note = "Ground and loads are those of the simulated dig; the heap is its payload, dumped.";
+  if (scene.dig.stall) report.fault = "The dig stalled.";
   if (scene.blocks) report.scene.areas.front().states.back() = {"after", scene.blocks->after};
   if (scene.blocks) report.scene.areas.front().states.front() = {"before", scene.blocks->before};
   return report;
@@ -26,7 +27,10 @@ Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& 
                      "cycle.energy_kj", "cycle.time_s", "cycle.rate_t_per_h"};
   report.scene.areas = {{{{"before", site.ground.surface()}}}};
   report.scene.machine = machine;
-  if (!plan.dig) return report;
+  if (!plan.dig) {
+    report.fault = plan.stopped ? "Stopped before any dig was found." : "There is no dig.";
+    return report;
+  }
   const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
   DigOptions options;
   options.history = true;

@@ -53,7 +53,7 @@ std::string filled(const std::string& page, const std::map<std::string, std::str
   return text + page.substr(at);
 }
 
-std::string verdict(const ReportedRun& run) {
+std::string verdict(const Report& report, const ReportedRun& run) {
   const auto shown = [](const std::string& kind, const std::string& what, const std::string& why) {
     return "<p class=\"verdict " + kind + "\"><strong>" + what + "</strong> " + why + "</p>";
   };
@@ -62,6 +62,7 @@ std::string verdict(const ReportedRun& run) {
                                : count == 1 ? "1 warning, below."
                                             : std::to_string(count) + " warnings, below.";
   if (run.stopped_early) return shown("bad", "Stopped early.", warnings);
+  if (!report.fault.empty()) return shown("bad", html(report.fault), warnings);
   if (!run.trustworthy) {
     return shown("bad", "Do not trust this result.", "The reason is among the warnings below.");
   }
@@ -122,7 +123,7 @@ std::string html_page(const Report& report, const ReportedRun& run) {
       {"title", html(report.title)},
       {"tool", html(run.tool)},
       {"version", html(run.version)},
-      {"verdict", verdict(run)},
+      {"verdict", verdict(report, run)},
       {"warnings", warning_list(run.warnings)},
       {"headline", headline_tiles(result, report.headline)},
       {"plot", plot_part(report)},

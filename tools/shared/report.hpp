@@ -21,7 +21,8 @@ struct Report {
   std::string plot;          ///< SVG; on paper and where nothing can be drawn in three dimensions
   bool plot_always = false;  ///< the plot shows what nothing else on the page does
   ReportScene scene = {};
-  std::string note = {};  ///< what ground and loads of the scene are
+  std::string fault = {};  ///< "The dig stalled."; empty if nothing failed
+  std::string note = {};   ///< what ground and loads of the scene are
 };
 
 /// Complete, for Outcome::report.
