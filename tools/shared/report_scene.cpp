@@ -154,6 +154,7 @@ Json area_json(const ReportArea& area) {
 Json zone_json(const ChangeZone& zone) {
   const Rectangle& extent = zone.extent;
   return {{"kind", name(zone.kind)},
+          {"volume_m3", std::abs(zone.volume.value)},
           {"volume", readable(std::abs(zone.volume.value), zone.volume.sd) + " m³"},
           {"extent_m", {extent.x_min, extent.y_min, extent.x_max, extent.y_max}}};
 }

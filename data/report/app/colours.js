@@ -16,23 +16,26 @@ const fell = ["#f6d9cb", "#f4a582", "#d6604d", "#b2182b", "#67001f"].map(rgb);
 const rose = ["#d6e7f1", "#92c5de", "#4393c3", "#2166ac", "#053061"].map(rgb);
 const changeBounds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
 
+// Of all states: the heights but for outliers, such as walls and masts beside the soil, and the
+// bounds of the bands of change.
 const range = (() => {
-  let low = Infinity;
-  let high = -Infinity;
+  const heights = [];
   let change = 0;
   for (const area of areas) {
-    for (const z of area.states)
-      for (const value of z) {
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
     for (const z of area.states) {
-      for (let i = 0; i < z.length; ++i)
+      for (let i = 0; i < z.length; ++i) {
+        if (Number.isNaN(z[i])) continue;
+        heights.push(z[i]);
         change = Math.max(change, Math.abs(z[i] - area.states[0][i]) || 0);
+      }
     }
   }
+  const sorted = Float64Array.from(heights).sort();
+  const at = (share) => (sorted.length ? sorted[Math.round(share * (sorted.length - 1))] : 0);
+  const [lowest, low, high, highest] = [0, 0.02, 0.98, 1].map(at);
+  const clipped = highest - lowest > 2 * (high - low) && high - low > 0.2;
   const bands = changeBounds.filter((bound, i) => i === 0 || bound < change);
-  return { low, high, bands };
+  return { low: clipped ? low : lowest, high: clipped ? high : highest, clipped, bands };
 })();
 
 const heightColour = (z) =>

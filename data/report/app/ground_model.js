@@ -179,39 +179,66 @@ const makeGround = (T, parent) => {
 
   // -- Zones of the change, drawn on the ground after
   const zoneColours = { dig: 0x111111, spill: 0x00795a, dump: 0xc98200, other: 0xa8487f };
+  const zoneLine = (area, zone, index) => {
+    const z = area.states[area.states.length - 1];
+    const points = [];
+    const at = (row, col) => {
+      const [x, y] = [area.x0 + col * area.cell, area.y0 + row * area.cell];
+      return [x, y, heightAt(area, z, x, y) + 0.012];
+    };
+    // Not where no scan saw the ground.
+    const edge = (a, b) => {
+      if (!Number.isNaN(a[2] + b[2])) points.push(...a, ...b);
+    };
+    const inZone = (row, col) =>
+      Math.min(row, col) >= 0 &&
+      row < area.rows &&
+      col < area.cols &&
+      area.zone[row * area.cols + col] === index;
+    const [x0, y0, x1, y1] = zone.extent_m;
+    const rowOf = (y) => Math.min(Math.max(Math.round((y - area.y0) / area.cell), 0), area.rows);
+    const colOf = (x) => Math.min(Math.max(Math.round((x - area.x0) / area.cell), 0), area.cols);
+    for (let row = rowOf(y0) - 1; row <= rowOf(y1) + 1; ++row) {
+      for (let col = colOf(x0) - 1; col <= colOf(x1) + 1; ++col) {
+        const here = inZone(row, col);
+        if (here !== inZone(row - 1, col)) edge(at(row - 0.5, col - 0.5), at(row - 0.5, col + 0.5));
+        if (here !== inZone(row, col - 1)) edge(at(row - 0.5, col - 0.5), at(row + 0.5, col - 0.5));
+      }
+    }
+    return lines(points, zoneColours[zone.kind]);
+  };
   const zoneLines = areas
     .filter((area) => area.zone)
-    .flatMap((area) =>
-      scene.zones.map((zone, index) => {
-        const z = area.states[area.states.length - 1];
-        const points = [];
-        const at = (row, col) => [area.x0 + col * area.cell, area.y0 + row * area.cell];
-        const height = (x, y) => {
-          const here = heightAt(area, z, x, y);
-          return (Number.isNaN(here) ? range.low : here) + 0.012;
-        };
-        const edge = (a, b) => points.push(a[0], a[1], height(...a), b[0], b[1], height(...b));
-        const inZone = (row, col) =>
-          row >= 0 &&
-          col >= 0 &&
-          row < area.rows &&
-          col < area.cols &&
-          area.zone[row * area.cols + col] === index;
-        for (let row = 0; row <= area.rows; ++row) {
-          for (let col = 0; col <= area.cols; ++col) {
-            const here = inZone(row, col);
-            if (here !== inZone(row - 1, col))
-              edge(at(row - 0.5, col - 0.5), at(row - 0.5, col + 0.5));
-            if (here !== inZone(row, col - 1))
-              edge(at(row - 0.5, col - 0.5), at(row + 0.5, col - 0.5));
-          }
+    .flatMap((area) => scene.zones.map((zone, index) => zoneLine(area, zone, index)));
+
+  // The ground at a place in the state that is left; NaN where there is none.
+  const height = (x, y) => {
+    for (const area of areas) {
+      const z = heightAt(area, area.states[lastState()], x, y);
+      if (!Number.isNaN(z)) return z;
+    }
+    return NaN;
+  };
+
+  // Some of the places of that state, for the camera.
+  const places = () =>
+    areas.flatMap((area) => {
+      const step = Math.ceil(Math.sqrt((area.rows * area.cols) / 2000));
+      const list = [];
+      for (let row = 0; row < area.rows; row += step) {
+        for (let col = 0; col < area.cols; col += step) {
+          const z = area.states[lastState()][row * area.cols + col];
+          if (!Number.isNaN(z))
+            list.push([area.x0 + col * area.cell, area.y0 + row * area.cell, z]);
         }
-        return lines(points, zoneColours[zone.kind]);
-      }),
-    );
+      }
+      return list;
+    });
 
   return {
     extent,
+    height,
+    places,
     floor,
     flat,
     contourStep,

@@ -124,13 +124,16 @@ const makeView = () => {
     mark("x [m]", (extent.x0 + extent.x1) / 2, extent.y0 - (narrow ? 0.16 : 0.1) * span, floor);
     mark("y [m]", extent.x1 + (narrow ? 0.16 : 0.1) * span, (extent.y0 + extent.y1) / 2, floor);
     const names = { dig: "hole", spill: "spill", dump: "heap", other: "left out" };
-    const labelled = new Set();
-    for (const zone of scene.zones) {
+    const labelled = new Set(["other"]);
+    for (const zone of [...scene.zones].sort((a, b) => b.volume_m3 - a.volume_m3)) {
       const [x0, y0, x1, y1] = zone.extent_m;
-      if (labelled.has(zone.kind) || zone.kind === "other") continue;
+      if (labelled.has(zone.kind)) continue;
       labelled.add(zone.kind);
-      const side = zone.kind === "spill" ? y1 + 0.2 : (y0 + y1) / 2;
-      mark(`${names[zone.kind]} ${zone.volume}`, (x0 + x1) / 2, side, range.high + 0.25, "zone");
+      const x = (x0 + x1) / 2;
+      const y = zone.kind === "spill" ? y1 + 0.2 : (y0 + y1) / 2;
+      const z = ground.height(x, y);
+      const above = (Number.isNaN(z) ? range.low : z) + 0.04 * span;
+      mark(`${names[zone.kind]} ${zone.volume}`, x, y, above, "zone");
     }
   };
   makeMarks();
@@ -162,7 +165,8 @@ const makeView = () => {
         for (const y of [y0, y1])
           for (const z of [z0, z1]) corners.push(new T.Vector3(x, y, z * tall.scale.z));
     };
-    addBox(extent.x0, extent.x1, extent.y0, extent.y1, floor, areas.length ? range.high : 0);
+    addBox(extent.x0, extent.x1, extent.y0, extent.y1, floor, floor);
+    for (const [x, y, z] of ground.places()) corners.push(new T.Vector3(x, y, z * tall.scale.z));
     if (machine) {
       const s = machine.track_front_m / 1.8;
       const h = machine.boom_pin_m[1] / 1.424;
@@ -290,10 +294,11 @@ const makeView = () => {
         );
     } else {
       strip.style.setProperty("--stops", [4, 3, 2, 1, 0].map((i) => css(soilRamp[i])).join(","));
+      const beyond = range.clipped ? { 1: "≥ ", 0.5: "", 0: "≤ " } : { 1: "", 0.5: "", 0: "" };
       for (const share of [1, 0.5, 0])
         htmlElement(
           "span",
-          { textContent: signed(range.low + share * (range.high - range.low), 2) },
+          { textContent: beyond[share] + signed(range.low + share * (range.high - range.low), 2) },
           texts,
         );
       htmlElement("div", { textContent: `lines every ${+contourStep.toFixed(2)} m` }, node);
