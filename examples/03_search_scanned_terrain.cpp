@@ -6,6 +6,7 @@
 /// with the best dig until then: 03_search_scanned_terrain [CLOUD]
 
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 
@@ -35,8 +36,8 @@ int main(int count, char** words) {
   options.method = PlanMethod::search;
   options.search.stop.evaluations = 60;  // digs in the simulator
   options.search.progress = [](const SearchProgress& progress) {
-    std::printf("\r%3d of %d digs, best %.1f kg/kJ ", progress.evaluations, progress.planned,
-                1000.0 * progress.best);
+    std::printf("\r%3d of %d digs", progress.evaluations, progress.planned);
+    if (!std::isnan(progress.best)) std::printf(", best %.1f kg/kJ ", 1000.0 * progress.best);
     std::fflush(stdout);
     return !interrupted;  // false ends the search
   };

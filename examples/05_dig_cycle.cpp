@@ -33,6 +33,12 @@ Scan scan_of(std::vector<Eigen::Vector3d> points) {
   return scan;
 }
 
+void print(const char* about, const std::vector<Warning>& warnings) {
+  for (const Warning& warning : warnings) {
+    std::printf("  %s: %s\n", about, warning.message.c_str());
+  }
+}
+
 }  // namespace
 
 int main() {
@@ -52,6 +58,8 @@ int main() {
       std::printf("%s\n", plan.reason.c_str());
       return 1;
     }
+    // A machine on site should stop here; the simulator cannot come to harm.
+    if (!plan.trustworthy) print("doubt about the plan", plan.warnings);
 
     SceneOptions driven;  // the machine follows plan.trajectory
     driven.path = plan.dig->parameters;
@@ -64,7 +72,11 @@ int main() {
     std::printf("dig %d: planned for %.1f +- %.1f %%, lifted %.0f kg for %.1f kJ\n", dig,
                 density.percent, density.sd_percent, scene.dig.payload_mass,
                 scene.dig.energy.total / 1000.0);
-    if (const auto found = estimate.ground_density()) density = *found;
+    if (estimate.trustworthy) {
+      density = *estimate.ground_density();
+    } else {
+      print("density not used", estimate.warnings);
+    }
     seen = terrain_from_scan(pair.after, planning_extent(machine), 0.05).terrain;
     ground = scene.after;
   }

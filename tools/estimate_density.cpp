@@ -63,7 +63,7 @@ void declare_estimate(Arguments& arguments, Inputs& inputs) {
   declare_units(arguments, inputs.frames);
   declare_method(arguments, inputs.method);
   arguments.flag("no-register", inputs.still,
-                 "do not register the scans: the sensor did not move between them");
+                 "do not look for a motion of the sensor between the scans: there was none");
   arguments.option("cell", inputs.options.cell_size, Quantity::length,
                    "cell size of the height map, voxel size of --method paper (default: from the "
                    "point density, at least 0.05)");
@@ -72,7 +72,7 @@ void declare_estimate(Arguments& arguments, Inputs& inputs) {
                      "--method paper has no error to weigh a second density by"},
                     [&] { declare_payload(arguments, inputs.soil); });
   arguments.option("dug-path", inputs.dug_path,
-                   "the path that was dug: takes a law of digs along it");
+                   "the path that was dug: the law is then one of digs along it");
   arguments.option("dug-start", inputs.dug_start, Quantity::length,
                    "x at which that path enters the ground: measures the soil that fell back into "
                    "the cut; needs scans in the site frame");
@@ -121,8 +121,7 @@ Outcome work_on_scans(const Inputs& inputs) {
       naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
   const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   Outcome outcome = estimate_outcome(counts, options.soil);
-  if (const auto warning = many_buckets(counts, machine)) outcome.warnings.push_back(*warning);
-  for (Warning& each : unlike_law(law, machine.name)) outcome.warnings.push_back(each);
+  add_machine_warnings(counts, law, machine, scans.before.unit, outcome);
   report.add_to(outcome);
   draw_estimate(inputs.plot, inputs.report, counts, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);

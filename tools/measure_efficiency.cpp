@@ -42,6 +42,9 @@ void declare(Arguments& arguments, Inputs& inputs) {
     return inputs.first.dump_before.has_value() || inputs.second.dump_before.has_value();
   };
   arguments.only_if({has_scans, "there are no scans of a dump area"}, [&] {
+    arguments.option(
+        "area", inputs.frames.area,
+        "ignore points of the clouds outside this area (default: where both have points)");
     declare_frames(arguments, inputs.frames);
     declare_units(arguments, inputs.frames);
     arguments.option("cell", inputs.cell_size, Quantity::length,
@@ -49,6 +52,13 @@ void declare(Arguments& arguments, Inputs& inputs) {
                      "0.05)");
   });
 }
+
+/// Of the dump area alone, what the library says of dig and dump area.
+const OptionNames heap_options = {
+    {"; --dig-area and --dump-area take it in, if it belongs to them", ""},
+    {"--dig-area and --dump-area", "--area"},
+    {"BEFORE and AFTER", "--dump-before and --dump-after"},
+    cell_option.back()};
 
 nlohmann::ordered_json to_json(const DigEfficiency& run) {
   nlohmann::ordered_json json = {{"file", run.file}, {"duration_s", run.duration}};
@@ -80,12 +90,15 @@ std::string line(const DigEfficiency& run) {
 DigEfficiency measure(const RunInputs& inputs, const Inputs& all, Outcome& outcome) {
   LoggedDig dig = inputs.dig(all.frames);
   dig.cell_size = all.cell_size;
-  DigEfficiency run = naming_options(cell_option, [&] {
+  DigEfficiency run = naming_options(heap_options, [&] {
     return with_frame_hint(pair_frame_hint, [&] { return measure_efficiency(dig); });
   });
   outcome.json["runs"].push_back(to_json(run));
   outcome.lines.push_back(line(run));
-  outcome.warnings.insert(outcome.warnings.end(), run.warnings.begin(), run.warnings.end());
+  for (const Warning& each : run.warnings) {
+    outcome.warnings.push_back(
+        {each.code, with_option_names(each.message, heap_options), each.ends_trust});
+  }
   outcome.trustworthy = outcome.trustworthy && run.trustworthy;
   return run;
 }

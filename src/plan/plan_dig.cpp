@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -138,11 +139,16 @@ struct Slope {
   double covered = 0.0;
 };
 
-Slope slope_in(const PathLibrary& library, const Task& task) {
+/// @param x_from, x_to  of the ground that counts
+Slope slope_in(const PathLibrary& library, const Task& task, double x_from, double x_to) {
   if (task.level || library.entries.empty()) return {};
-  const double slope = boom_plane_slope(task.ground, task.machine.track_front);
+  const double slope = boom_plane_slope(task.ground, x_from, x_to);
   return {slope, std::clamp(std::isnan(slope) ? 0.0 : slope, library.entries.front().slope,
                             library.entries.back().slope)};
+}
+
+Slope slope_ahead(const PathLibrary& library, const Task& task) {
+  return slope_in(library, task, task.machine.track_front, std::numeric_limits<double>::infinity());
 }
 
 /// A dig, or why the library has none.
@@ -155,15 +161,37 @@ std::variant<PlannedDig, std::string> known_dig(const PathLibrary& library, cons
   }
 }
 
-/// A dig from the best of starts along the reach, and from that of least work.
+/// A dig of the library, and the slope that it is for.
+struct KnownOnSlope {
+  Slope slope;
+  PlannedDig dig;
+};
+
+/// The dig for the slope of the ground over which one like `usual` goes that enters it at x.
+std::optional<KnownOnSlope> known_at(const PathLibrary& library, const Task& task,
+                                     const DigParameters& usual, double x) {
+  const double length = usual.penetration_length + usual.drag_length;
+  const Slope slope = slope_in(library, task, x - length, x);
+  if (std::isnan(slope.ground)) return std::nullopt;
+  auto known = known_dig(library, task, slope);
+  if (auto* dig = std::get_if<PlannedDig>(&known)) return KnownOnSlope{slope, std::move(*dig)};
+  return std::nullopt;
+}
+
+/// A dig from the best of starts along the reach, and from that of least work. Ground may bend: at
+/// each start that of its own slope is tried too.
+/// @param known  for the slope of all ground ahead; becomes the one that the dig is laid out from
 std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayout& layout,
-                                                const DigParameters& parameters, DigPlan& plan) {
+                                                const PathLibrary& library, KnownOnSlope& known,
+                                                DigPlan& plan) {
   const Machine& machine = task.machine;
   const auto simulator =
       make_simulator(task.options.simulator, machine, task.soil, task.density.percent);
   std::variant<PlannedDig, DigFailure> best;
   double rank = 0.0;
-  const auto compare = [&](const std::variant<DigPath, Infeasible>& laid) {
+  const KnownOnSlope ahead = known;
+  const auto compare = [&](const std::variant<DigPath, Infeasible>& laid,
+                           const KnownOnSlope& source) {
     if (const auto* infeasible = std::get_if<Infeasible>(&laid)) return DigFailure(*infeasible);
     const auto& path = std::get<DigPath>(laid);
     const auto outcome = dig_along(machine, *simulator, task.ground, path, task.objective());
@@ -174,13 +202,17 @@ std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayou
       rank = task.objective().rank(dig);
       best = dig;
       plan.path = path;
+      known = source;
     }
     return DigFailure();
   };
-  const DigFailure failure = compare(layout.path(parameters, StartRule::Kind::least_work));
+  const DigParameters& usual = ahead.dig.parameters;
+  const DigFailure failure = compare(layout.path(usual, StartRule::Kind::least_work), ahead);
   const double reach = machine.boom_pin.x() + machine.full_length();
   for (double x = machine.track_front; x < reach; x += start_step) {
-    compare(layout.path_from(parameters, x));
+    compare(layout.path_from(usual, x), ahead);
+    const auto here = known_at(library, task, usual, x);
+    if (here) compare(layout.path_from(here->dig.parameters, x), *here);
   }
   return rank > 0.0 ? best : std::variant<PlannedDig, DigFailure>(failure);
 }
@@ -188,11 +220,12 @@ std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayou
 /// A dig of the library laid out where it is needed, and simulated if its figures do not hold
 /// there.
 std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrary& library,
-                                              const PlannedDig& known, DigPlan& plan) {
+                                              KnownOnSlope& source, DigPlan& plan) {
+  const PlannedDig& known = source.dig;
   const SimulatorKind& kind = task.options.simulator;
   const DigLayout layout(task.machine, task.ground);
   if (!task.level && task.options.search.start_rule.kind == StartRule::Kind::searched) {
-    return best_start(task, layout, known.parameters, plan);
+    return best_start(task, layout, library, source, plan);
   }
   auto path = task.level ? layout.path_near(known.parameters, known.start_x)
                          : layout.path(known.parameters, task.options.search.start_rule);
@@ -233,15 +266,15 @@ bool suits_ground(const Task& task, const Slope& slope, const PlannedDig& expect
 
 void look_up_plan(const Task& task, DigPlan& plan) {
   const auto library = library_of(task);
-  const Slope slope = slope_in(*library, task);
+  const Slope slope = slope_ahead(*library, task);
   const auto known = known_dig(*library, task, slope);
   if (const auto* reason = std::get_if<std::string>(&known)) {
     plan.reason = *reason;
     return;
   }
-  const auto& expected = std::get<PlannedDig>(known);
+  KnownOnSlope source{slope, std::get<PlannedDig>(known)};
   plan.start_rule = task.level ? "of the library" : describe(task.options.search.start_rule);
-  const auto outcome = dig_here(task, *library, expected, plan);
+  const auto outcome = dig_here(task, *library, source, plan);
   if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
     plan.path = {};
     plan.reason =
@@ -249,9 +282,9 @@ void look_up_plan(const Task& task, DigPlan& plan) {
     return;
   }
   plan.dig = std::get<PlannedDig>(outcome);
-  plan.look_up = PlanLookUp{slope.covered, std::nullopt};
-  if (task.level || suits_ground(task, slope, expected, plan)) {
-    plan.look_up->error = look_up_error(*library, task.density.percent, slope.covered);
+  plan.look_up = PlanLookUp{source.slope.covered, std::nullopt};
+  if (task.level || suits_ground(task, source.slope, source.dig, plan)) {
+    plan.look_up->error = look_up_error(*library, task.density.percent, source.slope.covered);
   }
 }
 
@@ -259,7 +292,7 @@ void look_up_plan(const Task& task, DigPlan& plan) {
 std::vector<KnownDig> known_start(const Task& task, DigPlan& plan) {
   try {
     const auto library = library_of(task);
-    const auto known = known_dig(*library, task, slope_in(*library, task));
+    const auto known = known_dig(*library, task, slope_ahead(*library, task));
     if (const auto* dig = std::get_if<PlannedDig>(&known)) return {dig->parameters};
     if (task.options.library) throw Error(ErrorKind::bad_input, std::get<std::string>(known));
   } catch (const Error& error) {

@@ -116,7 +116,7 @@ double swept_height(const DigPath& path, double x) {
   return std::isinf(lowest) ? std::numeric_limits<double>::quiet_NaN() : lowest;
 }
 
-double boom_plane_slope(const Terrain& terrain, double from_x) {
+double boom_plane_slope(const Terrain& terrain, double from_x, double to_x) {
   require(std::isfinite(from_x), "slope of the ground: from x", from_x, "finite");
   const GroundProfile ground = boom_plane_profile(terrain);
   const HeightMap& bank = terrain.bank;
@@ -124,7 +124,7 @@ double boom_plane_slope(const Terrain& terrain, double from_x) {
   for (Index col = 0; col < bank.z.cols(); ++col) {
     const double x = bank.x(col) - from_x;
     const double z = ground(bank.x(col));
-    if (x < 0.0 || std::isnan(z)) continue;
+    if (x < 0.0 || bank.x(col) > to_x || std::isnan(z)) continue;
     count += 1.0;
     x_sum += x;
     z_sum += z;

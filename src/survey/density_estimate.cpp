@@ -34,6 +34,7 @@ struct OutlinedScans {
   double cell_size = 0.0;
 
   std::string names() const { return dig.names() + (dump ? ", " + dump->names() : ""); }
+  double unit() const { return dig.scans.after.unit; }
   std::uint64_t machine_points() const {
     return dig.machine_points() + (dump ? dump->machine_points() : 0);
   }
@@ -126,7 +127,7 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
   for (const Warning& warning : change.warnings) {
     if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
   }
-  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names()); });
+  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
   state_water(surfaces.pairs(), change);
   return volumes;
 }
@@ -150,7 +151,7 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
                                   const SurfaceVolumes& volumes) {
   const VolumeChange& change = volumes.change;
   std::vector<Warning> doubts = volumes.of_points;
-  append(check_volumes(change), doubts);
+  append(check_volumes(change, seen.unit()), doubts);
   append(check_machine(seen.machine_points(), change), doubts);
   const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
                          const AreaChange& area) {
@@ -209,6 +210,7 @@ void judge_scans(DensityEstimate& estimate) {
     if (is_leant_on) warning.ends_trust = true;
     if (warning.ends_trust) estimate.trustworthy = false;
   }
+  estimate.warnings = causes_of(std::move(estimate.warnings));
 }
 
 void keep_registration(const Surfaces& surfaces, DensityEstimate& estimate) {

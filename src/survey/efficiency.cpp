@@ -226,7 +226,7 @@ Payload heap_between(const ScanPair& scans, const LoggedDig& dig, DigEfficiency&
     }
     add(doubts);
     add(check_points({nullptr, &surfaces}, change));
-    add(check_volumes(change));
+    add(check_volumes(change, scans.after.unit));
     add(change.warnings);
     return {Lifted::volume, change.dumped};
   } catch (const TooFewCells& few) {
@@ -302,6 +302,7 @@ DigEfficiency measure_efficiency(const LoggedDig& dig) {
   result.payload =
       scans ? heap_between(*scans, dig, result) : stated(dig, std::get<Payload>(dig.lifted));
   if (auto warning = implausible(result)) result.warnings.push_back(std::move(*warning));
+  result.warnings = causes_of(std::move(result.warnings));
   result.trustworthy = std::none_of(result.warnings.begin(), result.warnings.end(), casts_doubt);
   return result;
 }

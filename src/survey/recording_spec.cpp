@@ -50,10 +50,13 @@ class SpecParser {
   }
   /// A recording's name with something behind it that is no topic.
   std::optional<RecordingQuery> without_topic() const {
-    const std::size_t end = text_.find_last_of(":@+");
-    if (end == text_.npos || end == 0 || !is_recording(text_.substr(0, end))) return std::nullopt;
-    refuse(excavplan::quoted(text_.substr(end)) + " behind a recording",
-           "a topic that begins with /");
+    for (auto end = text_.find_first_of(":@+", 1); end != text_.npos;
+         end = text_.find_first_of(":@+", end + 1)) {
+      if (!is_recording(text_.substr(0, end))) continue;
+      refuse(excavplan::quoted(text_.substr(end)) + " behind a recording",
+             "a topic that begins with /, which inspect-cloud " + text_.substr(0, end) + " lists");
+    }
+    return std::nullopt;
   }
   static std::string take_until(std::string_view& rest, std::string_view ends) {
     const std::string_view taken = rest.substr(0, rest.find_first_of(ends));

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <set>
+#include <string>
 
 #include <Eigen/Cholesky>
 
@@ -12,6 +15,7 @@
 #include "base/text.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "survey/cloud_units.hpp"
 #include "survey/points_by_cell.hpp"
 
 namespace excavplan {
@@ -40,16 +44,10 @@ double quantile(std::vector<double>& values, double share) {
 // ---- Units --------------------------------------------------------------------------------------
 
 std::optional<Warning> too_small(const OutlinedPair& pair) {
-  constexpr double least = 0.3;  // ours: narrower than any bucket [m]
-  for (const ScanOutline* seen : {&pair.before, &pair.after}) {
-    const Rectangle& r = *seen->extent;
-    if (std::max(r.x_max - r.x_min, r.y_max - r.y_min) > least) continue;
-    return Warning{"units",
-                   "a scan shows no more than " + size_of(r) +
-                       " m of ground: is --unit that of its coordinates?",
-                   true};
-  }
-  return std::nullopt;
+  constexpr double dense =
+      std::numeric_limits<double>::infinity();  // its volume tells of wide ones
+  const auto before = doubt_of_extent(*pair.before.extent, dense, pair.scans.before.unit);
+  return before ? before : doubt_of_extent(*pair.after.extent, dense, pair.scans.after.unit);
 }
 
 /// Twice as large and more in both directions, and by the same factor to a tenth.
@@ -84,36 +82,6 @@ std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
                  name_of(is_after ? pair.scans.after : pair.scans.before) +
                      ": all heights are multiples of " + readable(step) +
                      " m: volumes of a dig need finer ones; write the coordinates with more digits",
-                 true};
-}
-
-/// The unit that makes a bucket's volume of it; none for a volume that one digs.
-std::optional<Warning> no_dig_of_metres(double hole, const std::string& what) {
-  constexpr double most = 1000.0;  // [m^3]; ours: five times the largest dragline's bucket, 168 m^3
-  constexpr double usual = 1.0;    // [m^3], ours
-  constexpr double least = 0.001;  // [m^3], ours: a tenth of the smallest excavator's bucket
-  if (hole > 0.0 && hole < least) {
-    return Warning{"units",
-                   what + " of " + readable(hole) +
-                       " m^3 is none of a bucket: check --unit, and the depth unit of a camera",
-                   true};
-  }
-  if (!(hole > most)) return std::nullopt;
-  struct Unit {
-    const char* word;
-    double length;
-  };
-  Unit likely = {"mm", 1e-3};
-  for (const Unit unit : {Unit{"cm", 1e-2}, Unit{"in", 0.0254}}) {
-    const auto miss = [&](Unit u) {
-      return std::abs(std::log(hole * std::pow(u.length, 3) / usual));
-    };
-    if (miss(unit) < miss(likely)) likely = unit;
-  }
-  return Warning{"units",
-                 what + " of " + readable(hole) + " m^3 is none of a bucket; in " + likely.word +
-                     " it would be " + readable(hole * std::pow(likely.length, 3)) +
-                     " m^3: give the unit of the clouds by --unit, probably --unit " + likely.word,
                  true};
 }
 
@@ -325,6 +293,46 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
 }
 
 }  // namespace
+
+std::vector<Warning> causes_of(std::vector<Warning> warnings) {
+  struct Cause {
+    std::string code;
+    std::set<std::string> effects;
+  };
+  // What is judged by lengths, and by heights above a plane.
+  static const std::vector<Cause> causes = {
+      {"units",
+       {"blocks",
+        "coarse_heights",
+        "curved_ground",
+        "dug_path_doubtful",
+        "flat_water",
+        "floor_cut",
+        "grass",
+        "hole_in_shadow",
+        "implausible_energy",
+        "implausible_fuel",
+        "machine_pose",
+        "object_on_soil",
+        "object_taken_out",
+        "payload_disagrees",
+        "registration_beyond_prior",
+        "scans_do_not_fit",
+        "sensor_place_doubtful",
+        "sensor_place_inferred",
+        "systematic_errors",
+        "zone_partly_unseen"}},
+      {"frame", {"object_taken_out", "scans_do_not_fit", "zone_partly_unseen"}}};
+  for (const Cause& cause : causes) {
+    const bool is_there = std::any_of(warnings.begin(), warnings.end(), [&](const Warning& w) {
+      return w.code == cause.code && w.ends_trust;
+    });
+    if (!is_there) continue;
+    const auto is_effect = [&](const Warning& w) { return cause.effects.count(w.code) > 0; };
+    warnings.erase(std::remove_if(warnings.begin(), warnings.end(), is_effect), warnings.end());
+  }
+  return warnings;
+}
 
 std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   std::vector<Warning> found = pair.scans.before.doubts;
@@ -619,19 +627,19 @@ std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChan
        true}};
 }
 
-std::vector<Warning> check_volumes(const VolumeChange& change) {
+std::vector<Warning> check_volumes(const VolumeChange& change, double unit) {
   std::vector<Warning> found;
   const bool is_dig = change.excavated.value > 0.0;
-  auto units = is_dig ? no_dig_of_metres(change.excavated.value, "a hole")
-                      : no_dig_of_metres(change.dumped.value, "a heap");
+  auto units = is_dig ? doubt_of_volume(change.excavated.value, "a hole", unit)
+                      : doubt_of_volume(change.dumped.value, "a heap", unit);
   if (units) found.push_back(std::move(*units));
   if (auto warning = exchanged(change)) found.push_back(std::move(*warning));
   return found;
 }
 
-void refuse_swapped(const VolumeChange& change, const std::string& names) {
+void refuse_swapped(const VolumeChange& change, const std::string& names, double unit) {
   const auto refuse = [&](const std::string& message) {
-    const auto units = no_dig_of_metres(change.excavated.value, "a hole");
+    const auto units = doubt_of_volume(change.excavated.value, "a hole", unit);
     throw Error(ErrorKind::bad_file,
                 names + ": " + message + (units ? "; " + units->message : std::string()));
   };

@@ -47,11 +47,17 @@ std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChan
 
 /// Code `units`: a hole that no bucket digs. Code `looks_swapped`: a heap steeper than loose soil
 /// stands and a gentle hole, or a heap steeper than the hole and a loss beside it. Both end trust.
-std::vector<Warning> check_volumes(const VolumeChange& change);
+/// @param unit  of the coordinates in the scans [m]
+std::vector<Warning> check_volumes(const VolumeChange& change, double unit);
 
 /// @throws Error (bad_file) naming the scans if they look swapped, or those of the dump area do,
 ///         alone or with those of the dig area
-void refuse_swapped(const VolumeChange& change, const std::string& names);
+/// @param unit  as of check_volumes()
+void refuse_swapped(const VolumeChange& change, const std::string& names, double unit);
+
+/// Without the warnings that another explains, which go when that is mended: where the coordinates
+/// are in another unit all limits of lengths fail, where z is not up those of heights.
+std::vector<Warning> causes_of(std::vector<Warning> warnings);
 
 /// Runs `work`; an error in it is told together with the doubts about the scans, which explain it.
 template <typename Work>

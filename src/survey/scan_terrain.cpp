@@ -9,6 +9,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "survey/cloud_units.hpp"
 #include "survey/scan_reading.hpp"
 
 namespace excavplan {
@@ -39,13 +40,23 @@ std::string text(const Rectangle& r) {
          " .. " + readable(r.y_max) + " m";
 }
 
+void require_width(const Scan& scan, const Rectangle& seen) {
+  constexpr double dense = std::numeric_limits<double>::infinity();
+  const auto narrow = doubt_of_extent(seen, dense, scan.unit);
+  if (narrow) throw FrameError(name_of(scan) + ": " + narrow->message);
+}
+
 void require_points(const Scan& scan, std::size_t points, const Rectangle& extent) {
   if (points >= fewest_points) return;
+  const ScanOutline all = outline(scan);
+  const auto unit =
+      all.extent ? doubt_of_extent(*all.extent, all.density, scan.unit) : std::nullopt;
   throw FrameError(
       name_of(scan) + ": " +
       (points == 0 ? "no point lies" : "only " + std::to_string(points) + " points lie") +
       " within the machine's reach, " + text(extent) +
-      " in the site frame (origin on the swing axis at ground level, x forward)");
+      " in the site frame (origin on the swing axis at ground level, x forward)" +
+      (unit ? "; " + unit->message : ""));
 }
 
 }  // namespace
@@ -56,6 +67,7 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
   const Scan near = cropped(scan, extent);
   const CloudSummary seen = is_empty(*near.area) ? CloudSummary{} : summarise(near);
   require_points(scan, seen.finite_points, extent);
+  require_width(scan, *seen.extent);
   const double density = seen.density;
   RasterOptions raster;
   raster.cell_size = std::max(cell_size, std::sqrt(2.0 / density));

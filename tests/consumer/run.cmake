@@ -117,6 +117,12 @@ endif()
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 check_program(${WORK}/build/controller)
 
+# ---- The examples are a project of their own.
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/examples
+  -D CMAKE_PREFIX_PATH=${WORK}/moved -D CMAKE_CXX_COMPILER=${CXX} "-DCMAKE_CXX_FLAGS=${FLAGS}")
+run(${CMAKE_COMMAND} --build ${WORK}/examples --target 04_own_simulator)
+alone(${WORK}/moved ${WORK}/examples/04_own_simulator)
+
 find_program(pkg_config NAMES pkg-config pkgconf)
 if(pkg_config)
   run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${WORK}/moved/${LIBDIR}/pkgconfig

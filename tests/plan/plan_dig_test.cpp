@@ -195,6 +195,27 @@ TEST_F(PlanDig, DigsTheLibrarysPathOnGivenGround) {
   EXPECT_GE(goal.rank(*anywhere.dig), goal.rank(*found.dig));
 }
 
+TEST_F(PlanDig, LooksUpTheSlopeWhereItDigsOnGroundThatBends) {
+  struct Bend {
+    double x;  // where level ground begins to rise [m]
+    double degrees;
+    double density;
+  };
+  for (const Bend& bend : {Bend{4.0, 12.0, 70.0}, Bend{4.0, 20.0, 80.0}, Bend{4.5, 14.0, 80.0},
+                           Bend{5.0, 20.0, 80.0}}) {
+    SCOPED_TRACE(std::to_string(bend.x) + " m, " + std::to_string(bend.degrees));
+    Terrain ground = level_planning_ground(machine_);
+    const double rise = std::tan(bend.degrees * std::acos(-1.0) / 180.0);
+    for (Eigen::Index col = 0; col < ground.bank.z.cols(); ++col) {
+      ground.bank.z.col(col) += rise * std::max(0.0, ground.bank.x(col) - bend.x);
+    }
+    const DigPlan found = plan_dig(machine_, loam_, bend.density, ground);
+    ASSERT_TRUE(found.dig) << found.reason;
+    const double mean = boom_plane_slope(ground, machine_.track_front);
+    EXPECT_GT(std::abs(found.look_up->slope - mean), 0.01);
+  }
+}
+
 TEST_F(PlanDig, DistrustsGroundThatTheLibraryDoesNotCover) {
   PathLibrary narrow = shipped_library(machine_, loam_);
   const auto steep = [](const PathLibraryEntry& entry) { return std::abs(entry.slope) > 0.06; };

@@ -170,6 +170,8 @@ TEST_F(Planner, SlopeOfTheGroundIsTheLineThroughWhatIsKnown) {
   ground.bank.z.rightCols(20).setConstant(std::nan(""));
   ground.bank.z.leftCols(10) += 1.0;  // under the machine
   EXPECT_NEAR(boom_plane_slope(ground, machine_.track_front), std::atan(0.2), 1e-12);
+  const Terrain bend = sloped_planning_ground(machine_, 0.2, 0.05);
+  EXPECT_NEAR(boom_plane_slope(bend, 0.0, machine_.track_front - 0.1), 0.0, 1e-12);
   ground.bank.z.setConstant(std::nan(""));
   EXPECT_TRUE(std::isnan(boom_plane_slope(ground, machine_.track_front)));
 }

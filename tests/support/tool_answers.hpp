@@ -87,6 +87,20 @@ inline Words quickstart(const TemporaryFolder&) {
   return {shipped("quickstart/before.pcd"), shipped("quickstart/after.pcd")};
 }
 
+/// A copy of a scan with its coordinates in mm.
+inline std::string in_millimetres(const TemporaryFolder& folder, const std::string& scan) {
+  const std::string name = folder.file(fs::path(scan).stem().string());
+  answer("inspect-cloud", {scan, "--out", name + ".xyz"});
+  std::ifstream metres(name + ".xyz");
+  std::ofstream millimetres(name + "-mm.xyz");
+  std::string header;
+  std::getline(metres, header);
+  for (double x, y, z; metres >> x >> y >> z;) {
+    millimetres << 1e3 * x << ' ' << 1e3 * y << ' ' << 1e3 * z << '\n';
+  }
+  return name + "-mm.xyz";
+}
+
 /// Two scans of the whole scene and what really happened.
 struct ScanPair {
   std::string before;

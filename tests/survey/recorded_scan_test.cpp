@@ -744,10 +744,12 @@ TEST(RecordingSpec, ErrorsShowTheForm) {
     EXPECT_NE(error(text).find(form), std::string::npos) << text;
   }
   const std::string file = recording("scene.db3");
-  EXPECT_EQ(error(file + "@2s"), "'" + file +
-                                     "@2s': found '@2s' behind a recording, expected a topic "
-                                     "that begins with /" +
-                                     form);
+  for (const char* const rest : {"@2s", "@2s+1s"}) {
+    EXPECT_EQ(error(file + rest), "'" + file + rest + "': found '" + rest +
+                                      "' behind a recording, expected a topic that begins with /, "
+                                      "which inspect-cloud " +
+                                      file + " lists" + form);
+  }
   EXPECT_NE(error(file + ":lidar"), "no error");
 }
 

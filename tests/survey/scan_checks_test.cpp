@@ -112,7 +112,7 @@ VolumeChange pit_and_heap(double pit_angle, double heap_angle) {
 
 TEST(ScanChecks, ASteepHeapIsOneOfExchangedScansOnlyBesideAGentleHole) {
   const auto looks_swapped = [](double pit_angle, double heap_angle) {
-    const std::vector<Warning> doubts = check_volumes(pit_and_heap(pit_angle, heap_angle));
+    const std::vector<Warning> doubts = check_volumes(pit_and_heap(pit_angle, heap_angle), 1.0);
     return std::any_of(doubts.begin(), doubts.end(),
                        [](const Warning& warning) { return warning.code == "looks_swapped"; });
   };
@@ -151,12 +151,41 @@ TEST(ScanChecks, AHoleNoBucketDigsNamesTheUnit) {
     const Warning* units = answer.warning("units");
     ASSERT_NE(units, nullptr) << word;
     EXPECT_TRUE(contains(units->message, std::string("--unit ") + word)) << units->message;
+    for (const Warning& warning : answer.estimate->warnings) {
+      EXPECT_TRUE(warning.code == "units" || !warning.ends_trust) << warning.message;
+      EXPECT_NE(warning.code, "sensor_place_inferred") << word;
+    }
     scans.before.unit = scans.after.unit = 1.0 / factor;
     const Answer mended = answer_to(scans);
     EXPECT_TRUE(mended.trusted());
     EXPECT_EQ(mended.warning("units"), nullptr);
     EXPECT_FALSE(is_trusted_and_wrong(mended, survey.dig));
   }
+}
+
+TEST(ScanChecks, TheLikelyUnitIsFoundFromAWrongOneToo) {
+  Survey survey(2, true);
+  survey.move_all(Affine(Eigen::Scaling(1000.0)));
+  DigScans scans = survey.scans();
+  scans.before.unit = scans.after.unit = 0.3048;
+  const Answer answer = answer_to(scans);
+  ASSERT_NE(answer.warning("units"), nullptr);
+  EXPECT_TRUE(contains(answer.warning("units")->message, "--unit mm"));
+}
+
+TEST(ScanChecks, ACauseStandsForWhatFollowsFromIt) {
+  const auto left = [](bool ends_trust) {
+    std::string codes;
+    for (const Warning& warning : causes_of({{"units", "", ends_trust},
+                                             {"scans_do_not_fit", "", true},
+                                             {"implausible_fuel", "", false},
+                                             {"looks_swapped", "", true}})) {
+      codes += warning.code + " ";
+    }
+    return codes;
+  };
+  EXPECT_EQ(left(true), "units looks_swapped ");
+  EXPECT_EQ(left(false), "units scans_do_not_fit implausible_fuel looks_swapped ");
 }
 
 TEST(ScanChecks, OneScanInOtherUnitsIsNamed) {

@@ -51,7 +51,7 @@ TEST(ScanReading, NoBucketDigsAThousandCubicMetres) {
     HeightMap after = before;
     after.z.block(40, 40, 40, 50).setConstant(-depth);
     after.z.block(40, 120, 40, 50).setConstant(1.2 * depth);
-    return names_units(check_volumes(measure_change(before, after)));
+    return names_units(check_volumes(measure_change(before, after), 1.0));
   };
   EXPECT_FALSE(in_doubt(0.4)) << "a dragline's 168 m^3 and more";
   EXPECT_TRUE(in_doubt(4.0));

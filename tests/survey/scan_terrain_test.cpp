@@ -127,6 +127,21 @@ TEST(ScanTerrain, KnowsNothingOutsideTheAreaOfTheScan) {
   EXPECT_THROW(terrain_from_scan(scan, extent, 0.05), FrameError);
 }
 
+TEST(ScanTerrain, ScanInAnotherUnitIsRefusedWithItsName) {
+  Scan scan = slope(2000.0);
+  Cloud in_mm = *scan.clouds.front();
+  for (Eigen::Vector3d& point : in_mm.points) point *= 1000.0;
+  const auto error = [&] {
+    return test::error_of([&] { terrain_from_scan(scan, extent, 0.05); }, ErrorKind::bad_file);
+  };
+  scan.unit = 0.001;
+  EXPECT_NE(error().find("with coordinates in m it"), std::string::npos) << error();
+  scan.clouds = {std::make_shared<const Cloud>(in_mm)};
+  EXPECT_NEAR(height_at(terrain_from_scan(scan, extent, 0.05).terrain.bank, 4.0, 0.3), 0.4, 0.002);
+  scan.unit = 1.0;
+  EXPECT_NE(error().find("with coordinates in mm it"), std::string::npos) << error();
+}
+
 TEST(ScanTerrain, ScanElsewhereIsRefused) {
   Scan scan = slope(2000.0);
   scan.site_from_scan(0, 3) = 50.0;

@@ -181,6 +181,38 @@ TEST_F(MeasureEfficiency, ScansAreBroughtIntoTheSiteFrame) {
   EXPECT_NEAR(measured(both).at("runs").at(0).at("volume_m3").get<double>(), 0.3016, 0.002);
 }
 
+TEST_F(MeasureEfficiency, TextsNameItsOwnOptions) {
+  const std::string help = run({"--help"}).out;
+  const std::string file = log("a.csv", "fuel_flow_ml_per_s", "0,2\n10,2\n");
+  const auto heap_and_slump = [](double height) {
+    std::string rows;
+    for (int i = 0; i < 200; ++i) {
+      for (int j = 0; j < 200; ++j) {
+        const bool heap = std::hypot(i - 60, j - 100) < 30.0;
+        const bool slump = std::hypot(i - 160, j - 100) < 25.0;
+        const double z = (heap ? height : 0.0) - (slump ? 0.5 * height : 0.0);
+        rows += std::to_string(4.0 + 0.02 * i) + " " + std::to_string(-2.0 + 0.02 * j) + " " +
+                std::to_string(z) + "\n";
+      }
+    }
+    return rows;
+  };
+  const std::string before = folder.write("before.xyz", heap_and_slump(0.0));
+  const std::string after = folder.write("after.xyz", heap_and_slump(0.4));
+  for (const auto& [area, code] :
+       {std::pair("3,-3,9,3", "other_change"), std::pair("4.8,-3,9,3", "zone_at_border")}) {
+    const json result =
+        measured({file, "--dump-before", before, "--dump-after", after, "--area", area});
+    const Words found = codes(result);
+    EXPECT_NE(std::count(found.begin(), found.end(), code), 0) << code;
+    const std::string text = result.at("warnings").dump();
+    for (auto at = text.find("--"); at != text.npos; at = text.find("--", at + 2)) {
+      const auto end = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
+      EXPECT_NE(help.find("  " + text.substr(at, end - at) + " "), help.npos) << text;
+    }
+  }
+}
+
 // ---- What is given ----------------------------------------------------------------------------
 
 TEST_F(MeasureEfficiency, KeysThatDoNotApplyAreNull) {

@@ -143,6 +143,16 @@ TEST_F(Tools, ALawOfAnotherMachineIsSaidAndTrusted) {
   EXPECT_EQ(found["trustworthy"], true);
 }
 
+TEST_F(Tools, OneWarningNamesTheUnitOfAllClouds) {
+  Words scans;
+  for (const std::string& scan : quickstart(folder)) scans.push_back(in_millimetres(folder, scan));
+  EXPECT_EQ(warning_codes(answer("estimate-density", scans)), Words({"units", "soil_assumed"}));
+  const json in_cm = answer("estimate-density", scans + Words{"--unit", "cm"});
+  EXPECT_TRUE(contains(in_cm["warnings"].dump(), "in mm: --unit mm")) << in_cm["warnings"];
+  EXPECT_EQ(warning_codes(answer("estimate-density", scans + Words{"--unit", "mm"})),
+            Words{"soil_assumed"});
+}
+
 TEST_F(Tools, APathThatWasNotDugEndsTrust) {
   const Words words = quickstart(folder) + Words{"--soil", "loam", "--dug-start", "6.05"};
   const json dug =
@@ -376,6 +386,9 @@ TEST_F(Tools, BothMethodsAreShownWhenAsked) {
 
 TEST_F(Tools, ASurveyIsPlannedWithoutScans) {
   const json near = answer("estimate-density", {"--plan-survey", "height=2,offset=1"});
+  const std::string poor =
+      run_program("estimate-density", {"--plan-survey", "sensor=lidar,height=2.5,offset=3"}).out;
+  EXPECT_TRUE(contains(poor, "frames   is not enough alone")) << poor;
   const json far = answer("estimate-density", {"--plan-survey", "height=4,offset=2,target=1"});
   EXPECT_LT(number(near, "/density_sd_percent"), 0.4 * number(far, "/density_sd_percent"));
   EXPECT_NEAR(number(near, "/range_m"), std::sqrt(5.0), 0.05);

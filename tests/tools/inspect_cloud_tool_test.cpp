@@ -42,6 +42,19 @@ TEST_F(Tools, CloudsKeepTheirPointsInEveryFormat) {
   }
 }
 
+TEST_F(Tools, InspectCloudTakesTheUnitAndDoubtsAWrongOne) {
+  const std::string metres = shipped("quickstart/before.pcd");
+  const std::string scan = in_millimetres(folder, metres);
+  const json wrong = answer("inspect-cloud", {scan});
+  EXPECT_EQ(warning_codes(wrong), Words{"units"});
+  EXPECT_TRUE(contains(wrong["warnings"].dump(), "coordinates in mm")) << wrong["warnings"];
+  EXPECT_EQ(warning_codes(answer("inspect-cloud", {metres, "--unit", "mm"})), Words{"units"});
+  const json right = answer("inspect-cloud", {scan, "--unit", "mm"});
+  EXPECT_EQ(warning_codes(right), Words{});
+  const json original = answer("inspect-cloud", {metres});
+  EXPECT_NEAR(number(right, "/max_m/1"), number(original, "/max_m/1"), 1e-4);
+}
+
 TEST_F(Tools, InspectCloudReadsLas) {
   LasFile las;
   las.offset = {500000.0, 5800000.0, 0.0};

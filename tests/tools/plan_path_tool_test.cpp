@@ -98,6 +98,23 @@ TEST_F(Tools, LibraryThatWasBuiltIsUsed) {
   EXPECT_EQ(plan.at("energy_kj"), library["entries"][1].at("energy_kj"));
 }
 
+TEST_F(Tools, TheTerrainMayBeInAnotherUnit) {
+  const std::string metres = shipped("quickstart/before.pcd");
+  const std::string scan = in_millimetres(folder, metres);
+  for (const char* tool : {"plan-path", "simulate-dig"}) {
+    const Words words = {"--density", "40", "--terrain"};
+    const double mass =
+        number(answer(tool, words + Words{scan, "--unit", "mm"}), "/payload_mass_kg");
+    EXPECT_NEAR(mass, number(answer(tool, words + Words{metres}), "/payload_mass_kg"), 0.5) << tool;
+    const ProgramResult wrong = run_program(tool, words + Words{scan});
+    EXPECT_EQ(wrong.code, 3);
+    EXPECT_TRUE(contains(wrong.err, "coordinates in mm")) << wrong.err;
+    const ProgramResult alone = run_program(tool, {"--density", "40", "--unit", "mm"});
+    EXPECT_EQ(alone.code, 2);
+    EXPECT_TRUE(contains(alone.err, "--unit needs --terrain")) << alone.err;
+  }
+}
+
 TEST_F(Tools, LooksUpTheSlopeOfTheScannedGround) {
   const std::string library = folder.file("library.json");
   answer("build-path-library",

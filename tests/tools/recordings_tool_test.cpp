@@ -45,6 +45,16 @@ TEST_F(Recordings, InspectCloudListsWhatIsThere) {
   }
 }
 
+TEST_F(Recordings, AScanOfOneIsNoTerrainUntilItIsWritten) {
+  for (const char* const rest : {":/merged/points@0s+1s", ":/merged/points", "@0s+1s"}) {
+    for (const char* const tool : {"plan-path", "simulate-dig"}) {
+      refused(
+          3, rest + std::string(": --terrain takes a cloud, no scan of a recording; inspect-cloud"),
+          tool, {"--density", "40", "--terrain", dig + rest});
+    }
+  }
+}
+
 TEST_F(Recordings, AScanIsWrittenInTheFrameAskedFor) {
   const std::string points = recording("scene.db3") + ":/lidar/points@1s+2s";
   const std::string out = folder.file("scan.pcd");

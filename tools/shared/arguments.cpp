@@ -252,7 +252,8 @@ void Arguments::threads(std::uint64_t& count, const std::string& note) {
 void Arguments::simulator(std::string& word) {
   std::vector<std::string> words;
   for (const SimulatorKind& kind : simulator_kinds()) words.push_back(kind.word);
-  choice("simulator", word, words, "simulator; section: faster, two-dimensional in the boom plane");
+  choice("simulator", word, words,
+         "simulator; section: faster, only in the vertical plane of the boom");
 }
 
 void Arguments::machine(std::string& name) {

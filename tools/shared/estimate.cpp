@@ -12,6 +12,7 @@
 #include "shared/quantity.hpp"
 #include "shared/report.hpp"
 #include "shared/results.hpp"
+#include "survey/cloud_units.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -255,6 +256,25 @@ std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
   return lines;
 }
 
+std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machine& machine,
+                                    double unit) {
+  constexpr double most = 10.0;  // ours
+  const double bucket = heaped_capacity(machine);
+  const double buckets = estimate.change.excavated.value / bucket;
+  const auto names_units = [](const Warning& warning) { return warning.code == "units"; };
+  const std::vector<Warning>& known = estimate.warnings;
+  if (!(buckets > most) || std::any_of(known.begin(), known.end(), names_units))
+    return std::nullopt;
+  const std::string likely = likely_unit(estimate.change.excavated.value, unit, bucket).word;
+  return Warning{"many_buckets",
+                 "the hole of " + readable(estimate.change.excavated.value) + " m3 is " +
+                     readable(buckets, 2) + " heaped buckets of " + readable(bucket, 2) +
+                     " m3 of the machine " + machine.name +
+                     ": right for a pit of many digs or another --machine; if it was one dig, the "
+                     "scans may be in " +
+                     likely + ": --unit " + likely};
+}
+
 }  // namespace
 
 Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil) {
@@ -270,17 +290,11 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
   return outcome;
 }
 
-std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machine& machine) {
-  constexpr double most = 10.0;  // ours
-  const double bucket = heaped_capacity(machine);
-  const double buckets = estimate.change.excavated.value / bucket;
-  if (!(buckets > most)) return std::nullopt;
-  return Warning{"many_buckets",
-                 "the hole of " + readable(estimate.change.excavated.value) + " m3 is " +
-                     readable(buckets, 2) + " heaped buckets of " + readable(bucket, 2) +
-                     " m3 of the machine " + machine.name +
-                     ": right for a pit of many digs or another --machine; if it was one dig, the "
-                     "scans may be in feet: --unit ft"};
+void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
+                          const Machine& machine, double unit, Outcome& outcome) {
+  for (Warning& each : unlike_law(law, machine.name)) outcome.warnings.push_back(each);
+  const auto many = many_buckets(estimate, machine, unit);
+  if (many) outcome.warnings.push_back(*many);
 }
 
 void draw_estimate(const std::optional<std::string>& plot, const std::optional<std::string>& report,

@@ -21,10 +21,13 @@ inline const OptionNames estimate_options = {
 Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);
 
 /// Code many_buckets, for a hole of more than ten heaped buckets of the machine: one dig fills one.
-/// The coordinates may be in feet, which no other check can tell from metres: 35 times the volume.
-/// It does not end trust. A pit of many digs is measured as well as that of one, and bulking factor
-/// and density have no unit.
-std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machine& machine);
+/// The coordinates may be in another unit; no other check can tell feet from metres, 35 times the
+/// volume. None where they are known to be (code units). It does not end trust. A pit of many digs
+/// is measured as well as that of one, and bulking factor and density have no unit.
+/// @param unit  that was taken for that of the coordinates [m]
+/// And those of unlike_law().
+void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
+                          const Machine& machine, double unit, Outcome& outcome);
 
 /// Writes the figure of an estimate, SVG, and adds the page about it to the outcome, each if there
 /// is a file for it.

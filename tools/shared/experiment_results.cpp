@@ -16,20 +16,27 @@
 namespace excavplan::tools {
 namespace {
 
+/// What digs of an experiment are dug in once more.
+struct Rehearsal {
+  const Machine& machine;
+  const SoilSimulator& simulator;
+  const Terrain& ground;
+};
+
 /// Adds a dig of the experiment and the ground that it leaves.
-void add_dig(const std::string& name, const Machine& machine, const SoilSimulator& simulator,
-             const PlannedDig& planned, const Terrain& ground, ReportScene& scene) {
-  const auto laid = make_dig_path(machine, planned.parameters, planned.start_x,
-                                  boom_plane_profile(ground), rules_for_planned_path());
+void add_dig(const std::string& name, const Rehearsal& in, const PlannedDig& planned,
+             ReportScene& scene) {
+  const auto laid = make_dig_path(in.machine, planned.parameters, planned.start_x,
+                                  boom_plane_profile(in.ground), rules_for_planned_path());
   const auto* path = std::get_if<DigPath>(&laid);
   if (path == nullptr)
     throw Error(ErrorKind::bad_input, name + ": " + describe(std::get<Infeasible>(laid)));
   DigOptions options;
   options.history = true;
-  const DigResult dig = checked_dig(simulator, machine, ground, *path, options);
+  const DigResult dig = checked_dig(in.simulator, in.machine, in.ground, *path, options);
   std::vector<GroundState>& states = scene.areas.front().states;
-  states.push_back({"after", dig.after(ground).surface()});
-  scene.digs.push_back(played_dig(name, machine, *path, dig));
+  states.push_back({"after", dig.after(in.ground).surface()});
+  scene.digs.push_back(played_dig(name, in.machine, *path, dig));
   scene.digs.back().state = states.size() - 1;
 }
 
@@ -109,9 +116,9 @@ Report experiment_report(const Machine& machine, const SoilKind& soil, const Pla
     if (!result.held_because.empty()) standing.body.reset();
     const auto simulator =
         make_simulator(options.simulator, standing, soil, result.density_percent);
-    add_dig(condition + ", planned path", standing, *simulator, result.planned, ground,
-            report.scene);
-    add_dig(condition + ", fixed path", standing, *simulator, result.fixed, ground, report.scene);
+    const Rehearsal in = {standing, *simulator, ground};
+    add_dig(condition + ", planned path", in, result.planned, report.scene);
+    add_dig(condition + ", fixed path", in, result.fixed, report.scene);
   }
   for (std::size_t i = 0; i < experiments.size() && i < 6; ++i) {  // ours
     report.headline.push_back("conditions." + std::to_string(i) + ".gain_percent");

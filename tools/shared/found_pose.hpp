@@ -29,7 +29,8 @@ FoundPose found_pose(const LevelPose& level);
 /// @throws Error (bad_input) or (bad_file)
 Eigen::Matrix4d frame_named(const std::string& what, const std::string& text);
 inline constexpr const char* frame_forms =
-    "camera, lidar, X,Y,Z,QX,QY,QZ,QW or a file (matrix; TF transform or pose as JSON or YAML)";
+    "camera (x right, y down, z forward) or lidar (x forward, y left, z up) at the origin of the "
+    "site, X,Y,Z,QX,QY,QZ,QW, or a file (4 x 4 matrix; TF transform or pose as JSON or YAML)";
 
 /// How one scan is brought into the site frame.
 struct PoseInputs {

@@ -190,7 +190,8 @@ std::vector<Warning> source_warnings(const DigPlan& plan, const std::string& fil
 }  // namespace
 
 void declare_density(Arguments& arguments, DensityInput& input) {
-  arguments.option("density", input.percent, Quantity::percent, "relative density of the ground");
+  arguments.option("density", input.percent, Quantity::percent,
+                   "relative density of the ground; this or --density-from is needed");
   arguments.option(
       "density-sd", input.sd, Quantity::percent,
       "standard deviation of the density, propagated to the results; --search then finds the "

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include <excavplan/error.hpp>
 
@@ -68,6 +70,18 @@ std::optional<RecordedInput> recorded_input(const std::string& text, const std::
                                                                  : nlohmann::ordered_json()}};
   input.line = text + ": " + line_of(scan);
   return input;
+}
+
+Scan scan_of_input(const std::string& text, std::optional<RecordedInput>& recorded) {
+  Scan scan;
+  if (recorded) {
+    scan.name = text;
+    scan.clouds = {std::make_shared<const Cloud>(std::move(recorded->scan.cloud))};
+    scan.doubts = recorded->scan.warnings;
+  } else {
+    scan.files = {text};
+  }
+  return scan;
 }
 
 MachinePosture recorded_posture(const RecordedInput& input) {

@@ -9,6 +9,7 @@
 
 #include <excavplan/survey/machine_front.hpp>
 #include <excavplan/survey/recording.hpp>
+#include <excavplan/survey/scan_surface.hpp>
 
 namespace excavplan::tools {
 
@@ -26,6 +27,9 @@ struct RecordedInput {
 /// Reads what `text` names if it is FILE:TOPIC@TIME+SPAN, or a recording of one topic of scans; of
 /// a plain cloud file nothing. @throws Error as parse_recording_spec() and read_recorded_scan()
 std::optional<RecordedInput> recorded_input(const std::string& text, const std::string& tf_frame);
+
+/// The scan that `text` names: that of the recording, or of a file, which is left where it is.
+Scan scan_of_input(const std::string& text, std::optional<RecordedInput>& recorded);
 
 /// How the machine stood when a scan was recorded: of /joint_states the joints whose names hold
 /// swing, boom, arm or stick, and bucket. @throws Error (bad_file) if one of them is not there

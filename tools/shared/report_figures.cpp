@@ -74,6 +74,10 @@ std::string words_of(std::string stem) {
   return stem;
 }
 
+std::string joined(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + '.' + key;
+}
+
 std::string capital(std::string text) {
   if (!text.empty()) {
     text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
@@ -174,7 +178,7 @@ class Rows {
     const std::set<std::string> shown_with = companions(object);
     const std::string unit_of_all = shown_unit(path);
     for (const auto& [key, value] : object.items()) {
-      const std::string here = path.empty() ? key : path + '.' + key;
+      const std::string here = joined(path, key);
       const std::string label = before + words_of(stem_of(key));
       if (value.is_null() || shown_with.count(key) > 0) continue;
       if (value.is_object()) {
@@ -269,14 +273,15 @@ std::string list_table(const std::string& name, const Json& list) {
   std::string rows;
   std::string below;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string path = name + '.' + std::to_string(i);
+    const std::string path = joined(name, std::to_string(i));
     rows += "<tr>";
-    for (const std::string& key : columns) rows += list_cell(path + '.' + key, list[i], key);
+    for (const std::string& key : columns) rows += list_cell(joined(path, key), list[i], key);
     rows += "</tr>\n";
     for (const auto& [key, value] : list[i].items()) {
-      const std::string named = list[i].value("name", std::to_string(i + 1));
       if (!value.is_object()) continue;
-      below += figure_table(named + ": " + words_of(stem_of(key)), path + '.' + key, value);
+      std::string title = list[i].value("name", std::to_string(i + 1));
+      title += ": " + words_of(stem_of(key));
+      below += figure_table(title, joined(path, key), value);
     }
   }
   return table(words_of(name), head, rows, columns.size() > 5) + below;  // ours

@@ -3,7 +3,6 @@
 #include "shared/scans.hpp"
 
 #include <array>
-#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -14,13 +13,6 @@
 
 namespace excavplan::tools {
 namespace {
-
-/// Length of a unit [m].
-const std::map<std::string, double>& units() {
-  static const std::map<std::string, double> lengths = {
-      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"ft", 0.3048}, {"in", 0.0254}};
-  return lengths;
-}
 
 /// One side of a pair, as its options say.
 struct Side {
@@ -49,20 +41,16 @@ void require_within(const Machine& machine, const MachinePosture& posture) {
 
 /// Reads the scan if it is of a recording; a file is left where it is.
 Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
-  Scan scan;
   std::optional<MachinePosture> posture = side.posture ? side.posture : frames.view.both;
-  if (auto input = recorded_input(side.text, frames.tf_frame)) {
-    scan.name = side.text;
+  auto input = recorded_input(side.text, frames.tf_frame);
+  Scan scan = scan_of_input(side.text, input);
+  if (input) {
     if (frames.view.recorded) posture = recorded_posture(*input);
-    scan.clouds = {std::make_shared<const Cloud>(std::move(input->scan.cloud))};
-    scan.doubts = std::move(input->scan.warnings);
     report.recordings.push_back(std::move(input->json));
     report.lines.push_back("recorded   " + input->line);
-  } else {
-    scan.files = {side.text};
   }
   scan.area = frames.area;
-  scan.unit = units().at(side.unit.empty() ? frames.unit : side.unit);
+  scan.unit = unit_length(side.unit.empty() ? frames.unit : side.unit);
   scan.sensor_origin = side.origin ? side.origin : frames.sensor_origin;
   if (posture) {
     const Machine machine = machine_named(frames.view.machine);
@@ -110,12 +98,10 @@ void declare_frames(Arguments& arguments, ScanFrames& frames) {
 }
 
 void declare_units(Arguments& arguments, ScanFrames& frames) {
-  std::vector<std::string> words;
-  for (const auto& [word, length] : units()) words.push_back(word);
-  arguments.choice("unit", frames.unit, words, "unit of the coordinates in all clouds");
-  arguments.choice("before-unit", frames.before_unit, words,
-                   "of those before (default: as --unit)");
-  arguments.choice("after-unit", frames.after_unit, words, "of those after (default: as --unit)");
+  declare_unit(arguments, "unit", frames.unit, "unit of the coordinates in all clouds");
+  declare_unit(arguments, "before-unit", frames.before_unit,
+               "of those before (default: as --unit)");
+  declare_unit(arguments, "after-unit", frames.after_unit, "of those after (default: as --unit)");
 }
 
 void declare_machine_in_view(Arguments& arguments, MachineInView& view) {

@@ -11,6 +11,7 @@
 #include "shared/arguments.hpp"
 #include "shared/found_pose.hpp"
 #include "shared/tool.hpp"
+#include "shared/unit_inputs.hpp"
 
 namespace excavplan::tools {
 

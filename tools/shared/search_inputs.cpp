@@ -64,11 +64,15 @@ bool report(Console& console, const SearchProgress& p, const DigObjective& objec
 void declare_method(Arguments& arguments, SearchInputs& inputs) {
   for (std::size_t i = 0; i < inputs.ranges.size(); ++i) {
     const DigParameterInfo& info = dig_parameter_table()[i];
+    const std::string example = info.unit == std::string("m") ? "0.2m,0.6m" : "30deg,60deg";
     arguments.text(range_option(info), "FROM,TO", inputs.ranges[i],
-                   "search range of the " + std::string(info.text));
+                   "search only this range of the " + std::string(info.text) + ", as " + example +
+                       " (default: a wide one, by the size of the bucket) [" + info.unit + "]");
   }
-  arguments.choice("method", inputs.method, {"default", "paper"},
-                   "search method; paper: the paper's genetic algorithm");
+  arguments.choice(
+      "method", inputs.method, {"default", "paper"},
+      "search method; default: global, then refined around the best digs; paper: the paper's "
+      "genetic algorithm");
   arguments.only_if({[&inputs] { return inputs.method == "paper"; },
                      "the default method has none, --method paper has"},
                     [&] {
@@ -81,9 +85,9 @@ void declare_method(Arguments& arguments, SearchInputs& inputs) {
       "generations of the search, 0 for as many as --evaluations allows, or the paper's");
   arguments.option(
       "evaluations", inputs.evaluations,
-      "largest number of simulated digs per search, 0 for the default of the method: 600 "
-      "(for each of several densities 100, or 200 without a library dig to start "
-      "from), or all generations of the paper");
+      "largest number of simulated digs per search; 0: 600, with --density-sd 100 for each of "
+      "several densities (200 where no library has a dig to start from), with --method paper "
+      "as many as its generations take");
   arguments.output(
       "checkpoint", inputs.checkpoint,
       "save the simulated digs in this file; for several densities also in FILE.soil1, "
@@ -103,9 +107,9 @@ void declare_search(Arguments& arguments, SearchInputs& inputs,
   arguments.only_if({[use] { return use() != SearchUse::none; }, no_search}, [&] {
     arguments.text(
         "start", "RULE|LENGTH", inputs.start,
-        "start point of the dig: work (least work of the links), margin (largest margin to "
-        "the joint limits), search (together with the path; a known path: the best of some along "
-        "the reach), or its x");
+        "where the tip enters the ground: its x; work: where moving boom, arm and bucket takes "
+        "least work; margin: farthest from the joint limits; search: found with the path (for a "
+        "path of a library: the best of several along the reach)");
   });
   arguments.only_if({[use] { return use() == SearchUse::all; }, no_search},
                     [&] { declare_method(arguments, inputs); });

@@ -2,20 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/site.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include <excavplan/survey/scan_terrain.hpp>
 
-#include "shared/arguments.hpp"
 #include "shared/found_pose.hpp"
 #include "shared/scans.hpp"
+#include "shared/unit_inputs.hpp"
 
 namespace excavplan::tools {
 namespace {
 
+/// FILE:TOPIC@TIME of a file that is there: what reads recordings is not part of the tools that
+/// plan.
+void refuse_recording(const std::string& text) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const std::size_t end = text.find_first_of(":@", 1);
+  if (end == text.npos || fs::exists(text, ignored) || !fs::exists(text.substr(0, end), ignored)) {
+    return;
+  }
+  throw Error(ErrorKind::bad_file,
+              text +
+                  ": --terrain takes a cloud, no scan of a recording; inspect-cloud "
+                  "FILE:TOPIC@TIME+SPAN --out scan.pcd writes one as a cloud");
+}
+
 Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
+  refuse_recording(*terrain.cloud);
   Scan scan;
   scan.files = {*terrain.cloud};
+  scan.unit = unit_length(terrain.unit);
   if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
   ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
                                         [&] { return terrain_from_scan(scan, extent, cell_size); });
@@ -27,14 +45,19 @@ Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_s
 void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
   arguments.file("terrain", terrain.cloud,
                  "cloud of the ground in the site frame (default: level)");
-  arguments.file("terrain-frame", terrain.frame,
-                 "4 x 4 matrix that transforms the terrain cloud into the site frame");
+  arguments.text(
+      "terrain-frame", "FRAME", terrain.frame,
+      std::string("transforms the terrain cloud into the site frame, of which the origin "
+                  "is on the swing axis at ground level, x forward, z up: ") +
+          frame_forms);
+  declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");
 }
 
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
   if (terrain.frame && !terrain.cloud) {
     usage_error("--terrain-frame needs --terrain");
   }
+  if (terrain.unit != TerrainInput{}.unit && !terrain.cloud) usage_error("--unit needs --terrain");
   return naming_options(cell_option, [&] {
     require_simulated_cell(cell_size);
     return terrain.cloud ? scanned(terrain, extent, cell_size)

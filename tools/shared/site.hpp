@@ -17,10 +17,11 @@ namespace excavplan::tools {
 struct TerrainInput {
   std::optional<std::string> cloud;
   std::optional<std::string>
-      frame;  ///< file with the matrix that transforms the cloud into the site frame
+      frame;  ///< that transforms the cloud into the site frame, as frame_named() takes it
+  std::string unit = "m";  ///< of the coordinates in the cloud
 };
 
-/// --terrain and --terrain-frame.
+/// --terrain, --terrain-frame and --unit.
 void declare_terrain(Arguments& arguments, TerrainInput& terrain);
 
 /// Ground to dig on, with its warnings.
@@ -33,7 +34,7 @@ struct Site {
 /// level.
 ///
 /// @throws Error (bad_file) if the cloud cannot be read or holds hardly a point in the extent
-/// @throws Error (bad_input) if a frame is given without a cloud
+/// @throws Error (bad_input) if a frame or a unit is given without a cloud
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size);
 
 }  // namespace excavplan::tools

@@ -88,8 +88,10 @@ Request parse(const std::string& text) {
   return request;
 }
 
-std::string text_of(const std::optional<double>& value, const std::string& unit) {
-  return value ? readable(*value, 2) + unit : "n/a (insufficient alone)";
+constexpr const char* insufficient = "is not enough alone";
+
+std::string at_most(const std::optional<double>& value, const std::string& unit) {
+  return value ? "at most " + readable(*value, 2) + unit : insufficient;
 }
 
 nlohmann::ordered_json json_of(const Request& request, const SurveyForecast& f,
@@ -123,20 +125,20 @@ nlohmann::ordered_json json_of(const Request& request, const SurveyForecast& f,
 std::vector<std::string> lines_of(const Request& request, const SurveyForecast& f,
                                   const SurveyNeeds& needs) {
   const auto percent = [](double share) { return readable(100.0 * share, 2) + " %"; };
-  return {"sensor     " + request.plan.sensor.name + ", " + readable(f.range, 3) +
-              " m from the centre of the area, ray spacing " + readable(1000.0 * f.ray_spacing, 2) +
-              " mm",
-          "bulking    sd " + readable(f.bulking_sd, 2),
-          "density    sd " + readable(f.density_sd_percent, 2) +
-              " points (one standard deviation, without the scatter of the law)",
-          "  of which " + percent(f.white_share) + " noise, " + percent(f.correlated_share) +
-              " pattern, " + percent(f.datum_share) + " datum, " + percent(f.occlusion_share) +
-              " hidden ground",
-          "for " + readable(request.target, 2) + " points, either",
-          "  range    at most " + text_of(needs.range, " m at this angle of view"),
-          "  frames   at least " + (needs.frames ? std::to_string(*needs.frames)
-                                                 : std::string("n/a (insufficient alone)")),
-          "  noise    at most " + text_of(needs.noise, " times that of this sensor")};
+  return {
+      "sensor     " + request.plan.sensor.name + ", " + readable(f.range, 3) +
+          " m from the centre of the area, ray spacing " + readable(1000.0 * f.ray_spacing, 2) +
+          " mm",
+      "bulking    sd " + readable(f.bulking_sd, 2),
+      "density    sd " + readable(f.density_sd_percent, 2) +
+          " points (one standard deviation, without the scatter of the law)",
+      "  of which " + percent(f.white_share) + " noise, " + percent(f.correlated_share) +
+          " pattern, " + percent(f.datum_share) + " datum, " + percent(f.occlusion_share) +
+          " hidden ground",
+      "for " + readable(request.target, 2) + " points, either",
+      "  range    " + at_most(needs.range, " m at this angle of view"),
+      "  frames   " + (needs.frames ? "at least " + std::to_string(*needs.frames) : insufficient),
+      "  noise    " + at_most(needs.noise, " times that of this sensor")};
 }
 
 }  // namespace

@@ -311,22 +311,30 @@ std::string json_text(const About& about, const Outcome& outcome) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
-/// The options that have a value. Those that every tool has are not among them.
+/// What was given for an option, as text.
+std::string shown_value(const Arguments::Entry& entry, const std::vector<std::string>& given) {
+  if (entry.placeholder.empty()) return "yes";
+  std::string value;
+  for (const std::string& text : given) {
+    if (!value.empty()) value += "; ";
+    value += entry.input && text == "-" ? "standard input" : text;
+  }
+  return value;
+}
+
+/// The first `count` options, those of the tool itself, as far as they have a value.
 std::vector<Setting> settings_of(const std::vector<Arguments::Entry>& entries,
                                  const ParsedWords& words, std::size_t count) {
   std::vector<Setting> settings;
+  settings.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Arguments::Entry& entry = entries[i];
     const auto& given = words.of_entry[i].texts;
-    if (given.empty() && entry.default_text.empty()) continue;
-    std::string value = given.empty() ? entry.default_text : "";
-    for (const std::string& text : given) {
-      value += value.empty() ? "" : "; ";
-      value += entry.placeholder.empty()    ? "yes"
-               : entry.input && text == "-" ? "standard input"
-                                            : text;
+    if (!given.empty()) {
+      settings.push_back({shown_name(entry), shown_value(entry, given), true});
+    } else if (!entry.default_text.empty()) {
+      settings.push_back({shown_name(entry), entry.default_text, false});
     }
-    settings.push_back({shown_name(entry), value, !given.empty()});
   }
   return settings;
 }

@@ -57,6 +57,7 @@ const chartsOf = () => {
     },
     {
       title: "Energy of the dig so far",
+      stays: true,
       unit: "kJ",
       digits: 1,
       times: loads.energy_time_s,
@@ -64,6 +65,7 @@ const chartsOf = () => {
     },
     {
       title: "Soil in the bucket",
+      stays: true,
       unit: "m³",
       digits: 3,
       times: loads.time_s,
@@ -185,8 +187,8 @@ const makeCharts = (timeOf, setTime) => {
       chart.plot.redraw(false, false);
       chart.series.forEach((series, i) => {
         const time = timeOf();
-        const beyond =
-          time > chart.times[chart.times.length - 1] + 0.2 || time < chart.times[0] - 0.2;
+        const last = chart.times[chart.times.length - 1];
+        const beyond = !chart.stays && (time > last + 0.2 || time < chart.times[0] - 0.2);
         chart.texts[i].textContent = beyond
           ? "–"
           : signed(valueAt(chart.times, series.values, time), chart.digits);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 #include <Eigen/Core>
 
 #include <excavplan/machine/dig_path.hpp>
@@ -46,9 +48,10 @@ Rectangle swept_strip(const Machine& machine, const DigPath& path);
 /// NaN where it does not dig.
 double swept_height(const DigPath& path, double x);
 
-/// Slope of the surface in the boom plane beyond `from_x` [rad], positive if it rises away from the
-/// machine: least-squares line through the known cells. NaN with fewer than two.
-double boom_plane_slope(const Terrain& terrain, double from_x);
+/// Slope of the surface in the boom plane from `from_x` to `to_x` [rad], positive if it rises away
+/// from the machine: least-squares line through the known cells. NaN with fewer than two.
+double boom_plane_slope(const Terrain& terrain, double from_x,
+                        double to_x = std::numeric_limits<double>::infinity());
 
 /// planning_extent() as ground that is level up to the front of the tracks and rises by `slope`
 /// [rad] beyond it. @throws Error (bad_input) as require_simulated_cell()
