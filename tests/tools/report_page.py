@@ -22,6 +22,7 @@ try:
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.remote.remote_connection import RemoteConnection
 except ImportError:
     print("skipped: python3-selenium is not installed")
     sys.exit(77)
@@ -48,6 +49,7 @@ def browser(*arguments):
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", *arguments):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    RemoteConnection.set_timeout(60)  # of a command, for a page that does not come to rest [s]
     return webdriver.Chrome(service=Service(DRIVER), options=options)
 
 
@@ -153,6 +155,7 @@ class Page(unittest.TestCase):
             print(f"{tool}: {size / 1e6:.2f} MB, drawn {drawn} ms after the page began to load")
             self.assertEqual(self.script("return performance.getEntriesByType('resource').length"), 0)
             self.assertTrue(self.script("return document.body.classList.contains('drawn')"), tool)
+            self.assertLess(self.script("return document.getElementById('stage').clientHeight"), 700)
             self.silent()
 
     def test_figures_are_those_of_the_json(self):
