@@ -145,6 +145,14 @@ class Page(unittest.TestCase):
     def script(self, text, *arguments):
         return self.driver.execute_script(text, *arguments)
 
+    def picture(self):
+        """Of the view, once what was asked for is drawn, which is in the next frame."""
+        return self.driver.execute_async_script("""
+            const done = arguments[0];
+            const later = (frames) => requestAnimationFrame(() =>
+              (frames ? later(frames - 1) : done(document.getElementById('canvas').toDataURL())));
+            later(3)""")
+
     def silent(self, driver=None):
         self.assertEqual((driver or self.driver).get_log("browser"), [])
 
@@ -223,18 +231,15 @@ class Page(unittest.TestCase):
         self.assertEqual(self.script("return excavplanReport.time()"), stopped)
 
         canvas = self.driver.find_element(By.ID, "canvas")
-        picture = "return document.getElementById('canvas').toDataURL()"
-        pictures = [self.script(picture)]
+        pictures = [self.picture()]
         for key in (Keys.ARROW_LEFT, Keys.ARROW_UP, "+", "r"):
             canvas.send_keys(key)
-            time.sleep(0.4)
-            pictures.append(self.script(picture))
+            pictures.append(self.picture())
         self.assertEqual(pictures[0], pictures[-1], "R resets the view")
         self.assertEqual(len(set(pictures)), 4)
         for state in ("before", "change"):
             self.driver.find_element(By.CSS_SELECTOR, f"[data-state={state}]").send_keys(Keys.ENTER)
-            time.sleep(0.4)
-            pictures.append(self.script(picture))
+            pictures.append(self.picture())
         self.assertEqual(len(set(pictures)), 6)
         self.assertEqual(self.driver.find_element(By.CSS_SELECTOR, "[data-state=change]").get_attribute("aria-pressed"), "true")
         self.silent()
