@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <functional>
+#include <memory>
 
 #include "shared/experiment_inputs.hpp"
 #include "shared/experiment_results.hpp"
@@ -26,6 +26,7 @@ const About about = {
 struct Inputs {
   std::string machine = "zx120";
   ExperimentInputs experiment;
+  std::optional<std::string> report;
 #ifdef EXCAVPLAN_STUDY
   StudyInputs study;
 #endif
@@ -53,32 +54,23 @@ void declare(Arguments& arguments, Inputs& inputs) {
                       arguments.option("seed", experiment.seed, "seed of searches and of a study");
                       arguments.threads(experiment.threads, "");
                     });
+  arguments.report(inputs.report);
 }
 
-/// Adds the results of one condition. @return why it has none; empty if it has
-std::string add_condition(const ExperimentCondition& condition,
-                          const std::function<ExperimentResult()>& run, Outcome& outcome) {
-  nlohmann::ordered_json& conditions = outcome.json["conditions"];
-  try {
-    const ExperimentResult result = naming_options(cell_option, run);
-    conditions.push_back(experiment_json(condition.name, result));
-    outcome.lines.push_back(experiment_line(condition.name, result));
-    if (!result.held_because.empty()) {
-      outcome.warnings.push_back(
-          {"machine_held_down", condition.name +
-                                    ": the machine is held down, as on the fixed path " +
-                                    result.held_because});
-    }
-    return {};
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::bad_input) throw;
-    conditions.push_back({{"name", condition.name},
-                          {"density_percent", condition.density},
-                          {"failure", error.what()}});
-    outcome.lines.push_back(condition.name + ": " + error.what());
-    outcome.warnings.push_back({"condition_failed", condition.name + ": " + error.what()});
-    return error.what();
-  }
+void add(const NamedExperiment& done, Outcome& outcome) {
+  const auto& [condition, result] = done;
+  outcome.json["conditions"].push_back(experiment_json(condition, result));
+  outcome.lines.push_back(experiment_line(condition, result));
+  if (result.held_because.empty()) return;
+  const std::string why = ": the machine is held down, as on the fixed path ";
+  outcome.warnings.push_back({"machine_held_down", condition + why + result.held_because});
+}
+
+void add_failure(const ExperimentCondition& condition, const std::string& why, Outcome& outcome) {
+  outcome.json["conditions"].push_back(
+      {{"name", condition.name}, {"density_percent", condition.density}, {"failure", why}});
+  outcome.lines.push_back(condition.name + ": " + why);
+  outcome.warnings.push_back({"condition_failed", condition.name + ": " + why});
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
@@ -92,26 +84,41 @@ Outcome work(const Inputs& inputs, Console& console) {
   const SoilKind soil = soil_named(experiment.soil);
   const DensityLaw law = law_of(experiment, machine, soil);
   const ExperimentOptions options = options_of(experiment, machine, soil);
+  if (inputs.report && options.second == SecondGround::left) {
+    usage_error("--report shows digs on fresh ground, not with --second left");
+  }
   const std::vector<ExperimentCondition> conditions = conditions_of(experiment);
+  std::vector<NamedExperiment> done;
+  std::string failure;
   Outcome outcome;
   outcome.warnings = unlike_law(law, machine.name, soil.name);
   outcome.json["conditions"] = nlohmann::ordered_json::array();
-  std::vector<std::string> failures;
   for (const ExperimentCondition& condition : conditions) {
-    const auto done = static_cast<double>(outcome.json["conditions"].size());
-    console.progress(done / static_cast<double>(conditions.size()), condition.name);
-    const std::string failure = add_condition(
-        condition, [&] { return run_experiment(machine, soil, law, condition.density, options); },
-        outcome);
-    if (!failure.empty()) failures.push_back(failure);
+    const auto count = static_cast<double>(outcome.json["conditions"].size());
+    console.progress(count / static_cast<double>(conditions.size()), condition.name);
+    try {
+      done.push_back({condition.name, naming_options(cell_option, [&] {
+                        return run_experiment(machine, soil, law, condition.density, options);
+                      })});
+      add(done.back(), outcome);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::bad_input) throw;
+      failure = error.what();
+      add_failure(condition, failure, outcome);
+    }
   }
-  if (failures.size() == conditions.size()) throw Error(ErrorKind::bad_input, failures.front());
+  if (done.empty()) throw Error(ErrorKind::bad_input, failure);
   outcome.json["law"] = law.name;
   outcome.json["regression"] = regression_json(machine, soil, options);
   outcome.lines.push_back(regression_line(outcome.json["regression"]));
   outcome.json.update(goal_json(options.plan.search.objective));
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
+  if (inputs.report) {
+    Report report = experiment_report(machine, soil, options.plan, done);
+    report.file = *inputs.report;
+    outcome.report = std::make_shared<Report>(std::move(report));
+  }
   return outcome;
 }
 

@@ -8,6 +8,7 @@
 
 #include <excavplan/soil/density_fit.hpp>
 
+#include "support/report_page.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
@@ -90,6 +91,20 @@ TEST_F(Tools, AStudyWritesItsRunsAndItsTable) {
   answer("run-experiment", words);
   EXPECT_EQ(content_of(out + "/runs.csv"), runs);
   EXPECT_TRUE(warns(answer("run-experiment", words + Words{"--soil", "sand"}), "options_ignored"));
+}
+
+TEST_F(Tools, ReportOfAnExperimentShowsBothDigsOfEachCondition) {
+  const std::string file = folder.file("report.html");
+  const json result = answer("run-experiment", {"--densities", "10,40", "--report", file});
+  const std::string page = content_of(file);
+  EXPECT_TRUE(contains(page, "10.0 %, fixed: "));
+  const json scene = drawn_on(page);
+  ASSERT_EQ(scene["digs"].size(), 4U);
+  EXPECT_EQ(scene["digs"][3]["name"], "40.0 %, fixed path");
+  EXPECT_NEAR(number(scene, "/digs/2/start_x_m"),
+              number(result, "/conditions/1/planned/path/start_x_m"), 1e-6);
+  const json& energy = scene["digs"][2]["loads"]["energy_kj"];
+  EXPECT_NEAR(energy.back().get<double>(), number(result, "/conditions/1/planned/energy_kj"), 0.01);
 }
 
 TEST_F(Tools, ExperimentSplitsItsGainIntoPathAndStart) {
