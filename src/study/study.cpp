@@ -29,6 +29,11 @@ constexpr double highest_density = 95.0;  // [%]
 constexpr double rough_length = 0.3;      // over which rough ground is correlated [m]; ours
 constexpr int waves = 200;                // of rough ground; ours
 
+// Of a condition; ours.
+constexpr double steepest = 0.6;  // [rad]
+constexpr double roughest = 0.5;  // [m]
+constexpr int most_in_row = 100;
+
 /// Soils, laws and libraries of a study, each made once.
 class Shelf {
  public:
@@ -37,6 +42,10 @@ class Shelf {
 
   /// Call for all conditions before the runs begin, which then only read.
   void prepare(const StudySetting& setting) {
+    simulator_of_word(setting.digs);
+    require_in("study: slope [rad]", setting.slope, -steepest, steepest);
+    require_in("study: roughness [m]", setting.roughness, 0.0, roughest);
+    require_in("study: digs in a row", setting.row, 1, most_in_row);
     const SoilKind& soil =
         soils_.emplace(setting.soil, load_soil(shipped_or_file("soils", setting.soil)))
             .first->second;
