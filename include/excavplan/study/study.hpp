@@ -49,9 +49,9 @@ struct StudySetting {
   bool drawn_soil = true;  ///< each run digs another soil of the kind; false: the kind itself
   double slope = 0.0;      ///< of the ground, rising ahead of the tracks [rad]
   double roughness = 0.0;  ///< rms of its height, correlated over 0.3 m [m]
-  StudySensor sensor = StudySensor::none;
-  StudyLaw law = StudyLaw::other_engine;
-  StudyPlan plan = StudyPlan::look_up;
+  StudySensor sensor = StudySensor::none;         ///< of the survey of the first dig
+  StudyLaw law = StudyLaw::other_engine;          ///< of the estimate
+  StudyPlan plan = StudyPlan::look_up;            ///< of the second dig
   std::string digs = "height-map";                ///< word of the simulator that digs
   DigParameters fixed_path = paper_fixed_path();  ///< of the first dig, and the baseline
   SecondGround second = SecondGround::fresh;      ///< where the second dig is made
@@ -63,7 +63,7 @@ struct StudyCondition {
   std::string factor;    ///< "slope"
   std::string level;     ///< "+10 deg"
   StudySetting setting;  ///< all of it
-  int runs = 30;
+  int runs = 30;         ///< number of runs
 };
 
 /// The conditions of the default study. The first is the reference.
@@ -81,9 +81,9 @@ DigParameters path_sized_to_bucket(const Machine& machine, const SoilKind& soil)
 /// One run of a condition. Gains are those of the planned over the fixed dig, or of the sums over a
 /// row of digs [%].
 struct StudyRun {
-  double density_percent = 0.0;  ///< the true one
-  double estimate_percent = 0.0;
-  double estimate_sd = 0.0;
+  double density_percent = 0.0;                   ///< the true one
+  double estimate_percent = 0.0;                  ///< estimated
+  double estimate_sd = 0.0;                       ///< its standard deviation [%]
   std::array<double, 2> interval = {0.0, 100.0};  ///< 95 %
   bool trustworthy = true;                        ///< the estimate
   /// The fixed path would lift or drag the machine, which is held down in all digs of the run: no
@@ -101,7 +101,7 @@ struct StudyRun {
 
 /// Mean with its 95 % interval.
 struct StudyMean {
-  double mean = 0.0;
+  double mean = 0.0;                            ///< of the values
   std::array<double, 2> interval = {0.0, 0.0};  ///< by bootstrap over the runs
 };
 
@@ -111,8 +111,8 @@ StudyMean bootstrap_mean(const std::vector<double>& values, std::uint64_t seed);
 
 /// A condition with its runs.
 struct StudyResult {
-  StudyCondition condition;
-  std::vector<StudyRun> runs;
+  StudyCondition condition;       ///< that was run
+  std::vector<StudyRun> runs;     ///< in order
   int failed = 0;                 ///< runs without a result
   int held_down = 0;              ///< runs that tell no gain
   int untrusted = 0;              ///< runs whose estimate is not trustworthy, failed ones aside
@@ -128,11 +128,12 @@ struct StudyResult {
   StudyMean cycle_payload = {};   ///< [-]
 };
 
+/// Settings of run_study().
 struct StudyOptions {
-  std::uint64_t seed = 1;
-  unsigned threads = 0;  ///< 0: one per core; the result is the same for any number
-  double runs = 1.0;     ///< factor on the number of runs of each condition
-  int draws = 200;       ///< digs behind the scatter of each law, CalibrationOptions::draws
+  std::uint64_t seed = 1;  ///< of soils, grounds, scans and searches
+  unsigned threads = 0;    ///< 0: one per core; the result is the same for any number
+  double runs = 1.0;       ///< factor on the number of runs of each condition
+  int draws = 200;         ///< digs behind the scatter of each law, CalibrationOptions::draws
   /// Called from any thread after each run with the share that is done; true goes on.
   std::function<bool(double done, const std::string& condition)> progress = {};
 };
