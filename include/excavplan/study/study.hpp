@@ -14,7 +14,7 @@
 
 /// @file
 /// What the paper could not vary: its experiment under many conditions, one factor at a time, many
-/// runs each (docs/results.md).
+/// runs each (docs/formats.md).
 
 namespace excavplan {
 
