@@ -5,7 +5,7 @@ cmake_minimum_required(VERSION 3.24)
 # The architecture as a test: run with cmake -D ROOT=<source directory> -P layering.cmake
 
 # What a room may include of the others; itself and base are always allowed.
-set(rooms base optimisation ground soil machine simulation planning library plan experiment recording survey)
+set(rooms base optimisation ground soil machine simulation planning library plan experiment recording survey study)
 set(base_may_use "")
 set(optimisation_may_use "")
 set(ground_may_use "")
@@ -18,6 +18,7 @@ set(plan_may_use ground soil machine simulation planning library)
 set(experiment_may_use ground soil machine simulation planning library plan)
 set(recording_may_use "")
 set(survey_may_use ground soil machine simulation recording)
+set(study_may_use ground soil machine simulation planning library plan experiment survey)
 
 # Public headers that belong to no room; all may include them.
 set(roomless ceilings error data_files)

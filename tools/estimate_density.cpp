@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/survey/density_estimate.hpp>
 
-#include "base/files.hpp"
 #include "shared/estimate.hpp"
 #include "shared/method_inputs.hpp"
 #include "shared/recordings.hpp"
@@ -43,7 +42,7 @@ struct Inputs {
   std::optional<DigParameters> dug_path;
   std::optional<double> dug_start;
   SoilInputs soil;
-  std::optional<std::string> plot;
+  std::optional<std::string> plot, report;
 };
 
 void declare_estimate(Arguments& arguments, Inputs& inputs) {
@@ -79,6 +78,7 @@ void declare_estimate(Arguments& arguments, Inputs& inputs) {
                    "the cut; needs scans in the site frame");
   declare_machine_in_view(arguments, inputs.frames.view);
   arguments.plot(inputs.plot, "the height change and its zones");
+  arguments.report(inputs.report);
 }
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -123,7 +123,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   Outcome outcome = estimate_outcome(counts, options.soil);
   add_machine_warnings(counts, law, machine, scans.before.unit, outcome);
   report.add_to(outcome);
-  if (inputs.plot) write_file(*inputs.plot, change_figure(counts, outcome));
+  draw_estimate(inputs.plot, inputs.report, counts, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);
   return outcome;
 }

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
 #include <memory>
 
 #include <excavplan/plan/plan_dig.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "shared/dig_report.hpp"
 #include "shared/figures.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/results.hpp"
@@ -43,7 +43,7 @@ struct Inputs {
   double cell_size = PlanOptions{}.cell_size;
   SearchInputs dig_search;
   std::optional<std::string> trajectory;
-  std::optional<std::string> plot;
+  std::optional<std::string> plot, report;
 };
 
 SearchUse use_of(const Inputs& inputs) {
@@ -78,6 +78,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "write the joint trajectory, CSV, or JSON as .json");
   arguments.require_ending({".csv", ".json", ""});
   arguments.plot(inputs.plot, "the section of the dig");
+  arguments.report(inputs.report);
 }
 
 PlanOptions options_of(const Inputs& inputs, Console& console) {
@@ -90,15 +91,6 @@ PlanOptions options_of(const Inputs& inputs, Console& console) {
   options.simulator = simulator_of_word(inputs.simulator);
   options.cell_size = inputs.cell_size;
   return options;
-}
-
-/// What an earlier plan left must not be taken for that of this ground.
-void withdraw(const Inputs& inputs, const Machine& machine, Outcome& outcome) {
-  if (inputs.trajectory) write_trajectory(*inputs.trajectory, {machine.name, {}});
-  std::error_code unknown;
-  if (!inputs.plot || !std::filesystem::exists(*inputs.plot, unknown)) return;
-  outcome.warnings.push_back(
-      {"plot_not_written", *inputs.plot + ": is of an earlier run, as there is no dig to draw"});
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
@@ -126,17 +118,22 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"machine", machine.name},
                        {"simulator", inputs.simulator},
                        {"wall_time_s", watch.seconds()}});
+  const std::string title = (plan.dig ? "Planned dig in " : "No dig in ") + soil.name + " at " +
+                            readable(density.percent) + " % relative density";
+  const std::string figure =
+      plan.dig
+          ? dig_figure(machine, plan.path, {boom_plane_profile(site.ground)}, title, outcome.lines)
+          : "";
+  if (inputs.report) {
+    const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
+    outcome.report = titled(plan_report(machine, plan, dug), *inputs.report, title, figure);
+  }
   if (!plan.dig) {
-    if (!plan.stopped) withdraw(inputs, machine, outcome);
+    if (!plan.stopped) withdraw(inputs.trajectory, inputs.plot, machine, outcome);
     return outcome;
   }
   if (inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);
-  if (inputs.plot) {
-    write_file(*inputs.plot, dig_figure(machine, plan.path, {boom_plane_profile(site.ground)},
-                                        "Planned dig in " + soil.name + " at " +
-                                            readable(density.percent) + " % relative density",
-                                        outcome.lines));
-  }
+  if (inputs.plot) write_file(*inputs.plot, figure);
   return outcome;
 }
 

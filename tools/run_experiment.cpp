@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/experiment/experiment.hpp>
-#include <excavplan/simulation/calibration.hpp>
-
+#include "shared/experiment_inputs.hpp"
 #include "shared/experiment_results.hpp"
-#include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
 #include "shared/tool.hpp"
+#ifdef EXCAVPLAN_STUDY  // it simulates surveys
+#include "shared/study_results.hpp"
+#endif
 
 namespace excavplan::tools {
 namespace {
@@ -21,114 +20,105 @@ const About about = {
     "compares the two digs.",
     {{"run-experiment", "soft, medium and hard loam (10, 40, 80 %), paths from the library"},
      {"run-experiment --search --densities 0:10:100", "search for each path, at eleven densities"},
+     {"run-experiment --study results", "many conditions, one factor at a time, 30 runs each"},
      {"run-experiment --json", "all results as JSON"}}};
 
 struct Inputs {
-  std::string densities = "paper";
-  DigParameters path = paper_fixed_path();
-  std::string soil = "loam";
   std::string machine = "zx120";
-  std::string simulator = default_simulator().word;
-  std::optional<std::string> library;
-  GoalInputs goal{info_of(DigObjective::Goal::energy).word};
-  std::string law = "default";
-  bool search = false;
-  double cell_size = 0.05;
-  std::uint64_t seed = 1;
-  std::uint64_t threads = 0;
+  ExperimentInputs experiment;
+  std::optional<std::string> report;
+#ifdef EXCAVPLAN_STUDY
+  StudyInputs study;
+#endif
+  /// A study has conditions of its own.
+  bool is_study() const {
+#ifdef EXCAVPLAN_STUDY
+    return study.folder.has_value();
+#else
+    return false;
+#endif
+  }
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
-  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
-                 "relative densities [%], or a list a,b,c; \"paper\": soft 10, medium 40, hard 80");
-  arguments.file("library", inputs.library,
-                 "path library (default: the shipped one of machine, soil and goal)");
-  arguments.text(
-      "law", "NAME|FILE", inputs.law,
-      "density law: default (that of machine, soil and fixed path), paper, or a law file");
-  arguments.flag("search", inputs.search, "search for each path instead of looking it up");
-  declare_goal(arguments, inputs.goal);
-  arguments.option("path", inputs.path, "fixed path");
-  arguments.soil(inputs.soil);
+  ExperimentInputs& experiment = inputs.experiment;
+  arguments.only_if({[&inputs] { return !inputs.is_study(); }, "a study has its own conditions"},
+                    [&] { declare_experiment(arguments, experiment); });
   arguments.machine(inputs.machine);
-  arguments.simulator(inputs.simulator);
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
-  arguments.only_if({[&inputs] { return inputs.search; }, "nothing is searched without --search"},
+#ifdef EXCAVPLAN_STUDY
+  declare_study(arguments, inputs.study);
+#endif
+  arguments.only_if({[&inputs] { return inputs.experiment.search || inputs.is_study(); },
+                     "nothing is searched without --search"},
                     [&] {
-                      arguments.option("seed", inputs.seed, "seed of the searches");
-                      arguments.threads(inputs.threads, "");
+                      arguments.option("seed", experiment.seed, "seed of searches and of a study");
+                      arguments.threads(experiment.threads, "");
                     });
+  arguments.report(inputs.report);
 }
 
-struct Condition {
-  std::string name;
-  double density = 0.0;
-};
-
-/// Ours: the densities of the paper's Table 1 are not published as text.
-std::vector<Condition> conditions_of(const Inputs& inputs) {
-  if (inputs.densities == "paper") return {{"soft", 10.0}, {"medium", 40.0}, {"hard", 80.0}};
-  std::vector<Condition> conditions;
-  for (const double density : parse_densities("--densities", inputs.densities)) {
-    conditions.push_back({readable(density) + " %", density});
-  }
-  return conditions;
+void add(const NamedExperiment& done, Outcome& outcome) {
+  const auto& [condition, result] = done;
+  outcome.json["conditions"].push_back(experiment_json(condition, result));
+  outcome.lines.push_back(experiment_line(condition, result));
+  if (result.held_because.empty()) return;
+  const std::string why = ": the machine is held down, as on the fixed path ";
+  outcome.warnings.push_back({"machine_held_down", condition + why + result.held_because});
 }
 
-ExperimentOptions options_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {
-  ExperimentOptions options;
-  options.fixed_path = inputs.path;
-  PlanOptions& plan = options.plan;
-  plan.method = inputs.search ? PlanMethod::search : PlanMethod::library;
-  plan.search.objective = objective_of(inputs.goal);
-  if (inputs.library || !inputs.search) {
-    plan.library = std::make_shared<PathLibrary>(
-        inputs.library ? load_path_library(*inputs.library)
-                       : shipped_library(machine, soil, plan.search.objective));
-  }
-  plan.search.seed = inputs.seed;
-  plan.search.threads = static_cast<unsigned>(inputs.threads);
-  plan.simulator = simulator_of_word(inputs.simulator);
-  plan.cell_size = inputs.cell_size;
-  return options;
-}
-
-/// The default is the shipped one on the paper's path, on another one of digs along that.
-DensityLaw law_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil) {
-  const bool own = inputs.law == "default";
-  if (own && to_vector(inputs.path) != to_vector(paper_fixed_path())) {
-    return law_of(calibrate_path(machine, soil, inputs.path));
-  }
-  const std::string name = own ? machine.name + "-" + soil.name : inputs.law;
-  return load_density_law(shipped_or_file("laws", name));
+void add_failure(const ExperimentCondition& condition, const std::string& why, Outcome& outcome) {
+  outcome.json["conditions"].push_back(
+      {{"name", condition.name}, {"density_percent", condition.density}, {"failure", why}});
+  outcome.lines.push_back(condition.name + ": " + why);
+  outcome.warnings.push_back({"condition_failed", condition.name + ": " + why});
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
-  const SoilKind soil = soil_named(inputs.soil);
-  const DensityLaw law = law_of(inputs, machine, soil);
-  const ExperimentOptions options = options_of(inputs, machine, soil);
-  const std::vector<Condition> conditions = conditions_of(inputs);
+  const ExperimentInputs& experiment = inputs.experiment;
+#ifdef EXCAVPLAN_STUDY
+  if (inputs.is_study()) {
+    return study(machine, inputs.study, experiment.seed, experiment.threads, console);
+  }
+#endif
+  const SoilKind soil = soil_named(experiment.soil);
+  const DensityLaw law = law_of(experiment, machine, soil);
+  const ExperimentOptions options = options_of(experiment, machine, soil);
+  if (inputs.report && options.second == SecondGround::left) {
+    usage_error("--report shows digs on fresh ground, not with --second left");
+  }
+  const std::vector<ExperimentCondition> conditions = conditions_of(experiment);
+  std::vector<NamedExperiment> done;
+  std::string failure;
   Outcome outcome;
   outcome.warnings = unlike_law(law, machine.name, soil.name);
   outcome.json["conditions"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < conditions.size(); ++i) {
-    console.progress(static_cast<double>(i) / static_cast<double>(conditions.size()),
-                     conditions[i].name);
-    const ExperimentResult result = naming_options(cell_option, [&] {
-      return run_experiment(machine, soil, law, conditions[i].density, options);
-    });
-    outcome.json["conditions"].push_back(experiment_json(conditions[i].name, result));
-    outcome.lines.push_back(experiment_line(conditions[i].name, result));
-    if (result.held_because.empty()) continue;
-    const std::string why = ": the machine is held down, as on the fixed path ";
-    outcome.warnings.push_back(
-        {"machine_held_down", conditions[i].name + why + result.held_because});
+  for (const ExperimentCondition& condition : conditions) {
+    const auto count = static_cast<double>(outcome.json["conditions"].size());
+    console.progress(count / static_cast<double>(conditions.size()), condition.name);
+    try {
+      done.push_back({condition.name, naming_options(cell_option, [&] {
+                        return run_experiment(machine, soil, law, condition.density, options);
+                      })});
+      add(done.back(), outcome);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::bad_input) throw;
+      failure = error.what();
+      add_failure(condition, failure, outcome);
+    }
   }
+  if (done.empty()) throw Error(ErrorKind::bad_input, failure);
   outcome.json["law"] = law.name;
+  outcome.json["regression"] = regression_json(machine, soil, options);
+  outcome.lines.push_back(regression_line(outcome.json["regression"]));
   outcome.json.update(goal_json(options.plan.search.objective));
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
+  if (inputs.report) {
+    Report report = experiment_report(machine, soil, options.plan, done);
+    report.file = *inputs.report;
+    outcome.report = std::make_shared<Report>(std::move(report));
+  }
   return outcome;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/files.hpp"
 #include "machine/dig_path_text.hpp"
+#include "shared/dig_report.hpp"
 #include "shared/figures.hpp"
 #include "shared/fuel_log.hpp"
 #include "shared/joint_loads.hpp"
@@ -78,7 +79,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   inputs.fuel_log.declare(arguments);
   arguments.output("history", inputs.history, "write the loads of each step, CSV");
   arguments.plot(inputs.plot, "the section of the dig");
-  arguments.output("report", inputs.report, "write an HTML report");
+  arguments.report(inputs.report);
 }
 
 SceneOptions options_of(const Inputs& inputs) {
@@ -98,7 +99,7 @@ SceneOptions options_of(const Inputs& inputs) {
 }
 
 void write_files(const Inputs& inputs, const Machine& machine, const DigScene& scene,
-                 const Outcome& outcome) {
+                 Outcome& outcome) {
   write_scans(inputs.scans, scene, inputs.seed);
   inputs.fuel_log.write(machine, scene, inputs.seed);
   if (inputs.history) write_file(*inputs.history, to_csv(machine, scene));
@@ -108,9 +109,9 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
   const std::string figure = dig_figure(
       machine, scene.path, {boom_plane_profile(scene.before), boom_plane_profile(scene.after)},
       title, outcome.lines);
-  const std::string report = html_report(title, {figure}, outcome.lines, outcome.json);
   if (inputs.plot) write_file(*inputs.plot, figure);
-  if (inputs.report) write_file(*inputs.report, report);
+  if (!inputs.report) return;
+  outcome.report = titled(scene_report(machine, scene), *inputs.report, title, figure);
 }
 
 Outcome work(const Inputs& inputs) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include <excavplan/error.hpp>
@@ -27,6 +28,15 @@ double gain(const DigObjective& objective, const PlannedDig& of, const PlannedDi
   return 100.0 * (objective.worth(of) / worth - 1.0);
 }
 
+Terrain ground_of(const Machine& machine, const ExperimentOptions& options) {
+  return options.ground ? *options.ground : level_planning_ground(machine, options.plan.cell_size);
+}
+
+struct Dug {
+  PlannedDig dig;
+  DigPath path;
+};
+
 /// The digs of one experiment, in soil of one density.
 class Experiment {
  public:
@@ -34,45 +44,61 @@ class Experiment {
              const ExperimentOptions& options)
       : machine_(machine),
         soil_(soil),
+        dug_soil_(options.dug_soil.value_or(soil)),
         density_(density_percent),
         options_(options),
-        ground_(level_planning_ground(machine, options.plan.cell_size)),
-        simulator_(make_simulator(options.plan.simulator, machine, soil, density_percent)) {}
+        digs_(options.digs.value_or(options.plan.simulator)),
+        ground_(ground_of(machine, options)),
+        simulator_(make_simulator(digs_, machine, dug_soil_, density_percent)) {}
 
   /// Digs with the machine held down from now on.
   void hold_machine() {
     held_.body.reset();
-    simulator_ = make_simulator(options_.plan.simulator, held_, soil_, density_);
+    simulator_ = make_simulator(digs_, held_, dug_soil_, density_);
   }
 
-  std::variant<PlannedDig, DigFailure> attempt(const DigParameters& parameters,
-                                               const StartRule& start) const {
-    const auto path = DigLayout(machine_, ground_).path(parameters, start);
-    if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
-    return dig_along(machine_, *simulator_, ground_, std::get<DigPath>(path),
-                     options_.plan.search.objective);
+  std::variant<Dug, DigFailure> attempt(const DigParameters& parameters,
+                                        const StartRule& start) const {
+    auto laid = DigLayout(machine_, ground_).path(parameters, start);
+    if (const auto* infeasible = std::get_if<Infeasible>(&laid)) return DigFailure(*infeasible);
+    auto& path = std::get<DigPath>(laid);
+    const auto outcome =
+        dig_along(machine_, *simulator_, ground_, path, options_.plan.search.objective);
+    if (const auto* failure = std::get_if<DigFailure>(&outcome)) return *failure;
+    return Dug{std::get<PlannedDig>(outcome), std::move(path)};
   }
 
-  PlannedDig dig(const DigParameters& parameters, const StartRule& start) const {
-    const auto outcome = attempt(parameters, start);
+  Dug dig(const DigParameters& parameters, const StartRule& start) const {
+    auto outcome = attempt(parameters, start);
     if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
       throw Error(ErrorKind::bad_input, describe(*failure));
     }
-    return std::get<PlannedDig>(outcome);
+    return std::get<Dug>(std::move(outcome));
   }
 
-  HeightMapVolumes volumes(const PlannedDig& fixed) const {
+  /// The dig with its heap.
+  DigScene scene(const PlannedDig& fixed) const {
     SceneOptions dig;
     dig.path = fixed.parameters;
     dig.start_x = fixed.start_x;
-    dig.simulator = options_.plan.simulator;
-    const Terrain ground =
+    dig.simulator = digs_;
+    if (options_.ground) return run_scene(held_, dug_soil_, density_, ground_, dig);
+    const Terrain level =
         undisturbed(flat_ground(scene_extent(machine_, dig.dump_at), options_.plan.cell_size));
-    return run_scene(held_, soil_, density_, ground, dig).volumes;
+    return run_scene(held_, dug_soil_, density_, level, dig);
+  }
+
+  /// Goes on where the dig of this scene ended.
+  void go_on(const DigScene& scene) {
+    if (options_.second == SecondGround::left) ground_ = scene.after;
   }
 
   PlannedDig plan(double density) const {
-    const DigPlan plan = plan_dig(machine_, soil_, density, options_.plan);
+    const bool level = !options_.ground && options_.second == SecondGround::fresh;
+    const Terrain seen = options_.seen ? options_.seen(ground_) : ground_;
+    const DigPlan plan = level && !options_.seen
+                             ? plan_dig(machine_, soil_, density, options_.plan)
+                             : plan_dig(machine_, soil_, density, seen, options_.plan);
     if (plan.dig) return *plan.dig;
     throw Error(ErrorKind::bad_input,
                 "no path for a density of " + readable(density) + " %: " + plan.reason +
@@ -80,9 +106,9 @@ class Experiment {
   }
 
   /// From its own start; by the default rule if the true soil forbids that one.
-  PlannedDig dig_as_planned(const PlannedDig& plan) const {
-    const auto outcome = attempt(plan.parameters, plan.start_x);
-    if (const auto* dug = std::get_if<PlannedDig>(&outcome)) return *dug;
+  Dug dig_as_planned(const PlannedDig& plan) const {
+    auto outcome = attempt(plan.parameters, plan.start_x);
+    if (auto* dug = std::get_if<Dug>(&outcome)) return std::move(*dug);
     return dig(plan.parameters, {});
   }
 
@@ -103,8 +129,10 @@ class Experiment {
   const Machine& machine_;
   Machine held_ = machine_;
   const SoilKind& soil_;
+  SoilKind dug_soil_;
   double density_;
   const ExperimentOptions& options_;
+  SimulatorKind digs_;
   Terrain ground_;
   std::unique_ptr<const SoilSimulator> simulator_;
 };
@@ -123,7 +151,10 @@ std::string what_moves(const Experiment& experiment, const DigParameters& path) 
 
 }  // namespace
 
-double ExperimentResult::gain_percent() const { return gain(objective, planned, fixed); }
+double ExperimentResult::gain_percent() const { return gain_percent(objective); }
+double ExperimentResult::gain_percent(const DigObjective& by) const {
+  return gain(by, planned, fixed);
+}
 double ExperimentResult::path_gain_percent() const { return gain(objective, planned, fixed_moved); }
 double ExperimentResult::start_gain_percent() const { return gain(objective, fixed_moved, fixed); }
 
@@ -138,12 +169,19 @@ ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, co
   if (!result.held_because.empty()) experiment.hold_machine();
   result.density_percent = density_percent;
   result.objective = options.plan.search.objective;
-  result.fixed = experiment.dig(options.fixed_path, {});
-  result.volumes = experiment.volumes(result.fixed);
-  result.estimate = relative_density(law, {result.volumes.bulking_factor, 0.0});
-  result.planned = experiment.dig_as_planned(experiment.plan(result.estimate.percent));
+  Dug fixed = experiment.dig(options.fixed_path, {});
+  result.fixed = fixed.dig;
+  result.fixed_path = std::move(fixed.path);
+  const DigScene scene = experiment.scene(result.fixed);
+  result.volumes = scene.volumes;
+  result.estimate = options.survey ? options.survey(scene)
+                                   : relative_density(law, {scene.volumes.bulking_factor, 0.0});
+  experiment.go_on(scene);
+  Dug planned = experiment.dig_as_planned(experiment.plan(result.estimate.percent));
+  result.planned = planned.dig;
+  result.planned_path = std::move(planned.path);
   result.start_rule = experiment.rule_behind(result.planned);
-  result.fixed_moved = experiment.dig(options.fixed_path, result.start_rule);
+  result.fixed_moved = experiment.dig(options.fixed_path, result.start_rule).dig;
   return result;
 }
 

@@ -19,8 +19,8 @@
 #include "ground/robust.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
-#include "planning/front_room.hpp"
 #include "planning/dig_problem.hpp"
+#include "planning/front_room.hpp"
 #include "simulation/checked_dig.hpp"
 #include "simulation/terrain_check.hpp"
 

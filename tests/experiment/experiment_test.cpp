@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include <excavplan/data_files.hpp>
@@ -42,6 +43,62 @@ TEST_F(ExperimentTest, PlansForTheDensityThatTheFixedDigShows) {
   const PlannedDig plan = look_up(*options.plan.library, result.estimate.percent);
   EXPECT_EQ(to_vector(result.planned.parameters), to_vector(plan.parameters));
   EXPECT_EQ(result.planned.start_x, plan.start_x);
+}
+
+TEST_F(ExperimentTest, KeepsThePathsThatItDug) {
+  const ExperimentResult result = run(looked_up());
+  EXPECT_EQ(result.fixed_path.start_x, result.fixed.start_x);
+  EXPECT_EQ(result.planned_path.start_x, result.planned.start_x);
+  EXPECT_EQ(to_vector(result.planned_path.parameters), to_vector(result.planned.parameters));
+}
+
+TEST_F(ExperimentTest, PlansForWhatASurveySays) {
+  ExperimentOptions options = looked_up();
+  options.survey = [&](const DigScene& scene) {
+    EXPECT_GT(scene.volumes.dumped, 0.0);
+    RelativeDensity wrong;
+    wrong.percent = 90.0;
+    return wrong;
+  };
+  const ExperimentResult result = run(options);
+  EXPECT_EQ(result.estimate.percent, 90.0);
+  EXPECT_EQ(to_vector(result.planned.parameters),
+            to_vector(look_up(*options.plan.library, 90.0).parameters));
+}
+
+TEST_F(ExperimentTest, DigsAnotherSoilThanItPlansFor) {
+  ExperimentOptions options = looked_up();
+  options.dug_soil = load_soil(shipped_or_file("soils", "sand"));
+  const ExperimentResult sand = run(options);
+  const ExperimentResult loam = run(looked_up());
+  EXPECT_NE(sand.fixed.energy, loam.fixed.energy);
+  EXPECT_LT(sand.estimate.percent, loam.estimate.percent);  // sand swells less
+}
+
+TEST_F(ExperimentTest, ASecondDigOnTheGroundThatTheFirstLeftFindsAPit) {
+  ExperimentOptions options = looked_up();
+  options.second = SecondGround::left;
+  const ExperimentResult left = run(options);
+  const ExperimentResult fresh = run(looked_up());
+  EXPECT_EQ(left.fixed.energy, fresh.fixed.energy);
+  EXPECT_NE(left.planned.energy, fresh.planned.energy);
+}
+
+TEST_F(ExperimentTest, DigsOnTheGroundGivenAndPlansOnThatSeen) {
+  ExperimentOptions options = looked_up();
+  Terrain slope = undisturbed(flat_ground(scene_extent(machine_, default_dump_point()), 0.05));
+  for (Eigen::Index col = 0; col < slope.bank.z.cols(); ++col) {
+    slope.bank.z.col(col) += 0.1 * std::max(0.0, slope.bank.x(col) - machine_.track_front);
+  }
+  options.ground = slope;
+  int looks = 0;
+  options.seen = [&](const Terrain& ground) {
+    ++looks;
+    EXPECT_EQ(ground.bank.z(3, 90), slope.bank.z(3, 90));
+    return ground;
+  };
+  EXPECT_GT(run(options).fixed_path.ground_z, 0.1);
+  EXPECT_EQ(looks, 1);
 }
 
 TEST_F(ExperimentTest, SplitsTheGainIntoPathAndStart) {

@@ -12,6 +12,7 @@
 #include <excavplan/survey/cloud.hpp>
 
 #include "base/angles.hpp"
+#include "support/report_page.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
@@ -691,6 +692,20 @@ TEST_F(WheelLoadersBite, HasAboutTheVolumesOfADifferenceOfRastersAsTheScansLie) 
   EXPECT_NEAR(number(result, "/volume/excavated_m3"), 2.61, 0.4);
   EXPECT_NEAR(added(result), 1.47, 0.5);
   EXPECT_EQ(result.at("registration"), nullptr);
+}
+
+TEST_F(Tools, ReportOfAnEstimateShowsTheGroundWithItsZones) {
+  const std::string file = folder.file("report.html");
+  const json result = answer("estimate-density", quickstart(folder) + Words{"--report", file});
+  const std::string page = content_of(file);
+  EXPECT_TRUE(contains(page, "<figure class=\"plot\"><svg"));
+  const json scene = drawn_on(page);
+  ASSERT_EQ(scene["zones"].size(), result["zones"].size());
+  EXPECT_EQ(scene["zones"][0]["kind"], result["zones"][0]["kind"]);
+  const json& area = scene["areas"][0];
+  EXPECT_EQ(area["cell_m"], result["cell_m"]);
+  ASSERT_EQ(area["states"].size(), 2U);
+  EXPECT_NE(area["states"][0]["codes"], area["states"][1]["codes"]);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/trajectory.hpp>
 
+#include "support/report_page.hpp"
 #include "support/svg_figure.hpp"
 #include "support/tool_answers.hpp"
 
@@ -614,6 +615,31 @@ TEST_F(Tools, ADensityOfAnySoilIsNamed) {
   };
   EXPECT_TRUE(warns(planned("any soil"), "density_of_unknown_soil"));
   EXPECT_FALSE(warns(planned("zx120-loam"), "density_of_unknown_soil"));
+}
+
+TEST_F(Tools, ReportOfAPlanShowsThePlannedGroundAndTheTrajectory) {
+  const std::string file = folder.file("report.html");
+  const json plan = answer(
+      "plan-path", {"--density", "40", "--report", file, "--trajectory", folder.file("dig.json")});
+  const json scene = drawn_on(content_of(file));
+  EXPECT_EQ(scene["areas"][0]["states"][1]["name"], "planned");
+  const json written = json::parse(content_of(folder.file("dig.json")));
+  const json& dig = scene["digs"][0];
+  ASSERT_EQ(dig["time_s"].size(), written["points"].size());
+  EXPECT_NEAR(dig["time_s"].back().get<double>(), written["points"].back()["time_s"].get<double>(),
+              1e-6);
+  EXPECT_NEAR(dig["loads"]["energy_kj"].back().get<double>(), number(plan, "/energy_kj"), 0.01);
+}
+
+TEST_F(Tools, ReportOfNoPlanSaysSo) {
+  const std::string file = folder.file("report.html");
+  answer("plan-path",
+         {"--density", "40", "--search", "--evaluations", "5", "--angle-range", "1.4,1.4",
+          "--penetration-range", "0.9,0.9", "--drag-range", "3,3", "--report", file});
+  const std::string page = content_of(file);
+  EXPECT_TRUE(contains(page, "There is no dig.</strong> 1 warning"));
+  EXPECT_TRUE(contains(page, "<code>no_dig</code>"));
+  EXPECT_EQ(drawn_on(page)["digs"].size(), 0U);
 }
 
 }  // namespace

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
+#include <excavplan/soil/density_fit.hpp>
+
+#include "support/report_page.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
@@ -46,6 +50,61 @@ TEST_F(Tools, ExperimentSaysWhereItsLawIsOfAnotherSoilOrMachine) {
   const json other = answer("run-experiment", sand + Words{"--law", "zx120-clay"});
   EXPECT_TRUE(warns(other, "law_of_other_soil")) << other["warnings"];
   EXPECT_FALSE(warns(other, "law_of_other_machine"));
+}
+
+TEST_F(Tools, ADensityThatStallsEndsNoOther) {
+  const json found = answer("run-experiment", {"--soil", "gravel", "--densities", "20,90"});
+  EXPECT_TRUE(warns(found, "condition_failed")) << found["warnings"];
+  EXPECT_GT(number(found, "/conditions/0/gain_percent"), 0.0);
+  EXPECT_TRUE(contains(found["conditions"][1].at("failure"), "stalls"));
+  EXPECT_EQ(run_program("run-experiment", {"--soil", "gravel", "--densities", "90"}).code, 2);
+}
+
+TEST_F(Tools, ExperimentHasTheContentOfThePapersFigures) {
+  const json found = answer("run-experiment", {"--densities", "40"});
+  const json& regression = found.at("regression");
+  ASSERT_EQ(regression.at("samples").size(), 21U);
+  EXPECT_NEAR(number(regression, "/paper_line/a_percent"), 161.57, 1e-9);
+  std::vector<BulkingSample> samples;
+  for (const json& sample : regression["samples"]) {
+    samples.push_back({sample.at("bulking_factor"), sample.at("density_percent")});
+  }
+  EXPECT_NEAR(fit_line(samples).a, number(regression, "/line/a_percent"), 1e-9);
+  for (const char* dig : {"fixed", "planned"}) {
+    const json& of = found["conditions"][0][dig];
+    double lowest = 0.0;
+    for (const json& tip : of.at("tip_path_m")) lowest = std::min(lowest, tip[1].get<double>());
+    EXPECT_NEAR(number(of, "/depth_m"), -lowest, 1e-12) << dig;
+    EXPECT_GT(number(of, "/section_m2"), 0.1) << dig;
+  }
+}
+
+TEST_F(Tools, AStudyWritesItsRunsAndItsTable) {
+  const std::string out = folder.file("study");
+  const Words words = {"--study", out, "--study-runs", "0.001", "--seed", "3"};
+  const json found = answer("run-experiment", words);
+  const std::string runs = content_of(out + "/runs.csv");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(runs.begin(), runs.end(), '\n')),
+            found.at("study").size() + 1);
+  EXPECT_EQ(json::parse(content_of(out + "/study.json"))["study"], found["study"]);
+  EXPECT_TRUE(contains(content_of(out + "/study.md"), "| slope | +10.0 deg | 1 |"));
+  answer("run-experiment", words);
+  EXPECT_EQ(content_of(out + "/runs.csv"), runs);
+  EXPECT_TRUE(warns(answer("run-experiment", words + Words{"--soil", "sand"}), "options_ignored"));
+}
+
+TEST_F(Tools, ReportOfAnExperimentShowsBothDigsOfEachCondition) {
+  const std::string file = folder.file("report.html");
+  const json result = answer("run-experiment", {"--densities", "10,40", "--report", file});
+  const std::string page = content_of(file);
+  EXPECT_TRUE(contains(page, "10.0 %, fixed: "));
+  const json scene = drawn_on(page);
+  ASSERT_EQ(scene["digs"].size(), 4U);
+  EXPECT_EQ(scene["digs"][3]["name"], "40.0 %, fixed path");
+  EXPECT_NEAR(number(scene, "/digs/2/start_x_m"),
+              number(result, "/conditions/1/planned/path/start_x_m"), 1e-6);
+  const json& energy = scene["digs"][2]["loads"]["energy_kj"];
+  EXPECT_NEAR(energy.back().get<double>(), number(result, "/conditions/1/planned/energy_kj"), 0.01);
 }
 
 TEST_F(Tools, ExperimentSplitsItsGainIntoPathAndStart) {

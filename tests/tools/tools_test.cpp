@@ -38,7 +38,7 @@ const std::vector<Contract>& contracts() {
       {"estimate-density",
        {"--dump-before", "--dump-after", "--dig-area", "--dump-area", "--before-frame",
         "--after-frame", "--before-pose", "--after-pose", "--frame", "--level", "--sensor-origin",
-        "--method", "--cell", "--law", "--plot", "--strict"},
+        "--method", "--cell", "--law", "--plot", "--report", "--strict"},
        "--dig-aera",
        "--dig-area",
        quickstart},
@@ -60,7 +60,7 @@ const std::vector<Contract>& contracts() {
        }},
       {"plan-path",
        {"--density", "--density-from", "--library", "--search", "--terrain", "--seed",
-        "--trajectory", "--plot", "--soil", "--machine"},
+        "--trajectory", "--plot", "--report", "--soil", "--machine"},
        "--denisty",
        "--density",
        [](const TemporaryFolder&) {
@@ -75,7 +75,7 @@ const std::vector<Contract>& contracts() {
          return Words{"--densities", "20", "--out", folder.file("library.json")} + small_library;
        }},
       {"run-experiment",
-       {"--path", "--soil", "--machine", "--simulator", "--seed"},
+       {"--path", "--soil", "--machine", "--simulator", "--seed", "--report"},
        "--densitis",
        "--densities",
        [](const TemporaryFolder&) {

@@ -231,6 +231,13 @@ void Arguments::soil(std::string& name) {
   text("soil", "NAME|FILE", name, "soil: loam, sand, clay, gravel, or a soil file");
 }
 
+void Arguments::report(std::optional<std::string>& path) {
+  add({"report", "FILE.html",
+       "write a page that shows result, ground and machine in a browser, offline, into this file",
+       "", false, false, [&path](const std::string& text) { path = text; }});
+  entries_.back().output = true;
+}
+
 void Arguments::threads(std::uint64_t& count, const std::string& note) {
   add({"threads", "N",
        "threads, 0 for one per core, at most " + std::to_string(most_threads) + note,

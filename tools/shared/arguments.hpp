@@ -123,6 +123,7 @@ class Arguments {
   void machine(std::string& name);
   void simulator(std::string& word);
   void plot(std::optional<std::string>& path, const std::string& shows);
+  void report(std::optional<std::string>& path);
   void threads(std::uint64_t& count, const std::string& note);
 
   /// The option must be given.

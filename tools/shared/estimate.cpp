@@ -7,8 +7,10 @@
 
 #include <excavplan/ground/bulking.hpp>
 
+#include "base/files.hpp"
 #include "shared/figures.hpp"
 #include "shared/quantity.hpp"
+#include "shared/report.hpp"
 #include "shared/results.hpp"
 #include "survey/cloud_units.hpp"
 
@@ -295,8 +297,23 @@ void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law
   if (many) outcome.warnings.push_back(*many);
 }
 
-std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome) {
-  return height_change_figure({estimate.change, estimate.before, outcome.lines, outcome.warnings});
+void draw_estimate(const std::optional<std::string>& plot, const std::optional<std::string>& report,
+                   const DensityEstimate& estimate, Outcome& outcome) {
+  if (!plot && !report) return;
+  const std::string figure =
+      height_change_figure({estimate.change, estimate.before, outcome.lines, outcome.warnings});
+  if (plot) write_file(*plot, figure);
+  if (!report) return;
+  Report page;
+  page.headline = {"density_percent", "bulking_factor", "volume.excavated_m3", "volume.spilled_m3",
+                   "volume.dumped_m3"};
+  page.plot_always = true;
+  page.scene.areas = surveyed_areas(estimate.change, estimate.before);
+  page.scene.zones = estimate.change.zones;
+  page.note =
+      "The ground after the dig is that before it plus the height change that was measured.";
+  outcome.report =
+      titled(std::move(page), *report, "Relative density of the ground from two scans", figure);
 }
 
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome) {

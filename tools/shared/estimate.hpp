@@ -29,8 +29,10 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
 void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
                           const Machine& machine, double unit, Outcome& outcome);
 
-/// The figure of an estimate, as SVG.
-std::string change_figure(const DensityEstimate& estimate, const Outcome& outcome);
+/// Writes the figure of an estimate, SVG, and adds the page about it to the outcome, each if there
+/// is a file for it.
+void draw_estimate(const std::optional<std::string>& plot, const std::optional<std::string>& report,
+                   const DensityEstimate& estimate, Outcome& outcome);
 
 /// Adds the result of the other method for the same scans.
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include <excavplan/experiment/experiment.hpp>
+
+#include "shared/report.hpp"
 
 /// @file
 /// What run-experiment writes and prints.
@@ -16,5 +19,21 @@ namespace excavplan::tools {
 nlohmann::ordered_json experiment_json(const std::string& condition,
                                        const ExperimentResult& result);
 std::string experiment_line(const std::string& condition, const ExperimentResult& result);
+
+/// The paper's Fig. 7: bulking factors of digs along the fixed path at 0, 5 .. 100 %, the
+/// regression of the density on them, and that of the paper.
+nlohmann::ordered_json regression_json(const Machine& machine, const SoilKind& soil,
+                                       const ExperimentOptions& options);
+std::string regression_line(const nlohmann::ordered_json& regression);
+
+struct NamedExperiment {
+  std::string condition;
+  ExperimentResult result;
+};
+
+/// The page, without its file: both digs of each condition, dug once more on level ground, and bars
+/// of what they are worth.
+Report experiment_report(const Machine& machine, const SoilKind& soil, const PlanOptions& options,
+                         const std::vector<NamedExperiment>& experiments);
 
 }  // namespace excavplan::tools

@@ -11,6 +11,7 @@
 #include <excavplan/plan/plan_dig.hpp>
 
 #include "shared/arguments.hpp"
+#include "shared/tool.hpp"
 
 /// @file
 /// A plan as JSON and as text lines, and the density it is made for from an estimate's JSON.
@@ -40,6 +41,11 @@ std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& inpu
 /// @param objective  that the dig was searched for
 nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& density,
                                  const DigObjective& objective);
+
+/// What an earlier plan left in these files must not be taken for that of this ground, which has
+/// none.
+void withdraw(const std::optional<std::string>& trajectory, const std::optional<std::string>& plot,
+              const Machine& machine, Outcome& outcome);
 
 /// CSV, or JSON if the file's name ends so.
 void write_trajectory(const std::string& file, const Trajectory& trajectory);

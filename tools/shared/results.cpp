@@ -10,7 +10,6 @@
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
 #include "shared/joint_loads.hpp"
-#include "shared/plot.hpp"
 #include "shared/quantity.hpp"
 
 namespace excavplan::tools {
@@ -190,22 +189,6 @@ std::vector<double> parse_densities(const std::string& what, const std::string& 
                 what + ": " + number_text(density) + " % is outside 0 .. 100");
   }
   return densities;
-}
-
-std::string html_report(const std::string& title, const std::vector<std::string>& svgs,
-                        const std::vector<std::string>& lines, const nlohmann::ordered_json& json) {
-  std::string page =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +
-      xml_escaped(title) +
-      "</title>\n<style>body{font:16px/1.5 sans-serif;max-width:1100px;margin:2em auto;"
-      "padding:0 1em;color:#222}svg{max-width:100%;height:auto}pre{background:#f4f4f2;"
-      "padding:1em;overflow:auto}</style></head><body>\n<h1>" +
-      xml_escaped(title) + "</h1>\n<pre>";
-  for (const std::string& line : lines) page += xml_escaped(line) + "\n";
-  page += "</pre>\n";
-  for (const std::string& svg : svgs) page += svg.substr(svg.find("<svg")) + "\n";
-  return page + "<h2>All figures</h2>\n<pre>" + xml_escaped(json.dump(2)) +
-         "</pre>\n</body></html>\n";
 }
 
 }  // namespace excavplan::tools

@@ -52,8 +52,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// One self-contained HTML page: title, pictures, a table of figures, the JSON. Works offline.
-std::string html_report(const std::string& title, const std::vector<std::string>& svgs,
-                        const std::vector<std::string>& lines, const nlohmann::ordered_json& json);
-
 }  // namespace excavplan::tools

@@ -20,6 +20,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "shared/report.hpp"
 #include "shared/stack.hpp"
 #include "shared/standard_input.hpp"
 #include "shared/used_files.hpp"
@@ -310,6 +311,45 @@ std::string json_text(const About& about, const Outcome& outcome) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
+/// What was given for an option, as text.
+std::string shown_value(const Arguments::Entry& entry, const std::vector<std::string>& given) {
+  if (entry.placeholder.empty()) return "yes";
+  std::string value;
+  for (const std::string& text : given) {
+    if (!value.empty()) value += "; ";
+    value += entry.input && text == "-" ? "standard input" : text;
+  }
+  return value;
+}
+
+/// The first `count` options, those of the tool itself, as far as they have a value.
+std::vector<Setting> settings_of(const std::vector<Arguments::Entry>& entries,
+                                 const ParsedWords& words, std::size_t count) {
+  std::vector<Setting> settings;
+  settings.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Arguments::Entry& entry = entries[i];
+    const auto& given = words.of_entry[i].texts;
+    if (!given.empty()) {
+      settings.push_back({shown_name(entry), shown_value(entry, given), true});
+    } else if (!entry.default_text.empty()) {
+      settings.push_back({shown_name(entry), entry.default_text, false});
+    }
+  }
+  return settings;
+}
+
+void write_report(const About& about, const Outcome& outcome, const StandardInput& input,
+                  const std::vector<Setting>& settings) {
+  ReportedRun run = {
+      about.name,          EXCAVPLAN_VERSION,     input.named(json_text(about, outcome)),
+      outcome.lines,       outcome.warnings,      about.can_be_untrustworthy,
+      outcome.trustworthy, outcome.stopped_early, settings};
+  for (std::string& line : run.lines) line = input.named(line);
+  for (Warning& warning : run.warnings) warning.message = input.named(warning.message);
+  write_file(outcome.report->file, html_page(*outcome.report, run));
+}
+
 void print_outcome(const About& about, const Common& common, const Outcome& outcome,
                    const StandardInput& input) {
   if (!common.quiet) {
@@ -332,6 +372,7 @@ int run(int argc, const char* const* argv, const About& about,
   Arguments arguments;
   Common common;
   declare(arguments);
+  const std::size_t own = arguments.entries().size();
   declare_common(arguments, about, common);
 
   const ParsedWords words = sort_words(argc, argv, arguments.entries());
@@ -358,6 +399,9 @@ int run(int argc, const char* const* argv, const About& about,
     outcome.warnings.push_back(std::move(each));
   }
   console.clear();
+  if (outcome.report) {
+    write_report(about, outcome, input, settings_of(arguments.entries(), words, own));
+  }
   signals.end_at_closed_pipe();
   print_outcome(about, common, outcome, input);
   if (outcome.stopped_early) return 75;

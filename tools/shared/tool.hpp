@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <new>
 #include <optional>
 #include <string>
@@ -47,6 +48,8 @@ struct About {
   bool can_stop_early = false;        ///< an interrupt sets Console::stop_requested() instead
 };
 
+struct Report;  // shared/report.hpp
+
 /// Result of a tool.
 struct Outcome {
   /// Printed with --json, "tool" and "version" before it, "warnings" after it, those of options
@@ -56,6 +59,7 @@ struct Outcome {
   std::vector<Warning> warnings;
   bool trustworthy = true;
   bool stopped_early = false;
+  std::shared_ptr<const Report> report = nullptr;  ///< written by run_tool(), if asked for
 };
 
 /// Progress and notes on standard error while a tool works.

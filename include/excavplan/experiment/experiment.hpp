@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 
 #include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/simulation/scene.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
@@ -16,10 +19,27 @@
 
 namespace excavplan {
 
+/// Where the second dig is made.
+enum class SecondGround {
+  fresh,  ///< on ground as it was before the first
+  left    ///< on the ground that the first left, its heap aside
+};
+
 /// What is dug and planned with; by default for most mass per energy, as in the paper.
 struct ExperimentOptions {
   DigParameters fixed_path = paper_fixed_path();  ///< of every first dig
-  PlanOptions plan = {};  ///< of the second dig; `simulator` and `cell_size` hold for both
+  PlanOptions plan = {};                          ///< of the second dig; `cell_size` holds for both
+  /// That makes both digs; empty: that of `plan`, which only plans otherwise.
+  std::optional<SimulatorKind> digs = {};
+  std::optional<SoilKind> dug_soil = {};      ///< that lies there, if not the kind planned for
+  std::optional<Terrain> ground = {};         ///< of scene_extent(); empty: level ground
+  SecondGround second = SecondGround::fresh;  ///< where the second dig is made
+  /// The density that a survey of the first dig gives; empty: the law on its height maps, which
+  /// have no error.
+  std::function<RelativeDensity(const DigScene& first)> survey = {};
+  /// The ground as the plan sees it; empty: as it is.
+  std::function<Terrain(const Terrain& ground)> seen = {};
+
   ExperimentOptions() { plan.search.objective = DigObjective::Goal::energy; }
 };
 
@@ -27,9 +47,11 @@ struct ExperimentOptions {
 struct ExperimentResult {
   double density_percent = 0.0;  ///< the true one
   HeightMapVolumes volumes;      ///< of the dig along the fixed path, with its bulking factor
-  RelativeDensity estimate;      ///< from that bulking factor
+  RelativeDensity estimate;      ///< from that bulking factor, or by the survey
   PlannedDig fixed;              ///< begins with the largest margin
   PlannedDig planned;            ///< for the estimate, dug in the true soil
+  DigPath fixed_path;            ///< of `fixed`
+  DigPath planned_path;          ///< of `planned`
   StartRule start_rule;          ///< that puts the start of the planned dig nearest to where it is
   PlannedDig fixed_moved;        ///< the fixed path, its start by that rule
   DigObjective objective;        ///< that the dig was planned for
@@ -41,6 +63,8 @@ struct ExperimentResult {
   /// path and of the start: (1 + gain / 100) = (1 + path_gain / 100) (1 + start_gain / 100).
   /// @throws Error (bad_input) if the dig compared with is worth nothing, as in no result of ours
   double gain_percent() const;
+  /// The same by another objective: what a dig planned for one is worth by the other.
+  double gain_percent(const DigObjective& by) const;
   /// Of the planned path over the fixed one, both begun by start_rule [%].
   double path_gain_percent() const;
   /// Of the fixed path begun by start_rule over its own start [%].
@@ -49,7 +73,6 @@ struct ExperimentResult {
 
 /// Digs once along the fixed path in soil of this density, estimates the density from the bulking
 /// factor of the height maps, plans a path for the estimate and digs along it in the true soil.
-/// All on level ground.
 ///
 /// @throws Error (bad_input) if the density is outside 0 .. 100, the fixed path cannot be dug, or
 /// no dig is feasible at the estimate

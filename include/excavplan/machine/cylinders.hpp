@@ -74,10 +74,11 @@ class Cylinder {
   /// Force of each cylinder for a torque of the joint [N m]; positive pushes [N].
   double force(double joint, double torque) const;
 
-  int count() const { return geometry_.count; }           ///< parallel cylinders
-  double shortest() const { return shortest_; }           ///< [m]
-  double longest() const { return longest_; }             ///< [m]
-  double stroke() const { return longest_ - shortest_; }  ///< over the joint's range [m]
+  const CylinderGeometry& geometry() const { return geometry_; }  ///< where it is fixed
+  int count() const { return geometry_.count; }                   ///< parallel cylinders
+  double shortest() const { return shortest_; }                   ///< [m]
+  double longest() const { return longest_; }                     ///< [m]
+  double stroke() const { return longest_ - shortest_; }          ///< over the joint's range [m]
 
  private:
   struct RodEnd {

@@ -61,7 +61,7 @@ struct LoggedDig : DigLogSource {
   std::optional<double> idle = {};
   bool subtracts_idle = false;  ///< whether idling is no part of the cost
   /// Of the meter, relative, the same in the whole log [-]; ours,
-  /// docs/methods.md#efficiency-of-runs.
+  /// docs/efficiency.md#what-the-numbers-are.
   double meter_sd = 0.02;
 };
 

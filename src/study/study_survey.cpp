@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "study/study_survey.hpp"
+
+#include <memory>
+#include <utility>
+
+#include <excavplan/simulation/depth_camera.hpp>
+#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/survey/scan_terrain.hpp>
+
+namespace excavplan {
+namespace {
+
+constexpr double camera_height = 3.0;  // above the ground [m]; ours
+constexpr double poor_share = 3.0;     // of the errors of a poor sensor; ours
+constexpr int averaged_frames = 30;    // of a camera; ours
+
+/// Half the pixels of the sensor in both directions, which make a study ten times faster and its
+/// surveys no better.
+DepthCamera study_camera(StudySensor sensor) {
+  DepthCamera camera = with_errors_of(sensor_of_word("d435i"), {});
+  camera.width /= 2;
+  camera.height /= 2;
+  camera.pattern_length /= 2.0;
+  camera.frames = averaged_frames;
+  if (sensor == StudySensor::poor) {
+    camera.noise *= poor_share;
+    camera.pattern_noise *= poor_share;
+    camera.disparity_step *= poor_share;
+  }
+  return camera;
+}
+
+Scan scan_of(std::vector<Eigen::Vector3d> points, const char* name) {
+  auto cloud = std::make_shared<Cloud>();
+  cloud->points = std::move(points);
+  cloud->width = cloud->points.size();
+  Scan scan;
+  scan.clouds = {std::move(cloud)};
+  scan.z_is_up = true;
+  scan.name = name;
+  return scan;
+}
+
+std::vector<CameraPlace> places_above(const std::vector<Eigen::Vector2d>& points,
+                                      const HeightMap& ground) {
+  std::vector<CameraPlace> places;
+  for (const Eigen::Vector2d& at : points) {
+    const double z = height_at(ground, at.x(), at.y());
+    const DepthCamera above = camera_above(at, z);
+    CameraPlace place{above.position, above.target};
+    place.position.z() = z + camera_height;
+    places.push_back(place);
+  }
+  return places;
+}
+
+Eigen::Vector2d middle_of(const DigPath& path) {
+  return {path.start_x - 0.5 * path.parameters.drag_length, 0.0};
+}
+
+SceneScans scans_of(const DigScene& scene, StudySensor sensor, std::uint64_t seed) {
+  if (sensor != StudySensor::lidar) {
+    return scan_scene(scene, study_camera(sensor), seed,
+                      places_above({middle_of(scene.path), scene.dump_at}, scene.before.surface()));
+  }
+  const Lidar lidar;
+  return {scan_surface(scene.before.surface(), lidar, 2 * seed),
+          scan_surface(scene.after.surface(), lidar, 2 * seed + 1)};
+}
+
+}  // namespace
+
+RelativeDensity surveyed_density(const DigScene& scene, StudySensor sensor, const SoilKind& soil,
+                                 const DensityLaw& law, std::uint64_t seed) {
+  if (sensor == StudySensor::none) {
+    return relative_density(law, {scene.volumes.bulking_factor, 0.0});
+  }
+  SceneScans points = scans_of(scene, sensor, seed);
+  DigScans scans{scan_of(std::move(points.before), "before"),
+                 scan_of(std::move(points.after), "after"), std::nullopt};
+  if (sensor == StudySensor::lidar) {
+    for (Scan* scan : {&scans.before, &scans.after}) scan->sensor_origin = Lidar().position;
+  }
+  DensityOptions options;
+  options.registered = false;
+  options.soil.kind = soil;
+  options.threads = 1;
+  const DensityEstimate estimate = estimate_density(scans, law, options);
+  if (!estimate.density) throw Error(ErrorKind::bad_input, "the scans give no density");
+  RelativeDensity density = *estimate.density;
+  density.trustworthy = estimate.trustworthy;
+  return density;
+}
+
+Terrain surveyed_ground(const Terrain& ground, const Machine& machine, StudySensor sensor,
+                        std::uint64_t seed) {
+  if (sensor == StudySensor::none) return ground;
+  const HeightMap surface = ground.surface();
+  std::vector<Eigen::Vector3d> points;
+  if (sensor == StudySensor::lidar) {
+    points = scan_surface(surface, Lidar(), seed);
+  } else {
+    const DepthCamera camera = study_camera(sensor);
+    for (const double x : {3.5, 5.5, 7.5}) {  // all of the reach
+      DepthCamera placed = camera;
+      const CameraPlace place = places_above({{x, 0.0}}, surface).front();
+      placed.position = place.position;
+      placed.target = place.target;
+      const auto seen = scan_surface(surface, placed, seed + static_cast<std::uint64_t>(x));
+      points.insert(points.end(), seen.begin(), seen.end());
+    }
+  }
+  return terrain_from_scan(scan_of(std::move(points), "ground"), planning_extent(machine),
+                           ground.bank.cell_size)
+      .terrain;
+}
+
+}  // namespace excavplan

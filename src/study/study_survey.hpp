@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/study/study.hpp>
+#include <excavplan/survey/scan_surface.hpp>
+
+namespace excavplan {
+
+/// The density that a sensor's scans of a dig give. @throws Error if they give none
+RelativeDensity surveyed_density(const DigScene& scene, StudySensor sensor, const SoilKind& soil,
+                                 const DensityLaw& law, std::uint64_t seed);
+
+/// The ground as the sensor shows it to the planner.
+Terrain surveyed_ground(const Terrain& ground, const Machine& machine, StudySensor sensor,
+                        std::uint64_t seed);
+
+}  // namespace excavplan

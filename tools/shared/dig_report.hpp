@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/simulation/scene.hpp>
+
+#include "shared/report.hpp"
+
+/// @file
+/// The pages about digs, without file, title and plot.
+
+namespace excavplan::tools {
+
+/// A simulated dig. @param scene  with the history of its dig
+Report scene_report(const Machine& machine, const DigScene& scene);
+
+/// In which a plan is dug once more for the page, for the ground that it leaves and its loads.
+struct PlanSite {
+  const SoilKind& soil;
+  double density_percent = 0.0;
+  const Terrain& ground;
+  const SimulatorKind& simulator;
+};
+
+/// A plan; without a dig, only the ground.
+Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& site);
+
+}  // namespace excavplan::tools

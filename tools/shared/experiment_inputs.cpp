@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/experiment_inputs.hpp"
+
+#include <memory>
+
+#include <excavplan/data_files.hpp>
+#include <excavplan/simulation/calibration.hpp>
+
+#include "base/text.hpp"
+#include "shared/results.hpp"
+
+namespace excavplan::tools {
+
+void declare_experiment(Arguments& arguments, ExperimentInputs& inputs) {
+  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
+                 "relative densities [%], or a list a,b,c; \"paper\": soft 10, medium 40, hard 80");
+  arguments.file("library", inputs.library,
+                 "path library (default: the shipped one of machine, soil and goal)");
+  arguments.text(
+      "law", "NAME|FILE", inputs.law,
+      "density law: default (that of machine, soil and fixed path), paper, or a law file");
+  arguments.flag("search", inputs.search, "search for each path instead of looking it up");
+  declare_goal(arguments, inputs.goal);
+  arguments.option("path", inputs.path, "fixed path");
+  arguments.choice("second", inputs.second, {"fresh", "left"},
+                   "ground of the second dig: fresh, or as the first dig left it");
+  arguments.soil(inputs.soil);
+  arguments.simulator(inputs.simulator);
+  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
+}
+
+/// Ours: the densities of the paper's Table 1 are not published as text.
+std::vector<ExperimentCondition> conditions_of(const ExperimentInputs& inputs) {
+  if (inputs.densities == "paper") return {{"soft", 10.0}, {"medium", 40.0}, {"hard", 80.0}};
+  std::vector<ExperimentCondition> conditions;
+  for (const double density : parse_densities("--densities", inputs.densities)) {
+    conditions.push_back({readable(density) + " %", density});
+  }
+  return conditions;
+}
+
+ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& machine,
+                             const SoilKind& soil) {
+  ExperimentOptions options;
+  options.fixed_path = inputs.path;
+  PlanOptions& plan = options.plan;
+  plan.method = inputs.search ? PlanMethod::search : PlanMethod::library;
+  plan.search.objective = objective_of(inputs.goal);
+  if (inputs.library || !inputs.search) {
+    plan.library = std::make_shared<PathLibrary>(
+        inputs.library ? load_path_library(*inputs.library)
+                       : shipped_library(machine, soil, plan.search.objective));
+  }
+  plan.search.seed = inputs.seed;
+  plan.search.threads = static_cast<unsigned>(inputs.threads);
+  plan.simulator = simulator_of_word(inputs.simulator);
+  plan.cell_size = inputs.cell_size;
+  if (inputs.second == "left") options.second = SecondGround::left;
+  return options;
+}
+
+DensityLaw law_of(const ExperimentInputs& inputs, const Machine& machine, const SoilKind& soil) {
+  const bool own = inputs.law == "default";
+  if (own && to_vector(inputs.path) != to_vector(paper_fixed_path())) {
+    return law_of(calibrate_path(machine, soil, inputs.path));
+  }
+  const std::string name = own ? machine.name + "-" + soil.name : inputs.law;
+  return load_density_law(shipped_or_file("laws", name));
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/experiment/experiment.hpp>
+
+#include "shared/goal_inputs.hpp"
+#include "shared/tool.hpp"
+
+/// @file
+/// What the command line says of an experiment.
+
+namespace excavplan::tools {
+
+struct ExperimentInputs {
+  std::string densities = "paper";
+  DigParameters path = paper_fixed_path();
+  std::string soil = "loam";
+  std::string simulator = default_simulator().word;
+  std::optional<std::string> library;
+  GoalInputs goal{info_of(DigObjective::Goal::energy).word};
+  std::string law = "default";
+  std::string second = "fresh";
+  bool search = false;
+  double cell_size = 0.05;
+  std::uint64_t seed = 1;
+  std::uint64_t threads = 0;
+};
+
+void declare_experiment(Arguments& arguments, ExperimentInputs& inputs);
+
+struct ExperimentCondition {
+  std::string name;
+  double density = 0.0;  ///< [%]
+};
+std::vector<ExperimentCondition> conditions_of(const ExperimentInputs& inputs);
+
+ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& machine,
+                             const SoilKind& soil);
+
+/// The default is the shipped one on the paper's path, on another one of digs along that.
+DensityLaw law_of(const ExperimentInputs& inputs, const Machine& machine, const SoilKind& soil);
+
+}  // namespace excavplan::tools

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <excavplan/study/study.hpp>
+
+#include "shared/tool.hpp"
+
+/// @file
+/// run-experiment --study: the files of a study, and what is printed of it.
+
+namespace excavplan::tools {
+
+struct StudyInputs {
+  std::optional<std::string> folder;
+  double runs = 1.0;  ///< factor on their number
+};
+
+void declare_study(Arguments& arguments, StudyInputs& inputs);
+
+/// Runs the default study and writes its files into the folder: study.json with an entry per
+/// condition, runs.csv with a row per run, study.md with the table to read.
+Outcome study(const Machine& machine, const StudyInputs& inputs, std::uint64_t seed,
+              std::uint64_t threads, Console& console);
+
+}  // namespace excavplan::tools
