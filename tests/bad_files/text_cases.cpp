@@ -236,6 +236,9 @@ BadFiles bad_tables(const string& format) {
   BadFiles files;
   const string valid = valid_files(format).front();
   add_spoiled_text(files, valid, false);
+  for (BadFile& file : files) {
+    if (file.name.rfind("UTF-16", 0) == 0) file.expected = same;
+  }
   const std::size_t names_end = valid.find('\n', valid.front() == '#' ? valid.find('\n') + 1 : 0);
   const string names = valid.substr(0, names_end);
   const string rows = valid.substr(names_end + 1);
