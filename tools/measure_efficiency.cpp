@@ -1,47 +1,43 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <limits>
-
-#include <excavplan/survey/efficiency.hpp>
-
-#include "base/json.hpp"
-#include "shared/logged_dig.hpp"
+#include "shared/efficiency_runs.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
 const About about = {
     "measure-efficiency",
     "measures the soil that a real dig lifts per fuel or energy, and the gain of a second dig. A "
-    "log is a CSV file with the column time_s and one of: fuel_flow_ml_per_s; fuel_flow_l_per_h; "
-    "power_w; boom_power_w, arm_power_w and bucket_power_w (negative joint power counts as 0).",
+    "log is a table as spreadsheets and loggers write it, with a time and one of: fuel flow "
+    "(fuel_flow_ml_per_s, 'fuel flow [L/h]' and so on); power; power of each joint; torque and "
+    "rate of each joint; pressures and piston speed of each cylinder. Negative joint power counts "
+    "as 0.",
     {{"measure-efficiency fixed.csv planned.csv --volume 0.42 --second-volume 0.41",
       "fuel logs of two digs and the soil volume in the bucket after each"},
      {"measure-efficiency day.csv --from 61.5 --to 70 --mass 780kg", "one dig of a longer log"},
      {"measure-efficiency dig.csv --dump-before heap0.pcd --dump-after heap1.pcd",
-      "the volume from scans of the dump area"}},
+      "the volume from scans of the dump area"},
+     {"measure-efficiency --runs plan.csv --against operator.csv",
+      "two sets of runs, with a test"}},
     true};
 
-struct Inputs {
-  RunInputs first;
-  RunInputs second;
-  ScanFrames frames;
-  std::optional<double> cell_size;
-};
-
-void declare(Arguments& arguments, Inputs& inputs) {
+void declare(Arguments& arguments, EfficiencyInputs& inputs) {
   arguments.positional("RUN.csv", inputs.first.log, "log of a dig");
-  arguments.require("RUN.csv");
   arguments.positional("SECOND.csv", inputs.second.log, "log of a second dig to compare");
   inputs.first.declare(arguments, "", "");
   inputs.second.declare(arguments, "second-", ", second dig");
+  arguments.text(
+      "runs", "TABLE|FOLDER", inputs.runs,
+      "instead of RUN.csv a set of runs: a table with a column file, or a folder of logs");
+  arguments.text("against", "TABLE|FOLDER", inputs.against, "set of runs to compare it with");
+  inputs.logs.declare(arguments);
+  arguments.flag("own-meters", inputs.own_meters,
+                 "each run had its own meter, whose errors are part of that of the gain");
   const auto has_scans = [&inputs] {
-    return inputs.first.dump_before.has_value() || inputs.second.dump_before.has_value();
+    return inputs.first.has_scans() || inputs.second.has_scans() || inputs.runs;
   };
-  arguments.only_if({has_scans, "there are no scans of a dump area"}, [&] {
+  arguments.only_if({has_scans, "there are no scans"}, [&] {
     arguments.option(
         "area", inputs.frames.area,
         "ignore points of the clouds outside this area (default: where both have points)");
@@ -53,70 +49,14 @@ void declare(Arguments& arguments, Inputs& inputs) {
   });
 }
 
-/// Of the dump area alone, what the library says of dig and dump area.
-const OptionNames heap_options = {
-    {"; --dig-area and --dump-area take it in, if it belongs to them", ""},
-    {"--dig-area and --dump-area", "--area"},
-    {"BEFORE and AFTER", "--dump-before and --dump-after"},
-    cell_option.back()};
-
-nlohmann::ordered_json to_json(const DigEfficiency& run) {
-  nlohmann::ordered_json json = {{"file", run.file}, {"duration_s", run.duration}};
-  for (const char* key :
-       {"volume_m3", "volume_sd_m3", "mass_kg", "mass_sd_kg", "fuel_ml", "energy_kj", "efficiency",
-        "efficiency_sd", "efficiency_unit", "efficiency_m3_per_ml", "efficiency_m3_per_kj",
-        "efficiency_kg_per_ml", "efficiency_kg_per_kj"}) {
-    json[key] = nullptr;
-  }
-  const bool is_volume = run.payload.kind == Lifted::volume;
-  json[is_volume ? "volume_m3" : "mass_kg"] = run.payload.amount.value;
-  json[is_volume ? "volume_sd_m3" : "mass_sd_kg"] = run.payload.amount.sd;
-  json[run.spent == Spent::fuel ? "fuel_ml" : "energy_kj"] = run.cost;
-  json["efficiency"] = run.value().value;
-  json["efficiency_sd"] = run.value().sd;
-  json["efficiency_unit"] = run.unit();
-  json["efficiency_" + run.unit()] = run.value().value;
-  return json;
-}
-
-std::string line(const DigEfficiency& run) {
-  const Measured& payload = run.payload.amount;
-  return run.file + ": " + readable(payload.value, payload.sd) +
-         (run.payload.kind == Lifted::volume ? " m3, " : " kg, ") + readable(run.cost) +
-         (run.spent == Spent::fuel ? " mL in " : " kJ in ") + readable(run.duration) +
-         " s: " + readable(run.value().value, run.value().sd) + " " + run.symbol();
-}
-
-DigEfficiency measure(const RunInputs& inputs, const Inputs& all, Outcome& outcome) {
-  LoggedDig dig = inputs.dig(all.frames);
-  dig.cell_size = all.cell_size;
-  DigEfficiency run = naming_options(heap_options, [&] {
-    return with_frame_hint(pair_frame_hint, [&] { return measure_efficiency(dig); });
-  });
-  outcome.json["runs"].push_back(to_json(run));
-  outcome.lines.push_back(line(run));
-  for (const Warning& each : run.warnings) {
-    outcome.warnings.push_back(
-        {each.code, with_option_names(each.message, heap_options), each.ends_trust});
-  }
-  outcome.trustworthy = outcome.trustworthy && run.trustworthy;
-  return run;
-}
-
-Outcome work(const Inputs& inputs) {
-  if (inputs.second.any() && !inputs.second.log) {
-    usage_error("SECOND.csv is missing, but options of a second dig are given");
-  }
+Outcome work(const EfficiencyInputs& inputs) {
   Outcome outcome;
   outcome.json["runs"] = nlohmann::ordered_json::array();
-  const DigEfficiency first = measure(inputs.first, inputs, outcome);
-  Measured better{unknown, unknown};
-  if (inputs.second.log) {
-    better = efficiency_gain(first, measure(inputs.second, inputs, outcome));
-    outcome.lines.push_back("gain of the second: " + readable(better.value, better.sd) + " %");
+  if (inputs.runs || inputs.against) {
+    compare_sets(inputs, outcome);
+  } else {
+    compare_two(inputs, outcome);
   }
-  outcome.json["gain_percent"] = better.value;
-  outcome.json["gain_sd_percent"] = better.sd;
   outcome.json["trustworthy"] = outcome.trustworthy;
   return outcome;
 }

@@ -9,6 +9,7 @@
 #include "machine/dig_path_text.hpp"
 #include "shared/dig_report.hpp"
 #include "shared/figures.hpp"
+#include "shared/fuel_log.hpp"
 #include "shared/joint_loads.hpp"
 #include "shared/results.hpp"
 #include "shared/scene_scans.hpp"
@@ -37,6 +38,7 @@ struct Inputs {
   double cell_size = 0.05;
   std::uint64_t seed = 1;
   SceneScanInputs scans;
+  FuelLogInputs fuel_log;
   bool broken = false;
   BlockSettings blocks;
   std::optional<std::string> history, plot, report;
@@ -71,9 +73,10 @@ void declare(Arguments& arguments, Inputs& inputs) {
             "0: the blocks are undisturbed soil, 1: soil as loose as other dumped soil");
       });
   arguments.only_if(
-      {[&inputs] { return inputs.broken || inputs.scans.any(); },
-       "there are neither scans (--before, --after) nor --blocks"},
-      [&] { arguments.option("seed", inputs.seed, "seed of the scans' noise and of the blocks"); });
+      {[&inputs] { return inputs.broken || inputs.scans.any() || inputs.fuel_log.file; },
+       "there are neither scans (--before, --after) nor --blocks nor a --fuel-log"},
+      [&] { arguments.option("seed", inputs.seed, "seed of noise and blocks"); });
+  inputs.fuel_log.declare(arguments);
   arguments.output("history", inputs.history, "write the loads of each step, CSV");
   arguments.plot(inputs.plot, "the section of the dig");
   arguments.report(inputs.report);
@@ -98,7 +101,8 @@ SceneOptions options_of(const Inputs& inputs) {
 void write_files(const Inputs& inputs, const Machine& machine, const DigScene& scene,
                  Outcome& outcome) {
   write_scans(inputs.scans, scene, inputs.seed);
-  if (inputs.history) write_file(*inputs.history, to_csv(machine, scene.dig.history));
+  inputs.fuel_log.write(machine, scene, inputs.seed);
+  if (inputs.history) write_file(*inputs.history, to_csv(machine, scene));
   if (!inputs.plot && !inputs.report) return;
   const std::string title =
       "Dig in " + scene.soil + " at " + readable(scene.density_percent) + " % relative density";

@@ -3,12 +3,13 @@
 #include "base/table.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include <excavplan/error.hpp>
 
 #include "base/files.hpp"
-#include "base/read_double.hpp"
+#include "base/table_dialect.hpp"
+#include "base/table_text.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -16,62 +17,38 @@ namespace {
 
 using std::string_view;
 
-constexpr std::size_t most_columns = 1000;  // ours
-constexpr std::size_t longest_name = 40;    // that a message shows [byte]
-
-string_view trimmed(string_view text) {
-  constexpr string_view blanks = " \t\r\"";
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-/// What stands before the next `end`, which is taken off with it.
-string_view taken(string_view& text, char end) {
-  const string_view before = text.substr(0, text.find(end));
-  text.remove_prefix(std::min(text.size(), before.size() + 1));
-  return before;
-}
-
-/// Of a line that is not empty, up to one more than there may be columns.
-void split(string_view line, std::vector<string_view>& fields) {
-  fields.clear();
-  bool goes_on = true;
-  while (goes_on && fields.size() <= most_columns) {
-    const string_view field = taken(line, ',');
-    goes_on = field.data() + field.size() != line.data();
-    fields.push_back(trimmed(field));
-  }
-}
+constexpr std::size_t longest_name = 40;  // that a message shows [byte]
 
 [[noreturn]] void refuse_line(const std::string& path, std::size_t line, const std::string& why) {
   throw Error(ErrorKind::bad_file, path + ": line " + std::to_string(line) + ": " + why);
 }
 
+/// The delimiter of a first line as spreadsheets read and write it, "sep=;".
+std::optional<char> stated_delimiter(string_view text) {
+  constexpr string_view key = "sep=";
+  const std::size_t end = std::min(text.size(), text.find_first_of("\r\n"));
+  if (end != key.size() + 1 || text.substr(0, key.size()) != key) return std::nullopt;
+  return text[key.size()];
+}
+
 }  // namespace
 
-Table Table::read(const std::string& path) {
+Table Table::read(const std::string& path, const TableDialect& stated) {
   Table table;
   table.path_ = path;
-  const std::string content = read_file(path, most_table_bytes);
-  const auto lines = static_cast<std::size_t>(std::count(content.begin(), content.end(), '\n')) + 1;
+  table.text_ = table_text(path, read_file(path, most_table_bytes));
+  table.dialect_ = stated;
+  const auto written = stated_delimiter(table.text_);
+  if (written) table.begin_ = table.text_.find_first_of("\r\n");
+  table.begin_ = std::min(table.begin_, table.text_.size());
+  const string_view text = string_view(table.text_).substr(table.begin_);
+  auto& [delimiter, mark] = table.dialect_;
+  if (!delimiter) delimiter = written ? *written : find_delimiter(path, text);
+  if (!mark) mark = find_decimal_mark(path, text, *delimiter);
+  TableRecords records(path, text, *delimiter);
   std::vector<string_view> fields;
-  std::size_t number = 0;
-  for (string_view rest = content; !rest.empty();) {
-    ++number;
-    string_view line = taken(rest, '\n');
-    if (!is_printable(line)) refuse_line(path, number, "found a control character");
-    line = trimmed(line.substr(0, line.find('#')));
-    if (line.empty()) continue;
-    split(line, fields);
-    if (table.names_.empty()) {
-      table.add_names(fields, number);
-      const std::size_t most_rows = content.size() / (2 * fields.size());
-      for (auto& column : table.columns_) column.reserve(std::min(lines, most_rows));
-    } else {
-      table.add_row(fields, number);
-    }
-  }
+  if (records.next(fields)) table.add_names(fields, records.line());
+  while (records.next(fields)) table.add_row(fields, records.line());
   if (table.rows() == 0) {
     throw Error(ErrorKind::bad_file,
                 path + ": expected a line of column names and lines of numbers");
@@ -80,14 +57,19 @@ Table Table::read(const std::string& path) {
 }
 
 void Table::add_names(const std::vector<string_view>& names, std::size_t line) {
-  if (names.size() > most_columns) {
-    refuse_line(
-        path_, line,
-        "found more than " + std::to_string(most_columns) + " columns, expected at most that");
+  if (names.size() > most_table_columns) {
+    refuse_line(path_, line,
+                "found more than " + std::to_string(most_table_columns) +
+                    " columns, expected at most that");
+  }
+  const auto is_number = [](string_view name) { return number_of(name, '.').has_value(); };
+  if (std::all_of(names.begin(), names.end(), is_number)) {
+    refuse_line(path_, line, "found numbers, expected names of columns");
   }
   for (const string_view name : names) {
-    if (index(name))
+    if (!name.empty() && index(name)) {
       refuse_line(path_, line, "column " + excavplan::quoted(name) + " appears twice");
+    }
     names_.emplace_back(name);
   }
   columns_.resize(names.size());
@@ -100,20 +82,38 @@ void Table::add_row(const std::vector<string_view>& fields, std::size_t line) {
                     std::to_string(names_.size()));
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    double value = 0.0;
-    const char* const end = fields[i].data() + fields[i].size();
-    const auto [stop, error] = read_double(fields[i].data(), end, value);
-    if (error != std::errc{} || stop != end || !std::isfinite(value)) {
-      refuse_line(path_, line,
-                  safe_text(names_[i], longest_name) + " is " + excavplan::quoted(fields[i]) +
-                      ", expected a number");
+    Column& column = columns_[i];
+    const auto value = number_of(fields[i], *dialect_.decimal_mark);
+    if (!value && !column.bad_field) {
+      column.bad_row = rows();
+      column.bad_field = excavplan::quoted(fields[i]);
     }
-    columns_[i].push_back(value);
+    if (!column.bad_field) column.values.push_back(*value);
   }
+  lines_.push_back(static_cast<std::uint32_t>(line));
 }
 
 const std::vector<double>& Table::column(const std::string& name) const {
-  if (const auto at = index(name)) return columns_[*at];
+  const Column& column = columns_[index_of(name)];
+  if (column.bad_field) {
+    refuse_line(path_, line(column.bad_row),
+                safe_text(name, longest_name) + " is " + *column.bad_field + ", expected a number");
+  }
+  return column.values;
+}
+
+std::vector<std::string> Table::texts(const std::string& name) const {
+  const std::size_t column = index_of(name);
+  TableRecords records(path_, string_view(text_).substr(begin_), *dialect_.delimiter);
+  std::vector<string_view> fields;
+  std::vector<std::string> texts;
+  records.next(fields);
+  while (records.next(fields)) texts.emplace_back(fields[column]);
+  return texts;
+}
+
+std::size_t Table::index_of(const std::string& name) const {
+  if (const auto at = index(name)) return *at;
   std::string found;
   for (const std::string& other : names_) {
     found += (found.empty() ? "" : ", ") + safe_text(other, longest_name);

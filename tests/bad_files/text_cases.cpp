@@ -236,6 +236,9 @@ BadFiles bad_tables(const string& format) {
   BadFiles files;
   const string valid = valid_files(format).front();
   add_spoiled_text(files, valid, false);
+  for (BadFile& file : files) {
+    if (file.name.rfind("UTF-16", 0) == 0) file.expected = same;
+  }
   const std::size_t names_end = valid.find('\n', valid.front() == '#' ? valid.find('\n') + 1 : 0);
   const string names = valid.substr(0, names_end);
   const string rows = valid.substr(names_end + 1);
@@ -257,13 +260,13 @@ BadFiles bad_tables(const string& format) {
   add("a field too many", refused, names + "\n" + replaced(row, "\n", ",1\n") + rest);
   add("a field missing", refused, names + "\n" + row.substr(row.find(',') + 1) + rest);
   add("a comma at the end", refused, names + "\n" + replaced(row, "\n", ",\n") + rest);
-  add("semicolons", refused, [&] {
+  add("semicolons", same, [&] {
     string text = valid;
     for (char& c : text) c = c == ',' ? ';' : c;
     return text;
   }());
   add("decimal commas", refused, names + "\n\"1,5\"" + row.substr(row.find(',')) + rest);
-  add("tabs", refused, [&] {
+  add("tabs", same, [&] {
     string text = valid;
     for (char& c : text) c = c == ',' ? '\t' : c;
     return text;

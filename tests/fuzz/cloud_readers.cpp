@@ -35,8 +35,11 @@ std::string read_pairs(const std::string& path) {
 }
 
 std::string read_log(const std::string& path) {
-  const Payload payload{Lifted::mass, {500.0, 10.0}};
-  const DigEfficiency found = measure_efficiency({path, {}, {}, payload, {}, 1});
+  LoggedDig dig;
+  dig.file = path;
+  dig.lifted = Payload{Lifted::mass, {500.0, 10.0}};
+  dig.threads = 1;
+  const DigEfficiency found = measure_efficiency(dig);
   return Said().add("cost", found.cost).add("duration", found.duration).text();
 }
 

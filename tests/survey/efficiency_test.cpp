@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
@@ -33,14 +34,18 @@ class Efficiency : public testing::Test {
 TEST_F(Efficiency, IsPayloadOverEnergyWithItsError) {
   const DigEfficiency found = measure_efficiency(dig(2000.0));
   EXPECT_DOUBLE_EQ(found.cost, 20.0);
+  EXPECT_EQ(found.log.time, (std::vector<double>{0.0, 10.0}));
+  EXPECT_EQ(found.log.rate(), (std::vector<double>{2000.0, 2000.0}));
   EXPECT_DOUBLE_EQ(found.value().value, 25.0);
-  EXPECT_DOUBLE_EQ(found.value().sd, 0.25);
+  EXPECT_DOUBLE_EQ(found.value().sd, 25.0 * std::hypot(0.01, 0.02));
   EXPECT_EQ(found.unit(), "kg_per_kj");
   EXPECT_EQ(found.symbol(), "kg/kJ");
   EXPECT_TRUE(found.trustworthy);
   const Measured gain = efficiency_gain(measure_efficiency(dig(2500.0)), found);
   EXPECT_NEAR(gain.value, 25.0, 1e-12);
   EXPECT_NEAR(gain.sd, 125.0 * std::hypot(0.01, 0.01), 1e-12);
+  const Measured apart = efficiency_gain(measure_efficiency(dig(2500.0)), found, true);
+  EXPECT_NEAR(apart.sd, 125.0 * std::sqrt(2.0) * std::hypot(0.01, 0.02), 1e-12);
 }
 
 /// A square heap of 0.4 m^3 on level ground, a point every 2 cm.

@@ -80,7 +80,7 @@ TEST_F(MeasureEfficiency, WarnsOfOptionsOfScansThatAreNotGiven) {
   const json ignored = measured({file, "--mass", "480", "--level", "--cell", "0.1"});
   ASSERT_EQ(codes(ignored).back(), "options_ignored");
   EXPECT_EQ(ignored["warnings"].back()["message"],
-            "without effect: --level, --cell; there are no scans of a dump area");
+            "without effect: --level, --cell; there are no scans");
   EXPECT_EQ(ignored["warnings"].size(), plain["warnings"].size() + 1);
 }
 
@@ -250,8 +250,8 @@ TEST_F(MeasureEfficiency, PeopleGetALineForEachRunAndTheGain) {
   const std::string file = log("a.csv", "fuel_flow_ml_per_s", "0,2\n10,2\n");
   const ProgramResult result = run({file, file, "--volume", "0.4", "--second-volume", "0.5"});
   EXPECT_EQ(result.code, 0);
-  EXPECT_EQ(result.out, file + ": 0.400 m3, 20.0 mL in 10.0 s: 0.0200 m3/mL\n" + file +
-                            ": 0.500 m3, 20.0 mL in 10.0 s: 0.0250 m3/mL\n" +
+  EXPECT_EQ(result.out, file + ": 0.400 m3, 20.00 ± 0.40 mL in 10.0 s: 0.0200 m3/mL\n" + file +
+                            ": 0.500 m3, 20.00 ± 0.40 mL in 10.0 s: 0.0250 m3/mL\n" +
                             "gain of the second: 25.0 %\n");
   EXPECT_EQ(result.err, "");
 }
@@ -287,9 +287,9 @@ TEST_F(MeasureEfficiency, TimeMustRise) {
     return refusal(3, {log("a.csv", "power_w", rows), "--mass", "1"});
   };
   EXPECT_EQ(message("0,1\n1,1\n0.5,1\n"),
-            "a.csv: row 3 of the numbers: time_s is 0.5, must be above 1 of the row before");
+            "a.csv: line 4: time_s is 0.5 s, must be above 1 s of the row before");
   EXPECT_EQ(message("0,1\n0,1\n"),
-            "a.csv: row 2 of the numbers: time_s is 0, must be above 0 of the row before");
+            "a.csv: line 3: time_s is 0 s, must be above 0 s of the row before");
   EXPECT_EQ(message("0,1\n"), "a.csv: holds one row, at least 2 are needed");
 }
 
@@ -299,26 +299,28 @@ TEST_F(MeasureEfficiency, ColumnsMustGiveEitherFuelOrEnergy) {
   };
   EXPECT_EQ(message("speed", "0,1\n1,1\n"),
             "a.csv: has no column of fuel or power, expected one of fuel_flow_ml_per_s, "
-            "fuel_flow_l_per_h, power_w, or boom_power_w with arm_power_w and bucket_power_w");
+            "fuel_flow_l_per_h, power_w, or of boom, arm and bucket each boom_power_w, "
+            "boom_torque_n_m with boom_rate_rad_per_s, or boom_head_pressure_pa with "
+            "boom_rod_pressure_pa and boom_piston_speed_m_per_s");
   EXPECT_EQ(message("fuel_flow_ml_per_s,power_w", "0,1,1\n1,1,1\n"),
-            "a.csv: holds both fuel_flow_ml_per_s and power_w, expected one of them");
+            "a.csv: holds both fuel_flow_ml_per_s and power_w, expected one of them: give --meter");
   EXPECT_EQ(message("boom_power_w,arm_power_w", "0,1,1\n1,1,1\n"),
-            "a.csv: has no column 'bucket_power_w', its columns are: time_s, boom_power_w, "
-            "arm_power_w");
+            "a.csv: has no column of bucket_power, but of another joint; all three are needed");
   EXPECT_EQ(message("power_w", "0,-5\n1,-5\n"),
-            "a.csv: power_w adds up to 0 kJ from 0 to 1 s, must be above 0");
+            "a.csv: power adds up to 0 kJ from 0 to 1 s, must be above 0");
 }
 
 TEST_F(MeasureEfficiency, PayloadIsGivenInOneWay) {
   const std::string a = log("a.csv", "power_w", "0,1\n1,1\n");
   const std::string ask =
-      "payload of a.csv: give exactly one of --volume, --mass, or --dump-before with "
-      "--dump-after";
+      "payload of a.csv: give exactly one of --volume, --bank-volume, --mass, or scans of dump, "
+      "pit or bucket (--dump-before with --dump-after and so on)";
   EXPECT_EQ(refusal(2, {a}), ask);
   EXPECT_EQ(refusal(2, {a, "--volume", "1", "--mass", "1"}), ask);
   EXPECT_EQ(refusal(2, {a, a, "--mass", "1"}),
-            "payload of a.csv: give exactly one of --second-volume, --second-mass, or "
-            "--second-dump-before with --second-dump-after");
+            "payload of a.csv: give exactly one of --second-volume, --second-bank-volume, "
+            "--second-mass, or scans of dump, pit or bucket (--second-dump-before with "
+            "--second-dump-after and so on)");
   EXPECT_EQ(refusal(2, {a, "--dump-before", "x"}),
             "--dump-before needs --dump-after, which is missing");
   EXPECT_EQ(refusal(2, {a, "--mass", "1", "--volume-sd", "1"}),
@@ -353,7 +355,8 @@ TEST_F(MeasureEfficiency, MissingAndForeignFilesAreNamed) {
   EXPECT_EQ(refusal(3, {a, "--dump-before", a, "--dump-after", a}),
             "a.csv: line 1: found 'time_s,power_w', expected numbers, or names of columns with x, "
             "y and z");
-  EXPECT_EQ(refusal(2, {}), "RUN.csv is missing: log of a dig");
+  EXPECT_EQ(refusal(2, {}),
+            "RUN.csv is missing: log of a dig; or a set of runs by --runs and --against");
   EXPECT_EQ(refusal(2, {a, "--volumes", "1"}), "unknown option --volumes, did you mean --volume?");
 }
 

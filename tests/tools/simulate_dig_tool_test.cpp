@@ -71,6 +71,13 @@ double farthest_from_zero(const std::vector<double>& values) {
   return farthest;
 }
 
+/// A machine whose arm stalls in dense soil.
+std::string weak_arm() {
+  json machine = json::parse(content_of(shipped("machines/zx120.json")));
+  machine["joints"]["arm"]["torque_n_m"] = 20000;
+  return machine.dump();
+}
+
 const std::string history_header =
     "phase,travelled_m,boom_rad,arm_rad,bucket_rad,soil_x_n,soil_z_n,boom_torque_n_m,"
     "arm_torque_n_m,bucket_torque_n_m,bucket_fill_m3";
@@ -82,7 +89,7 @@ TEST_F(Tools, ForceHistoryHasThePeaksOfTheResult) {
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             history_header +
                 ",boom_cylinder_m,arm_cylinder_m,bucket_cylinder_m,boom_cylinder_n,"
-                "arm_cylinder_n,bucket_cylinder_n");
+                "arm_cylinder_n,bucket_cylinder_n,time_s,joint_power_w");
   auto columns = columns_of(csv);
   double peak = 0.0;
   for (std::size_t i = 0; i < columns["soil_x_n"].size(); ++i) {
@@ -131,6 +138,48 @@ TEST_F(Tools, CylindersOfTheHistoryDoTheWorkOfTheirJoints) {
   }
 }
 
+TEST_F(Tools, ForceHistoryHoldsTimeAndPowerOfTheDig) {
+  const std::string file = folder.file("history.csv");
+  const json result = answer("simulate-dig", {"--density", "40", "--history", file});
+  auto columns = columns_of(content_of(file));
+  const auto& time = columns["time_s"];
+  const auto& power = columns["joint_power_w"];
+  double energy = 0.0;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    EXPECT_GT(time[i], time[i - 1]) << i;
+    energy += 0.5 * (power[i] + power[i - 1]) * (time[i] - time[i - 1]);
+  }
+  EXPECT_NEAR(energy / 1000.0, number(result, "/energy_kj"), 0.02 * number(result, "/energy_kj"));
+  EXPECT_NEAR(time.back(), number(result, "/duration_s"), 0.1);
+  const json measured = answer("measure-efficiency", {file, "--mass", "500"});
+  EXPECT_NEAR(number(measured, "/runs/0/energy_kj"), energy / 1000.0, 1e-6 * energy);
+  EXPECT_EQ(measured["runs"][0]["phases"], "marked");
+}
+
+TEST_F(Tools, FuelLogHoldsIdlingAndTheWorkOfTheCycle) {
+  const std::string file = folder.file("fuel.csv");
+  const Words words = {"--density", "40", "--fuel-log", file, "--seed", "5"};
+  const json result = answer("simulate-dig", words);
+  const std::string first = content_of(file);
+  EXPECT_EQ(first.substr(0, first.find('\n')), "time_s,fuel_flow_ml_per_s,phase");
+  const json run = answer("measure-efficiency", {file, "--volume", "0.2"}).at("runs").at(0);
+  // data/engines/zx120.json: 2.8 L/h, and 18.4 L/h for 70.9 kW of the shaft, half of it at the
+  // joints.
+  const double per_kilojoule = 18.4 / 3.6 / 70.9 / 0.5;
+  EXPECT_NEAR(number(run, "/idle/fuel_flow_ml_per_s"), 2.8 / 3.6, 0.01);
+  EXPECT_NEAR(number(run, "/dig/fuel_ml_above_idle"), per_kilojoule * number(result, "/energy_kj"),
+              0.25);
+  EXPECT_NEAR(number(run, "/dig/duration_s"), number(result, "/duration_s"), 0.2);
+  EXPECT_NEAR(number(run, "/cycle/duration_s"), number(result, "/cycle/time_s"), 0.2);
+  answer("simulate-dig", words);
+  EXPECT_EQ(content_of(file), first);
+  answer("simulate-dig", {"--density", "40", "--fuel-log", file, "--seed", "6"});
+  EXPECT_NE(content_of(file), first);
+  answer("simulate-dig", {"--density", "80", "--machine", folder.write("weak.json", weak_arm()),
+                          "--fuel-log", file});
+  EXPECT_EQ(content_of(file).find("swing"), std::string::npos);
+}
+
 TEST_F(Tools, MachineWithoutCylindersHasJointLoadsOnly) {
   json machine = json::parse(content_of(shipped("machines/zx120.json")));
   machine.erase("cylinders");
@@ -139,7 +188,7 @@ TEST_F(Tools, MachineWithoutCylindersHasJointLoadsOnly) {
                        "--history", file};
   const json result = answer("simulate-dig", words);
   const std::string csv = content_of(file);
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), history_header);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), history_header + ",time_s,joint_power_w");
   EXPECT_GT(number(result, "/joints/arm/peak_torque_kn_m"), 0.0);
   EXPECT_TRUE(result["joints"]["arm"]["cylinder"].is_null());
   const ProgramResult text = run_program("simulate-dig", words);
@@ -338,7 +387,8 @@ TEST_F(Tools, SettingsOfScansThatAreNotWrittenAreReported) {
   ASSERT_EQ(warning_codes(ignored), (Words{"options_ignored", "options_ignored"}));
   EXPECT_EQ(ignored["warnings"][0]["message"], "without effect: --noise; no scans are written");
   EXPECT_EQ(ignored["warnings"][1]["message"],
-            "without effect: --seed; there are neither scans (--before, --after) nor --blocks");
+            "without effect: --seed; there are neither scans (--before, --after) nor --blocks nor "
+            "a --fuel-log");
   const json used = answer("simulate-dig", words + Words{"--after", folder.file("after.pcd")});
   EXPECT_FALSE(warns(used, "options_ignored"));
 }

@@ -7,6 +7,7 @@
 
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "shared/dig_timing.hpp"
 #include "shared/quantity.hpp"
 
 namespace excavplan::tools {
@@ -86,7 +87,8 @@ std::vector<std::string> load_lines(const Machine& machine, const JointLoads& lo
   return lines;
 }
 
-std::string to_csv(const Machine& machine, const std::vector<ForceSample>& history) {
+std::string to_csv(const Machine& machine, const DigScene& scene) {
+  const std::vector<TimedStep> steps = timed_steps(machine, scene);
   std::string csv =
       "phase,travelled_m,boom_rad,arm_rad,bucket_rad,soil_x_n,soil_z_n,boom_torque_n_m,"
       "arm_torque_n_m,bucket_torque_n_m,bucket_fill_m3";
@@ -95,7 +97,9 @@ std::string to_csv(const Machine& machine, const std::vector<ForceSample>& histo
         ",boom_cylinder_m,arm_cylinder_m,bucket_cylinder_m,boom_cylinder_n,arm_cylinder_n,"
         "bucket_cylinder_n";
   }
-  for (const ForceSample& sample : history) {
+  csv += ",time_s,joint_power_w";
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const ForceSample& sample = scene.dig.history[i];
     const JointAngles& joints = sample.joints;
     const JointAngles& torque = sample.torque;
     std::vector<double> row = {sample.travelled, joints[0],         joints[1], joints[2],
@@ -108,6 +112,7 @@ std::string to_csv(const Machine& machine, const std::vector<ForceSample>& histo
       const Eigen::Vector3d forces = cylinder_forces(*machine.cylinders, joints, torque);
       row.insert(row.end(), {forces[0], forces[1], forces[2]});
     }
+    row.insert(row.end(), {steps[i].time, steps[i].power});
     csv += '\n' + std::string(name(sample.phase));
     for (const double value : row) csv += ',' + number_text(value);
   }

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/machine/kinematics.hpp>
-#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/simulation/scene.hpp>
 
 /// @file
 /// Loads of the joints and of their cylinders in a dig, from its force history.
@@ -40,6 +40,6 @@ nlohmann::ordered_json to_json(const Machine& machine, const JointLoads& loads);
 std::vector<std::string> load_lines(const Machine& machine, const JointLoads& loads);
 
 /// CSV, a row per step of the dig; columns: docs/formats.md#force-history.
-std::string to_csv(const Machine& machine, const std::vector<ForceSample>& history);
+std::string to_csv(const Machine& machine, const DigScene& scene);
 
 }  // namespace excavplan::tools

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <excavplan/survey/efficiency.hpp>
 
@@ -12,29 +13,49 @@
 
 namespace excavplan::tools {
 
+/// How the logs of all runs are written and what of them counts.
+struct LogInputs {
+  std::optional<std::string> time_column, rate_column, idle;
+  std::string time_unit, rate_unit;
+  std::string delimiter = "auto", decimal = "auto", phases = "auto", count = "dig", meter = "auto";
+  std::string machine = "zx120";
+  bool subtracts_idle = false;
+  double meter_sd = 2.0;  ///< [%]
+
+  void declare(Arguments& arguments);
+  /// Into one run. @throws Error (bad_input)
+  void apply_to(LoggedDig& dig) const;
+};
+
+/// What an option or a table of runs calls an error of the library's about a log.
+extern const OptionNames log_options;
+
+/// A number with a standard deviation, "1.25" or "1.25,0.03"; 0 if there is none.
+/// @throws Error (bad_input) naming `what`
+Measured parse_measured(const std::string& what, const std::string& text);
+
 /// One dig as given on the command line.
 struct RunInputs {
   std::string prefix;  ///< of its options: empty or "second-"
   std::optional<std::string> log;
-  std::optional<double> volume;
-  std::optional<double> volume_sd;
-  std::optional<double> mass;
-  std::optional<double> mass_sd;
-  std::optional<std::string> dump_before;
-  std::optional<std::string> dump_after;
-  std::optional<double> from;
-  std::optional<double> to;
+  std::optional<double> volume, volume_sd, bank_volume, bank_volume_sd, mass, mass_sd;
+  std::optional<std::string> dump_before, dump_after, pit_before, pit_after, bucket_before,
+      bucket_after, bulking_factor;
+  std::optional<double> from, to;
 
   /// Binds the options of the dig, the log apart. `whose` follows their help.
   void declare(Arguments& arguments, const std::string& its_prefix, const std::string& whose);
   /// True if any of these options is given.
   bool any() const;
+  /// True if its content is to be measured in scans.
+  bool has_scans() const { return dump_before || pit_before || bucket_before; }
   /// @throws Error (bad_input) unless the payload is given exactly once
-  LoggedDig dig(const ScanFrames& frames) const;
+  LoggedDig dig(const ScanFrames& frames, const LogInputs& logs) const;
 
  private:
   std::string option(const std::string& name) const { return "--" + prefix + name; }
   void check() const;
+  BucketContent content(const ScanFrames& frames) const;
 };
 
 }  // namespace excavplan::tools

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/survey/efficiency.hpp>
+
+#include "shared/logged_dig.hpp"
+#include "shared/scans.hpp"
+#include "shared/tool.hpp"
+
+/// @file
+/// Runs measured and compared, two or two sets.
+
+namespace excavplan::tools {
+
+/// What measure-efficiency is given.
+struct EfficiencyInputs {
+  RunInputs first;
+  RunInputs second;
+  LogInputs logs;
+  bool own_meters = false;
+  std::optional<std::string> runs, against;
+  ScanFrames frames;
+  std::optional<double> cell_size;
+};
+
+/// One run or two: their efficiencies and the gain of the second. Each has its log, with time and
+/// rate for figures.
+std::vector<DigEfficiency> compare_two(const EfficiencyInputs& inputs, Outcome& outcome);
+
+/// The set of --runs against that of --against.
+void compare_sets(const EfficiencyInputs& inputs, Outcome& outcome);
+
+}  // namespace excavplan::tools
