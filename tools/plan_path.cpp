@@ -87,7 +87,7 @@ PlanOptions options_of(const Inputs& inputs, Console& console) {
   if (inputs.library) {
     options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
   }
-  options.search = search_options(inputs.dig_search, console);
+  options.search = search_options(inputs.dig_search, use_of(inputs), console);
   options.simulator = simulator_of_word(inputs.simulator);
   options.cell_size = inputs.cell_size;
   return options;
@@ -118,6 +118,7 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"machine", machine.name},
                        {"simulator", inputs.simulator},
                        {"wall_time_s", watch.seconds()}});
+  if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const std::string title = (plan.dig ? "Planned dig in " : "No dig in ") + soil.name + " at " +
                             readable(density.percent) + " % relative density";
   const std::string figure =

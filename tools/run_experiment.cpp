@@ -73,7 +73,14 @@ void add_failure(const ExperimentCondition& condition, const std::string& why, O
   outcome.warnings.push_back({"condition_failed", condition.name + ": " + why});
 }
 
+OptionNames names_of_options() {
+  OptionNames names = cell_option;
+  names.insert(names.end(), search_option_names.begin(), search_option_names.end());
+  return names;
+}
+
 Outcome work(const Inputs& inputs, Console& console) {
+  check(inputs.experiment.method);
   const Machine machine = machine_named(inputs.machine);
   const ExperimentInputs& experiment = inputs.experiment;
 #ifdef EXCAVPLAN_STUDY
@@ -88,6 +95,7 @@ Outcome work(const Inputs& inputs, Console& console) {
     usage_error("--report shows digs on fresh ground, not with --second left");
   }
   const std::vector<ExperimentCondition> conditions = conditions_of(experiment);
+  const OptionNames names = names_of_options();
   std::vector<NamedExperiment> done;
   std::string failure;
   Outcome outcome;
@@ -97,7 +105,7 @@ Outcome work(const Inputs& inputs, Console& console) {
     const auto count = static_cast<double>(outcome.json["conditions"].size());
     console.progress(count / static_cast<double>(conditions.size()), condition.name);
     try {
-      done.push_back({condition.name, naming_options(cell_option, [&] {
+      done.push_back({condition.name, naming_options(names, [&] {
                         return run_experiment(machine, soil, law, condition.density, options);
                       })});
       add(done.back(), outcome);
@@ -112,6 +120,9 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.json["regression"] = regression_json(machine, soil, options);
   outcome.lines.push_back(regression_line(outcome.json["regression"]));
   outcome.json.update(goal_json(options.plan.search.objective));
+  if (experiment.search) {
+    outcome.json["search"] = search_settings_json(machine, options.plan.search);
+  }
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
   if (inputs.report) {

@@ -18,7 +18,7 @@ using Origin = SearchRecord::Origin;
 class Population {
  public:
   Population(const GeneticAlgorithm& method, const SearchTask& task, SearchLog& log)
-      : method_(method), task_(task), log_(log) {
+      : method_(method), elites_(static_cast<std::size_t>(method.elites)), task_(task), log_(log) {
     std::vector<Candidate> first;
     for (const VectorXd& point : task.start) first.push_back({point, Origin::given, {}});
     for (int i = static_cast<int>(first.size()); i < method.population; ++i) {
@@ -32,7 +32,7 @@ class Population {
   }
 
   void breed(int generation) {
-    const std::size_t children = individuals_.size() - 1;
+    const std::size_t children = individuals_.size() - elites_;
     std::vector<Candidate> next;
     for (int i = 0; next.size() < children; ++i) {
       Random random = stream(generation, i);
@@ -46,7 +46,7 @@ class Population {
       next.push_back(std::move(a));
       if (next.size() < children) next.push_back(std::move(b));
     }
-    individuals_.resize(1);  // elitism: sorted, the best is in front
+    individuals_.resize(elites_);  // sorted: the best are in front
     const std::vector<int> born = log_.evaluate(generation, next);
     individuals_.insert(individuals_.end(), born.begin(), born.end());
     sort();
@@ -67,8 +67,8 @@ class Population {
   }
 
   int tournament(Random& random) const {
-    const std::size_t rest = individuals_.size() - 1;
-    const auto draw = [&] { return 1 + static_cast<std::size_t>(random.index(rest)); };
+    const std::size_t rest = individuals_.size() - elites_;
+    const auto draw = [&] { return elites_ + static_cast<std::size_t>(random.index(rest)); };
     std::size_t winner = draw();
     for (int i = 1; i < method_.tournament; ++i) winner = std::min(winner, draw());
     return individuals_[winner];  // sorted: the lowest index is the fittest
@@ -98,6 +98,7 @@ class Population {
   }
 
   const GeneticAlgorithm& method_;
+  std::size_t elites_;
   const SearchTask& task_;
   SearchLog& log_;
   std::vector<int> individuals_;  // places in the log

@@ -62,6 +62,9 @@ void check(const GeneticAlgorithm& method, const SearchTask&) {
           method.crossover);
   require(method.mutation >= 0.0 && method.mutation <= 1.0, "mutation must be in 0 .. 1",
           method.mutation);
+  require(method.elites >= 0 && method.elites < method.population,
+          "elites must be in 0 .. population - 1 = " + std::to_string(method.population - 1),
+          method.elites);
 }
 
 void check(const MemeticSearch& method, const SearchTask& task) {
@@ -106,7 +109,7 @@ std::vector<VectorXd> clipped(const std::vector<VectorXd>& points, const SearchB
 /// Evaluations a method makes at most; a double, for the products know no bounds.
 double planned_evaluations(const GeneticAlgorithm& method, const SearchTask& task) {
   const double first = std::max<double>(method.population, static_cast<double>(task.start.size()));
-  return first + (method.generations - 1.0) * (method.population - 1.0);
+  return first + (method.generations - 1.0) * (method.population - method.elites);
 }
 
 double planned_evaluations(const MemeticSearch& method, const SearchTask&) {

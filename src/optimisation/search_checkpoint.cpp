@@ -104,7 +104,7 @@ std::string describe(const GeneticAlgorithm& method) {
   return "genetic algorithm: population " + std::to_string(method.population) + ", generations " +
          std::to_string(method.generations) + ", tournament " + std::to_string(method.tournament) +
          ", crossover " + number_text(method.crossover) + ", mutation " +
-         number_text(method.mutation);
+         number_text(method.mutation) + ", elites " + std::to_string(method.elites);
 }
 
 void require_checkpoint_place(const std::string& file) {

@@ -305,6 +305,11 @@ std::vector<KnownDig> known_start(const Task& task, DigPlan& plan) {
   return {};
 }
 
+/// The paper's algorithm begins at random, unless a dig or a library is given.
+bool begins_known(const Task& task) {
+  return task.options.library || std::holds_alternative<MemeticSearch>(task.options.search.method);
+}
+
 /// With the digs of the default method, unless the caller said how many.
 DigSearchOptions within_budget(const DigSearchOptions& search, bool uncertain) {
   DigSearchOptions options = search;
@@ -416,7 +421,7 @@ void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
                       DigSearchOptions options, DigPlan& plan) {
   require_own_checkpoint(task.machine, soils, task.ground, within_budget(options, true));
   int digs_of_likely = 0;
-  if (!task.level) {
+  if (!task.level && begins_known(task)) {
     const DigPlan likely = search_most_likely(task, soils, options);
     digs_of_likely = likely.evaluations;
     if (likely.dig) {
@@ -432,7 +437,7 @@ void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
 
 void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
   DigSearchOptions options = task.options.search;
-  if (options.start.empty()) options.start = known_start(task, plan);
+  if (options.start.empty() && begins_known(task)) options.start = known_start(task, plan);
   plan.start_rule = describe(options.start_rule);
   if (task.uncertain()) {
     search_uncertain(task, soils, options, plan);

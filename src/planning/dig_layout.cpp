@@ -73,16 +73,22 @@ bool KnownStrip::is_known(double x_min, double x_max) const {
          unknown_before_[static_cast<std::size_t>(last)];
 }
 
-DigLayout::DigLayout(const Machine& machine, const Terrain& terrain)
+DigLayout::DigLayout(const Machine& machine, const Terrain& terrain, const DigPathOptions& rules)
     : machine_(required(machine)),
+      rules_(rules),
       ground_(boom_plane_profile(terrain)),
       strip_(terrain, machine),
       room_(terrain, machine) {}
 
 std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& parameters,
                                                        double start_x,
-                                                       const DigPathOptions& options) const {
-  return checked(make_dig_path(machine_, parameters, start_x, ground_, options));
+                                                       const DigPathOptions& rules) const {
+  return checked(make_dig_path(machine_, parameters, start_x, ground_, rules));
+}
+
+std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& parameters,
+                                                       double start_x) const {
+  return path_from(parameters, start_x, rules_);
 }
 
 std::variant<DigPath, Infeasible> DigLayout::path_near(const DigParameters& parameters,
@@ -93,7 +99,7 @@ std::variant<DigPath, Infeasible> DigLayout::path_near(const DigParameters& para
 
 std::variant<DigPath, Infeasible> DigLayout::path_of_largest_margin(
     const DigParameters& parameters) const {
-  return checked(make_dig_path_anywhere(machine_, parameters, ground_));
+  return checked(make_dig_path_anywhere(machine_, parameters, ground_, rules_));
 }
 
 /// What a profile of the ground does not tell: a cell that the bucket passes, or one just ahead of

@@ -29,19 +29,23 @@ class KnownStrip {
 class DigLayout {
  public:
   /// @throws Error (bad_input) as require_machine() and require_terrain()
-  DigLayout(const Machine& machine, const Terrain& terrain);
+  DigLayout(const Machine& machine, const Terrain& terrain, const DigPathOptions& rules = {});
 
   /// @throws Error (bad_input) if the start is to be searched
   std::variant<DigPath, Infeasible> path(const DigParameters& parameters,
                                          const StartRule& start) const;
+  std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters,
+                                              double start_x) const;
+  /// The same by other rules.
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
-                                              const DigPathOptions& options = {}) const;
+                                              const DigPathOptions& rules) const;
   /// From this start, or if it cannot be from that of the largest margin.
   std::variant<DigPath, Infeasible> path_near(const DigParameters& parameters,
                                               double start_x) const;
 
   const Machine& machine() const { return machine_; }
   const GroundProfile& ground() const { return ground_; }
+  const DigPathOptions& rules() const { return rules_; }
 
  private:
   std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
@@ -49,6 +53,7 @@ class DigLayout {
   std::optional<Infeasible> obstacle(const DigPose& pose, double x_max) const;
 
   const Machine& machine_;
+  DigPathOptions rules_;
   GroundProfile ground_;
   KnownStrip strip_;
   FrontRoom room_;

@@ -69,6 +69,10 @@ class Fingerprint {
   std::string bytes_;
 };
 
+constexpr double DigPathOptions::*path_rules[] = {
+    &DigPathOptions::step, &DigPathOptions::min_heel_clearance, &DigPathOptions::max_depth,
+    &DigPathOptions::track_margin, &DigPathOptions::lift_clearance};
+
 /// Why the first dig failed that did; empty if none did.
 std::string first_failure(const SearchResult& found) {
   for (const SearchRecord& record : found.history) {
@@ -142,7 +146,7 @@ DigProblem::DigProblem(const Machine& machine, const std::vector<PossibleSoil>& 
       terrain_(terrain),
       options_(options),
       bounds_(machine_bounds(machine, options.bounds)),
-      layout_(machine, terrain) {
+      layout_(machine, terrain, options.rules) {
   check(options, machine);
 }
 
@@ -303,6 +307,7 @@ std::string DigProblem::fingerprint() const {
   Fingerprint start;
   start.add(static_cast<double>(options_.start_rule.kind));
   start.add(options_.start_rule.x);
+  for (double DigPathOptions::*rule : path_rules) start.add(options_.rules.*rule);
   const Machine& machine = layout_.machine();
   std::string text = "dig on " + machine.name + " " + excavplan::fingerprint(machine) +
                      ", ground " + ground.text() + ", goal " + describe(options_.objective) +

@@ -73,9 +73,9 @@ std::optional<double> least_work_start(const DigLayout& layout, const DigParamet
 /// @return nothing where no start keeps the joints off their limits
 std::optional<DigPath> path_of_least_work(const DigLayout& layout,
                                           const DigParameters& parameters) {
-  DigPathOptions coarse;
+  DigPathOptions coarse = layout.rules();
   coarse.step = coarse_step;
-  for (const DigPathOptions& options : {coarse, DigPathOptions{}}) {
+  for (const DigPathOptions& options : {coarse, layout.rules()}) {
     const auto start_x = least_work_start(layout, parameters, options);
     if (!start_x) continue;
     auto path = layout.path_from(parameters, *start_x);

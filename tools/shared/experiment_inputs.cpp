@@ -21,6 +21,8 @@ void declare_experiment(Arguments& arguments, ExperimentInputs& inputs) {
       "law", "NAME|FILE", inputs.law,
       "density law: default (that of machine, soil and fixed path), paper, or a law file");
   arguments.flag("search", inputs.search, "search for each path instead of looking it up");
+  arguments.only_if({[&inputs] { return inputs.search; }, "nothing is searched without --search"},
+                    [&] { declare_search_method(arguments, inputs.method); });
   declare_goal(arguments, inputs.goal);
   arguments.option("path", inputs.path, "fixed path");
   arguments.choice("second", inputs.second, {"fresh", "left"},
@@ -52,6 +54,7 @@ ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& mach
         inputs.library ? load_path_library(*inputs.library)
                        : shipped_library(machine, soil, plan.search.objective));
   }
+  if (inputs.search) apply(inputs.method, plan.search);
   plan.search.seed = inputs.seed;
   plan.search.threads = static_cast<unsigned>(inputs.threads);
   plan.simulator = simulator_of_word(inputs.simulator);

@@ -10,6 +10,7 @@
 #include <excavplan/experiment/experiment.hpp>
 
 #include "shared/goal_inputs.hpp"
+#include "shared/search_method.hpp"
 #include "shared/tool.hpp"
 
 /// @file
@@ -27,6 +28,7 @@ struct ExperimentInputs {
   std::string law = "default";
   std::string second = "fresh";
   bool search = false;
+  SearchMethodInputs method;  ///< of the search
   double cell_size = 0.05;
   std::uint64_t seed = 1;
   std::uint64_t threads = 0;

@@ -4,6 +4,7 @@
 
 #include "base/text.hpp"
 #include "shared/results.hpp"
+#include "shared/search_method.hpp"
 
 namespace excavplan::tools {
 
@@ -33,7 +34,7 @@ void declare_library(Arguments& arguments, LibraryInputs& inputs) {
                      "memetic: simulated digs of a density that starts from its neighbours");
   });
   arguments.only_if(if_method("paper", "memetic"), [&] {
-    arguments.option("population", inputs.genetic.population, "paper: population of a generation");
+    declare_genetic(arguments, inputs.genetic);
     arguments.option("generations", inputs.genetic.generations, "paper: generations of a search");
   });
   arguments.option("cell", inputs.search.cell_size, Quantity::length,
@@ -41,18 +42,21 @@ void declare_library(Arguments& arguments, LibraryInputs& inputs) {
   arguments.option("seed", inputs.search.seed, "seed; the same seed gives the same file");
 }
 
-const OptionNames library_option_names = {
-    {"library: densities", "--densities"},
-    {"library: slopes", "--slopes"},
-    cell_option[0],
-    {"machines x soils x slopes x densities of a library",
-     "--machine x --soil x --slopes x --densities"},
-    {"points of a library search", "--points"},
-    {"search: first_generation", "--points"},
-    {"polish evaluations of a library search", "--polish"},
-    {"inherited evaluations of a library search", "--inherited"},
-    {"search: population", "--population"},
-    {"search: generations", "--generations"}};
+const OptionNames library_option_names = [] {
+  OptionNames names = {
+      {"library: densities", "--densities"},
+      {"library: slopes", "--slopes"},
+      cell_option[0],
+      {"machines x soils x slopes x densities of a library",
+       "--machine x --soil x --slopes x --densities"},
+      {"points of a library search", "--points"},
+      {"search: first_generation", "--points"},
+      {"polish evaluations of a library search", "--polish"},
+      {"inherited evaluations of a library search", "--inherited"},
+  };
+  names.insert(names.end(), search_option_names.begin(), search_option_names.end());
+  return names;
+}();
 
 LibraryGrid grid_of(const LibraryInputs& inputs) {
   LibraryGrid grid;

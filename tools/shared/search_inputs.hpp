@@ -6,11 +6,11 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <excavplan/planning/dig_search.hpp>
 
 #include "shared/goal_inputs.hpp"
+#include "shared/search_method.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -18,14 +18,8 @@ namespace excavplan::tools {
 /// Settings of a search for a dig, from the command line.
 struct SearchInputs {
   GoalInputs goal;
-  std::string start = "search";
-  /// FROM,TO of each number of dig_parameter_table().
-  std::vector<std::optional<std::string>> ranges =
-      std::vector<std::optional<std::string>>(dig_parameter_table().size());
-  std::string method = "default";
-  std::optional<int> population;
-  int generations = 0;
-  int evaluations = 0;
+  std::optional<std::string> start;  ///< none: searched, unless the method has a rule of its own
+  SearchMethodInputs method;
   std::optional<std::string> checkpoint;
   bool resume = false;
   std::uint64_t seed = DigSearchOptions{}.seed;
@@ -43,17 +37,10 @@ enum class SearchUse {
 void declare_search(Arguments& arguments, SearchInputs& inputs,
                     const std::function<SearchUse()>& use);
 
-/// What plan_dig() calls them in its messages.
-inline const OptionNames search_option_names = {{"search: population", "--population"},
-                                                {"search: generations", "--generations"},
-                                                {"search: stop.evaluations", "--evaluations"}};
-
 /// Checks made before anything is read. @throws Error (bad_input)
 void check(const SearchInputs& inputs);
 
-StartRule start_rule_of(const SearchInputs& inputs);
-
 /// For plan_dig(), with progress on the console, which also stops the search.
-DigSearchOptions search_options(const SearchInputs& inputs, Console& console);
+DigSearchOptions search_options(const SearchInputs& inputs, SearchUse use, Console& console);
 
 }  // namespace excavplan::tools

@@ -14,17 +14,19 @@
 
 namespace excavplan {
 
-/// The paper's genetic algorithm (section 2.3.3): the best individual is kept, parents are chosen
-/// by tournament among the rest, segments of two parents are exchanged between two points, genes
-/// are redrawn within their limits. The paper's Table 2 is not published as text: the numbers
-/// are ours, after docs/methods.md#planning. Given points are the first of the first generation,
-/// which is as large as it must be to hold all of them.
+/// The paper's genetic algorithm (section 2.3.3): the first generation is random, the best
+/// individual is kept, parents are chosen by tournament among the rest, segments of two parents are
+/// exchanged between two points, genes are redrawn within their limits. The paper's Table 2 is not
+/// published as text: the numbers are ours, all of them here (docs/methods.md#planning). Given
+/// points, which the paper has none of, are the first of the first generation, which is as large as
+/// it must be to hold all of them.
 struct GeneticAlgorithm {
   int population = 50;     ///< individuals, >= 2
   int generations = 20;    ///< including the first, >= 1
   int tournament = 3;      ///< individuals drawn for one parent, >= 1
   double crossover = 0.9;  ///< probability that two parents exchange a segment [0, 1]
   double mutation = 0.3;   ///< probability that a gene is redrawn [0, 1]
+  int elites = 1;          ///< best individuals that are kept, 0 .. population - 1; 1 in the paper
 };
 
 /// Given points are polished first (bounded Nelder-Mead); then a space-filling first generation,

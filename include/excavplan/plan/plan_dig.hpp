@@ -24,7 +24,7 @@ namespace excavplan {
 /// Source of the dig.
 enum class PlanMethod {
   library,  ///< looked up; dug once where the ground or the simulator is not the library's
-  search,   ///< searched by digs in the simulator, from the library's dig on
+  search,   ///< searched by digs in the simulator, by default from the library's dig on
 };
 /// "library" or "search".
 const char* name(PlanMethod method);
@@ -44,8 +44,9 @@ struct PlanOptions {
   std::string data_folder = data_folder_of_package;  ///< as find_data_file() takes it
   /// `progress` reports and cancels, the seed fixes the result for any number of `threads`, and
   /// `start_rule` also places a dig looked up for given ground. A dig is looked up, and a search
-  /// without `start` begins, in the library of `objective`. Where `stop.evaluations` is 0 the
-  /// default method makes evaluation_budget() digs.
+  /// without `start` begins, in the library of `objective`; the paper's algorithm begins at random
+  /// unless `start` or `library` is given. Where `stop.evaluations` is 0 the default method makes
+  /// evaluation_budget() digs.
   DigSearchOptions search = budget_search();
   SimulatorKind simulator = default_simulator();  ///< digs what is searched or not on level ground
   TrajectoryOptions trajectory = {};              ///< how fast the machine moves

@@ -45,6 +45,7 @@ struct DigSearchOptions : SearchSettings {
   DigObjective objective = {};                         ///< by default most mass per energy
   DigBounds bounds = {};                               ///< of the numbers of the path
   StartRule start_rule = StartRule::Kind::least_work;  ///< where digs begin
+  DigPathOptions rules = {};                           ///< that paths must keep
 };
 
 /// Settings of plan_dig(): most mass per energy of the cycle, and as many generations as a budget
