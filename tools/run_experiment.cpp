@@ -5,8 +5,10 @@
 #include "shared/experiment_inputs.hpp"
 #include "shared/experiment_results.hpp"
 #include "shared/results.hpp"
+#include "shared/sensitivity_results.hpp"
 #include "shared/tool.hpp"
-#ifdef EXCAVPLAN_STUDY  // it simulates surveys
+#ifdef EXCAVPLAN_STUDY  // they simulate surveys
+#include "shared/field_results.hpp"
 #include "shared/study_results.hpp"
 #endif
 
@@ -15,11 +17,14 @@ namespace {
 
 const About about = {
     "run-experiment",
-    "repeats the paper's simulation experiment (section 3): digs along the fixed path, "
+    "repeats the paper's experiments, by default the simulated ones (section 3): digs along the "
+    "fixed path, "
     "estimates the density from the height maps, digs along the path planned for that density and "
     "compares the two digs.",
     {{"run-experiment", "soft, medium and hard loam (10, 40, 80 %), paths from the library"},
      {"run-experiment --search --densities 0:10:100", "search for each path, at eleven densities"},
+     {"run-experiment --preset field", "section 4: the field path, scans, fuel"},
+     {"run-experiment --sensitivity", "best paths under other assumptions"},
      {"run-experiment --study results", "many conditions, one factor at a time, 30 runs each"},
      {"run-experiment --json", "all results as JSON"}}};
 
@@ -29,6 +34,7 @@ struct Inputs {
   std::optional<std::string> report;
 #ifdef EXCAVPLAN_STUDY
   StudyInputs study;
+  FieldInputs field;
 #endif
   /// A study has conditions of its own.
   bool is_study() const {
@@ -38,6 +44,15 @@ struct Inputs {
     return false;
 #endif
   }
+  bool is_field() const {
+#ifdef EXCAVPLAN_STUDY
+    return field.chosen();
+#else
+    return false;
+#endif
+  }
+  /// The paper's section 3.
+  bool is_simulation() const { return !is_study() && !is_field() && !experiment.sensitivity; }
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -47,30 +62,19 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.machine(inputs.machine);
 #ifdef EXCAVPLAN_STUDY
   declare_study(arguments, inputs.study);
+  arguments.only_if({[&inputs] { return !inputs.is_study() && !inputs.experiment.sensitivity; },
+                     "a study or a sensitivity is no experiment of the paper"},
+                    [&] { declare_field(arguments, inputs.field); });
 #endif
-  arguments.only_if({[&inputs] { return inputs.experiment.search || inputs.is_study(); },
+  arguments.only_if({[&inputs] { return inputs.experiment.search || !inputs.is_simulation(); },
                      "nothing is searched without --search"},
                     [&] {
-                      arguments.option("seed", experiment.seed, "seed of searches and of a study");
+                      arguments.option("seed", experiment.seed, "seed of all that is drawn");
                       arguments.threads(experiment.threads, "");
                     });
-  arguments.report(inputs.report);
-}
-
-void add(const NamedExperiment& done, Outcome& outcome) {
-  const auto& [condition, result] = done;
-  outcome.json["conditions"].push_back(experiment_json(condition, result));
-  outcome.lines.push_back(experiment_line(condition, result));
-  if (result.held_because.empty()) return;
-  const std::string why = ": the machine is held down, as on the fixed path ";
-  outcome.warnings.push_back({"machine_held_down", condition + why + result.held_because});
-}
-
-void add_failure(const ExperimentCondition& condition, const std::string& why, Outcome& outcome) {
-  outcome.json["conditions"].push_back(
-      {{"name", condition.name}, {"density_percent", condition.density}, {"failure", why}});
-  outcome.lines.push_back(condition.name + ": " + why);
-  outcome.warnings.push_back({"condition_failed", condition.name + ": " + why});
+  arguments.only_if(
+      {[&inputs] { return inputs.is_simulation(); }, "only the experiment of section 3 has a page"},
+      [&] { arguments.report(inputs.report); });
 }
 
 OptionNames names_of_options() {
@@ -87,7 +91,11 @@ Outcome work(const Inputs& inputs, Console& console) {
   if (inputs.is_study()) {
     return study(machine, inputs.study, experiment.seed, experiment.threads, console);
   }
+  if (inputs.is_field() && !experiment.sensitivity) {
+    return field_experiment(machine, inputs.field, experiment, console);
+  }
 #endif
+  if (experiment.sensitivity) return sensitivity(machine, experiment, console);
   const SoilKind soil = soil_named(experiment.soil);
   const DensityLaw law = law_of(experiment, machine, soil);
   const ExperimentOptions options = options_of(experiment, machine, soil);
@@ -112,7 +120,7 @@ Outcome work(const Inputs& inputs, Console& console) {
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_input) throw;
       failure = error.what();
-      add_failure(condition, failure, outcome);
+      add_failure(condition.name, condition.density, failure, outcome);
     }
   }
   if (done.empty()) throw Error(ErrorKind::bad_input, failure);

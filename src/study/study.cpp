@@ -18,6 +18,7 @@
 #include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "study/equal_payload.hpp"
 #include "study/study_row.hpp"
 #include "study/study_survey.hpp"
 
@@ -157,22 +158,6 @@ ExperimentOptions options_of(const Machine& machine, const StudySetting& setting
       return surveyed_ground(ground, machine, sensor, seed);
     };
   }
-  return options;
-}
-
-/// As before, for another goal at no less payload than that of the fixed dig. Searched, from the
-/// dig found for the paper's goal.
-ExperimentOptions at_equal_payload(DigObjective::Goal goal, const ExperimentResult& found,
-                                   ExperimentOptions options) {
-  constexpr int digs = 200;  // of a search that begins warm; ours
-  PlanOptions& plan = options.plan;
-  plan.method = PlanMethod::search;
-  plan.library.reset();
-  plan.search.objective = goal;
-  plan.search.objective.min_fill = std::min(1.0, found.fixed.fill);
-  plan.search.stop.evaluations = digs;
-  plan.search.start = {{found.planned.parameters, found.planned.start_x}};
-  options.survey = [estimate = found.estimate](const DigScene&) { return estimate; };
   return options;
 }
 

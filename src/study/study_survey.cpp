@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <excavplan/simulation/depth_camera.hpp>
-#include <excavplan/survey/density_estimate.hpp>
 #include <excavplan/survey/scan_terrain.hpp>
 
 namespace excavplan {
@@ -72,11 +71,8 @@ SceneScans scans_of(const DigScene& scene, StudySensor sensor, std::uint64_t see
 
 }  // namespace
 
-RelativeDensity surveyed_density(const DigScene& scene, StudySensor sensor, const SoilKind& soil,
-                                 const DensityLaw& law, std::uint64_t seed) {
-  if (sensor == StudySensor::none) {
-    return relative_density(law, {scene.volumes.bulking_factor, 0.0});
-  }
+DensityEstimate surveyed_dig(const DigScene& scene, StudySensor sensor, const SoilKind& soil,
+                             const DensityLaw& law, std::uint64_t seed) {
   SceneScans points = scans_of(scene, sensor, seed);
   DigScans scans{scan_of(std::move(points.before), "before"),
                  scan_of(std::move(points.after), "after"), std::nullopt};
@@ -87,8 +83,17 @@ RelativeDensity surveyed_density(const DigScene& scene, StudySensor sensor, cons
   options.registered = false;
   options.soil.kind = soil;
   options.threads = 1;
-  const DensityEstimate estimate = estimate_density(scans, law, options);
+  DensityEstimate estimate = estimate_density(scans, law, options);
   if (!estimate.density) throw Error(ErrorKind::bad_input, "the scans give no density");
+  return estimate;
+}
+
+RelativeDensity surveyed_density(const DigScene& scene, StudySensor sensor, const SoilKind& soil,
+                                 const DensityLaw& law, std::uint64_t seed) {
+  if (sensor == StudySensor::none) {
+    return relative_density(law, {scene.volumes.bulking_factor, 0.0});
+  }
+  const DensityEstimate estimate = surveyed_dig(scene, sensor, soil, law, seed);
   RelativeDensity density = *estimate.density;
   density.trustworthy = estimate.trustworthy;
   return density;

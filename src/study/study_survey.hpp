@@ -6,9 +6,14 @@
 
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/study/study.hpp>
+#include <excavplan/survey/density_estimate.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 
 namespace excavplan {
+
+/// What a sensor's scans of a dig tell. @throws Error if they give no density
+DensityEstimate surveyed_dig(const DigScene& scene, StudySensor sensor, const SoilKind& soil,
+                             const DensityLaw& law, std::uint64_t seed);
 
 /// The density that a sensor's scans of a dig give. @throws Error if they give none
 RelativeDensity surveyed_density(const DigScene& scene, StudySensor sensor, const SoilKind& soil,

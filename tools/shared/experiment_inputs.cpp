@@ -12,21 +12,34 @@
 
 namespace excavplan::tools {
 
-void declare_experiment(Arguments& arguments, ExperimentInputs& inputs) {
-  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
-                 "relative densities [%], or a list a,b,c; \"paper\": soft 10, medium 40, hard 80");
+namespace {
+
+/// What a search for the best paths alone has no use for.
+void declare_digs(Arguments& arguments, ExperimentInputs& inputs) {
   arguments.file("library", inputs.library,
                  "path library (default: the shipped one of machine, soil and goal)");
-  arguments.text(
-      "law", "NAME|FILE", inputs.law,
-      "density law: default (that of machine, soil and fixed path), paper, or a law file");
+  arguments.text("law", "NAME|FILE", inputs.law,
+                 "density law: default (that of machine and soil, or with --path one of digs along "
+                 "that), paper, or a law file");
   arguments.flag("search", inputs.search, "search for each path instead of looking it up");
   arguments.only_if({[&inputs] { return inputs.search; }, "nothing is searched without --search"},
                     [&] { declare_search_method(arguments, inputs.method); });
-  declare_goal(arguments, inputs.goal);
-  arguments.option("path", inputs.path, "fixed path");
+  arguments.option("path", inputs.path, "fixed path (default: that of the paper)");
   arguments.choice("second", inputs.second, {"fresh", "left"},
                    "ground of the second dig: fresh, or as the first dig left it");
+}
+
+}  // namespace
+
+void declare_experiment(Arguments& arguments, ExperimentInputs& inputs) {
+  arguments.flag("sensitivity", inputs.sensitivity,
+                 "search the best path under each assumption of ours on machine, soil and path "
+                 "rules, one at a time, and what it is worth without it");
+  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
+                 "relative densities [%], or a list a,b,c; \"paper\": soft 10, medium 40, hard 80");
+  arguments.only_if({[&inputs] { return !inputs.sensitivity; }, "--sensitivity has no use for it"},
+                    [&] { declare_digs(arguments, inputs); });
+  declare_goal(arguments, inputs.goal);
   arguments.soil(inputs.soil);
   arguments.simulator(inputs.simulator);
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
@@ -45,7 +58,7 @@ std::vector<ExperimentCondition> conditions_of(const ExperimentInputs& inputs) {
 ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& machine,
                              const SoilKind& soil) {
   ExperimentOptions options;
-  options.fixed_path = inputs.path;
+  options.fixed_path = inputs.path.value_or(options.fixed_path);
   PlanOptions& plan = options.plan;
   plan.method = inputs.search ? PlanMethod::search : PlanMethod::library;
   plan.search.objective = objective_of(inputs.goal);
@@ -65,8 +78,8 @@ ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& mach
 
 DensityLaw law_of(const ExperimentInputs& inputs, const Machine& machine, const SoilKind& soil) {
   const bool own = inputs.law == "default";
-  if (own && to_vector(inputs.path) != to_vector(paper_fixed_path())) {
-    return law_of(calibrate_path(machine, soil, inputs.path));
+  if (own && inputs.path && to_vector(*inputs.path) != to_vector(paper_fixed_path())) {
+    return law_of(calibrate_path(machine, soil, *inputs.path));
   }
   const std::string name = own ? machine.name + "-" + soil.name : inputs.law;
   return load_density_law(shipped_or_file("laws", name));

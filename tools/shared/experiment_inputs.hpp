@@ -20,13 +20,14 @@ namespace excavplan::tools {
 
 struct ExperimentInputs {
   std::string densities = "paper";
-  DigParameters path = paper_fixed_path();
+  std::optional<DigParameters> path;  ///< none: that of the paper
   std::string soil = "loam";
   std::string simulator = default_simulator().word;
   std::optional<std::string> library;
   GoalInputs goal{info_of(DigObjective::Goal::energy).word};
   std::string law = "default";
   std::string second = "fresh";
+  bool sensitivity = false;
   bool search = false;
   SearchMethodInputs method;  ///< of the search
   double cell_size = 0.05;

@@ -172,6 +172,23 @@ std::string experiment_line(const std::string& condition, const ExperimentResult
          readable(result.start_gain_percent()) + " %)";
 }
 
+void add(const NamedExperiment& done, Outcome& outcome) {
+  const auto& [condition, result] = done;
+  outcome.json["conditions"].push_back(experiment_json(condition, result));
+  outcome.lines.push_back(experiment_line(condition, result));
+  if (result.held_because.empty()) return;
+  const std::string why = ": the machine is held down, as on the fixed path ";
+  outcome.warnings.push_back({"machine_held_down", condition + why + result.held_because});
+}
+
+void add_failure(const std::string& condition, double density, const std::string& why,
+                 Outcome& outcome) {
+  outcome.json["conditions"].push_back(
+      {{"name", condition}, {"density_percent", density}, {"failure", why}});
+  outcome.lines.push_back(condition + ": " + why);
+  outcome.warnings.push_back({"condition_failed", condition + ": " + why});
+}
+
 Report experiment_report(const Machine& machine, const SoilKind& soil, const PlanOptions& options,
                          const std::vector<NamedExperiment>& experiments) {
   Report report;

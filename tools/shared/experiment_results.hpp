@@ -10,6 +10,7 @@
 #include <excavplan/experiment/experiment.hpp>
 
 #include "shared/report.hpp"
+#include "shared/tool.hpp"
 
 /// @file
 /// What run-experiment writes and prints.
@@ -30,6 +31,12 @@ struct NamedExperiment {
   std::string condition;
   ExperimentResult result;
 };
+
+/// Adds the results of a condition to `conditions` of the outcome, and to its lines and warnings.
+void add(const NamedExperiment& done, Outcome& outcome);
+/// Likewise of one that has none.
+void add_failure(const std::string& condition, double density_percent, const std::string& why,
+                 Outcome& outcome);
 
 /// The page, without its file: both digs of each condition, dug once more on level ground, and bars
 /// of what they are worth.

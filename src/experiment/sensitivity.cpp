@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/experiment/sensitivity.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <variant>
+
+#include <excavplan/error.hpp>
+#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "base/parallel.hpp"
+#include "planning/dig_layout.hpp"
+#include "simulation/checked_dig.hpp"
+
+namespace excavplan {
+namespace {
+
+/// Soil of one density in the reference.
+class Reference {
+ public:
+  Reference(const DigModel& model, double density)
+      : model_(model),
+        ground_(level_planning_ground(model.machine, model.cell_size)),
+        layout_(model.machine, ground_, model.search.rules),
+        simulator_(make_simulator(model.simulator, model.machine, model.soil, density)) {}
+
+  /// From its own start, or if that breaks a rule from that of least work.
+  std::variant<PlannedDig, DigFailure> dig(const PlannedDig& best) const {
+    auto path = layout_.path(best.parameters, best.start_x);
+    if (std::holds_alternative<Infeasible>(path)) path = layout_.path(best.parameters, {});
+    if (const auto* stop = std::get_if<Infeasible>(&path)) return DigFailure(*stop);
+    return dig_along(model_.machine, *simulator_, ground_, std::get<DigPath>(path),
+                     model_.search.objective);
+  }
+
+ private:
+  const DigModel& model_;
+  Terrain ground_;
+  DigLayout layout_;
+  std::unique_ptr<const SoilSimulator> simulator_;
+};
+
+void search_best(const DigModel& model, int digs, AssumptionResult& result) {
+  PlanOptions options;
+  options.method = PlanMethod::search;
+  options.search = model.search;
+  options.search.threads = 1;
+  options.search.stop.evaluations = digs;
+  options.simulator = model.simulator;
+  options.cell_size = model.cell_size;
+  const DigPlan plan = plan_dig(model.machine, model.soil, result.density_percent, options);
+  result.best = plan.dig;
+  result.failure = plan.reason;
+  if (plan.search) result.worth = plan.search->worth;
+}
+
+/// Under the assumption, from the best dig of the reference on.
+void search_assumed(const DigModel& reference, const Assumption& assumption,
+                    const AssumptionResult& known, int digs, AssumptionResult& result) {
+  DigModel model = reference;
+  assumption.change(model);
+  if (known.best) model.search.start = {{known.best->parameters, known.best->start_x}};
+  try {
+    search_best(model, digs, result);
+  } catch (const Error& error) {
+    result.failure = error.what();
+  }
+}
+
+void dig_really(const Reference& reference, AssumptionResult& result) {
+  if (!result.best) return;
+  const auto outcome = reference.dig(*result.best);
+  if (const auto* dig = std::get_if<PlannedDig>(&outcome)) {
+    result.really = *dig;
+  } else {
+    result.failure = describe(std::get<DigFailure>(outcome));
+  }
+}
+
+/// @param first, last  all of one density
+template <typename Place>
+void set_regrets(const DigObjective& objective, Place first, Place last) {
+  const auto really = [&](const AssumptionResult& result) {
+    return result.really ? objective.rank(*result.really) : 0.0;
+  };
+  double best = 0.0;
+  for (Place at = first; at != last; ++at) best = std::max(best, really(*at));
+  for (Place at = first; at != last && best > 0.0; ++at) {
+    at->regret_percent = 100.0 * (1.0 - really(*at) / best);
+  }
+}
+
+}  // namespace
+
+std::vector<AssumptionResult> run_sensitivity(const DigModel& reference,
+                                              const std::vector<Assumption>& assumptions,
+                                              const SensitivityOptions& options) {
+  const std::size_t densities = options.densities_percent.size();
+  const std::size_t rows = 1 + assumptions.size();
+  std::vector<AssumptionResult> results(densities * rows);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    AssumptionResult& result = results[i];
+    result.density_percent = options.densities_percent[i / rows];
+    result.factor = i % rows == 0 ? "reference" : assumptions[i % rows - 1].factor;
+    result.level = i % rows == 0 ? "" : assumptions[i % rows - 1].level;
+  }
+  std::atomic<std::size_t> done{0};
+  std::atomic<bool> stopped{false};
+  const auto search = [&](std::size_t density, std::size_t row) {
+    if (stopped) return;
+    AssumptionResult& result = results[density * rows + row];
+    if (row == 0) {
+      search_best(reference, options.digs, result);
+    } else {
+      search_assumed(reference, assumptions[row - 1], results[density * rows], options.digs,
+                     result);
+    }
+    dig_really(Reference(reference, result.density_percent), result);
+    const double share = static_cast<double>(++done) / static_cast<double>(results.size());
+    if (options.progress && !options.progress(share)) stopped = true;
+  };
+  parallel_for(densities, options.threads, [&](std::size_t density) { search(density, 0); });
+  parallel_for(densities * assumptions.size(), options.threads, [&](std::size_t task) {
+    search(task / assumptions.size(), 1 + task % assumptions.size());
+  });
+  if (stopped) return {};
+  for (auto first = results.begin(); first != results.end();) {
+    const auto last = first + static_cast<std::ptrdiff_t>(rows);
+    set_regrets(reference.search.objective, first, last);
+    first = last;
+  }
+  return results;
+}
+
+}  // namespace excavplan
