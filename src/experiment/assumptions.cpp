@@ -14,7 +14,9 @@ namespace {
 using Assumptions = std::vector<Assumption>;
 using Change = std::function<void(DigModel&)>;
 
-std::string degrees(double angle) { return readable(angle * 180.0 / pi) + " deg"; }
+std::string from_to(double lower, double upper, const char* unit) {
+  return decimals(lower, 1) + " .. " + decimals(upper, 1) + unit;
+}
 std::string times(double factor) { return "x " + readable(factor); }
 
 /// Turns the floor of the bucket about the tip; its length stays.
@@ -44,10 +46,9 @@ void add_ranges(Assumptions& all) {
   const std::pair<DigParameters, DigParameters> ranges[] = {{{0.2, 0.1, 0.3}, {1.4, 0.9, 3.0}},
                                                             {{0.7, 0.3, 1.4}, {1.1, 0.6, 2.6}}};
   for (const auto& [lower, upper] : ranges) {
-    const std::string level =
-        degrees(lower.penetration_angle) + " .. " + degrees(upper.penetration_angle) + ", " +
-        readable(lower.penetration_length, 2) + " .. " + readable(upper.penetration_length, 2) +
-        " m, " + readable(lower.drag_length, 2) + " .. " + readable(upper.drag_length, 2) + " m";
+    const std::string level = from_to(lower.penetration_angle, upper.penetration_angle, " rad, ") +
+                              from_to(lower.penetration_length, upper.penetration_length, " m, ") +
+                              from_to(lower.drag_length, upper.drag_length, " m");
     all.push_back({"search ranges", level, [lower = lower, upper = upper](DigModel& m) {
                      m.search.bounds.lower = lower;
                      m.search.bounds.upper = upper;

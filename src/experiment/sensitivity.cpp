@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <utility>
 #include <variant>
 
 #include <excavplan/error.hpp>
@@ -27,16 +28,28 @@ class Reference {
         layout_(model.machine, ground_, model.search.rules),
         simulator_(make_simulator(model.simulator, model.machine, model.soil, density)) {}
 
-  /// From its own start, or if that breaks a rule from that of least work.
+  /// From its own start, or if it cannot be dug from there, from the nearest where it can.
   std::variant<PlannedDig, DigFailure> dig(const PlannedDig& best) const {
-    auto path = layout_.path(best.parameters, best.start_x);
-    if (std::holds_alternative<Infeasible>(path)) path = layout_.path(best.parameters, {});
+    constexpr double step = 0.05, farthest = 2.0;  // between starts, from its own [m]; ours
+    auto outcome = dig_from(best.parameters, best.start_x);
+    for (int i = 1; i * step <= farthest; ++i) {
+      for (const double x : {best.start_x - i * step, best.start_x + i * step}) {
+        if (std::holds_alternative<PlannedDig>(outcome)) return outcome;
+        auto moved = dig_from(best.parameters, x);
+        if (std::holds_alternative<PlannedDig>(moved)) outcome = std::move(moved);
+      }
+    }
+    return outcome;
+  }
+
+ private:
+  std::variant<PlannedDig, DigFailure> dig_from(const DigParameters& parameters, double x) const {
+    const auto path = layout_.path(parameters, x);
     if (const auto* stop = std::get_if<Infeasible>(&path)) return DigFailure(*stop);
     return dig_along(model_.machine, *simulator_, ground_, std::get<DigPath>(path),
                      model_.search.objective);
   }
 
- private:
   const DigModel& model_;
   Terrain ground_;
   DigLayout layout_;

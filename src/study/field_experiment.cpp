@@ -62,6 +62,8 @@ class FieldExperiment {
         machine_, soil_, law_, density, at_equal_payload(found.objective.goal, found, options));
     run.estimate = found.estimate;
     run.held_down = !found.held_because.empty();
+    run.energy_gain = found.gain_percent();
+    run.equal_energy_gain = equal.gain_percent();
     run.fixed = fuelled(found.fixed, options_.fuel);
     run.planned = fuelled(found.planned, options_.fuel);
     run.equal = fuelled(equal.planned, options_.fuel);
@@ -72,6 +74,7 @@ class FieldExperiment {
     RelativeDensity density = *estimate.density;
     density.trustworthy = estimate.trustworthy;
     run.bulking_factor = estimate.bulking->value;
+    run.warnings = estimate.warnings;
     run.density_raw = density.raw_percent;
     return density;
   }
@@ -83,13 +86,19 @@ class FieldExperiment {
 };
 
 void summarise(FieldResult& result, std::uint64_t seed) {
-  std::vector<double> gain, volume, equal_gain, equal_volume;
+  std::vector<double> gain, volume, energy, equal_gain, equal_volume, equal_energy;
   for (const FieldRun& run : result.runs) {
     if (!run.failure.empty()) {
       ++result.failed;
       continue;
     }
     result.trusted += run.estimate.trustworthy ? 1 : 0;
+    if (run.held_down) {
+      ++result.held_down;
+      continue;
+    }
+    energy.push_back(run.energy_gain);
+    equal_energy.push_back(run.equal_energy_gain);
     const double fixed = run.fixed.dig.payload_volume;
     gain.push_back(fuel_gain_percent(run.planned, run.fixed));
     volume.push_back(run.planned.dig.payload_volume / fixed);
@@ -99,6 +108,8 @@ void summarise(FieldResult& result, std::uint64_t seed) {
   result.gain = bootstrap_mean(gain, seed);
   result.volume_ratio = bootstrap_mean(volume, seed);
   result.equal_gain = bootstrap_mean(equal_gain, seed);
+  result.energy_gain = bootstrap_mean(energy, seed);
+  result.equal_energy_gain = bootstrap_mean(equal_energy, seed);
   result.equal_volume_ratio = bootstrap_mean(equal_volume, seed);
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/study_survey.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -55,14 +57,24 @@ std::vector<CameraPlace> places_above(const std::vector<Eigen::Vector2d>& points
   return places;
 }
 
-Eigen::Vector2d middle_of(const DigPath& path) {
-  return {path.start_x - 0.5 * path.parameters.drag_length, 0.0};
+/// Where cameras stand above a dig: one for every so much of its drag.
+std::vector<Eigen::Vector2d> points_along(const DigPath& path) {
+  constexpr double seen_by_one = 2.0;  // [m]; ours
+  const double drag = path.parameters.drag_length;
+  const int cameras = std::max(1, static_cast<int>(std::ceil(drag / seen_by_one)));
+  std::vector<Eigen::Vector2d> points;
+  for (int i = 0; i < cameras; ++i) {
+    points.emplace_back(path.start_x - drag * (i + 0.5) / cameras, 0.0);
+  }
+  return points;
 }
 
 SceneScans scans_of(const DigScene& scene, StudySensor sensor, std::uint64_t seed) {
   if (sensor != StudySensor::lidar) {
+    std::vector<Eigen::Vector2d> above = points_along(scene.path);
+    above.push_back(scene.dump_at);
     return scan_scene(scene, study_camera(sensor), seed,
-                      places_above({middle_of(scene.path), scene.dump_at}, scene.before.surface()));
+                      places_above(above, scene.before.surface()));
   }
   const Lidar lidar;
   return {scan_surface(scene.before.surface(), lidar, 2 * seed),

@@ -30,6 +30,12 @@ ordered_json fuelled_json(const FuelledDig& fuelled) {
   return json;
 }
 
+ordered_json codes_of(const std::vector<Warning>& warnings) {
+  ordered_json codes = ordered_json::array();
+  for (const Warning& warning : warnings) codes.push_back(warning.code);
+  return codes;
+}
+
 ordered_json run_json(const FieldRun& run) {
   if (!run.failure.empty()) return {{"failure", run.failure}};
   return {{"bulking_factor", run.bulking_factor},
@@ -37,10 +43,13 @@ ordered_json run_json(const FieldRun& run) {
           {"density_estimated_percent", run.estimate.percent},
           {"density_sd_percent", run.estimate.sd_percent},
           {"trustworthy", run.estimate.trustworthy},
+          {"warnings", codes_of(run.warnings)},
           {"machine_held_down", run.held_down},
           {"fixed", fuelled_json(run.fixed)},
           {"planned", fuelled_json(run.planned)},
           {"planned_equal_payload", fuelled_json(run.equal)},
+          {"gain_percent", run.energy_gain},
+          {"gain_equal_payload_percent", run.equal_energy_gain},
           {"gain_fuel_percent", fuel_gain_percent(run.planned, run.fixed)},
           {"gain_fuel_equal_payload_percent", fuel_gain_percent(run.equal, run.fixed)}};
 }
@@ -50,7 +59,10 @@ ordered_json result_json(const std::string& name, const FieldResult& result) {
                        {"density_percent", result.density_percent},
                        {"digs", result.runs.size()},
                        {"failed", result.failed},
+                       {"held_down", result.held_down},
                        {"trustworthy", result.trusted},
+                       {"gain_percent", mean_json(result.energy_gain)},
+                       {"gain_equal_payload_percent", mean_json(result.equal_energy_gain)},
                        {"gain_fuel_percent", mean_json(result.gain)},
                        {"volume_ratio", mean_json(result.volume_ratio)},
                        {"gain_fuel_equal_payload_percent", mean_json(result.equal_gain)},
@@ -81,9 +93,11 @@ std::string digs_line(const std::string& name, const FieldResult& result,
          " m3/mL";
 }
 
-std::string gain_text(const StudyMean& gain) {
+/// Empty where no run tells any.
+std::string gain_text(const StudyMean& gain, const StudyMean& energy_gain) {
+  if (std::isnan(gain.mean)) return "";
   return ", gain " + decimals(gain.mean, 1) + " % (" + decimals(gain.interval[0], 1) + " .. " +
-         decimals(gain.interval[1], 1) + ")";
+         decimals(gain.interval[1], 1) + "), by the goal " + decimals(energy_gain.mean, 1) + " %";
 }
 
 std::vector<std::string> result_lines(const std::string& name, const FieldResult& result) {
@@ -95,9 +109,10 @@ std::vector<std::string> result_lines(const std::string& name, const FieldResult
       " %, trusted " + std::to_string(result.trusted) + " of " +
       std::to_string(result.runs.size())};
   lines.push_back(digs_line("  fixed    ", result, &FieldRun::fixed));
-  lines.push_back(digs_line("  planned  ", result, &FieldRun::planned) + gain_text(result.gain));
+  lines.push_back(digs_line("  planned  ", result, &FieldRun::planned) +
+                  gain_text(result.gain, result.energy_gain));
   lines.push_back(digs_line("  no less payload  ", result, &FieldRun::equal) +
-                  gain_text(result.equal_gain));
+                  gain_text(result.equal_gain, result.equal_energy_gain));
   return lines;
 }
 
@@ -118,6 +133,13 @@ void add(const std::string& name, const FieldResult& result, Outcome& outcome) {
   const auto digs = static_cast<int>(result.runs.size());
   if (result.failed == digs) return;
   for (std::string& line : result_lines(name, result)) outcome.lines.push_back(std::move(line));
+  if (result.held_down > 0) {
+    outcome.warnings.push_back(
+        {"machine_held_down", name + ": in " + std::to_string(result.held_down) + " of " +
+                                  std::to_string(digs) +
+                                  " digs the fixed path would lift or drag the machine, which is "
+                                  "held down on it; they tell no gain"});
+  }
   if (result.trusted + result.failed == digs) return;
   outcome.warnings.push_back(
       {"density_not_trustworthy", name + ": " + std::to_string(result.trusted) + " of " +

@@ -58,10 +58,10 @@ struct SensitivityOptions {
   std::function<bool(double done)> progress = {};
 };
 
-/// Searches the best dig under each assumption and digs it in the reference, where its own start
-/// breaks a rule from that of least work. For each density first the reference, then the
-/// assumptions in order. The best dig known in the reference is the best there of all that were
-/// found, so that no regret is below 0. Empty if `progress` ends it.
+/// Searches the best dig under each assumption and digs it in the reference, if it cannot be dug
+/// from its own start there, from the nearest where it can. For each density first the reference,
+/// then the assumptions in order. The best dig known in the reference is the best there of all that
+/// were found, so that no regret is below 0. Empty if `progress` ends it.
 ///
 /// @throws Error (bad_input) as plan_dig() of the reference
 std::vector<AssumptionResult> run_sensitivity(const DigModel& reference,

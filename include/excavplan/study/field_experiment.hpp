@@ -47,18 +47,25 @@ struct FieldRun {
   FuelledDig planned;           ///< along the path planned for the estimate
   FuelledDig equal;             ///< along the one planned for no less payload than the fixed dig's
   bool held_down = false;       ///< the fixed path would lift or drag the machine
-  std::string failure = {};     ///< why there is no result; empty if there is
+  double energy_gain = 0.0;     ///< of the planned dig by the objective, mass per energy [%]
+  double equal_energy_gain = 0.0;      ///< of the one at no less payload [%]
+  std::vector<Warning> warnings = {};  ///< of the estimate
+  std::string failure = {};            ///< why there is no result; empty if there is
 };
 
 /// Efficiency of the planned over the fixed dig in volume per fuel [%].
 double fuel_gain_percent(const FuelledDig& planned, const FuelledDig& fixed);
 
-/// All runs in one soil. Means are over those with a result.
+/// All runs in one soil. Means are over those with a result whose fixed path does not lift or drag
+/// the machine.
 struct FieldResult {
   double density_percent = 0.0;       ///< true one
   std::vector<FieldRun> runs;         ///< in order
   int failed = 0;                     ///< runs without a result
+  int held_down = 0;                  ///< runs that tell no gain
   int trusted = 0;                    ///< runs whose estimate is trustworthy
+  StudyMean energy_gain = {};         ///< FieldRun::energy_gain [%]
+  StudyMean equal_energy_gain = {};   ///< FieldRun::equal_energy_gain [%]
   StudyMean gain = {};                ///< of the planned path, fuel_gain_percent() [%]
   StudyMean volume_ratio = {};        ///< its volume in the bucket over that of the fixed path [-]
   StudyMean equal_gain = {};          ///< the same at no less payload [%]
