@@ -13,6 +13,7 @@
 #include <fstream>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -150,6 +151,29 @@ TEST(PapersAlgorithm, GivenPointsBeyondThePopulationAreEvaluatedToo) {
   EXPECT_DOUBLE_EQ(result.outcome.fitness, 2.0);  // at the last of them
   EXPECT_EQ(result.asked, 5 + 3);                 // the later generations are no larger than asked
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(result.history[i].origin, Origin::given);
+}
+
+TEST(PapersAlgorithm, KeepsAsManyAsAskedAndBreedsFromTheRest) {
+  GeneticAlgorithm method;
+  method.population = 10;
+  method.generations = 4;
+  for (const int elites : {0, 1, 4}) {
+    method.elites = elites;
+    const SearchResult result = search(problem(hill), papers(method));
+    EXPECT_EQ(result.asked, 10 + 3 * (10 - elites));
+    std::vector<int> first(10);
+    std::iota(first.begin(), first.end(), 0);
+    std::stable_sort(first.begin(), first.end(), [&](int a, int b) {
+      return better(result.history[static_cast<std::size_t>(a)].outcome,
+                    result.history[static_cast<std::size_t>(b)].outcome);
+    });
+    for (const SearchRecord& record : result.history) {
+      if (record.generation != 1) continue;
+      for (const int parent : record.parents) {
+        EXPECT_EQ(std::count(first.begin(), first.begin() + elites, parent), 0) << elites;
+      }
+    }
+  }
 }
 
 TEST(PapersAlgorithm, WithoutMutationEveryGeneComesFromTheFirstGeneration) {
@@ -763,6 +787,28 @@ TEST_F(SearchCheckpointFile, KnowsWhatASearchFromOtherPointsAsksAgain) {
   EXPECT_EQ(text_of(resumed), text_of(search(with_fingerprint(hartmann), from_there)));
 }
 
+TEST_F(SearchCheckpointFile, IsRefusedForAnotherSettingOfThePapersAlgorithm) {
+  const GeneticAlgorithm usual;
+  const auto resumed_with = [&](const GeneticAlgorithm& method) {
+    SearchOptions genetic = options();
+    genetic.method = method;
+    return error_about([&] { search(with_fingerprint(hartmann), genetic); }, file_);
+  };
+  std::vector<GeneticAlgorithm> others(6, usual);
+  others[0].population = 49;
+  others[1].generations = 21;
+  others[2].tournament = 4;
+  others[3].crossover = 0.8;
+  others[4].mutation = 0.2;
+  others[5].elites = 2;
+  SearchOptions genetic = options();
+  genetic.method = usual;
+  cut_off(20, genetic, hartmann);
+  for (const GeneticAlgorithm& other : others) {
+    EXPECT_EQ(resumed_with(other).rfind(": search: is 'genetic algorithm: ", 0), 0U);
+  }
+}
+
 TEST_F(SearchCheckpointFile, IsRefusedForAnotherSearch) {
   cut_off(20, options(), hartmann);
   SearchProblem other = with_fingerprint(hartmann);
@@ -1033,6 +1079,12 @@ TEST(Search, MessageNamesTheRuleAndTheValue) {
   method.population = 1;
   EXPECT_EQ(error_of([&] { search(problem(hill), papers(method)); }),
             "search: population must be >= 2, got 1");
+  method.population = 8;
+  for (const int elites : {-1, 8}) {
+    method.elites = elites;
+    EXPECT_EQ(error_of([&] { search(problem(hill), papers(method)); }),
+              "search: elites must be in 0 .. population - 1 = 7, got " + std::to_string(elites));
+  }
   MemeticSearch memetic;
   memetic.first_generation = 0;
   SearchOptions options;

@@ -304,6 +304,28 @@ TEST_F(PlanDig, SearchBeginsWithTheLibrarysDig) {
   EXPECT_EQ(plan(60.0, own).dig->parameters.drag_length, paper_fixed_path().drag_length);
 }
 
+/// The paper, section 2.3.3: "these parameters are assigned random values within specified ranges".
+TEST_F(PlanDig, ThePapersAlgorithmBeginsAtRandomUnlessALibraryIsGiven) {
+  const auto library = std::make_shared<PathLibrary>(shipped_library(machine_, loam_));
+  const Eigen::VectorXd known = to_vector(look_up(*library, 60.0).parameters);
+  const auto digs_known = [&](const PlanOptions& options) {
+    std::vector<DigPath> dug;
+    PlanOptions recorded = options;
+    recorded.simulator = recording_simulator(dug);
+    plan(60.0, recorded);
+    return std::any_of(dug.begin(), dug.end() - 1,
+                       [&](const DigPath& path) { return to_vector(path.parameters) == known; });
+  };
+  PlanOptions options = searched(0, 1);
+  GeneticAlgorithm small;
+  small.population = 20;
+  small.generations = 2;
+  options.search.method = small;
+  EXPECT_FALSE(digs_known(options));
+  options.library = library;
+  EXPECT_TRUE(digs_known(options));
+}
+
 TEST_F(PlanDig, SearchHasABudgetUnlessToldOtherwise) {
   PlanOptions options = searched(0);
   options.simulator = own_simulator();

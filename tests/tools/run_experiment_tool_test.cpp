@@ -150,6 +150,89 @@ TEST_F(Tools, RunExperimentDigsInTheSimulatorAsked) {
   EXPECT_GT(number(section, "/gain_percent"), 0.0);
 }
 
+TEST_F(Tools, ExperimentSearchesByThePapersAlgorithmAsSet) {
+  const Words words = {"--densities", "40",           "--search", "--method",
+                       "paper",       "--population", "8",        "--generations",
+                       "3",           "--crossover",  "0.7",      "--mutation",
+                       "0.2",         "--tournament", "2",        "--elites",
+                       "2",           "--drag-range", "1m,2m"};
+  const json found = answer("run-experiment", words);
+  EXPECT_EQ(found.at("warnings"), json::array());
+  json search = found.at("search");
+  EXPECT_EQ(search["ranges"]["drag_length_m"], json({1.0, 2.0}));
+  search.erase("ranges");
+  EXPECT_EQ(search, json({{"method", "paper"},
+                          {"population", 8},
+                          {"generations", 3},
+                          {"crossover", 0.7},
+                          {"mutation", 0.2},
+                          {"tournament", 2},
+                          {"elites", 2},
+                          {"seed", 1}}));
+  EXPECT_EQ(found["conditions"][0]["start_rule"], "least work of the links' own weight");
+  const double drag = number(found, "/conditions/0/planned/path/drag_length_m");
+  EXPECT_TRUE(drag >= 1.0 && drag <= 2.0) << drag;
+  EXPECT_TRUE(warns(answer("run-experiment", {"--densities", "40", "--method", "paper"}),
+                    "options_ignored"));
+}
+
+TEST_F(Tools, FieldExperimentComparesVolumePerFuel) {
+  const Words words = {"--preset", "field", "--digs", "1"};
+  const json found = answer("run-experiment", words);
+  ASSERT_EQ(found.at("soils").size(), 2U);
+  EXPECT_EQ(found["soils"][0]["name"], "soft");
+  EXPECT_EQ(found["soils"][1]["name"], "hard");
+  EXPECT_NEAR(number(found, "/paper/gain_percent"), 27.7, 1e-12);
+  const json& run = found["soils"][0]["runs"][0];
+  EXPECT_NEAR(number(run, "/fixed/path/drag_length_m"), 2.487, 1e-12);
+  for (const char* dig : {"fixed", "planned", "planned_equal_payload"}) {
+    const json& of = run.at(dig);
+    expect_keys(of, "number", path_keys + cost_keys);
+    EXPECT_NEAR(number(of, "/efficiency_m3_per_ml"),
+                number(of, "/payload_volume_m3") / number(of, "/fuel_ml"), 1e-12);
+    EXPECT_NEAR(number(of, "/fuel_ml"), number(of, "/fuel_idle_ml") + number(of, "/fuel_work_ml"),
+                1e-12);
+  }
+  EXPECT_TRUE(warns(found, "machine_held_down") && warns(found, "density_not_trustworthy"));
+  const json other =
+      answer("run-experiment", words + Words{"--path", "45deg,0.35,1.5", "--densities", "20",
+                                             "--report", folder.file("page.html")});
+  EXPECT_NEAR(number(other, "/soils/0/runs/0/fixed/path/drag_length_m"), 1.5, 1e-12);
+  EXPECT_EQ(other["soils"][0]["name"], "20.0 %");
+  EXPECT_TRUE(warns(other, "options_ignored"));
+}
+
+TEST_F(BadInput, SettingsOfExperimentsAreRefusedByTheNamesOfOptions) {
+  const Words paper = {"--densities", "40", "--search", "--method", "paper", "--population", "8"};
+  refused(2, "--elites must be in 0 .. population - 1 = 7, got 8", "run-experiment",
+          paper + Words{"--elites", "8"});
+  refused(2, "--tournament must be >= 1, got 0", "run-experiment",
+          paper + Words{"--tournament", "0"});
+  refused(2, "--crossover must be in 0 .. 1, got 1.5", "run-experiment",
+          paper + Words{"--crossover", "1.5"});
+  refused(2, "--digs is 0, it must be in 1 .. 10000", "run-experiment",
+          {"--preset", "field", "--digs", "0"});
+}
+
+TEST_F(Tools, SensitivityTellsWhatEachAssumptionIsWorth) {
+  const Words words = {"--sensitivity", "--densities", "10", "--law", "paper"};
+  const json found = answer("run-experiment", words);
+  EXPECT_TRUE(warns(found, "options_ignored"));
+  const json& rows = found.at("sensitivity");
+  EXPECT_EQ(rows[0]["factor"], "reference");
+  EXPECT_GT(rows.size(), 20U);
+  double most = 0.0;
+  for (const json& row : rows) {
+    if (row.at("regret_percent").is_null()) {
+      EXPECT_NE(row.at("failure"), "");
+      continue;
+    }
+    EXPECT_GE(row["regret_percent"].get<double>(), 0.0);
+    most = std::max(most, row["regret_percent"].get<double>());
+  }
+  EXPECT_GT(most, 3.0);
+}
+
 TEST_F(Tools, ExperimentAlongThePathOfTheFieldTestHasALawForIt) {
   const json result =
       answer("run-experiment", {"--path", "1.023,0.496,2.487", "--densities", "10,40,80"});
