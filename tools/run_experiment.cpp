@@ -77,12 +77,6 @@ void declare(Arguments& arguments, Inputs& inputs) {
       [&] { arguments.report(inputs.report); });
 }
 
-OptionNames names_of_options() {
-  OptionNames names = cell_option;
-  names.insert(names.end(), search_option_names.begin(), search_option_names.end());
-  return names;
-}
-
 Outcome work(const Inputs& inputs, Console& console) {
   check(inputs.experiment.method);
   const Machine machine = machine_named(inputs.machine);
@@ -103,7 +97,7 @@ Outcome work(const Inputs& inputs, Console& console) {
     usage_error("--report shows digs on fresh ground, not with --second left");
   }
   const std::vector<ExperimentCondition> conditions = conditions_of(experiment);
-  const OptionNames names = names_of_options();
+  const OptionNames names = experiment_option_names();
   std::vector<NamedExperiment> done;
   std::string failure;
   Outcome outcome;

@@ -805,7 +805,8 @@ TEST_F(SearchCheckpointFile, IsRefusedForAnotherSettingOfThePapersAlgorithm) {
   genetic.method = usual;
   cut_off(20, genetic, hartmann);
   for (const GeneticAlgorithm& other : others) {
-    EXPECT_EQ(resumed_with(other).rfind(": search: is 'genetic algorithm: ", 0), 0U);
+    const std::string refused = resumed_with(other);
+    EXPECT_EQ(refused.rfind("search: is 'genetic algorithm: ", 0), 0U) << refused;
   }
 }
 

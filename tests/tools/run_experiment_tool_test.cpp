@@ -210,16 +210,18 @@ TEST_F(BadInput, SettingsOfExperimentsAreRefusedByTheNamesOfOptions) {
           paper + Words{"--tournament", "0"});
   refused(2, "--crossover must be in 0 .. 1, got 1.5", "run-experiment",
           paper + Words{"--crossover", "1.5"});
-  refused(2, "--digs is 0, it must be in 1 .. 10000", "run-experiment",
+  refused(2, "--digs is 0, must be in 1 .. 10000", "run-experiment",
           {"--preset", "field", "--digs", "0"});
 }
 
 TEST_F(Tools, SensitivityTellsWhatEachAssumptionIsWorth) {
-  const Words words = {"--sensitivity", "--densities", "10", "--law", "paper"};
+  const Words words = {"--sensitivity", "--densities",   "10", "--law",
+                       "paper",         "--evaluations", "40"};
   const json found = answer("run-experiment", words);
   EXPECT_TRUE(warns(found, "options_ignored"));
   const json& rows = found.at("sensitivity");
   EXPECT_EQ(rows[0]["factor"], "reference");
+  EXPECT_EQ(found["evaluations"], 40);
   EXPECT_GT(rows.size(), 20U);
   double most = 0.0;
   for (const json& row : rows) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/experiment/sensitivity.hpp>
 #include <excavplan/simulation/calibration.hpp>
 
 #include "base/text.hpp"
@@ -39,10 +40,24 @@ void declare_experiment(Arguments& arguments, ExperimentInputs& inputs) {
                  "relative densities [%], or a list a,b,c; \"paper\": soft 10, medium 40, hard 80");
   arguments.only_if({[&inputs] { return !inputs.sensitivity; }, "--sensitivity has no use for it"},
                     [&] { declare_digs(arguments, inputs); });
+  arguments.only_if({[&inputs] { return inputs.search || inputs.sensitivity; },
+                     "nothing is searched without --search"},
+                    [&] {
+                      declare_evaluations(arguments, inputs.method,
+                                          "600, with --method paper as many as its generations "
+                                          "take, with --sensitivity " +
+                                              std::to_string(SensitivityOptions{}.digs));
+                    });
   declare_goal(arguments, inputs.goal);
   arguments.soil(inputs.soil);
   arguments.simulator(inputs.simulator);
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
+}
+
+OptionNames experiment_option_names() {
+  OptionNames names = cell_option;
+  names.insert(names.end(), search_option_names.begin(), search_option_names.end());
+  return names;
 }
 
 /// Ours: the densities of the paper's Table 1 are not published as text.

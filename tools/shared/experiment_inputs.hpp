@@ -37,6 +37,9 @@ struct ExperimentInputs {
 
 void declare_experiment(Arguments& arguments, ExperimentInputs& inputs);
 
+/// What the library calls them in its messages.
+OptionNames experiment_option_names();
+
 struct ExperimentCondition {
   std::string name;
   double density = 0.0;  ///< [%]

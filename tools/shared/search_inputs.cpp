@@ -36,6 +36,10 @@ bool report(Console& console, const SearchProgress& p, const DigObjective& objec
 
 void declare_whole_search(Arguments& arguments, SearchInputs& inputs) {
   declare_search_method(arguments, inputs.method);
+  declare_evaluations(arguments, inputs.method,
+                      "600, with --density-sd 100 for each of several densities (200 where no "
+                      "library has a dig to start from), with --method paper as many as its "
+                      "generations take");
   arguments.output(
       "checkpoint", inputs.checkpoint,
       "save the simulated digs in this file; for several densities also in FILE.soil1, "

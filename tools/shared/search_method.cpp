@@ -71,11 +71,12 @@ void declare_search_method(Arguments& arguments, SearchMethodInputs& inputs) {
                    "generations of the search, 0 for as many as --evaluations allows, or with "
                    "--method paper " +
                        std::to_string(GeneticAlgorithm{}.generations));
-  arguments.option(
-      "evaluations", inputs.evaluations,
-      "largest number of simulated digs per search; 0: 600, with --density-sd 100 for each of "
-      "several densities (200 where no library has a dig to start from), with --method paper "
-      "as many as its generations take");
+}
+
+void declare_evaluations(Arguments& arguments, SearchMethodInputs& inputs,
+                         const std::string& usual) {
+  arguments.option("evaluations", inputs.evaluations,
+                   "largest number of simulated digs per search; 0: " + usual);
 }
 
 void check(const SearchMethodInputs& inputs) {

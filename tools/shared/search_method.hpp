@@ -32,6 +32,10 @@ struct SearchMethodInputs {
 
 void declare_search_method(Arguments& arguments, SearchMethodInputs& inputs);
 
+/// @param usual  what 0 stands for
+void declare_evaluations(Arguments& arguments, SearchMethodInputs& inputs,
+                         const std::string& usual);
+
 /// What plan_dig() calls them in its messages.
 inline const OptionNames search_option_names = {
     {"search: population", "--population"},       {"search: generations", "--generations"},

@@ -54,6 +54,7 @@ Outcome sensitivity(const Machine& machine, const ExperimentInputs& inputs, Cons
   reference.cell_size = inputs.cell_size;
   SensitivityOptions options;
   options.threads = static_cast<unsigned>(inputs.threads);
+  if (inputs.method.evaluations > 0) options.digs = inputs.method.evaluations;
   options.densities_percent.clear();
   for (const ExperimentCondition& condition : conditions_of(inputs)) {
     options.densities_percent.push_back(condition.density);
@@ -64,8 +65,9 @@ Outcome sensitivity(const Machine& machine, const ExperimentInputs& inputs, Cons
     console.progress(done, "best paths under other assumptions");
     return !console.stop_requested();
   };
-  const auto rows = naming_options(
-      cell_option, [&] { return run_sensitivity(reference, our_assumptions(), options); });
+  const auto rows = naming_options(experiment_option_names(), [&] {
+    return run_sensitivity(reference, our_assumptions(), options);
+  });
   const DigObjective& objective = reference.search.objective;
   Outcome outcome;
   outcome.json["sensitivity"] = ordered_json::array();
