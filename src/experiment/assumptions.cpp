@@ -17,7 +17,7 @@ using Change = std::function<void(DigModel&)>;
 std::string from_to(double lower, double upper, const char* unit) {
   return decimals(lower, 1) + " .. " + decimals(upper, 1) + unit;
 }
-std::string times(double factor) { return "x " + readable(factor); }
+std::string times(double factor) { return "x " + decimals(factor, 2); }
 
 /// Turns the floor of the bucket about the tip; its length stays.
 void turn_floor(Bucket& bucket, double angle) {
@@ -29,7 +29,7 @@ void turn_floor(Bucket& bucket, double angle) {
 
 void add_path_rules(Assumptions& all) {
   for (const double angle : {0.0, 1.0, 4.0}) {
-    all.push_back({"floor above the cut in the drag", readable(angle) + " deg",
+    all.push_back({"floor above the cut in the drag", decimals(angle, 0) + " deg",
                    [=](DigModel& m) { m.search.rules.min_heel_clearance = angle * pi / 180.0; }});
   }
   const std::pair<const char*, StartRule::Kind> starts[] = {
@@ -58,7 +58,7 @@ void add_ranges(Assumptions& all) {
 
 void add_bucket(Assumptions& all) {
   for (const double angle : {45.0, 55.0}) {
-    all.push_back({"floor of the bucket to the line of tip and pin", readable(angle) + " deg",
+    all.push_back({"floor of the bucket to the line of tip and pin", decimals(angle, 0) + " deg",
                    [=](DigModel& m) { turn_floor(m.machine.bucket, angle * pi / 180.0); }});
   }
   all.push_back({"teeth", "none", [](DigModel& m) { m.machine.bucket.teeth.reset(); }});
@@ -77,7 +77,7 @@ void add_bucket(Assumptions& all) {
 
 void add_machine(Assumptions& all) {
   for (const double by : {-0.2, 0.2}) {
-    all.push_back({"centre of mass of the body", (by > 0.0 ? "+" : "") + readable(by, 1) + " m",
+    all.push_back({"centre of mass of the body", (by > 0.0 ? "+" : "") + decimals(by, 1) + " m",
                    [=](DigModel& m) {
                      if (m.machine.body) m.machine.body->centre.x() += by;
                    }});

@@ -64,6 +64,7 @@ class FieldExperiment {
     run.held_down = !found.held_because.empty();
     run.energy_gain = found.gain_percent();
     run.equal_energy_gain = equal.gain_percent();
+    run.equal_path_gain = equal.path_gain_percent();
     run.fixed = fuelled(found.fixed, options_.fuel);
     run.planned = fuelled(found.planned, options_.fuel);
     run.equal = fuelled(equal.planned, options_.fuel);
@@ -86,7 +87,7 @@ class FieldExperiment {
 };
 
 void summarise(FieldResult& result, std::uint64_t seed) {
-  std::vector<double> gain, volume, energy, equal_gain, equal_volume, equal_energy;
+  std::vector<double> gain, volume, energy, equal_gain, equal_volume, equal_energy, equal_path;
   for (const FieldRun& run : result.runs) {
     if (!run.failure.empty()) {
       ++result.failed;
@@ -99,6 +100,7 @@ void summarise(FieldResult& result, std::uint64_t seed) {
     }
     energy.push_back(run.energy_gain);
     equal_energy.push_back(run.equal_energy_gain);
+    equal_path.push_back(run.equal_path_gain);
     const double fixed = run.fixed.dig.payload_volume;
     gain.push_back(fuel_gain_percent(run.planned, run.fixed));
     volume.push_back(run.planned.dig.payload_volume / fixed);
@@ -110,6 +112,7 @@ void summarise(FieldResult& result, std::uint64_t seed) {
   result.equal_gain = bootstrap_mean(equal_gain, seed);
   result.energy_gain = bootstrap_mean(energy, seed);
   result.equal_energy_gain = bootstrap_mean(equal_energy, seed);
+  result.equal_path_gain = bootstrap_mean(equal_path, seed);
   result.equal_volume_ratio = bootstrap_mean(equal_volume, seed);
 }
 

@@ -50,6 +50,7 @@ ordered_json run_json(const FieldRun& run) {
           {"planned_equal_payload", fuelled_json(run.equal)},
           {"gain_percent", run.energy_gain},
           {"gain_equal_payload_percent", run.equal_energy_gain},
+          {"gain_path_equal_payload_percent", run.equal_path_gain},
           {"gain_fuel_percent", fuel_gain_percent(run.planned, run.fixed)},
           {"gain_fuel_equal_payload_percent", fuel_gain_percent(run.equal, run.fixed)}};
 }
@@ -63,6 +64,7 @@ ordered_json result_json(const std::string& name, const FieldResult& result) {
                        {"trustworthy", result.trusted},
                        {"gain_percent", mean_json(result.energy_gain)},
                        {"gain_equal_payload_percent", mean_json(result.equal_energy_gain)},
+                       {"gain_path_equal_payload_percent", mean_json(result.equal_path_gain)},
                        {"gain_fuel_percent", mean_json(result.gain)},
                        {"volume_ratio", mean_json(result.volume_ratio)},
                        {"gain_fuel_equal_payload_percent", mean_json(result.equal_gain)},

@@ -48,7 +48,9 @@ struct FieldRun {
   FuelledDig equal;             ///< along the one planned for no less payload than the fixed dig's
   bool held_down = false;       ///< the fixed path would lift or drag the machine
   double energy_gain = 0.0;     ///< of the planned dig by the objective, mass per energy [%]
-  double equal_energy_gain = 0.0;      ///< of the one at no less payload [%]
+  double equal_energy_gain = 0.0;  ///< of the one at no less payload [%]
+  /// Its part that is the path's: both digs begun by one rule [%].
+  double equal_path_gain = 0.0;
   std::vector<Warning> warnings = {};  ///< of the estimate
   std::string failure = {};            ///< why there is no result; empty if there is
 };
@@ -66,6 +68,7 @@ struct FieldResult {
   int trusted = 0;                    ///< runs whose estimate is trustworthy
   StudyMean energy_gain = {};         ///< FieldRun::energy_gain [%]
   StudyMean equal_energy_gain = {};   ///< FieldRun::equal_energy_gain [%]
+  StudyMean equal_path_gain = {};     ///< FieldRun::equal_path_gain [%]
   StudyMean gain = {};                ///< of the planned path, fuel_gain_percent() [%]
   StudyMean volume_ratio = {};        ///< its volume in the bucket over that of the fixed path [-]
   StudyMean equal_gain = {};          ///< the same at no less payload [%]
