@@ -56,7 +56,7 @@ TEST_F(FieldExperimentTest, SoftSoilIsTrustedAndDugForLessFuel) {
   for (const FieldRun& run : soft.runs) {
     EXPECT_EQ(to_vector(run.fixed.dig.parameters), to_vector(paper_field_path()));
     EXPECT_NEAR(run.density_raw, 10.0, 8.0);
-    EXPECT_LT(run.equal.dig.parameters.drag_length, paper_field_path().drag_length);
+    EXPECT_LT(run.equal.fuel(), run.fixed.fuel());
   }
   EXPECT_GE(soft.equal_volume_ratio.mean, 0.99);
   EXPECT_LT(soft.equal_volume_ratio.mean, 1.1);
