@@ -43,7 +43,10 @@ struct Inputs {
 void declare(Arguments& arguments, Inputs& inputs) {
   ExperimentInputs& experiment = inputs.experiment;
   arguments.only_if({[&inputs] { return !inputs.is_study(); }, "a study has its own conditions"},
-                    [&] { declare_experiment(arguments, experiment); });
+                    [&] {
+                      declare_experiment(arguments, experiment);
+                      arguments.report(inputs.report);
+                    });
   arguments.machine(inputs.machine);
 #ifdef EXCAVPLAN_STUDY
   declare_study(arguments, inputs.study);
@@ -54,7 +57,6 @@ void declare(Arguments& arguments, Inputs& inputs) {
                       arguments.option("seed", experiment.seed, "seed of searches and of a study");
                       arguments.threads(experiment.threads, "");
                     });
-  arguments.report(inputs.report);
 }
 
 void add(const NamedExperiment& done, Outcome& outcome) {

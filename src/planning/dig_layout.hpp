@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -36,6 +37,8 @@ class DigLayout {
                                          const StartRule& start) const;
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
                                               const DigPathOptions& options = {}) const;
+  /// The way down to a path, as way_down(), and clear of the ground with boom and arm.
+  std::variant<std::vector<DigPose>, Infeasible> approach(const DigPath& path) const;
   /// From this start, or if it cannot be from that of the largest margin.
   std::variant<DigPath, Infeasible> path_near(const DigParameters& parameters,
                                               double start_x) const;
@@ -47,12 +50,16 @@ class DigLayout {
   std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
   std::variant<DigPath, Infeasible> checked(std::variant<DigPath, Infeasible> found) const;
   std::optional<Infeasible> obstacle(const DigPose& pose, double x_max) const;
+  std::optional<Infeasible> front_contact(const DigPose& pose) const;
 
   const Machine& machine_;
   GroundProfile ground_;
   KnownStrip strip_;
   FrontRoom room_;
 };
+
+/// Where a path whose start is free is tried along the reach [m], 0.25 m apart; ours.
+std::vector<double> starts_along_reach(const Machine& machine);
 
 /// How far a dig is from feasible, >= 0: the share of the path that a stall leaves; more than 1 for
 /// a path that cannot be driven, more the earlier it fails.

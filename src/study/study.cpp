@@ -3,6 +3,7 @@
 #include <excavplan/study/study.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -27,7 +28,6 @@ namespace {
 constexpr double lowest_density = 5.0;    // of the runs [%]
 constexpr double highest_density = 95.0;  // [%]
 constexpr double rough_length = 0.3;      // over which rough ground is correlated [m]; ours
-constexpr int waves = 200;                // of rough ground; ours
 
 // Of a condition; ours.
 constexpr double steepest = 0.6;  // [rad]
@@ -66,15 +66,18 @@ class Shelf {
     return {setting.law, setting.soil, setting.digs};
   }
 
-  DensityCalibration calibrated(const SoilKind& soil, const std::string& simulator) const {
+  const DensityCalibration& calibrated(const SoilKind& soil, const std::string& simulator) {
+    const std::pair key(soil.name, simulator);
+    const auto made = calibrations_.find(key);
+    if (made != calibrations_.end()) return made->second;
     CalibrationOptions options;
     options.simulator = simulator_of_word(simulator);
     options.draws = draws_;
     options.threads = threads_;
-    return calibrate_density(machine_, soil, options);
+    return calibrations_.emplace(key, calibrate_density(machine_, soil, options)).first->second;
   }
 
-  DensityLaw make_law(const StudySetting& setting, const SoilKind& soil) const {
+  DensityLaw make_law(const StudySetting& setting, const SoilKind& soil) {
     switch (setting.law) {
       case StudyLaw::other_engine:
         return law_of(calibrated(soil, setting.digs == "section" ? "height-map" : "section"));
@@ -100,29 +103,44 @@ class Shelf {
   int draws_;
   unsigned threads_;
   std::map<std::string, SoilKind> soils_;
+  std::map<std::pair<std::string, std::string>, DensityCalibration> calibrations_;
   std::map<Key, DensityLaw> laws_;
   std::map<std::string, std::shared_ptr<const PathLibrary>> libraries_;
 };
 
-/// A sum of waves of random direction and phase whose covariance falls as exp(-d^2 / (2 L^2)).
-double rough_height(double x, double y, std::uint64_t seed) {
-  Random random(seed, 7);
-  double sum = 0.0;
-  for (int i = 0; i < waves; ++i) {
-    const double kx = random.normal() / rough_length;
-    const double ky = random.normal() / rough_length;
-    sum += std::cos(kx * x + ky * y + 2.0 * pi * random.uniform());
+/// A height of zero mean and unit rms: a sum of waves of random direction and phase, whose
+/// covariance falls as exp(-d^2 / (2 L^2)).
+class RoughGround {
+ public:
+  explicit RoughGround(std::uint64_t seed) {
+    Random random(seed, 7);
+    for (Wave& wave : waves_) {
+      wave.kx = random.normal() / rough_length;
+      wave.ky = random.normal() / rough_length;
+      wave.phase = 2.0 * pi * random.uniform();
+    }
   }
-  return sum * std::sqrt(2.0 / waves);
-}
+  double height(double x, double y) const {
+    double sum = 0.0;
+    for (const Wave& wave : waves_) sum += std::cos(wave.kx * x + wave.ky * y + wave.phase);
+    return sum * std::sqrt(2.0 / static_cast<double>(waves_.size()));
+  }
+
+ private:
+  struct Wave {
+    double kx, ky, phase;
+  };
+  std::array<Wave, 200> waves_;  // ours
+};
 
 Terrain study_ground(const Machine& machine, const StudySetting& setting, double cell_size,
                      std::uint64_t seed) {
   HeightMap map = flat_ground(scene_extent(machine, default_dump_point()), cell_size);
+  const RoughGround rough(seed);
   for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
     map.z.col(col) += std::tan(setting.slope) * std::max(0.0, map.x(col) - machine.track_front);
     for (Eigen::Index row = 0; setting.roughness > 0.0 && row < map.z.rows(); ++row) {
-      map.z(row, col) += setting.roughness * rough_height(map.x(col), map.y(row), seed);
+      map.z(row, col) += setting.roughness * rough.height(map.x(col), map.y(row));
     }
   }
   return undisturbed(map);
@@ -140,6 +158,9 @@ double density_of_run(const StudySetting& setting, std::uint64_t index) {
 ExperimentOptions options_of(const Machine& machine, const StudySetting& setting,
                              const Shelf& shelf, std::uint64_t seed) {
   ExperimentOptions options;
+  options.survey = [&setting, &shelf, seed](const DigScene& scene) {
+    return surveyed_density(scene, setting.sensor, shelf.soil(setting), shelf.law(setting), seed);
+  };
   options.fixed_path = setting.fixed_path;
   options.digs = simulator_of_word(setting.digs);
   if (setting.drawn_soil) options.dug_soil = drawn_soil(shelf.soil(setting), {}, seed);
@@ -176,20 +197,22 @@ ExperimentOptions at_equal_payload(DigObjective::Goal goal, const ExperimentResu
   return options;
 }
 
+StudyRun run_with(const RelativeDensity& estimate) {
+  StudyRun run;
+  run.estimate_percent = estimate.percent;
+  run.estimate_sd = estimate.sd_percent;
+  run.interval = estimate.interval_percent;
+  run.trustworthy = estimate.trustworthy;
+  return run;
+}
+
 StudyRun single_dig(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
                     double density, std::uint64_t seed) {
   const SoilKind& soil = shelf.soil(setting);
   const DensityLaw& law = shelf.law(setting);
-  ExperimentOptions options = options_of(machine, setting, shelf, seed);
-  options.survey = [&](const DigScene& scene) {
-    return surveyed_density(scene, setting.sensor, soil, law, seed);
-  };
+  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
   const ExperimentResult energy = run_experiment(machine, soil, law, density, options);
-  StudyRun run;
-  run.estimate_percent = energy.estimate.percent;
-  run.estimate_sd = energy.estimate.sd_percent;
-  run.interval = energy.estimate.interval_percent;
-  run.trustworthy = energy.estimate.trustworthy;
+  StudyRun run = run_with(energy.estimate);
   const auto at_equal = [&](DigObjective::Goal goal) {
     return run_experiment(machine, soil, law, density, at_equal_payload(goal, energy, options));
   };
@@ -212,23 +235,15 @@ StudyRun digs_in_a_row(const Machine& machine, const StudySetting& setting, cons
                        double density, std::uint64_t seed) {
   const SoilKind& soil = shelf.soil(setting);
   const DensityLaw& law = shelf.law(setting);
-  ExperimentOptions options = options_of(machine, setting, shelf, seed);
-  options.survey = [&](const DigScene& scene) {
-    return surveyed_density(scene, setting.sensor, soil, law, seed);
-  };
+  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
   const ExperimentResult first = run_experiment(machine, soil, law, density, options);
-  const auto survey = options.survey;
-  options = at_equal_payload(DigObjective::Goal::cycle, first, options);
-  options.survey = survey;
-  const DigRow row(machine, soil, density, options);
+  ExperimentOptions in_row = at_equal_payload(DigObjective::Goal::cycle, first, options);
+  in_row.survey = options.survey;
+  const DigRow row(machine, soil, density, in_row);
   const RowTotal fixed = row.fixed(setting.row);
-  StudyRun run;
   RelativeDensity last;
   const RowTotal planned = row.planned(fixed.digs, first.estimate, last);
-  run.estimate_percent = last.percent;
-  run.estimate_sd = last.sd_percent;
-  run.interval = last.interval_percent;
-  run.trustworthy = last.trustworthy;
+  StudyRun run = run_with(last);
   run.held_down = !first.held_because.empty();
   run.energy_gain = percent_over(planned.mass / planned.energy, fixed.mass / fixed.energy);
   run.path_gain = run.equal_gain = run.energy_gain;

@@ -83,7 +83,7 @@ TEST_F(Study, ThePathSizedToTheBucketSweepsWhatTheBucketHolds) {
 }
 
 TEST_F(Study, TheDefaultVariesOneFactorAtATimeWithEnoughRuns) {
-  const std::vector<StudyCondition> all = default_study();
+  const std::vector<StudyCondition> all = default_study(machine_);
   std::set<std::string> factors, names;
   for (const StudyCondition& condition : all) {
     factors.insert(condition.factor);

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <regex>
+#include <sstream>
+#include <string>
 
 #include <excavplan/soil/density_fit.hpp>
 
@@ -87,6 +90,10 @@ TEST_F(Tools, AStudyWritesItsRunsAndItsTable) {
   EXPECT_EQ(static_cast<std::size_t>(std::count(runs.begin(), runs.end(), '\n')),
             found.at("study").size() + 1);
   EXPECT_EQ(json::parse(content_of(out + "/study.json"))["study"], found["study"]);
+  std::istringstream rows(std::regex_replace(runs, std::regex("\"[^\"]*\""), ""));
+  for (std::string row; std::getline(rows, row);) {
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 16) << row;
+  }
   EXPECT_TRUE(contains(content_of(out + "/study.md"), "| slope | +10.0 deg | 1 |"));
   answer("run-experiment", words);
   EXPECT_EQ(content_of(out + "/runs.csv"), runs);

@@ -46,6 +46,8 @@ std::string cell(const std::string& text) {
 }
 std::string cell(double value) { return std::isnan(value) ? "" : number_text(value); }
 
+constexpr std::size_t values_of_run = 13;  // in a row, between density and failure
+
 std::string runs_csv(const std::vector<StudyResult>& results) {
   std::string csv =
       "factor,level,density_percent,estimate_percent,estimate_sd_percent,interval_low_percent,"
@@ -66,7 +68,7 @@ std::string runs_csv(const std::vector<StudyResult>& results) {
         }
         csv += ",\n";
       } else {
-        csv += ",,,,,,,,,,,,,," + cell(run.failure) + "\n";
+        csv += std::string(values_of_run, ',') + "," + cell(run.failure) + "\n";
       }
     }
   }
@@ -79,32 +81,33 @@ std::string text_of(const StudyMean& mean) {
          decimals(mean.interval[1], 1) + ")";
 }
 
+std::string number_of(double value) { return std::isnan(value) ? "-" : decimals(value, 1); }
+
 std::string ratio_of(const StudyMean& mean) {
   return std::isnan(mean.mean) ? "-" : decimals(mean.mean, 2);
 }
 
 std::string table(const std::vector<StudyResult>& results) {
   std::string text =
-      "| factor | level | runs | failed | held down | not trusted | rms d | bias d | in 95 % | "
-      "gain "
-      "% | payload | gain at equal payload % | payload | gain per cycle % | payload |\n"
+      "| factor | level | runs | failed | held down | not trusted | rms d | bias d | in 95 % "
+      "| gain % | payload | gain at equal payload % | payload | gain per cycle % | payload |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const StudyResult& result : results) {
     text += "| " + result.condition.factor + " | " + result.condition.level + " | " +
             std::to_string(result.runs.size()) + " | " + std::to_string(result.failed) + " | " +
             std::to_string(result.held_down) + " | " + std::to_string(result.untrusted) + " | " +
-            decimals(result.rms, 1) + " | " + decimals(result.bias, 1) + " | " +
-            decimals(100.0 * result.inside, 0) + " % | " + text_of(result.energy_gain) + " | " +
-            ratio_of(result.energy_payload) + " | " + text_of(result.equal_gain) + " | " +
-            ratio_of(result.equal_payload) + " | " + text_of(result.cycle_gain) + " | " +
-            ratio_of(result.cycle_payload) + " |\n";
+            number_of(result.rms) + " | " + number_of(result.bias) + " | " +
+            (std::isnan(result.inside) ? "-" : decimals(100.0 * result.inside, 0) + " %") + " | " +
+            text_of(result.energy_gain) + " | " + ratio_of(result.energy_payload) + " | " +
+            text_of(result.equal_gain) + " | " + ratio_of(result.equal_payload) + " | " +
+            text_of(result.cycle_gain) + " | " + ratio_of(result.cycle_payload) + " |\n";
   }
   return text;
 }
 
 std::string line_of(const StudyResult& result) {
   return result.condition.factor + ", " + result.condition.level + ": density within " +
-         decimals(result.rms, 1) + " points rms; gain " + text_of(result.energy_gain) +
+         number_of(result.rms) + " points rms; gain " + text_of(result.energy_gain) +
          " %, at equal payload " + text_of(result.equal_gain) + " %, per cycle " +
          text_of(result.cycle_gain) + " %";
 }
@@ -135,9 +138,9 @@ Outcome study(const Machine& machine, const StudyInputs& inputs, std::uint64_t s
   options.progress = [&](double done, const std::string& condition) {
     const std::lock_guard<std::mutex> lock(one_line);
     console.progress(done, condition);
-    return !console.stop_requested();
+    return true;
   };
-  const auto results = run_study(machine, default_study(), options);
+  const auto results = run_study(machine, default_study(machine), options);
   Outcome outcome;
   outcome.json["seed"] = seed;
   outcome.json["study"] = ordered_json::array();

@@ -66,8 +66,8 @@ struct StudyCondition {
   int runs = 30;         ///< number of runs
 };
 
-/// The conditions of the default study. The first is the reference.
-std::vector<StudyCondition> default_study();
+/// The conditions of the default study of this machine. The first is the reference.
+std::vector<StudyCondition> default_study(const Machine& machine);
 
 /// The fixed path of the paper's field experiments: [1.023, 0.496 m, 2.487 m] (section 4.1).
 DigParameters paper_field_path();
