@@ -142,7 +142,21 @@ std::string what_moves(const Experiment& experiment, const DigParameters& path) 
   return {};
 }
 
+/// Holds the machine down if it would be moved. @return why
+std::string hold_if_moved(Experiment& experiment, const DigParameters& path) {
+  std::string why = what_moves(experiment, path);
+  if (!why.empty()) experiment.hold_machine();
+  return why;
+}
+
 }  // namespace
+
+DigScene first_dig(const Machine& machine, const SoilKind& soil, double density_percent,
+                   const ExperimentOptions& options) {
+  Experiment experiment(machine, soil, density_percent, options);
+  hold_if_moved(experiment, options.fixed_path);
+  return experiment.scene(experiment.dig(options.fixed_path, {}).dig);
+}
 
 double ExperimentResult::gain_percent() const { return gain_percent(objective); }
 double ExperimentResult::gain_percent(const DigObjective& by) const {
@@ -158,8 +172,7 @@ ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, co
   require_simulated_cell(options.plan.cell_size);
   Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
-  result.held_because = what_moves(experiment, options.fixed_path);
-  if (!result.held_because.empty()) experiment.hold_machine();
+  result.held_because = hold_if_moved(experiment, options.fixed_path);
   result.density_percent = density_percent;
   result.objective = options.plan.search.objective;
   Dug fixed = experiment.dig(options.fixed_path, {});

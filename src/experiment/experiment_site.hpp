@@ -30,4 +30,8 @@ class ExperimentSite {
   const ExperimentOptions& options_;
 };
 
+/// The dig along the fixed path that run_experiment() begins with. @throws Error as there
+DigScene first_dig(const Machine& machine, const SoilKind& soil, double density_percent,
+                   const ExperimentOptions& options);
+
 }  // namespace excavplan

@@ -185,7 +185,7 @@ ExperimentOptions options_of(const Machine& machine, const StudySetting& setting
 /// dig found for the paper's goal.
 ExperimentOptions at_equal_payload(DigObjective::Goal goal, const ExperimentResult& found,
                                    ExperimentOptions options) {
-  constexpr int digs = 200;  // of a search that begins warm; ours
+  constexpr int digs = 120;  // of a search that begins warm; ours
   PlanOptions& plan = options.plan;
   plan.method = PlanMethod::search;
   plan.library.reset();
@@ -254,14 +254,26 @@ StudyRun digs_in_a_row(const Machine& machine, const StudySetting& setting, cons
   return run;
 }
 
-StudyRun run_once(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
+StudyRun estimate_alone(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
+                        double density, std::uint64_t seed) {
+  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
+  StudyRun run =
+      run_with(options.survey(first_dig(machine, shelf.soil(setting), density, options)));
+  run.compared = false;
+  return run;
+}
+
+StudyRun run_once(const Machine& machine, const StudyCondition& condition, const Shelf& shelf,
                   std::uint64_t seed, std::uint64_t index) {
+  const StudySetting& setting = condition.setting;
   const double density = density_of_run(setting, index);
   const std::uint64_t own_seed = Random(seed, index).bits();
   StudyRun run;
   try {
-    run = setting.row > 1 ? digs_in_a_row(machine, setting, shelf, density, own_seed)
-                          : single_dig(machine, setting, shelf, density, own_seed);
+    const auto kind = static_cast<int>(index) >= condition.compared ? estimate_alone
+                      : setting.row > 1                             ? digs_in_a_row
+                                                                    : single_dig;
+    run = kind(machine, setting, shelf, density, own_seed);
   } catch (const Error& error) {
     run.failure = error.what();
   }
@@ -282,6 +294,8 @@ void summarise(StudyResult& result, std::uint64_t seed) {
     sum += error;
     inside += run.density_percent >= run.interval[0] && run.density_percent <= run.interval[1];
     result.untrusted += run.trustworthy ? 0 : 1;
+    if (!run.compared) continue;
+    ++result.compared;
     if (run.held_down) {
       ++result.held_down;
       continue;
@@ -345,7 +359,7 @@ std::vector<StudyResult> run_study(const Machine& machine,
     if (stopped) return;
     const auto [which, index] = tasks[task];
     StudyResult& result = results[which];
-    result.runs[index] = run_once(machine, result.condition.setting, shelf, options.seed, index);
+    result.runs[index] = run_once(machine, result.condition, shelf, options.seed, index);
     const double share = static_cast<double>(++done) / static_cast<double>(tasks.size());
     const std::string name = result.condition.factor + " " + result.condition.level;
     if (options.progress && !options.progress(share, name)) stopped = true;

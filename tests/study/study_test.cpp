@@ -145,6 +145,23 @@ TEST_F(Study, ARunThatFailsEndsNoOther) {
   EXPECT_TRUE(std::isnan(result.energy_gain.mean));
 }
 
+TEST_F(Study, RunsThatAreNotComparedEstimateTheSame) {
+  StudySetting setting;
+  setting.density_percent = 40.0;
+  setting.sensor = StudySensor::d435i;
+  StudyOptions options;
+  options.draws = 12;
+  const StudyCondition both{"factor", "level", setting, 2, 2};
+  StudyCondition one = both;
+  one.compared = 1;
+  const auto results = run_study(machine_, {both, one}, options);
+  EXPECT_EQ(results[0].compared, 2);
+  EXPECT_EQ(results[1].compared, 1);
+  EXPECT_FALSE(results[1].runs[1].compared);
+  EXPECT_EQ(results[0].rms, results[1].rms);
+  EXPECT_EQ(results[0].runs[0].energy_gain, results[1].energy_gain.mean);
+}
+
 TEST_F(Study, ASurveyWithErrorsIsWorseThanOneWithout) {
   StudySetting none, poor;
   none.law = poor.law = StudyLaw::own_engine;

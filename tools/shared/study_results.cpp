@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/study_results.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <mutex>
 #include <vector>
 
@@ -24,6 +26,7 @@ ordered_json condition_json(const StudyResult& result) {
           {"level", result.condition.level},
           {"runs", result.runs.size()},
           {"failed", result.failed},
+          {"compared", result.compared},
           {"held_down", result.held_down},
           {"not_trustworthy", result.untrusted},
           {"density_rms_points", result.rms},
@@ -46,7 +49,27 @@ std::string cell(const std::string& text) {
 }
 std::string cell(double value) { return std::isnan(value) ? "" : number_text(value); }
 
-constexpr std::size_t values_of_run = 13;  // in a row, between density and failure
+/// Of a run, between density and failure; what is not known is not a number.
+std::vector<double> values_of(const StudyRun& run) {
+  std::vector<double> values = {run.estimate_percent,
+                                run.estimate_sd,
+                                run.interval[0],
+                                run.interval[1],
+                                run.trustworthy ? 1.0 : 0.0,
+                                run.held_down ? 1.0 : 0.0,
+                                run.energy_gain,
+                                run.path_gain,
+                                run.energy_payload,
+                                run.equal_gain,
+                                run.equal_payload,
+                                run.cycle_gain,
+                                run.cycle_payload};
+  constexpr std::ptrdiff_t estimated = 5;
+  const double nothing = std::nan("");
+  if (!run.compared) std::fill(values.begin() + estimated, values.end(), nothing);
+  if (!run.failure.empty()) std::fill(values.begin(), values.end(), nothing);
+  return values;
+}
 
 std::string runs_csv(const std::vector<StudyResult>& results) {
   std::string csv =
@@ -58,18 +81,8 @@ std::string runs_csv(const std::vector<StudyResult>& results) {
     for (const StudyRun& run : result.runs) {
       csv += cell(result.condition.factor) + "," + cell(result.condition.level) + "," +
              cell(run.density_percent);
-      if (run.failure.empty()) {
-        for (const double value :
-             {run.estimate_percent, run.estimate_sd, run.interval[0], run.interval[1],
-              run.trustworthy ? 1.0 : 0.0, run.held_down ? 1.0 : 0.0, run.energy_gain,
-              run.path_gain, run.energy_payload, run.equal_gain, run.equal_payload, run.cycle_gain,
-              run.cycle_payload}) {
-          csv += "," + cell(value);
-        }
-        csv += ",\n";
-      } else {
-        csv += std::string(values_of_run, ',') + "," + cell(run.failure) + "\n";
-      }
+      for (const double value : values_of(run)) csv += "," + cell(value);
+      csv += "," + (run.failure.empty() ? "" : cell(run.failure)) + "\n";
     }
   }
   return csv;

@@ -64,6 +64,7 @@ struct StudyCondition {
   std::string level;     ///< "+10 deg"
   StudySetting setting;  ///< all of it
   int runs = 30;         ///< number of runs
+  int compared = 30;     ///< of them the first, which also plan and dig; the rest only estimate
 };
 
 /// The conditions of the default study of this machine. The first is the reference.
@@ -86,6 +87,7 @@ struct StudyRun {
   double estimate_sd = 0.0;                       ///< its standard deviation [%]
   std::array<double, 2> interval = {0.0, 100.0};  ///< 95 %
   bool trustworthy = true;                        ///< the estimate
+  bool compared = true;                           ///< planned and dug, not only estimated
   /// The fixed path would lift or drag the machine, which is held down in all digs of the run: no
   /// gain can be told from it.
   bool held_down = false;
@@ -114,7 +116,8 @@ struct StudyResult {
   StudyCondition condition;       ///< that was run
   std::vector<StudyRun> runs;     ///< in order
   int failed = 0;                 ///< runs without a result
-  int held_down = 0;              ///< runs that tell no gain
+  int compared = 0;               ///< runs without failure that planned and dug
+  int held_down = 0;              ///< of them, those that tell no gain
   int untrusted = 0;              ///< runs whose estimate is not trustworthy, failed ones aside
   double rms = 0.0;               ///< error of the estimated density, failed runs aside [points]
   double bias = 0.0;              ///< likewise [points]
