@@ -29,6 +29,16 @@ void add_densities(Conditions& all) {
   }
 }
 
+/// The fixed path would lift the machine in most hard soil.
+void add_held_down(Conditions& all) {
+  for (const double density : {65.0, 80.0}) {
+    add(all, "machine held down", readable(density) + " %", [=](StudySetting& s) {
+      s.density_percent = density;
+      s.held_down = true;
+    });
+  }
+}
+
 void add_ground(Conditions& all) {
   for (const double degrees : {-10.0, -5.0, 5.0, 10.0}) {
     add(all, "slope", (degrees > 0.0 ? "+" : "") + readable(degrees) + " deg",
@@ -95,6 +105,7 @@ std::vector<StudyCondition> default_study(const Machine& machine) {
   Conditions all;
   add(all, "reference", "loam, 5-95 %, level, no sensor error", [](StudySetting&) {});
   add_densities(all);
+  add_held_down(all);
   add_ground(all);
   add_soils(all);
   add_sensors(all);

@@ -296,7 +296,7 @@ void summarise(StudyResult& result, std::uint64_t seed) {
     result.untrusted += run.trustworthy ? 0 : 1;
     if (!run.compared) continue;
     ++result.compared;
-    if (run.held_down) {
+    if (run.held_down && !result.condition.setting.held_down) {
       ++result.held_down;
       continue;
     }

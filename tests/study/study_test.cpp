@@ -135,6 +135,19 @@ TEST_F(Study, GainsAtEqualPayloadLiftNoLess) {
   }
 }
 
+TEST_F(Study, AMachineThatIsHeldDownTellsTheGainInHardSoil) {
+  StudySetting hard;
+  hard.density_percent = 80.0;
+  const StudyResult moved = run(hard, 1);
+  EXPECT_EQ(moved.held_down, 1);
+  EXPECT_TRUE(std::isnan(moved.energy_gain.mean));
+  hard.held_down = true;
+  const StudyResult held = run(hard, 1);
+  EXPECT_EQ(held.runs[0].failure, "");
+  EXPECT_EQ(held.held_down, 0);
+  EXPECT_GT(held.energy_gain.mean, 0.0);
+}
+
 TEST_F(Study, ARunThatFailsEndsNoOther) {
   StudySetting hard;
   hard.soil = "gravel";

@@ -55,6 +55,9 @@ struct StudySetting {
   std::string digs = "height-map";                ///< word of the simulator that digs
   DigParameters fixed_path = paper_fixed_path();  ///< of the first dig, and the baseline
   SecondGround second = SecondGround::fresh;      ///< where the second dig is made
+  /// Gains count although the fixed path would lift or drag the machine, which is held down in both
+  /// digs; the second is planned as if it were not.
+  bool held_down = false;
   int row = 1;  ///< planned digs in a row, each from the survey of the one before
 };
 
