@@ -58,7 +58,12 @@ struct Inputs {
 void declare(Arguments& arguments, Inputs& inputs) {
   ExperimentInputs& experiment = inputs.experiment;
   arguments.only_if({[&inputs] { return !inputs.is_study(); }, "a study has its own conditions"},
-                    [&] { declare_experiment(arguments, experiment); });
+                    [&] {
+                      declare_experiment(arguments, experiment);
+                      arguments.only_if({[&inputs] { return inputs.is_simulation(); },
+                                         "only the experiment of section 3 has a page"},
+                                        [&] { arguments.report(inputs.report); });
+                    });
   arguments.machine(inputs.machine);
 #ifdef EXCAVPLAN_STUDY
   declare_study(arguments, inputs.study);
@@ -72,9 +77,6 @@ void declare(Arguments& arguments, Inputs& inputs) {
                       arguments.option("seed", experiment.seed, "seed of all that is drawn");
                       arguments.threads(experiment.threads, "");
                     });
-  arguments.only_if(
-      {[&inputs] { return inputs.is_simulation(); }, "only the experiment of section 3 has a page"},
-      [&] { arguments.report(inputs.report); });
 }
 
 Outcome work(const Inputs& inputs, Console& console) {

@@ -11,10 +11,10 @@
 
 #include <excavplan/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/scene.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "experiment/experiment_site.hpp"
 #include "planning/dig_layout.hpp"
 #include "simulation/checked_dig.hpp"
 
@@ -44,17 +44,15 @@ class Experiment {
              const ExperimentOptions& options)
       : machine_(machine),
         soil_(soil),
-        dug_soil_(options.dug_soil.value_or(soil)),
-        density_(density_percent),
         options_(options),
-        digs_(options.digs.value_or(options.plan.simulator)),
+        site_(soil, density_percent, options),
         ground_(ground_of(machine, options)),
-        simulator_(make_simulator(digs_, machine, dug_soil_, density_percent)) {}
+        simulator_(site_.simulator(machine)) {}
 
   /// Digs with the machine held down from now on.
   void hold_machine() {
     held_.body.reset();
-    simulator_ = make_simulator(digs_, held_, dug_soil_, density_);
+    simulator_ = site_.simulator(held_);
   }
 
   std::variant<Dug, DigFailure> attempt(const DigParameters& parameters,
@@ -78,14 +76,7 @@ class Experiment {
 
   /// The dig with its heap.
   DigScene scene(const PlannedDig& fixed) const {
-    SceneOptions dig;
-    dig.path = fixed.parameters;
-    dig.start_x = fixed.start_x;
-    dig.simulator = digs_;
-    if (options_.ground) return run_scene(held_, dug_soil_, density_, ground_, dig);
-    const Terrain level =
-        undisturbed(flat_ground(scene_extent(machine_, dig.dump_at), options_.plan.cell_size));
-    return run_scene(held_, dug_soil_, density_, level, dig);
+    return site_.scene(held_, site_.scene_ground(machine_), fixed.parameters, fixed.start_x);
   }
 
   /// Goes on where the dig of this scene ended.
@@ -94,11 +85,7 @@ class Experiment {
   }
 
   PlannedDig plan(double density) const {
-    const bool level = !options_.ground && options_.second == SecondGround::fresh;
-    const Terrain seen = options_.seen ? options_.seen(ground_) : ground_;
-    const DigPlan plan = level && !options_.seen
-                             ? plan_dig(machine_, soil_, density, options_.plan)
-                             : plan_dig(machine_, soil_, density, seen, options_.plan);
+    const DigPlan plan = planned_for(density);
     if (plan.dig) return *plan.dig;
     throw Error(ErrorKind::bad_input,
                 "no path for a density of " + readable(density) + " %: " + plan.reason +
@@ -126,13 +113,19 @@ class Experiment {
   }
 
  private:
+  DigPlan planned_for(double density) const {
+    const PlanOptions& plan = options_.plan;
+    if (options_.seen) return plan_dig(machine_, soil_, density, options_.seen(ground_), plan);
+    const bool level = !options_.ground && options_.second == SecondGround::fresh;
+    return level ? plan_dig(machine_, soil_, density, plan)
+                 : plan_dig(machine_, soil_, density, ground_, plan);
+  }
+
   const Machine& machine_;
   Machine held_ = machine_;
   const SoilKind& soil_;
-  SoilKind dug_soil_;
-  double density_;
   const ExperimentOptions& options_;
-  SimulatorKind digs_;
+  ExperimentSite site_;
   Terrain ground_;
   std::unique_ptr<const SoilSimulator> simulator_;
 };
@@ -149,7 +142,21 @@ std::string what_moves(const Experiment& experiment, const DigParameters& path) 
   return {};
 }
 
+/// Holds the machine down if it would be moved. @return why
+std::string hold_if_moved(Experiment& experiment, const DigParameters& path) {
+  std::string why = what_moves(experiment, path);
+  if (!why.empty()) experiment.hold_machine();
+  return why;
+}
+
 }  // namespace
+
+DigScene first_dig(const Machine& machine, const SoilKind& soil, double density_percent,
+                   const ExperimentOptions& options) {
+  Experiment experiment(machine, soil, density_percent, options);
+  hold_if_moved(experiment, options.fixed_path);
+  return experiment.scene(experiment.dig(options.fixed_path, {}).dig);
+}
 
 double ExperimentResult::gain_percent() const { return gain_percent(objective); }
 double ExperimentResult::gain_percent(const DigObjective& by) const {
@@ -165,8 +172,7 @@ ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, co
   require_simulated_cell(options.plan.cell_size);
   Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
-  result.held_because = what_moves(experiment, options.fixed_path);
-  if (!result.held_because.empty()) experiment.hold_machine();
+  result.held_because = hold_if_moved(experiment, options.fixed_path);
   result.density_percent = density_percent;
   result.objective = options.plan.search.objective;
   Dug fixed = experiment.dig(options.fixed_path, {});

@@ -63,9 +63,7 @@ std::string explain_cause(const Infeasible& stop) {
     case Reason::unknown_ground:
       return "the height of the ground at the start point, x = " + metres(stop.value) +
              ", is not known";
-    case Reason::front_contact:
-      return "boom or arm would be at z = " + metres(stop.value) + ", the ground is at " +
-             metres(stop.limit);
+    case Reason::front_contact:  // not told from a profile
     case Reason::bad_parameter:
       break;
   }

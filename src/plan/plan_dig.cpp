@@ -20,7 +20,6 @@
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
 #include "planning/dig_problem.hpp"
-#include "planning/front_room.hpp"
 #include "simulation/checked_dig.hpp"
 #include "simulation/terrain_check.hpp"
 
@@ -31,7 +30,6 @@ constexpr double much_steeper =
     0.04;  // than the library's slopes [rad]; ours, docs/formats.md#warning-codes
 constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
 constexpr double likely_stall = 0.05;  // probability; ours
-constexpr double start_step = 0.25;    // between starts tried with a known path [m]; ours
 constexpr int least_to_divide = 60;    // digs of a search in two parts; ours
 constexpr double worth_making = 0.1;   // fill of the bucket; ours
 
@@ -75,6 +73,15 @@ void judge_density(const Task& task, DigPlan& plan) {
   }
 }
 
+/// Of a column, as far to both sides of the boom plane.
+void add_known_heights(const HeightMap& map, Eigen::Index col, double half_width,
+                       std::vector<double>& heights) {
+  for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+    const bool inside = std::abs(map.y(row)) <= half_width;
+    if (inside && !std::isnan(map.z(row, col))) heights.push_back(map.z(row, col));
+  }
+}
+
 /// Machines stand at z = 0, and so does the ground just ahead of them, or lower: not far above.
 void judge_ground(const Task& task, DigPlan& plan) {
   constexpr double ahead = 1.0;  // of the tracks, and to both sides [m]; ours
@@ -84,10 +91,7 @@ void judge_ground(const Task& task, DigPlan& plan) {
   std::vector<double> heights;
   for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
     if (map.x(col) < front || map.x(col) > front + ahead) continue;
-    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
-      if (std::abs(map.y(row)) > ahead || std::isnan(map.z(row, col))) continue;
-      heights.push_back(map.z(row, col));
-    }
+    add_known_heights(map, col, ahead, heights);
   }
   if (heights.empty()) return;
   const double height = median(heights);
@@ -108,9 +112,7 @@ void judge_strip(const Task& task, DigPlan& plan) {
   for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
     if (map.x(col) < strip.x_min || map.x(col) > strip.x_max) continue;
     std::vector<double> heights;
-    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
-      if (std::abs(map.y(row)) <= inner * strip.y_max) heights.push_back(map.z(row, col));
-    }
+    add_known_heights(map, col, inner * strip.y_max, heights);
     if (heights.empty()) continue;
     const double above = *std::max_element(heights.begin(), heights.end()) - median(heights);
     if (!(above > most)) continue;
@@ -208,8 +210,7 @@ std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayou
   };
   const DigParameters& usual = ahead.dig.parameters;
   const DigFailure failure = compare(layout.path(usual, StartRule::Kind::least_work), ahead);
-  const double reach = machine.boom_pin.x() + machine.full_length();
-  for (double x = machine.track_front; x < reach; x += start_step) {
+  for (const double x : starts_along_reach(machine)) {
     compare(layout.path_from(usual, x), ahead);
     const auto here = known_at(library, task, usual, x);
     if (here) compare(layout.path_from(here->dig.parameters, x), *here);
@@ -457,25 +458,12 @@ void add_spread(const Task& task, const std::vector<PossibleSoil>& soils, DigPla
                " %; the results are those of the digs without a stall");
 }
 
-/// The way down to the path, or what is in its way.
-std::variant<std::vector<DigPose>, std::string> free_way_down(const Task& task,
-                                                              const DigPath& path) {
-  auto found = way_down(task.machine, path, boom_plane_profile(task.ground));
-  if (const auto* blocked = std::get_if<Infeasible>(&found)) return blocked->message;
-  auto& way = std::get<std::vector<DigPose>>(found);
-  const FrontRoom room(task.ground, task.machine);
-  for (const DigPose& pose : way) {
-    const auto contact = room.contact(link_positions(task.machine, pose.joints));
-    if (contact) return describe(*contact);
-  }
-  return std::move(way);
-}
-
 void add_trajectory(const Task& task, DigPlan& plan) {
-  auto approach = free_way_down(task, plan.path);
-  if (const auto* blocked = std::get_if<std::string>(&approach)) {
+  auto approach = DigLayout(task.machine, task.ground).approach(plan.path);
+  if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
     warn(plan, "approach_blocked",
-         "the trajectory begins on the ground, because the approach is blocked: " + *blocked);
+         "the trajectory begins on the ground, because the approach is blocked: " +
+             blocked->message);
   } else {
     plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
   }

@@ -105,22 +105,37 @@ std::variant<DigPath, Infeasible> DigLayout::path_of_largest_margin(
 /// What a profile of the ground does not tell: a cell that the bucket passes, or one just ahead of
 /// it, is unknown, or the ground is in the way of the links.
 std::optional<Infeasible> DigLayout::obstacle(const DigPose& pose, double x_max) const {
-  Infeasible stop;
-  stop.phase = pose.phase;
   if (!strip_.is_known(pose.bucket.x - looked_ahead, x_max)) {
+    Infeasible stop;
+    stop.phase = pose.phase;
     stop.reason = Infeasible::Reason::unknown_ground;
     stop.value = x_max - strip_.cell_size();
     stop.message = "the path runs over ground that is unknown or off the map";
     return stop;
   }
-  if (const auto contact = room_.contact(link_positions(machine_, pose.joints))) {
-    stop.reason = Infeasible::Reason::front_contact;
-    stop.value = contact->lowest;
-    stop.limit = contact->z;
-    stop.message = describe(*contact);
-    return stop;
+  return front_contact(pose);
+}
+
+std::optional<Infeasible> DigLayout::front_contact(const DigPose& pose) const {
+  const auto contact = room_.contact(link_positions(machine_, pose.joints));
+  if (!contact) return std::nullopt;
+  Infeasible stop;
+  stop.phase = pose.phase;
+  stop.reason = Infeasible::Reason::front_contact;
+  stop.value = contact->lowest;
+  stop.limit = contact->z;
+  stop.message = describe(*contact);
+  return stop;
+}
+
+std::variant<std::vector<DigPose>, Infeasible> DigLayout::approach(const DigPath& path) const {
+  auto found = way_down(machine_, path, ground_);
+  if (const auto* way = std::get_if<std::vector<DigPose>>(&found)) {
+    for (const DigPose& pose : *way) {
+      if (auto stop = front_contact(pose)) return *std::move(stop);
+    }
   }
-  return std::nullopt;
+  return found;
 }
 
 /// The path, if nothing of that stops it.
@@ -139,6 +154,14 @@ std::variant<DigPath, Infeasible> DigLayout::checked(
     return *std::move(stop);
   }
   return found;
+}
+
+std::vector<double> starts_along_reach(const Machine& machine) {
+  constexpr double step = 0.25;
+  std::vector<double> starts;
+  const double reach = machine.boom_pin.x() + machine.full_length();
+  for (double x = machine.track_front; x < reach; x += step) starts.push_back(x);
+  return starts;
 }
 
 double violation(const DigFailure& failure, const DigParameters& parameters) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -39,6 +40,8 @@ class DigLayout {
   /// The same by other rules.
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
                                               const DigPathOptions& rules) const;
+  /// The way down to a path, as way_down(), and clear of the ground with boom and arm.
+  std::variant<std::vector<DigPose>, Infeasible> approach(const DigPath& path) const;
   /// From this start, or if it cannot be from that of the largest margin.
   std::variant<DigPath, Infeasible> path_near(const DigParameters& parameters,
                                               double start_x) const;
@@ -51,6 +54,7 @@ class DigLayout {
   std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
   std::variant<DigPath, Infeasible> checked(std::variant<DigPath, Infeasible> found) const;
   std::optional<Infeasible> obstacle(const DigPose& pose, double x_max) const;
+  std::optional<Infeasible> front_contact(const DigPose& pose) const;
 
   const Machine& machine_;
   DigPathOptions rules_;
@@ -58,6 +62,9 @@ class DigLayout {
   KnownStrip strip_;
   FrontRoom room_;
 };
+
+/// Where a path whose start is free is tried along the reach [m], 0.25 m apart; ours.
+std::vector<double> starts_along_reach(const Machine& machine);
 
 /// How far a dig is from feasible, >= 0: the share of the path that a stall leaves; more than 1 for
 /// a path that cannot be driven, more the earlier it fails.

@@ -156,9 +156,7 @@ SearchResult DigProblem::run() {
   return search(as_search(), search_options);
 }
 
-void DigProblem::require_own_checkpoint() {
-  if (options_.resume) SearchCheckpoint(as_search(), {options_, {}});
-}
+void DigProblem::require_own_checkpoint() { SearchCheckpoint(as_search(), {options_, {}}); }
 
 SearchProblem DigProblem::as_search() {
   SearchProblem problem{box(), [this](const VectorXd& point) { return simulate(point); },

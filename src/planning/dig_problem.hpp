@@ -35,7 +35,7 @@ class DigProblem {
              const DigSearchOptions& options);
 
   SearchResult run();
-  /// @throws Error (bad_file) if the search is to be resumed from a checkpoint of another
+  /// Of a search that is to be resumed. @throws Error (bad_file) if its checkpoint is of another
   void require_own_checkpoint();
 
   /// The dig of a result that is feasible, with its figures in every soil.

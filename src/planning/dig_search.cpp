@@ -55,6 +55,7 @@ int evaluation_budget(bool uncertain, bool from_known) {
 
 void require_own_checkpoint(const Machine& machine, const SoilSimulator& simulator,
                             const Terrain& terrain, const DigSearchOptions& options) {
+  if (!options.resume) return;
   const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
   DigProblem(machine, soils, terrain, options).require_own_checkpoint();
 }

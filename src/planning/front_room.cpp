@@ -17,6 +17,13 @@ constexpr double half_width = 0.25;  // of boom and arm [m]; ours
 constexpr double margin = 0.1;       // between them and the ground [m]; ours
 constexpr double nothing = -std::numeric_limits<double>::infinity();
 
+/// Height of the lower side at x, the ends counting beyond themselves.
+double height_at_x(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double x) {
+  if (from.x() == to.x()) return std::min(from.y(), to.y());
+  const double share = std::clamp((x - from.x()) / (to.x() - from.x()), 0.0, 1.0);
+  return from.y() + share * (to.y() - from.y());
+}
+
 /// The highest known ground of a column within the width of the links.
 double height_under_links(const HeightMap& surface, Index col) {
   const double within = half_width + 0.5 * surface.cell_size;
@@ -59,14 +66,16 @@ std::optional<FrontContact> FrontRoom::contact(const char* link, const Eigen::Ve
                                                const Eigen::Vector2d& to) const {
   if (std::min(from.y(), to.y()) - margin > highest_) return std::nullopt;
   const auto columns = static_cast<double>(heights_.size());
-  const double first = std::ceil((std::min(from.x(), to.x()) - origin_) / cell_size_ - 0.5);
-  const double last = std::floor((std::max(from.x(), to.x()) - origin_) / cell_size_ - 0.5);
+  const double first = std::floor((std::min(from.x(), to.x()) - origin_) / cell_size_);
+  const double last = std::floor((std::max(from.x(), to.x()) - origin_) / cell_size_);
   for (double col = std::max(0.0, first); col <= std::min(last, columns - 1.0); ++col) {
-    const double x = origin_ + (col + 0.5) * cell_size_;
-    const double share = (x - from.x()) / (to.x() - from.x());
-    const double lowest = from.y() + share * (to.y() - from.y());
+    const double left = origin_ + col * cell_size_;
+    const double lowest =
+        std::min(height_at_x(from, to, left), height_at_x(from, to, left + cell_size_));
     const double ground = heights_[static_cast<std::size_t>(col)];
-    if (ground > lowest - margin) return FrontContact{link, x, ground, lowest};
+    if (ground > lowest - margin) {
+      return FrontContact{link, left + 0.5 * cell_size_, ground, lowest};
+    }
   }
   return std::nullopt;
 }

@@ -133,6 +133,7 @@ Found<UncertainDigSearchResult> nothing(std::optional<NearestDig> nearest, bool 
 
 void require_own_checkpoint(const Machine& machine, const std::vector<PossibleSoil>& soils,
                             const Terrain& terrain, const DigSearchOptions& options) {
+  if (!options.resume) return;
   for (std::size_t i = 0; i < soils.size(); ++i) {
     require_own_checkpoint(machine, *soils[i].simulator, terrain, of_soil(options, i));
   }

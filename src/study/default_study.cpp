@@ -29,6 +29,16 @@ void add_densities(Conditions& all) {
   }
 }
 
+/// The fixed path would lift the machine in most hard soil.
+void add_held_down(Conditions& all) {
+  for (const double density : {65.0, 80.0}) {
+    add(all, "machine held down", readable(density) + " %", [=](StudySetting& s) {
+      s.density_percent = density;
+      s.held_down = true;
+    });
+  }
+}
+
 void add_ground(Conditions& all) {
   for (const double degrees : {-10.0, -5.0, 5.0, 10.0}) {
     add(all, "slope", (degrees > 0.0 ? "+" : "") + readable(degrees) + " deg",
@@ -74,7 +84,7 @@ void add_laws(Conditions& all) {
   });
 }
 
-void add_plans(Conditions& all) {
+void add_plans(Conditions& all, const Machine& machine) {
   add(all, "plan", "searched on the true ground",
       [](StudySetting& s) { s.plan = StudyPlan::search; });
   add(all, "plan", "searched on ground seen by D435i", [](StudySetting& s) {
@@ -84,7 +94,6 @@ void add_plans(Conditions& all) {
   add(all, "engine that digs", "section", [](StudySetting& s) { s.digs = "section"; });
   add(all, "baseline", "the paper's field path",
       [](StudySetting& s) { s.fixed_path = paper_field_path(); });
-  const Machine machine = load_machine(shipped_or_file("machines", "zx120"));
   const SoilKind loam = load_soil(shipped_or_file("soils", "loam"));
   add(all, "baseline", "sized to the bucket",
       [&](StudySetting& s) { s.fixed_path = path_sized_to_bucket(machine, loam); });
@@ -92,15 +101,16 @@ void add_plans(Conditions& all) {
 
 }  // namespace
 
-std::vector<StudyCondition> default_study() {
+std::vector<StudyCondition> default_study(const Machine& machine) {
   Conditions all;
   add(all, "reference", "loam, 5-95 %, level, no sensor error", [](StudySetting&) {});
   add_densities(all);
+  add_held_down(all);
   add_ground(all);
   add_soils(all);
   add_sensors(all);
   add_laws(all);
-  add_plans(all);
+  add_plans(all, machine);
   return all;
 }
 

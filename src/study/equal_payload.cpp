@@ -8,7 +8,7 @@ namespace excavplan {
 
 ExperimentOptions at_equal_payload(DigObjective::Goal goal, const ExperimentResult& found,
                                    ExperimentOptions options) {
-  constexpr int digs = 200;  // of a search that begins warm; ours
+  constexpr int digs = 120;  // of a search that begins warm; ours
   PlanOptions& plan = options.plan;
   plan.method = PlanMethod::search;
   plan.library.reset();

@@ -3,6 +3,7 @@
 #include <excavplan/study/study.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -28,7 +29,6 @@ namespace {
 constexpr double lowest_density = 5.0;    // of the runs [%]
 constexpr double highest_density = 95.0;  // [%]
 constexpr double rough_length = 0.3;      // over which rough ground is correlated [m]; ours
-constexpr int waves = 200;                // of rough ground; ours
 
 // Of a condition; ours.
 constexpr double steepest = 0.6;  // [rad]
@@ -67,15 +67,18 @@ class Shelf {
     return {setting.law, setting.soil, setting.digs};
   }
 
-  DensityCalibration calibrated(const SoilKind& soil, const std::string& simulator) const {
+  const DensityCalibration& calibrated(const SoilKind& soil, const std::string& simulator) {
+    const std::pair key(soil.name, simulator);
+    const auto made = calibrations_.find(key);
+    if (made != calibrations_.end()) return made->second;
     CalibrationOptions options;
     options.simulator = simulator_of_word(simulator);
     options.draws = draws_;
     options.threads = threads_;
-    return calibrate_density(machine_, soil, options);
+    return calibrations_.emplace(key, calibrate_density(machine_, soil, options)).first->second;
   }
 
-  DensityLaw make_law(const StudySetting& setting, const SoilKind& soil) const {
+  DensityLaw make_law(const StudySetting& setting, const SoilKind& soil) {
     switch (setting.law) {
       case StudyLaw::other_engine:
         return law_of(calibrated(soil, setting.digs == "section" ? "height-map" : "section"));
@@ -101,29 +104,44 @@ class Shelf {
   int draws_;
   unsigned threads_;
   std::map<std::string, SoilKind> soils_;
+  std::map<std::pair<std::string, std::string>, DensityCalibration> calibrations_;
   std::map<Key, DensityLaw> laws_;
   std::map<std::string, std::shared_ptr<const PathLibrary>> libraries_;
 };
 
-/// A sum of waves of random direction and phase whose covariance falls as exp(-d^2 / (2 L^2)).
-double rough_height(double x, double y, std::uint64_t seed) {
-  Random random(seed, 7);
-  double sum = 0.0;
-  for (int i = 0; i < waves; ++i) {
-    const double kx = random.normal() / rough_length;
-    const double ky = random.normal() / rough_length;
-    sum += std::cos(kx * x + ky * y + 2.0 * pi * random.uniform());
+/// A height of zero mean and unit rms: a sum of waves of random direction and phase, whose
+/// covariance falls as exp(-d^2 / (2 L^2)).
+class RoughGround {
+ public:
+  explicit RoughGround(std::uint64_t seed) {
+    Random random(seed, 7);
+    for (Wave& wave : waves_) {
+      wave.kx = random.normal() / rough_length;
+      wave.ky = random.normal() / rough_length;
+      wave.phase = 2.0 * pi * random.uniform();
+    }
   }
-  return sum * std::sqrt(2.0 / waves);
-}
+  double height(double x, double y) const {
+    double sum = 0.0;
+    for (const Wave& wave : waves_) sum += std::cos(wave.kx * x + wave.ky * y + wave.phase);
+    return sum * std::sqrt(2.0 / static_cast<double>(waves_.size()));
+  }
+
+ private:
+  struct Wave {
+    double kx, ky, phase;
+  };
+  std::array<Wave, 200> waves_;  // ours
+};
 
 Terrain study_ground(const Machine& machine, const StudySetting& setting, double cell_size,
                      std::uint64_t seed) {
   HeightMap map = flat_ground(scene_extent(machine, default_dump_point()), cell_size);
+  const RoughGround rough(seed);
   for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
     map.z.col(col) += std::tan(setting.slope) * std::max(0.0, map.x(col) - machine.track_front);
     for (Eigen::Index row = 0; setting.roughness > 0.0 && row < map.z.rows(); ++row) {
-      map.z(row, col) += setting.roughness * rough_height(map.x(col), map.y(row), seed);
+      map.z(row, col) += setting.roughness * rough.height(map.x(col), map.y(row));
     }
   }
   return undisturbed(map);
@@ -141,6 +159,9 @@ double density_of_run(const StudySetting& setting, std::uint64_t index) {
 ExperimentOptions options_of(const Machine& machine, const StudySetting& setting,
                              const Shelf& shelf, std::uint64_t seed) {
   ExperimentOptions options;
+  options.survey = [&setting, &shelf, seed](const DigScene& scene) {
+    return surveyed_density(scene, setting.sensor, shelf.soil(setting), shelf.law(setting), seed);
+  };
   options.fixed_path = setting.fixed_path;
   options.digs = simulator_of_word(setting.digs);
   if (setting.drawn_soil) options.dug_soil = drawn_soil(shelf.soil(setting), {}, seed);
@@ -161,20 +182,22 @@ ExperimentOptions options_of(const Machine& machine, const StudySetting& setting
   return options;
 }
 
+StudyRun run_with(const RelativeDensity& estimate) {
+  StudyRun run;
+  run.estimate_percent = estimate.percent;
+  run.estimate_sd = estimate.sd_percent;
+  run.interval = estimate.interval_percent;
+  run.trustworthy = estimate.trustworthy;
+  return run;
+}
+
 StudyRun single_dig(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
                     double density, std::uint64_t seed) {
   const SoilKind& soil = shelf.soil(setting);
   const DensityLaw& law = shelf.law(setting);
-  ExperimentOptions options = options_of(machine, setting, shelf, seed);
-  options.survey = [&](const DigScene& scene) {
-    return surveyed_density(scene, setting.sensor, soil, law, seed);
-  };
+  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
   const ExperimentResult energy = run_experiment(machine, soil, law, density, options);
-  StudyRun run;
-  run.estimate_percent = energy.estimate.percent;
-  run.estimate_sd = energy.estimate.sd_percent;
-  run.interval = energy.estimate.interval_percent;
-  run.trustworthy = energy.estimate.trustworthy;
+  StudyRun run = run_with(energy.estimate);
   const auto at_equal = [&](DigObjective::Goal goal) {
     return run_experiment(machine, soil, law, density, at_equal_payload(goal, energy, options));
   };
@@ -197,23 +220,15 @@ StudyRun digs_in_a_row(const Machine& machine, const StudySetting& setting, cons
                        double density, std::uint64_t seed) {
   const SoilKind& soil = shelf.soil(setting);
   const DensityLaw& law = shelf.law(setting);
-  ExperimentOptions options = options_of(machine, setting, shelf, seed);
-  options.survey = [&](const DigScene& scene) {
-    return surveyed_density(scene, setting.sensor, soil, law, seed);
-  };
+  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
   const ExperimentResult first = run_experiment(machine, soil, law, density, options);
-  const auto survey = options.survey;
-  options = at_equal_payload(DigObjective::Goal::cycle, first, options);
-  options.survey = survey;
-  const DigRow row(machine, soil, density, options);
+  ExperimentOptions in_row = at_equal_payload(DigObjective::Goal::cycle, first, options);
+  in_row.survey = options.survey;
+  const DigRow row(machine, soil, density, in_row);
   const RowTotal fixed = row.fixed(setting.row);
-  StudyRun run;
   RelativeDensity last;
   const RowTotal planned = row.planned(fixed.digs, first.estimate, last);
-  run.estimate_percent = last.percent;
-  run.estimate_sd = last.sd_percent;
-  run.interval = last.interval_percent;
-  run.trustworthy = last.trustworthy;
+  StudyRun run = run_with(last);
   run.held_down = !first.held_because.empty();
   run.energy_gain = percent_over(planned.mass / planned.energy, fixed.mass / fixed.energy);
   run.path_gain = run.equal_gain = run.energy_gain;
@@ -224,14 +239,26 @@ StudyRun digs_in_a_row(const Machine& machine, const StudySetting& setting, cons
   return run;
 }
 
-StudyRun run_once(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
+StudyRun estimate_alone(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
+                        double density, std::uint64_t seed) {
+  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
+  StudyRun run =
+      run_with(options.survey(first_dig(machine, shelf.soil(setting), density, options)));
+  run.compared = false;
+  return run;
+}
+
+StudyRun run_once(const Machine& machine, const StudyCondition& condition, const Shelf& shelf,
                   std::uint64_t seed, std::uint64_t index) {
+  const StudySetting& setting = condition.setting;
   const double density = density_of_run(setting, index);
   const std::uint64_t own_seed = Random(seed, index).bits();
   StudyRun run;
   try {
-    run = setting.row > 1 ? digs_in_a_row(machine, setting, shelf, density, own_seed)
-                          : single_dig(machine, setting, shelf, density, own_seed);
+    const auto kind = static_cast<int>(index) >= condition.compared ? estimate_alone
+                      : setting.row > 1                             ? digs_in_a_row
+                                                                    : single_dig;
+    run = kind(machine, setting, shelf, density, own_seed);
   } catch (const Error& error) {
     run.failure = error.what();
   }
@@ -252,7 +279,9 @@ void summarise(StudyResult& result, std::uint64_t seed) {
     sum += error;
     inside += run.density_percent >= run.interval[0] && run.density_percent <= run.interval[1];
     result.untrusted += run.trustworthy ? 0 : 1;
-    if (run.held_down) {
+    if (!run.compared) continue;
+    ++result.compared;
+    if (run.held_down && !result.condition.setting.held_down) {
       ++result.held_down;
       continue;
     }
@@ -315,7 +344,7 @@ std::vector<StudyResult> run_study(const Machine& machine,
     if (stopped) return;
     const auto [which, index] = tasks[task];
     StudyResult& result = results[which];
-    result.runs[index] = run_once(machine, result.condition.setting, shelf, options.seed, index);
+    result.runs[index] = run_once(machine, result.condition, shelf, options.seed, index);
     const double share = static_cast<double>(++done) / static_cast<double>(tasks.size());
     const std::string name = result.condition.factor + " " + result.condition.level;
     if (options.progress && !options.progress(share, name)) stopped = true;

@@ -6,20 +6,13 @@
 #include <string>
 #include <variant>
 
-#include <excavplan/simulation/dig_ground.hpp>
-
 #include "planning/dig_layout.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr int most_attempts = 3;     // at a dig that stalls; ours
-constexpr double start_step = 0.25;  // between starts of the fixed path [m]; ours
-
-Terrain level_scene_ground(const Machine& machine, double cell_size) {
-  return undisturbed(flat_ground(scene_extent(machine, default_dump_point()), cell_size));
-}
+constexpr int most_attempts = 3;  // at a dig that stalls; ours
 
 }  // namespace
 
@@ -27,26 +20,17 @@ DigRow::DigRow(const Machine& machine, const SoilKind& soil, double density_perc
                const ExperimentOptions& options)
     : machine_(machine),
       soil_(soil),
-      dug_soil_(options.dug_soil.value_or(soil)),
-      density_(density_percent),
       options_(options),
-      digs_(options.digs.value_or(options.plan.simulator)),
-      ground_(options.ground ? *options.ground
-                             : level_scene_ground(machine, options.plan.cell_size)) {}
+      site_(soil, density_percent, options),
+      simulator_(site_.simulator(machine)),
+      ground_(site_.scene_ground(machine)) {}
 
-DigScene DigRow::dug(const Terrain& ground, const DigParameters& path,
-                     std::optional<double> start_x) const {
-  SceneOptions options;
-  options.path = path;
-  options.start_x = start_x;
-  options.rules = rules_for_planned_path();
-  options.simulator = digs_;
-  return run_scene(machine_, dug_soil_, density_, ground, options);
+DigScene DigRow::dug(const Terrain& ground, const DigParameters& path, double start_x) const {
+  return site_.scene(machine_, ground, path, start_x, rules_for_planned_path());
 }
 
 Terrain DigRow::without_heap(const DigScene& scene) const {
-  const auto simulator = make_simulator(digs_, machine_, dug_soil_, density_);
-  return checked_dig(*simulator, machine_, scene.before, scene.path, {}).after(scene.before);
+  return checked_dig(*simulator_, machine_, scene.before, scene.path, {}).after(scene.before);
 }
 
 void DigRow::add(const DigScene& scene, RowTotal& total) const {
@@ -62,15 +46,13 @@ void DigRow::add(const DigScene& scene, RowTotal& total) const {
 /// Where the fixed path lifts most, as an operator would choose; nothing if it stalls everywhere.
 std::optional<double> DigRow::fullest_start(const Terrain& ground) const {
   const DigLayout layout(machine_, ground);
-  const auto simulator = make_simulator(digs_, machine_, dug_soil_, density_);
   std::optional<double> best;
   double most = 0.0;
-  const double reach = machine_.boom_pin.x() + machine_.full_length();
-  for (double x = machine_.track_front; x < reach; x += start_step) {
+  for (const double x : starts_along_reach(machine_)) {
     const auto laid = layout.path_from(options_.fixed_path, x);
     const auto* path = std::get_if<DigPath>(&laid);
     if (!path) continue;
-    const auto outcome = dig_along(machine_, *simulator, ground, *path);
+    const auto outcome = dig_along(machine_, *simulator_, ground, *path);
     const auto* dig = std::get_if<PlannedDig>(&outcome);
     if (!dig || dig->payload_mass <= most) continue;
     most = dig->payload_mass;
@@ -85,7 +67,7 @@ RowTotal DigRow::fixed(int digs) const {
   while (total.digs < digs) {
     const std::optional<double> start_x = fullest_start(ground);
     if (!start_x) break;
-    const DigScene scene = dug(ground, options_.fixed_path, start_x);
+    const DigScene scene = dug(ground, options_.fixed_path, *start_x);
     add(scene, total);
     ground = without_heap(scene);
   }

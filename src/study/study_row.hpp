@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include <excavplan/study/study.hpp>
+
+#include "experiment/experiment_site.hpp"
 
 namespace excavplan {
 
@@ -34,8 +37,7 @@ class DigRow {
   RowTotal planned(int digs, const RelativeDensity& first, RelativeDensity& last) const;
 
  private:
-  DigScene dug(const Terrain& ground, const DigParameters& path,
-               std::optional<double> start_x) const;
+  DigScene dug(const Terrain& ground, const DigParameters& path, double start_x) const;
   DigScene dug_as_planned(const Terrain& ground, const RelativeDensity& estimate) const;
   std::optional<double> fullest_start(const Terrain& ground) const;
   Terrain without_heap(const DigScene& scene) const;
@@ -43,10 +45,9 @@ class DigRow {
 
   const Machine& machine_;
   const SoilKind& soil_;
-  SoilKind dug_soil_;
-  double density_;
   const ExperimentOptions& options_;
-  SimulatorKind digs_;
+  ExperimentSite site_;
+  std::unique_ptr<const SoilSimulator> simulator_;
   Terrain ground_;
 };
 

@@ -120,7 +120,7 @@ Terrain surveyed_ground(const Terrain& ground, const Machine& machine, StudySens
     points = scan_surface(surface, Lidar(), seed);
   } else {
     const DepthCamera camera = study_camera(sensor);
-    for (const double x : {3.5, 5.5, 7.5}) {  // all of the reach
+    for (const double x : {3.5, 5.5, 7.5}) {  // all of the reach [m]; ours
       DepthCamera placed = camera;
       const CameraPlace place = places_above({{x, 0.0}}, surface).front();
       placed.position = place.position;

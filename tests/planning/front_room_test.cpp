@@ -90,6 +90,17 @@ TEST_F(FrontRoomOf, ABlockTouchesALinkThatComesWithinTheMarginOfIt) {
       << reason.message;
 }
 
+TEST_F(FrontRoomOf, ALinkThatHangsBetweenTheCentresOfTwoColumnsIsSeen) {
+  const FrontRoom room(with_block(2.0, 4.0, 5.0), machine_);
+  LinkPositions hanging;
+  hanging.arm_pin = {4.511, 3.0};  // cells of 5 cm, their centres at 4.475 and 4.525
+  hanging.bucket_pin = {4.489, 1.0};
+  const auto contact = room.contact(hanging);
+  ASSERT_TRUE(contact);
+  EXPECT_NEAR(contact->x, 4.5, 0.03);
+  EXPECT_EQ(contact->z, 2.0);
+}
+
 TEST_F(FrontRoomOf, WhatStandsBesideTheLinksOrUnderTheMachineIsNotInTheirWay) {
   EXPECT_TRUE(std::holds_alternative<DigPath>(laid(with_block(3.0, 3.0, 3.2, 2.0, 0.35))));
   EXPECT_TRUE(std::holds_alternative<Infeasible>(laid(with_block(3.0, 3.0, 3.2, 2.0, 0.1))));

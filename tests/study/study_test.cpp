@@ -83,7 +83,7 @@ TEST_F(Study, ThePathSizedToTheBucketSweepsWhatTheBucketHolds) {
 }
 
 TEST_F(Study, TheDefaultVariesOneFactorAtATimeWithEnoughRuns) {
-  const std::vector<StudyCondition> all = default_study();
+  const std::vector<StudyCondition> all = default_study(machine_);
   std::set<std::string> factors, names;
   for (const StudyCondition& condition : all) {
     factors.insert(condition.factor);
@@ -135,6 +135,19 @@ TEST_F(Study, GainsAtEqualPayloadLiftNoLess) {
   }
 }
 
+TEST_F(Study, AMachineThatIsHeldDownTellsTheGainInHardSoil) {
+  StudySetting hard;
+  hard.density_percent = 80.0;
+  const StudyResult moved = run(hard, 1);
+  EXPECT_EQ(moved.held_down, 1);
+  EXPECT_TRUE(std::isnan(moved.energy_gain.mean));
+  hard.held_down = true;
+  const StudyResult held = run(hard, 1);
+  EXPECT_EQ(held.runs[0].failure, "");
+  EXPECT_EQ(held.held_down, 0);
+  EXPECT_GT(held.energy_gain.mean, 0.0);
+}
+
 TEST_F(Study, ARunThatFailsEndsNoOther) {
   StudySetting hard;
   hard.soil = "gravel";
@@ -143,6 +156,23 @@ TEST_F(Study, ARunThatFailsEndsNoOther) {
   EXPECT_EQ(result.failed, 2);
   EXPECT_NE(result.runs[0].failure, "");
   EXPECT_TRUE(std::isnan(result.energy_gain.mean));
+}
+
+TEST_F(Study, RunsThatAreNotComparedEstimateTheSame) {
+  StudySetting setting;
+  setting.density_percent = 40.0;
+  setting.sensor = StudySensor::d435i;
+  StudyOptions options;
+  options.draws = 12;
+  const StudyCondition both{"factor", "level", setting, 2, 2};
+  StudyCondition one = both;
+  one.compared = 1;
+  const auto results = run_study(machine_, {both, one}, options);
+  EXPECT_EQ(results[0].compared, 2);
+  EXPECT_EQ(results[1].compared, 1);
+  EXPECT_FALSE(results[1].runs[1].compared);
+  EXPECT_EQ(results[0].rms, results[1].rms);
+  EXPECT_EQ(results[0].runs[0].energy_gain, results[1].energy_gain.mean);
 }
 
 TEST_F(Study, ASurveyWithErrorsIsWorseThanOneWithout) {

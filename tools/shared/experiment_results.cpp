@@ -28,19 +28,14 @@ struct Rehearsal {
 };
 
 /// Adds a dig of the experiment and the ground that it leaves.
-void add_dig(const std::string& name, const Rehearsal& in, const PlannedDig& planned,
+void add_dig(const std::string& name, const Rehearsal& in, const DigPath& path,
              ReportScene& scene) {
-  const auto laid = make_dig_path(in.machine, planned.parameters, planned.start_x,
-                                  boom_plane_profile(in.ground), rules_for_planned_path());
-  const auto* path = std::get_if<DigPath>(&laid);
-  if (path == nullptr)
-    throw Error(ErrorKind::bad_input, name + ": " + describe(std::get<Infeasible>(laid)));
   DigOptions options;
   options.history = true;
-  const DigResult dig = checked_dig(in.simulator, in.machine, in.ground, *path, options);
+  const DigResult dig = checked_dig(in.simulator, in.machine, in.ground, path, options);
   std::vector<GroundState>& states = scene.areas.front().states;
   states.push_back({"after", dig.after(in.ground).surface()});
-  scene.digs.push_back(played_dig(name, in.machine, *path, dig));
+  scene.digs.push_back(played_dig(name, in.machine, path, dig));
   scene.digs.back().state = states.size() - 1;
 }
 
@@ -203,8 +198,8 @@ Report experiment_report(const Machine& machine, const SoilKind& soil, const Pla
     const auto simulator =
         make_simulator(options.simulator, standing, soil, result.density_percent);
     const Rehearsal in = {standing, *simulator, ground};
-    add_dig(condition + ", planned path", in, result.planned, report.scene);
-    add_dig(condition + ", fixed path", in, result.fixed, report.scene);
+    add_dig(condition + ", planned path", in, result.planned_path, report.scene);
+    add_dig(condition + ", fixed path", in, result.fixed_path, report.scene);
   }
   for (std::size_t i = 0; i < experiments.size() && i < 6; ++i) {  // ours
     report.headline.push_back("conditions." + std::to_string(i) + ".gain_percent");

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/study_results.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <mutex>
 #include <vector>
 
@@ -24,6 +26,7 @@ ordered_json condition_json(const StudyResult& result) {
           {"level", result.condition.level},
           {"runs", result.runs.size()},
           {"failed", result.failed},
+          {"compared", result.compared},
           {"held_down", result.held_down},
           {"not_trustworthy", result.untrusted},
           {"density_rms_points", result.rms},
@@ -46,6 +49,28 @@ std::string cell(const std::string& text) {
 }
 std::string cell(double value) { return std::isnan(value) ? "" : number_text(value); }
 
+/// Of a run, between density and failure; what is not known is not a number.
+std::vector<double> values_of(const StudyRun& run) {
+  std::vector<double> values = {run.estimate_percent,
+                                run.estimate_sd,
+                                run.interval[0],
+                                run.interval[1],
+                                run.trustworthy ? 1.0 : 0.0,
+                                run.held_down ? 1.0 : 0.0,
+                                run.energy_gain,
+                                run.path_gain,
+                                run.energy_payload,
+                                run.equal_gain,
+                                run.equal_payload,
+                                run.cycle_gain,
+                                run.cycle_payload};
+  constexpr std::ptrdiff_t estimated = 5;
+  const double nothing = std::nan("");
+  if (!run.compared) std::fill(values.begin() + estimated, values.end(), nothing);
+  if (!run.failure.empty()) std::fill(values.begin(), values.end(), nothing);
+  return values;
+}
+
 std::string runs_csv(const std::vector<StudyResult>& results) {
   std::string csv =
       "factor,level,density_percent,estimate_percent,estimate_sd_percent,interval_low_percent,"
@@ -56,18 +81,8 @@ std::string runs_csv(const std::vector<StudyResult>& results) {
     for (const StudyRun& run : result.runs) {
       csv += cell(result.condition.factor) + "," + cell(result.condition.level) + "," +
              cell(run.density_percent);
-      if (run.failure.empty()) {
-        for (const double value :
-             {run.estimate_percent, run.estimate_sd, run.interval[0], run.interval[1],
-              run.trustworthy ? 1.0 : 0.0, run.held_down ? 1.0 : 0.0, run.energy_gain,
-              run.path_gain, run.energy_payload, run.equal_gain, run.equal_payload, run.cycle_gain,
-              run.cycle_payload}) {
-          csv += "," + cell(value);
-        }
-        csv += ",\n";
-      } else {
-        csv += ",,,,,,,,,,,,,," + cell(run.failure) + "\n";
-      }
+      for (const double value : values_of(run)) csv += "," + cell(value);
+      csv += "," + (run.failure.empty() ? "" : cell(run.failure)) + "\n";
     }
   }
   return csv;
@@ -79,32 +94,33 @@ std::string text_of(const StudyMean& mean) {
          decimals(mean.interval[1], 1) + ")";
 }
 
+std::string number_of(double value) { return std::isnan(value) ? "-" : decimals(value, 1); }
+
 std::string ratio_of(const StudyMean& mean) {
   return std::isnan(mean.mean) ? "-" : decimals(mean.mean, 2);
 }
 
 std::string table(const std::vector<StudyResult>& results) {
   std::string text =
-      "| factor | level | runs | failed | held down | not trusted | rms d | bias d | in 95 % | "
-      "gain "
-      "% | payload | gain at equal payload % | payload | gain per cycle % | payload |\n"
+      "| factor | level | runs | failed | held down | not trusted | rms d | bias d | in 95 % "
+      "| gain % | payload | gain at equal payload % | payload | gain per cycle % | payload |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const StudyResult& result : results) {
     text += "| " + result.condition.factor + " | " + result.condition.level + " | " +
             std::to_string(result.runs.size()) + " | " + std::to_string(result.failed) + " | " +
             std::to_string(result.held_down) + " | " + std::to_string(result.untrusted) + " | " +
-            decimals(result.rms, 1) + " | " + decimals(result.bias, 1) + " | " +
-            decimals(100.0 * result.inside, 0) + " % | " + text_of(result.energy_gain) + " | " +
-            ratio_of(result.energy_payload) + " | " + text_of(result.equal_gain) + " | " +
-            ratio_of(result.equal_payload) + " | " + text_of(result.cycle_gain) + " | " +
-            ratio_of(result.cycle_payload) + " |\n";
+            number_of(result.rms) + " | " + number_of(result.bias) + " | " +
+            (std::isnan(result.inside) ? "-" : decimals(100.0 * result.inside, 0) + " %") + " | " +
+            text_of(result.energy_gain) + " | " + ratio_of(result.energy_payload) + " | " +
+            text_of(result.equal_gain) + " | " + ratio_of(result.equal_payload) + " | " +
+            text_of(result.cycle_gain) + " | " + ratio_of(result.cycle_payload) + " |\n";
   }
   return text;
 }
 
 std::string line_of(const StudyResult& result) {
   return result.condition.factor + ", " + result.condition.level + ": density within " +
-         decimals(result.rms, 1) + " points rms; gain " + text_of(result.energy_gain) +
+         number_of(result.rms) + " points rms; gain " + text_of(result.energy_gain) +
          " %, at equal payload " + text_of(result.equal_gain) + " %, per cycle " +
          text_of(result.cycle_gain) + " %";
 }
@@ -135,9 +151,9 @@ Outcome study(const Machine& machine, const StudyInputs& inputs, std::uint64_t s
   options.progress = [&](double done, const std::string& condition) {
     const std::lock_guard<std::mutex> lock(one_line);
     console.progress(done, condition);
-    return !console.stop_requested();
+    return true;
   };
-  const auto results = run_study(machine, default_study(), options);
+  const auto results = run_study(machine, default_study(machine), options);
   Outcome outcome;
   outcome.json["seed"] = seed;
   outcome.json["study"] = ordered_json::array();

@@ -22,7 +22,7 @@ namespace excavplan {
 /// Where the second dig is made.
 enum class SecondGround {
   fresh,  ///< on ground as it was before the first
-  left    ///< on the ground that the first left, its heap aside
+  left    ///< on the ground that the first left, with its heap beside
 };
 
 /// What is dug and planned with; by default for most mass per energy, as in the paper.

@@ -55,6 +55,9 @@ struct StudySetting {
   std::string digs = "height-map";                ///< word of the simulator that digs
   DigParameters fixed_path = paper_fixed_path();  ///< of the first dig, and the baseline
   SecondGround second = SecondGround::fresh;      ///< where the second dig is made
+  /// Gains count although the fixed path would lift or drag the machine, which is held down in both
+  /// digs; the second is planned as if it were not.
+  bool held_down = false;
   int row = 1;  ///< planned digs in a row, each from the survey of the one before
 };
 
@@ -64,10 +67,11 @@ struct StudyCondition {
   std::string level;     ///< "+10 deg"
   StudySetting setting;  ///< all of it
   int runs = 30;         ///< number of runs
+  int compared = 30;     ///< of them the first, which also plan and dig; the rest only estimate
 };
 
-/// The conditions of the default study. The first is the reference.
-std::vector<StudyCondition> default_study();
+/// The conditions of the default study of this machine. The first is the reference.
+std::vector<StudyCondition> default_study(const Machine& machine);
 
 /// The fixed path of the paper's field experiments: [1.023, 0.496 m, 2.487 m] (section 4.1).
 DigParameters paper_field_path();
@@ -86,6 +90,7 @@ struct StudyRun {
   double estimate_sd = 0.0;                       ///< its standard deviation [%]
   std::array<double, 2> interval = {0.0, 100.0};  ///< 95 %
   bool trustworthy = true;                        ///< the estimate
+  bool compared = true;                           ///< planned and dug, not only estimated
   /// The fixed path would lift or drag the machine, which is held down in all digs of the run: no
   /// gain can be told from it.
   bool held_down = false;
@@ -114,7 +119,8 @@ struct StudyResult {
   StudyCondition condition;       ///< that was run
   std::vector<StudyRun> runs;     ///< in order
   int failed = 0;                 ///< runs without a result
-  int held_down = 0;              ///< runs that tell no gain
+  int compared = 0;               ///< runs without failure that planned and dug
+  int held_down = 0;              ///< of them, those that tell no gain
   int untrusted = 0;              ///< runs whose estimate is not trustworthy, failed ones aside
   double rms = 0.0;               ///< error of the estimated density, failed runs aside [points]
   double bias = 0.0;              ///< likewise [points]
