@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/data_files.hpp>
-#include <excavplan/study/study.hpp>
+#include <excavplan/study/study_condition.hpp>
 
 #include "base/angles.hpp"
 #include "base/text.hpp"
