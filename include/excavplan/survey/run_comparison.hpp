@@ -41,8 +41,8 @@ struct SetComparison {
   double gain_percent = 0.0;       ///< of the second over the first, of geometric means
   double gain_low_percent = 0.0;   ///< of its 95 % interval, by Welch's t
   double gain_high_percent = 0.0;  ///< likewise
-  WelchTest welch;
-  PermutationTest permutation;
+  WelchTest welch;                 ///< of the logarithms
+  PermutationTest permutation;     ///< of the logarithms
   /// Below 10 runs in a set the permutation test decides, which needs no normal scatter; ours.
   bool by_permutation = false;
   /// Of the test that decides.
