@@ -9,6 +9,7 @@
 
 #include <excavplan/experiment/experiment.hpp>
 
+#include "shared/experiment_figures.hpp"
 #include "shared/report.hpp"
 
 /// @file
@@ -25,11 +26,6 @@ std::string experiment_line(const std::string& condition, const ExperimentResult
 nlohmann::ordered_json regression_json(const Machine& machine, const SoilKind& soil,
                                        const ExperimentOptions& options);
 std::string regression_line(const nlohmann::ordered_json& regression);
-
-struct NamedExperiment {
-  std::string condition;
-  ExperimentResult result;
-};
 
 /// The page, without its file: both digs of each condition, dug once more on level ground, and bars
 /// of what they are worth.
