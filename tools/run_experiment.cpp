@@ -26,6 +26,7 @@ const About about = {
 struct Inputs {
   std::string machine = "zx120";
   ExperimentInputs experiment;
+  Plots plots;
   std::optional<std::string> report;
 #ifdef EXCAVPLAN_STUDY
   StudyInputs study;
@@ -39,6 +40,18 @@ struct Inputs {
 #endif
   }
 };
+
+/// Those of an experiment and that of a study.
+std::vector<FigureName> figures_for(const Inputs& inputs) {
+  std::vector<FigureName> names = names_of(experiment_figures(
+      {[&inputs] { return !inputs.is_study(); }, "a --study has the figure study"}));
+#ifdef EXCAVPLAN_STUDY
+  names.push_back({"study",
+                   "density error and gains of a --study by condition, with 95 % intervals",
+                   {[&inputs] { return inputs.is_study(); }, "there is no --study"}});
+#endif
+  return names;
+}
 
 void declare(Arguments& arguments, Inputs& inputs) {
   ExperimentInputs& experiment = inputs.experiment;
@@ -54,6 +67,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                       arguments.option("seed", experiment.seed, "seed of searches and of a study");
                       arguments.threads(experiment.threads, "");
                     });
+  declare_plots(arguments, inputs.plots, figures_for(inputs));
   arguments.report(inputs.report);
 }
 
@@ -78,7 +92,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const ExperimentInputs& experiment = inputs.experiment;
 #ifdef EXCAVPLAN_STUDY
   if (inputs.is_study()) {
-    return study(machine, inputs.study, experiment.seed, experiment.threads, console);
+    return study(machine, inputs.study, inputs.plots, experiment.seed, experiment.threads, console);
   }
 #endif
   const SoilKind soil = soil_named(experiment.soil);
@@ -114,6 +128,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.json.update(goal_json(options.plan.search.objective));
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
+  write_plots(inputs.plots, experiment_figures({}), {done, outcome.json["regression"], soil},
+              outcome.lines);
   if (inputs.report) {
     Report report = experiment_report(machine, soil, options.plan, done);
     report.file = *inputs.report;

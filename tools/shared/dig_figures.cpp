@@ -66,9 +66,10 @@ void draw_standing_place(Panel& panel, const DugDig& dug, double from, double to
   constexpr double step = 0.02;  // [m]
   double known = from;
   while (known < to && !std::isfinite(dug.before(known))) known += step;
+  known += step;  // under what is known: no seam
   panel.polygon({{from, 0.0}, {known, 0.0}, {known, -50.0}, {from, -50.0}},
-                {"none", 0.0, ground_after.fill, 0.5});
-  panel.line({{from, 0.0}, {known, 0.0}}, {ground_after.stroke, 0.6});
+                {"none", 0.0, ground_after.fill});
+  panel.line({{from, 0.0}, {known, 0.0}}, {ground_after.stroke, ground_after.width});
 }
 
 void draw_tip_path(Panel& panel, const DigPath& path, bool with_legend) {
@@ -178,8 +179,11 @@ Panel dig_panel(const DugDig& dug) {
   for (const std::size_t pose : ends) {
     const double fill = fill_at(dug, pose);
     if (!(fill > 0.0)) continue;
-    panel.label(above(bucket_outline(dug.machine, dug.path.poses[pose].joints)),
-                readable(fill, 2) + " m³");
+    const JointAngles& joints = dug.path.poses[pose].joints;
+    Points shell = bucket_outline(dug.machine, joints);
+    const Points soil = soil_in_bucket(dug.machine, joints, fill);
+    shell.insert(shell.end(), soil.begin(), soil.end());
+    panel.label(above(shell), readable(fill, 2) + " m³");
   }
   if (dug.dig.stall && !ends.empty()) {
     const BucketPose& end = dug.path.poses[ends.back()].bucket;

@@ -30,6 +30,10 @@ struct Box {
   double left = 0.0, top = 0.0, width = 0.0, height = 0.0;
   double right() const { return left + width; }
   double bottom() const { return top + height; }
+  bool contains(const Eigen::Vector2d& at, double margin) const {
+    return at.x() >= left - margin && at.x() <= right() + margin && at.y() >= top - margin &&
+           at.y() <= bottom() + margin;
+  }
 };
 
 struct DrawnPath {

@@ -86,7 +86,8 @@ Panel time_panel(const Timed& timed, const std::string& y_label, const std::vect
 const std::array<Style, 3> joint_styles = {
     {{colours::blue, 1.3}, {colours::blue, 1.3}, {colours::blue, 1.3}}};
 
-/// Three panels, of boom, arm and bucket, with a limit on the side of the load.
+/// Three panels, of boom, arm and bucket, with limits where they are finite.
+/// @param limit  of joint, step, sign of the load and its peak of that sign
 template <typename Value, typename Limit>
 Figure joints_figure(const Timed& timed, const std::string& title, const std::string& unit,
                      const std::string& legend, const Value& value, const Limit& limit) {
@@ -102,12 +103,11 @@ Figure joints_figure(const Timed& timed, const std::string& title, const std::st
     }
     std::vector<Curve> curves = {{load, joint_styles[0], legend}};
     for (const double sign : {1.0, -1.0}) {
-      const double peak = sign > 0.0 ? high : -low;
-      const bool is_loaded = sign > 0.0 ? high >= -low : -low > 0.3 * high;
-      if (!is_loaded || !(peak > 0.0)) continue;
-      curves.push_back(
-          {timed.over_time([&](std::size_t step) { return sign * limit(i, step, sign); }),
-           limit_style, "limit"});
+      const Points bound = timed.over_time(
+          [&](std::size_t step) { return limit(i, step, sign, sign > 0.0 ? high : -low); });
+      if (std::isfinite(bound.empty() ? std::nan("") : bound.front().y())) {
+        curves.push_back({bound, limit_style, "limit"});
+      }
     }
     figure.rows.push_back(
         {time_panel(timed, std::string(name(static_cast<Joint>(i))) + " [" + unit + "]", curves,
@@ -153,8 +153,9 @@ Figure torques_figure(const DugDig& dug) {
   return joints_figure(
       timed, "Torques of the joints: " + dug.title, "kN m", "torque",
       [&](int joint, std::size_t i) { return timed.sample(i).torque[joint] / 1000.0; },
-      [&](int joint, std::size_t, double) {
-        return dug.machine.limits[static_cast<std::size_t>(joint)].torque / 1000.0;
+      [&](int joint, std::size_t, double sign, double peak) {
+        const double torque = dug.machine.limits[static_cast<std::size_t>(joint)].torque / 1000.0;
+        return peak > 0.1 * torque ? sign * torque : std::nan("");
       });
 }
 
@@ -196,16 +197,18 @@ Figure cylinders_figure(const DugDig& dug) {
     const double newtons = force(joint, i, timed.sample(i).torque[joint]);
     return newtons / area(joint, newtons) / unit;
   };
-  const auto limit = [&](int joint, std::size_t i, double sign) {
+  const auto limit = [&](int joint, std::size_t i, double sign, double) {
     const double torque = dug.machine.limits[static_cast<std::size_t>(joint)].torque;
-    return std::abs(force(joint, i, torque)) / area(joint, sign) / unit;
+    return sign > 0.0 ? std::abs(force(joint, i, torque)) / area(joint, sign) / unit : std::nan("");
   };
   Figure figure = joints_figure(
       timed, (hydraulics ? "Pressures" : "Forces") + std::string(" of the cylinders: ") + dug.title,
       hydraulics ? "MPa" : "kN", hydraulics ? "pressure" : "force", load, limit);
-  figure.note = hydraulics ? "Positive: the cylinder pushes, on the side of the piston; negative: "
-                             "it pulls, on the side of the rod. Limit: of the joint's torque."
-                           : "Positive: the cylinder pushes. Limit: of the joint's torque.";
+  figure.note = hydraulics
+                    ? "Positive: the cylinder pushes, on the side of the piston; negative: "
+                      "it pulls, on the side of the rod. Limit: of the joint's torque, "
+                      "pushing."
+                    : "Positive: the cylinder pushes. Limit: of the joint's torque, pushing.";
   return figure;
 }
 

@@ -129,6 +129,7 @@ Figure search_figure(const DrawnPlan& drawn) {
   panel.line(best, {colours::vermilion, 1.3}, "best so far");
   panel.view({0.0, 0.0, static_cast<double>(ranks.size()) + 1.0,
               1.06 * (std::isfinite(highest) ? highest : 1.0)});
+  panel.shape(0.5);
   Figure figure;
   figure.title = "Search: " + drawn.dug->title;
   figure.rows = {{panel}};

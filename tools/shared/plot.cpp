@@ -8,6 +8,8 @@
 #include <map>
 #include <sstream>
 
+#include "base/text.hpp"
+
 namespace excavplan::tools {
 
 // ---- Panel ------------------------------------------------------------------------------------
@@ -108,11 +110,11 @@ std::vector<Tick> nice_ticks(double low, double high, double wanted) {
       break;
     }
   }
-  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+  const int places = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   std::vector<Tick> ticks;
   for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) {
-    std::string text = short_number(std::abs(i * step), decimals);
-    if (i < 0.0 && text != "0") text = "−" + text;
+    std::string text = decimals(std::abs(i * step), places);
+    if (i < 0.0) text = "−" + text;
     ticks.emplace_back(i == 0.0 ? 0.0 : i * step, text);
   }
   return ticks;
@@ -194,6 +196,7 @@ std::map<std::string, std::vector<Run>> runs_by_colour(const Grid& grid, const C
 struct Frame {
   Rectangle data;
   Box box;
+  double margin = 0.0;  ///< left of it [pt]
   double x(double value) const {
     return box.left + box.width * (value - data.x_min) / (data.x_max - data.x_min);
   }
@@ -312,7 +315,7 @@ class Sheet {
         rows_.push_back(row);
       }
     }
-    for (int pass = 0; pass < 3; ++pass) {
+    for (int pass = 0; pass < 3; ++pass) {  // axes, their numbers, and the room that these take
       for (Row& row : rows_) {
         row.height = 0.0;
         for (const Panel* panel : row.panels) {
@@ -324,27 +327,40 @@ class Sheet {
   }
 
   void measure_margins() {
+    std::vector<double> found;
     for (const Row& row : rows_) {
-      for (const Panel* panel : row.panels) {
-        const Rectangle view = view_in(*panel, axes_width(row), row.height);
-        const auto ticks = y_ticks_of(*panel, view, row.height, number());
-        left_ = std::max(left_, widest(ticks, number()) + line() + 4.0 * scale_);
+      found.resize(std::max(found.size(), row.panels.size()), 0.0);
+      for (std::size_t i = 0; i < row.panels.size(); ++i) {
+        found[i] = std::max(found[i], margin_of(*row.panels[i], row));
       }
     }
-    left_ = std::min(left_, 0.45 * inner());
+    left_ = std::move(found);
   }
+
+  double margin_of(const Panel& panel, const Row& row) const {
+    const Rectangle view = view_in(panel, axes_width(row), row.height);
+    const double numbers = widest(y_ticks_of(panel, view, row.height, number()), number());
+    const double name = panel.y_label().empty() ? 0.0 : line();
+    const double most = 0.45 * inner() / static_cast<double>(row.panels.size());
+    return std::min(numbers + name + 6.5 * scale_, most);
+  }
+
+  /// Room left of the axes of each panel in a column.
+  double left(std::size_t column) const { return column < left_.size() ? left_[column] : 0.0; }
 
   /// Width of the axes of each panel of a row.
   double axes_width(const Row& row) const {
     const auto count = static_cast<double>(row.panels.size());
-    const double cell = (inner() - (count - 1.0) * gap()) / count;
-    return std::max(10.0, cell - left_ - right());
+    double width = inner() - (count - 1.0) * gap() - count * right();
+    for (std::size_t i = 0; i < row.panels.size(); ++i) width -= left(i);
+    return std::max(10.0, width / count);
   }
   double right() const { return 8.0 * scale_; }
 
   double wanted_height(const Panel& panel, double width) const {
-    const double least = 40.0 * scale_;
-    if (!panel.has_equal_aspect()) return std::max(least, panel.shape() * width);
+    const double least = panel.least_height() * scale_;
+    const double most = std::max(least, 80.0 * points_per_mm * scale_);
+    if (!panel.has_equal_aspect()) return std::clamp(panel.shape() * width, least, most);
     const Rectangle view = panel.shown();
     const double ratio = (view.y_max - view.y_min) / (view.x_max - view.x_min);
     return std::max(least, std::clamp(ratio, 0.2, 1.1) * width);
@@ -365,19 +381,24 @@ class Sheet {
     return std::all_of(row.panels.begin(), row.panels.end(),
                        [](const Panel* panel) { return panel->hides_x(); });
   }
-  /// Whether the name of y stands above the axes, as it is longer than these are high.
-  bool is_above(const Panel& panel, const Row& row) const {
-    return text_width(panel.y_label(), text()) > row.height + 6.0 * scale_;
+  /// Whether the names of y stand above the axes, as one is longer than its axis.
+  bool names_are_above() const {
+    for (const Row& row : rows_) {
+      for (const Panel* panel : row.panels) {
+        if (text_width(panel->y_label(), text()) > row.height + 6.0 * scale_) return true;
+      }
+    }
+    return false;
   }
   double head_of(const Row& row) const {
-    double lines = has_title(row) ? 1.0 : 0.0;
-    const bool above = std::any_of(row.panels.begin(), row.panels.end(),
-                                   [&](const Panel* panel) { return is_above(*panel, row); });
-    if (above) lines += 1.0;
+    const double lines = (has_title(row) ? 1.0 : 0.0) + (names_are_above() ? 1.0 : 0.0);
     return lines * line() + 3.0 * scale_;
   }
   double foot_of(const Row& row) const {
-    return hides_x(row) ? 3.0 * scale_ : 2.0 * line() + 4.0 * scale_;
+    if (hides_x(row)) return 3.0 * scale_;
+    const bool named = std::any_of(row.panels.begin(), row.panels.end(),
+                                   [](const Panel* panel) { return !panel->x_label().empty(); });
+    return (named ? 2.0 : 1.0) * line() + 4.0 * scale_;
   }
 
   struct LegendLine {
@@ -454,15 +475,16 @@ class Sheet {
   }
 
   double draw_row(const Row& row, double top) {
-    const double cell = axes_width(row) + left_ + right();
-    double x = pad() + left_;
+    double x = pad();
     const double y = top + head_of(row);
-    for (const Panel* panel : row.panels) {
-      Frame frame{view_in(*panel, axes_width(row), row.height),
-                  {x, y, axes_width(row), row.height}};
-      if (panel->has_map() && panel->has_equal_aspect()) shrink(frame);
-      draw_panel(*panel, frame, row, top);
-      x += cell + gap();
+    const double width = axes_width(row);
+    for (std::size_t i = 0; i < row.panels.size(); ++i) {
+      const Panel& panel = *row.panels[i];
+      x += left(i);
+      Frame frame{view_in(panel, width, row.height), {x, y, width, row.height}, left(i)};
+      if (panel.has_map() && panel.has_equal_aspect()) shrink(frame);
+      draw_panel(panel, frame, row, top);
+      x += width + right() + gap();
     }
     return y + row.height + foot_of(row) + gap();
   }
@@ -486,18 +508,19 @@ class Sheet {
     add(Clip{box});
     for (const Panel::Shape& shape : panel.shapes()) draw_shape(shape, frame);
     add(Clip{});
-    draw_labels(panel, frame);
     add(DrawnPath{{{{box.left, box.top},
                     {box.right(), box.top},
                     {box.right(), box.bottom()},
                     {box.left, box.bottom()}}},
                   true,
                   thin("#444444")});
+    for (const Panel::Shape& shape : panel.shapes()) draw_dots(shape, frame);
+    draw_labels(panel, frame);
     if (!panel.hides_x()) draw_x(panel, frame, xs);
-    draw_y(panel, frame, ys, is_above(panel, row));
+    draw_y(panel, frame, ys, names_are_above());
     const double cell_right = box.left + axes_width(row) + right();
     if (!panel.title().empty()) {
-      const double baseline = box.top - 3.5 * scale_ - (is_above(panel, row) ? line() : 0.0);
+      const double baseline = box.top - 3.5 * scale_ - (names_are_above() ? line() : 0.0);
       put(box.left, std::max(baseline, top + 0.8 * text()),
           fitted(panel.title(), cell_right - box.left, text(), true), text(), Anchor::start, true);
     }
@@ -528,7 +551,7 @@ class Sheet {
       }
       put(x, box.bottom() + line(), fitted(tick.second, room, number()), number(), Anchor::middle);
     }
-    const double cell = box.width + left_ + right();
+    const double cell = box.width + frame.margin + right();
     const std::string name = fitted(panel.x_label(), cell, text());
     const double half = 0.5 * text_width(name, text());
     const double middle = std::clamp(box.left + 0.5 * box.width, pad() + half,
@@ -538,29 +561,27 @@ class Sheet {
 
   void draw_y(const Panel& panel, const Frame& frame, const std::vector<Tick>& ticks, bool above) {
     const Box& box = frame.box;
-    double words = 0.0;
     for (const Tick& tick : ticks) {
       const double y = frame.y(tick.first);
       if (y < box.top - 0.1 || y > box.bottom() + 0.1) continue;
       if (!panel.y_ticks()) {
         add(DrawnPath{{{{box.left - 2.5 * scale_, y}, {box.left, y}}}, false, thin("#444444")});
       }
-      const std::string shown = fitted(tick.second, left_ - 4.0 * scale_, number());
-      words = std::max(words, text_width(shown, number()));
+      const std::string shown = fitted(tick.second, frame.margin - 4.0 * scale_, number());
       const double baseline =
           std::clamp(y + 0.36 * number(), box.top + 0.5 * number(), box.bottom() + 0.4 * number());
       put(box.left - 4.0 * scale_, baseline, shown, number(), Anchor::end);
     }
     if (above) {
-      const double room = box.width + right() + 0.5 * left_;
-      put(box.left - 0.5 * left_, box.top - 3.5 * scale_, fitted(panel.y_label(), room, text()),
-          text(), Anchor::start);
+      const double room = box.width + right() + 0.5 * frame.margin;
+      put(box.left - 0.5 * frame.margin, box.top - 3.5 * scale_,
+          fitted(panel.y_label(), room, text()), text(), Anchor::start);
       return;
     }
     const double half = 0.5 * text_width(panel.y_label(), text());
     const double middle = std::max(box.top + 0.5 * box.height, half + pad());
-    put(box.left - words - 6.5 * scale_, middle, panel.y_label(), text(), Anchor::middle, false,
-        true);
+    put(box.left - frame.margin + 0.75 * line(), middle, panel.y_label(), text(), Anchor::middle,
+        false, true);
   }
 
   void draw_shape(const Panel::Shape& shape, const Frame& frame) {
@@ -571,11 +592,6 @@ class Sheet {
       case Panel::Kind::label:
         return;
       case Panel::Kind::dots:
-        for (const Eigen::Vector2d& point : shape.points) {
-          if (point.allFinite()) {
-            add(DrawnCircle{frame.at(point), scale_ * shape.radius, style});
-          }
-        }
         return;
       case Panel::Kind::span:
         return draw_span(shape, frame);
@@ -585,6 +601,16 @@ class Sheet {
         break;
     }
     add(DrawnPath{parts_of(shape, frame), shape.kind == Panel::Kind::polygon, style});
+  }
+
+  /// Those within the axes, whole also at a border.
+  void draw_dots(const Panel::Shape& shape, const Frame& frame) {
+    if (shape.kind != Panel::Kind::dots) return;
+    for (const Eigen::Vector2d& point : shape.points) {
+      const Eigen::Vector2d at = frame.at(point);
+      if (!at.allFinite() || !frame.box.contains(at, 0.5)) continue;
+      add(DrawnCircle{at, scale_ * shape.radius, scaled(shape.style)});
+    }
   }
 
   /// Unknown points interrupt a line.
@@ -719,7 +745,7 @@ class Sheet {
   /// Colours from left to right, their numbers and what they are of.
   double draw_colour_bar(double y) {
     const ColourBar& bar = *figure_.colour_bar;
-    const double width = std::min(inner() - left_, 90.0 * points_per_mm * scale_);
+    const double width = std::min(0.85 * inner(), 90.0 * points_per_mm * scale_);
     const Box box{0.5 * (width_ - width), y, width, 6.0 * scale_};
     if (bar.scale.bands.empty()) {
       draw_even_colours(bar, box);
@@ -796,7 +822,7 @@ class Sheet {
   std::optional<double> height_ = {};
   std::vector<Row> rows_;
   std::vector<const Panel::Shape*> keys_;
-  double left_ = 0.0;  ///< of each panel, for numbers and name of y
+  std::vector<double> left_;  ///< room left of the axes in each column, for numbers and name of y
   Drawing drawing_;
 };
 

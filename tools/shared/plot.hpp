@@ -67,6 +67,8 @@ class Panel {
   void equal_aspect() { equal_aspect_ = true; }
   /// Height over width of the axes, unless equal_aspect().
   void shape(double height_over_width) { shape_ = height_over_width; }
+  /// Of the axes [pt], also if that is much.
+  void least_height(double height) { least_height_ = height; }
   /// These instead of numbers.
   void x_ticks(std::vector<Tick> ticks) { x_ticks_ = std::move(ticks); }
   void y_ticks(std::vector<Tick> ticks) { y_ticks_ = std::move(ticks); }
@@ -83,6 +85,7 @@ class Panel {
   bool has_map() const;
   bool hides_x() const { return hides_x_; }
   double shape() const { return shape_; }
+  double least_height() const { return least_height_; }
   /// The view, or all shapes with a small margin; never empty.
   Rectangle shown() const;
 
@@ -94,6 +97,7 @@ class Panel {
   bool equal_aspect_ = false;
   bool hides_x_ = false;
   double shape_ = 0.6;
+  double least_height_ = 40.0;
 };
 
 /// The colour scale of the maps.

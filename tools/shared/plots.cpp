@@ -26,16 +26,31 @@ PlotWords words_of(const std::string& text) {
   return {text.substr(0, end), text.substr(end + 1)};
 }
 
-const FigureName& figure_of(const std::string& text, const std::vector<FigureName>& figures) {
+bool is_possible(const FigureName& figure) {
+  return !figure.possible.holds || figure.possible.holds();
+}
+
+/// Nothing for the main figure.
+const FigureName* named(const std::string& text, const std::vector<FigureName>& figures) {
   const PlotWords words = words_of(text);
   if (words.file.empty()) usage_error("--plot: " + text + " names no file");
-  if (words.name.empty()) return figures.front();
+  if (words.name.empty()) return nullptr;
   const auto same = [&](const FigureName& figure) { return figure.name == words.name; };
   const auto found = std::find_if(figures.begin(), figures.end(), same);
-  if (found != figures.end()) return *found;
+  if (found != figures.end()) return &*found;
   std::string all;
   for (const FigureName& figure : figures) all += (all.empty() ? "" : ", ") + figure.name;
   usage_error("--plot: there is no figure '" + words.name + "', expected one of " + all);
+}
+
+const FigureName& figure_of(const std::string& text, const std::vector<FigureName>& figures) {
+  const FigureName* figure = named(text, figures);
+  if (figure == nullptr) {
+    const auto first = std::find_if(figures.begin(), figures.end(), is_possible);
+    figure = first == figures.end() ? &figures.front() : &*first;
+  }
+  if (is_possible(*figure)) return *figure;
+  usage_error("--plot: no figure '" + figure->name + "': " + figure->possible.otherwise);
 }
 
 double side(const std::string& text) {
@@ -79,13 +94,9 @@ void declare_plots(Arguments& arguments, Plots& plots, const std::vector<FigureN
   plot.repeated = true;
   plot.endings = image_endings();
   plot.file_in = [](const std::string& text) { return words_of(text).file; };
-  plot.assign = [&plots, figures](const std::string& text) {
+  plot.assign = [figures](const std::string& text) { named(text, figures); };
+  plot.check = [&plots, figures](const std::string& text) {
     plots.files.push_back({figure_of(text, figures).name, words_of(text).file});
-  };
-  plot.check = [figures](const std::string& text) {
-    const FigureName& figure = figure_of(text, figures);
-    if (!figure.possible.holds || figure.possible.holds()) return;
-    usage_error("--plot: no figure '" + figure.name + "': " + figure.possible.otherwise);
   };
   arguments.add(plot);
   arguments.only_if({[&plots] { return !plots.files.empty(); }, "there is no --plot"}, [&] {

@@ -11,7 +11,7 @@
 
 /// @file
 /// The options --plot, --plot-size and --plot-table of every tool that draws. A tool has a table of
-/// its figures; the first is the one that --plot FILE draws.
+/// its figures; the first that is possible is the one that --plot FILE draws.
 
 namespace excavplan::tools {
 
