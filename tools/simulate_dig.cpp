@@ -45,10 +45,6 @@ struct Inputs {
   std::optional<std::string> history, report;
 };
 
-FigureTable<DugDig> figures_for(const Inputs& inputs) {
-  return dig_figures([&inputs] { return machine_named(inputs.machine); });
-}
-
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("density", inputs.density, Quantity::percent, "relative density of the ground");
   arguments.require("density");
@@ -83,7 +79,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
       [&] { arguments.option("seed", inputs.seed, "seed of noise and blocks"); });
   inputs.fuel_log.declare(arguments);
   arguments.output("history", inputs.history, "write the loads of each step, CSV");
-  declare_plots(arguments, inputs.plots, names_of(figures_for(inputs)));
+  declare_plots(arguments, inputs.plots,
+                names_of(dig_figures([&inputs] { return machine_named(inputs.machine); })));
   arguments.report(inputs.report);
 }
 
@@ -108,7 +105,6 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
   write_scans(inputs.scans, scene, inputs.seed);
   inputs.fuel_log.write(machine, scene, inputs.seed);
   if (inputs.history) write_file(*inputs.history, to_csv(machine, scene));
-  if (inputs.plots.files.empty() && !inputs.report) return;
   const std::string title =
       "Dig in " + scene.soil + " at " + readable(scene.density_percent) + " % relative density";
   const DugDig dug = {machine,
@@ -117,7 +113,7 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
                       boom_plane_profile(scene.before),
                       boom_plane_profile(scene.after),
                       title};
-  write_plots(inputs.plots, figures_for(inputs), dug, outcome.lines);
+  write_plots(inputs.plots, dig_figures({}), dug, outcome.lines);
   if (!inputs.report) return;
   outcome.report = titled(scene_report(machine, scene), *inputs.report, title,
                           to_svg(lay_out(section_figure(dug))));

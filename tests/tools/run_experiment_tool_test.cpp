@@ -9,6 +9,7 @@
 #include <excavplan/soil/density_fit.hpp>
 
 #include "support/report_page.hpp"
+#include "support/svg_figure.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
@@ -88,6 +89,7 @@ TEST_F(Tools, AStudyWritesItsRunsAndItsTable) {
             found.at("study").size() + 1);
   EXPECT_EQ(json::parse(content_of(out + "/study.json"))["study"], found["study"]);
   EXPECT_TRUE(contains(content_of(out + "/study.md"), "| slope | +10.0 deg | 1 |"));
+  expect_figure(out + "/study.svg", {"slope, +10.0 deg", "gain of the planned dig [%]"});
   answer("run-experiment", words);
   EXPECT_EQ(content_of(out + "/runs.csv"), runs);
   EXPECT_TRUE(warns(answer("run-experiment", words + Words{"--soil", "sand"}), "options_ignored"));

@@ -110,9 +110,39 @@ bool is_beyond_hole(const Eigen::Vector2d& middle, const VolumeChange& change) {
          middle.y() >= 0.5 * (hole->extent.y_min + hole->extent.y_max);
 }
 
+/// How an area lies on the page: as x and y, or, if it is longer in y, turned to the left with x
+/// upwards.
+struct Turn {
+  bool is_turned = false;
+
+  Eigen::Vector2d operator()(const Eigen::Vector2d& at) const {
+    return is_turned ? Eigen::Vector2d(-at.y(), at.x()) : at;
+  }
+  Points operator()(Points points) const {
+    for (Eigen::Vector2d& point : points) point = (*this)(point);
+    return points;
+  }
+  Rectangle operator()(const Rectangle& r) const {
+    return is_turned ? Rectangle{-r.y_max, r.x_min, -r.y_min, r.x_max} : r;
+  }
+  Grid operator()(const HeightMap& map) const {
+    const Eigen::Vector2d cell = Eigen::Vector2d::Constant(map.cell_size);
+    if (!is_turned) return {map.origin, cell, map.z};
+    const Rectangle all = (*this)(map.extent());
+    return {{all.x_min, all.y_min}, cell, map.z.transpose().rowwise().reverse()};
+  }
+  Panel panel(const std::string& title) const {
+    Panel panel(title, is_turned ? "y [m]" : "x [m]", is_turned ? "x [m]" : "y [m]");
+    if (is_turned) panel.mirror_x();
+    panel.equal_aspect();
+    return panel;
+  }
+};
+
 /// Names the zone with its volume: hole and heap in their middle, spill outside of its zone on the
 /// side away from the hole.
-void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area, int index) {
+void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area, int index,
+                const Turn& turn) {
   const ChangeZone& zone = change.zones[static_cast<std::size_t>(index)];
   Eigen::Vector2d at = middle_of(area, index);
   if (zone.kind == ZoneKind::spill) {
@@ -120,8 +150,8 @@ void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area
     const double room = 2.5 * area.difference.cell_size;
     at.y() = is_beyond_hole(at, change) ? zone.extent.y_max + room : zone.extent.y_min - room;
   }
-  panel.label(at, std::string(style_of(zone.kind).name) + ' ' +
-                      readable(std::abs(zone.volume.value)) + " m³");
+  panel.label(turn(at), std::string(style_of(zone.kind).name) + ' ' +
+                            readable(std::abs(zone.volume.value)) + " m³");
 }
 
 Rectangle joined(const Rectangle& a, const Rectangle& b) {
@@ -265,13 +295,13 @@ Panel section_panel(const Section& section, const HeightMap& before, const AreaC
 }
 
 /// Where a section lies on the map.
-void draw_place(Panel& map, const Section& section, const HeightMap& on) {
+void draw_place(Panel& map, const Section& section, const HeightMap& on, const Turn& turn) {
   const auto end = [&](Eigen::Index i) -> Eigen::Vector2d {
     return section.along_x ? Eigen::Vector2d(on.x(i), on.y(section.line))
                            : Eigen::Vector2d(on.x(section.line), on.y(i));
   };
-  map.line({end(section.first), end(section.last)}, {"#222222", 0.8, "none", 1.0, {1.0, 2.0}},
-           "section");
+  map.line(turn(Points{end(section.first), end(section.last)}),
+           {"#222222", 0.8, "none", 1.0, {1.0, 2.0}}, "section");
 }
 
 // ---- The table --------------------------------------------------------------------------------
@@ -341,10 +371,6 @@ const char* title_of(std::size_t area, std::size_t areas) {
   return area == 0 ? "dig area, seen from above" : "dump area, seen from above";
 }
 
-Grid grid_of(const HeightMap& map) {
-  return {map.origin, Eigen::Vector2d::Constant(map.cell_size), map.z};
-}
-
 }  // namespace
 
 std::vector<std::string> change_table(const ChangeSheet& sheet) {
@@ -372,21 +398,22 @@ Figure height_change_figure(const ChangeSheet& sheet) {
   std::vector<Panel> sections;
   for (std::size_t i = 0; i < change.areas.size(); ++i) {
     const AreaChange& area = change.areas[i];
-    Panel map(title_of(i, change.areas.size()), "x [m]", "y [m]");
-    map.equal_aspect();
-    map.map(grid_of(area.difference), scale);
-    map.view(view_of(change, area));
+    const Rectangle view = view_of(change, area);
+    const Turn turn = {view.y_max - view.y_min > 1.1 * (view.x_max - view.x_min)};
+    Panel map = turn.panel(title_of(i, change.areas.size()));
+    map.map(turn(area.difference), scale);
+    map.view(turn(view));
     for (std::size_t j = 0; j < change.zones.size(); ++j) {
       const ChangeZone& zone = change.zones[j];
       const int index = static_cast<int>(j);
       if (!(area.zone == index).any()) continue;
       const ZoneStyle style = style_of(zone.kind);
-      map.strokes(outline(area, index), style.outline, style.name);
-      if (zone.kind != ZoneKind::other) label_zone(map, change, area, index);
+      map.strokes(turn(outline(area, index)), style.outline, style.name);
+      if (zone.kind != ZoneKind::other) label_zone(map, change, area, index, turn);
       const bool cut = zone.kind == ZoneKind::dig || zone.kind == ZoneKind::dump;
       if (!cut || i >= sheet.before.size() || !is_largest_of_its_kind(zone, change)) continue;
       const Section section = section_of(area, zone, index);
-      draw_place(map, section, area.difference);
+      draw_place(map, section, area.difference, turn);
       const bool hole = zone.kind == ZoneKind::dig;
       sections.insert(hole ? sections.begin() : sections.end(),
                       section_panel(section, sheet.before[i], area));

@@ -71,7 +71,7 @@ Panel law_panel(const DensityEstimate& estimate) {
   if (std::isfinite(k.sd)) panel.interval({k.value - k.sd, at}, {k.value + k.sd, at}, style);
   panel.interval({k.value, density.interval_percent[0]}, {k.value, density.interval_percent[1]},
                  {colours::blue, 1.0}, "95 % interval of the density");
-  panel.dots({{k.value, at}}, 2.2, {"#ffffff", 0.6, colours::vermilion},
+  panel.dots({{k.value, at}}, 1.5, {"#ffffff", 0.6, colours::vermilion},
              std::string(freed ? "corrected" : "measured") + " k = " + readable(k.value, k.sd) +
                  " (± sd)");
   const double width = curve.back().x() - curve.front().x();

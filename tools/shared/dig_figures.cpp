@@ -51,13 +51,13 @@ void draw_ground(Panel& panel, const GroundProfile& profile, double from, double
     }
   }
   close();
-  if (!legend.empty()) panel.polygon({}, style, legend);
+  panel.polygon({}, style, legend);
 }
 
-void draw_grounds(Panel& panel, const DugDig& dug, double from, double to, bool with_legend) {
-  draw_ground(panel, dug.before, from, to, ground_before, with_legend ? "ground before" : "");
+void draw_grounds(Panel& panel, const DugDig& dug, double from, double to) {
+  draw_ground(panel, dug.before, from, to, ground_before, "ground before");
   if (dug.after) {
-    draw_ground(panel, dug.after, from, to, ground_after, with_legend ? "ground after" : "");
+    draw_ground(panel, dug.after, from, to, ground_after, "ground after");
   }
 }
 
@@ -72,15 +72,14 @@ void draw_standing_place(Panel& panel, const DugDig& dug, double from, double to
   panel.line({{from, 0.0}, {known, 0.0}}, {ground_after.stroke, ground_after.width});
 }
 
-void draw_tip_path(Panel& panel, const DigPath& path, bool with_legend) {
+void draw_tip_path(Panel& panel, const DigPath& path) {
   Points stretch;
   for (std::size_t i = 0; i < path.poses.size(); ++i) {
     const DigPose& pose = path.poses[i];
     stretch.emplace_back(pose.bucket.x, pose.bucket.z);
     const bool last = i + 1 == path.poses.size();
     if (!last && path.poses[i + 1].phase == pose.phase) continue;
-    panel.line(stretch, phase_style(pose.phase),
-               with_legend ? std::string("tip, ") + name(pose.phase) : "");
+    panel.line(stretch, phase_style(pose.phase), std::string("tip, ") + name(pose.phase));
     stretch = {stretch.back()};
   }
 }
@@ -127,7 +126,7 @@ std::size_t shown_pose(const DugDig& dug) {
 }
 
 Panel machine_panel(const DugDig& dug) {
-  Panel panel("machine, as the dig ends", "x from the swing axis [m]", "z [m]");
+  Panel panel("machine", "x from the swing axis [m]", "z [m]");
   const std::size_t pose = shown_pose(dug);
   const MachineOutline machine = machine_outline(dug.machine, dug.path.poses[pose].joints);
   Rectangle all{dug.path.start_x, dug.path.ground_z, dug.path.start_x, dug.path.ground_z};
@@ -141,7 +140,7 @@ Panel machine_panel(const DugDig& dug) {
   panel.view({all.x_min - room, all.y_min - 2.0 * room, all.x_max + room, all.y_max + room});
   panel.equal_aspect();
   draw_standing_place(panel, dug, all.x_min - 20.0, dug.path.start_x);
-  draw_grounds(panel, dug, all.x_min - 20.0, all.x_max + 20.0, false);
+  draw_grounds(panel, dug, all.x_min - 20.0, all.x_max + 20.0);
   const Style steel = {"#4a4a4a", 0.7, "#f2f2f2"};
   const Style front = {"#4a4a4a", 0.7, "#e6bd55"};
   panel.polygon(machine.cab, {"#4a4a4a", 0.7, "#dbe7ee"});
@@ -153,12 +152,12 @@ Panel machine_panel(const DugDig& dug) {
   panel.polygon(machine.boom, front);
   draw_bucket(panel, dug, pose, {"#222222", 1.3});
   panel.dots(machine.pins, 1.1, {"#4a4a4a", 0.5, steel.fill});
-  draw_tip_path(panel, dug.path, false);
+  draw_tip_path(panel, dug.path);
   return panel;
 }
 
 Panel dig_panel(const DugDig& dug) {
-  Panel panel("dig, with the soil in the bucket", "x from the swing axis [m]", "z [m]");
+  Panel panel("dig", "x from the swing axis [m]", "z [m]");
   Rectangle all{dug.path.start_x, dug.path.ground_z, dug.path.start_x, dug.path.ground_z};
   const std::vector<std::size_t> ends = ends_of_phases(dug);
   for (const std::size_t pose : ends) {
@@ -167,13 +166,13 @@ Panel dig_panel(const DugDig& dug) {
   const double room = 0.06 * std::max(1.0, all.x_max - all.x_min);
   panel.view({all.x_min - room, all.y_min - room, all.x_max + room, all.y_max + 2.5 * room});
   panel.equal_aspect();
-  draw_grounds(panel, dug, all.x_min - 20.0, all.x_max + 20.0, true);
+  draw_grounds(panel, dug, all.x_min - 20.0, all.x_max + 20.0);
   for (const std::size_t pose : ends) {
     Style wall = phase_style(dug.path.poses[pose].phase);
     wall.dash.clear();
     draw_bucket(panel, dug, pose, wall);
   }
-  draw_tip_path(panel, dug.path, true);
+  draw_tip_path(panel, dug.path);
   panel.dots({{dug.path.start_x, dug.path.ground_z}}, 2.0, {"#ffffff", 0.6, colours::black},
              "start, x = " + readable(dug.path.start_x) + " m");
   for (const std::size_t pose : ends) {

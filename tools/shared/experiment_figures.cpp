@@ -60,7 +60,7 @@ Figure paths_figure(const std::vector<NamedExperiment>& experiments) {
   const Rectangle view{all.x_min - room, all.y_min - room, all.x_max + room, all.y_max + room};
   for (std::size_t i = 0; i < count; ++i) {
     const ExperimentResult& result = experiments[i].result;
-    Panel panel(experiments[i].condition + ", " + readable(result.density_percent) + " %",
+    Panel panel(experiments[i].condition + ", " + short_number(result.density_percent, 1) + " %",
                 "x from the swing axis [m]", "z [m]");
     panel.equal_aspect();
     panel.view(view);
@@ -88,10 +88,11 @@ Figure efficiency_figure(const std::vector<NamedExperiment>& experiments) {
                       {worth(result.fixed), worth(result.planned)},
                       gain_text(result.gain_percent())});
   }
-  figure.rows = {{bar_panel(goal.description + " [" + goal.unit + "]",
-                            {{"fixed path", {"#444444", 0.6, "#c9c9c9"}},
-                             {"planned path", {"#444444", 0.6, colours::blue}}},
-                            groups)}};
+  figure.rows = {
+      {bar_panel(goal.description.substr(0, goal.description.find(',')) + " [" + goal.unit + "]",
+                 {{"fixed path", {"#444444", 0.6, "#c9c9c9"}},
+                  {"planned path", {"#444444", 0.6, colours::blue}}},
+                 groups)}};
   return figure;
 }
 
@@ -101,8 +102,7 @@ Figure regression_figure(const DrawnExperiments& drawn) {
   const DensityLine own = line_of(regression.at("line"));
   const DensityLine freed = line_of(regression.at("line_without_fallback"));
   const DensityLine paper = line_of(regression.at("paper_line"));
-  panel.line(law_curve(paper), {colours::grey, 1.1, "none", 1.0, {1.2, 1.4}},
-             line_text("paper", paper));
+  panel.line(law_curve(paper), {"#b5b5b5", 2.8}, line_text("paper", paper));
   panel.line(law_curve(density_law_of(drawn.soil).form),
              {colours::green, 1.1, "none", 1.0, {5.0, 1.5, 1.2, 1.5}},
              "closed form of the void ratios");

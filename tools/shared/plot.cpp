@@ -126,16 +126,24 @@ double widest(const std::vector<Tick>& ticks, double size) {
   return width;
 }
 
+/// Numbers of an x that may grow to the left.
+std::vector<Tick> nice_x_ticks(const Panel& panel, const Rectangle& view, double wanted) {
+  if (!panel.mirrors_x()) return nice_ticks(view.x_min, view.x_max, wanted);
+  std::vector<Tick> ticks = nice_ticks(-view.x_max, -view.x_min, wanted);
+  for (Tick& tick : ticks) tick.first = -tick.first;
+  return ticks;
+}
+
 /// Numbers of x with room between them.
 std::vector<Tick> x_ticks_of(const Panel& panel, const Rectangle& view, double width, double size) {
   if (panel.x_ticks()) return *panel.x_ticks();
   double wanted = std::min(8.0, width / (3.0 * size));
   for (; wanted > 1.0; wanted -= 0.5) {
-    const std::vector<Tick> ticks = nice_ticks(view.x_min, view.x_max, wanted);
+    const std::vector<Tick> ticks = nice_x_ticks(panel, view, wanted);
     const double room = width / std::max(1.0, static_cast<double>(ticks.size()));
     if (widest(ticks, size) + 0.8 * size < room) return ticks;
   }
-  return nice_ticks(view.x_min, view.x_max, 1.0);
+  return nice_x_ticks(panel, view, 1.0);
 }
 
 std::vector<Tick> y_ticks_of(const Panel& panel, const Rectangle& view, double height,
@@ -337,11 +345,18 @@ class Sheet {
     left_ = std::move(found);
   }
 
+  /// Words beside axes like those of the first panel of a row are given once.
+  static bool repeats_words(const Panel& panel, const Row& row) {
+    const Panel& first = *row.panels.front();
+    return &panel != &first && panel.y_ticks() && panel.y_ticks() == first.y_ticks();
+  }
+
   double margin_of(const Panel& panel, const Row& row) const {
+    if (repeats_words(panel, row)) return 4.0 * scale_;
     const Rectangle view = view_in(panel, axes_width(row), row.height);
     const double numbers = widest(y_ticks_of(panel, view, row.height, number()), number());
     const double name = panel.y_label().empty() ? 0.0 : line();
-    const double most = 0.45 * inner() / static_cast<double>(row.panels.size());
+    const double most = 0.6 * inner() / static_cast<double>(row.panels.size());
     return std::min(numbers + name + 6.5 * scale_, most);
   }
 
@@ -517,7 +532,7 @@ class Sheet {
     for (const Panel::Shape& shape : panel.shapes()) draw_dots(shape, frame);
     draw_labels(panel, frame);
     if (!panel.hides_x()) draw_x(panel, frame, xs);
-    draw_y(panel, frame, ys, names_are_above());
+    if (!repeats_words(panel, row)) draw_y(panel, frame, ys, names_are_above());
     const double cell_right = box.left + axes_width(row) + right();
     if (!panel.title().empty()) {
       const double baseline = box.top - 3.5 * scale_ - (names_are_above() ? line() : 0.0);

@@ -72,6 +72,8 @@ class Panel {
   /// These instead of numbers.
   void x_ticks(std::vector<Tick> ticks) { x_ticks_ = std::move(ticks); }
   void y_ticks(std::vector<Tick> ticks) { y_ticks_ = std::move(ticks); }
+  /// The numbers of x are those of -x: it grows to the left.
+  void mirror_x() { mirrors_x_ = true; }
   /// Without numbers and name of x, above a panel of the same x.
   void hide_x() { hides_x_ = true; }
 
@@ -84,6 +86,7 @@ class Panel {
   bool has_equal_aspect() const { return equal_aspect_; }
   bool has_map() const;
   bool hides_x() const { return hides_x_; }
+  bool mirrors_x() const { return mirrors_x_; }
   double shape() const { return shape_; }
   double least_height() const { return least_height_; }
   /// The view, or all shapes with a small margin; never empty.
@@ -96,6 +99,7 @@ class Panel {
   std::optional<std::vector<Tick>> x_ticks_, y_ticks_;
   bool equal_aspect_ = false;
   bool hides_x_ = false;
+  bool mirrors_x_ = false;
   double shape_ = 0.6;
   double least_height_ = 40.0;
 };

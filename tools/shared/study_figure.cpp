@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/study_figure.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -58,6 +59,19 @@ void shape(Panel& panel, const std::vector<StudyResult>& results, double low, do
   draw_factors(panel, results, low - room, high + room);
 }
 
+/// The largest gain that the axis shows: a few conditions reach many times the others' gain.
+double largest_shown(const std::vector<StudyResult>& results) {
+  std::vector<double> means;
+  for (const StudyResult& result : results) {
+    for (const Gain& gain : gains) {
+      if (std::isfinite((result.*gain.mean).mean)) means.push_back((result.*gain.mean).mean);
+    }
+  }
+  if (means.empty()) return 1.0;
+  std::sort(means.begin(), means.end());
+  return std::max(10.0, 2.0 * means[means.size() * 9 / 10]);
+}
+
 Panel gain_panel(const std::vector<StudyResult>& results) {
   Panel panel("", "gain of the planned dig [%]", "");
   double low = 0.0;
@@ -70,6 +84,7 @@ Panel gain_panel(const std::vector<StudyResult>& results) {
       high = std::max(high, interval[1]);
     }
   }
+  high = std::min(high, largest_shown(results));
   panel.y_ticks(names_of(results));
   shape(panel, results, low, high);
   panel.line({{0.0, 1.0}, {0.0, row_of(results.size())}}, {"#444444", 0.6});
@@ -79,6 +94,10 @@ Panel gain_panel(const std::vector<StudyResult>& results) {
       const StudyMean& mean = results[i].*gain.mean;
       if (!std::isfinite(mean.mean)) continue;
       const double y = row_of(i) + gain.offset;
+      if (mean.mean > high) {
+        panel.label({high, y}, short_number(mean.mean, 0) + " % →");
+        continue;
+      }
       means.emplace_back(mean.mean, y);
       panel.interval({mean.interval[0], y}, {mean.interval[1], y}, gain.style, gain.legend);
     }
