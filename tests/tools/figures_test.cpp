@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "shared/study_figure.hpp"
 #include "support/svg_figure.hpp"
@@ -193,6 +194,16 @@ TEST_F(FigureValues, AFigureWithoutWhatItNeedsIsRefusedBeforeTheWork) {
   refused(2, "no figure 'cylinders': the file of the machine states no cylinders", "simulate-dig",
           {"--density", "40", "--machine", folder.write("m.json", machine.dump()), "--plot",
            "cylinders=" + folder.file("c.svg")});
+}
+
+TEST_F(FigureValues, WithoutFontsOnlySvgIsDrawn) {
+  ::setenv("FONTCONFIG_FILE", folder.write("fonts.conf", "<fontconfig></fontconfig>").c_str(), 1);
+  for (const char* name : {"f.png", "f.pdf"}) {
+    refused(2, "--plot: no font is installed", "simulate-dig",
+            {"--density", "40", "--plot", folder.file(name)});
+  }
+  answer("simulate-dig", {"--density", "40", "--plot", folder.file("f.svg")});
+  ::unsetenv("FONTCONFIG_FILE");
 }
 
 TEST(StudyFigure, HasARowForEachConditionAndTheGains) {

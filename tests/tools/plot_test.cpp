@@ -143,6 +143,24 @@ TEST(Panel, UnknownPointsInterruptALine) {
   EXPECT_EQ(count(svg.substr(start, end - start), "M"), 2U);
 }
 
+TEST(Panel, LongLinesKeepTheirSpikesInSmallFiles) {
+  Points line;
+  for (int i = 0; i < 200000; ++i) line.emplace_back(i, i == 123457 ? 9.0 : std::sin(i));
+  Panel panel("", "x", "y");
+  panel.view({0.0, -1.0, 200000.0, 9.0});
+  panel.line(line, {"#123456"});
+  const std::string svg = svg_of(panel);
+  EXPECT_LT(svg.size(), 300000U);
+  const auto end = svg.find("\" fill=\"none\" stroke=\"#123456\"");
+  const auto start = svg.rfind("d=\"M", end) + 4;
+  double highest = 1e9;  // y runs down the page
+  for (auto at = start; at < end; at = svg.find('L', at + 1) + 1) {
+    highest = std::min(highest, std::stod(svg.substr(svg.find(' ', at), 20)));
+    if (svg.find('L', at + 1) > end) break;
+  }
+  EXPECT_LT(highest, 10.0);
+}
+
 TEST(Panel, TextIsEscapedAndLegendsAreGivenOnce) {
   Panel panel("a < b & \"c\"", "x", "y");
   panel.line({{0.0, 0.0}, {1.0, 1.0}}, {}, "k > 1");

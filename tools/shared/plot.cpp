@@ -224,6 +224,26 @@ Rectangle grown_to(const Rectangle& view, double width, double height) {
           y + 0.5 * scale * height};
 }
 
+/// A line of so many points that they cannot be told apart: of each few the lowest and the highest.
+Points thinned(Points line) {
+  constexpr std::size_t most = 8000;
+  if (line.size() <= most) return line;
+  const std::size_t block = (2 * line.size() + most - 1) / most;
+  Points thin = {line.front()};
+  for (auto at = line.begin(); at != line.end();) {
+    const auto end = line.end() - at > static_cast<std::ptrdiff_t>(block)
+                         ? at + static_cast<std::ptrdiff_t>(block)
+                         : line.end();
+    auto [first, second] =
+        std::minmax_element(at, end, [](const auto& a, const auto& b) { return a.y() < b.y(); });
+    if (second < first) std::swap(first, second);
+    thin.insert(thin.end(), {*first, *second});
+    at = end;
+  }
+  thin.push_back(line.back());
+  return thin;
+}
+
 /// Words of a text in lines of at most this width.
 std::vector<std::string> wrapped(const std::string& text, double width, double size) {
   std::vector<std::string> lines = {""};
@@ -641,6 +661,7 @@ class Sheet {
       interrupted = false;
       parts.back().push_back(frame.at(shape.points[i]));
     }
+    for (Points& part : parts) part = thinned(std::move(part));
     return parts;
   }
 

@@ -96,7 +96,9 @@ void declare_plots(Arguments& arguments, Plots& plots, const std::vector<FigureN
   plot.file_in = [](const std::string& text) { return words_of(text).file; };
   plot.assign = [figures](const std::string& text) { named(text, figures); };
   plot.check = [&plots, figures](const std::string& text) {
-    plots.files.push_back({figure_of(text, figures).name, words_of(text).file});
+    const std::string file = words_of(text).file;
+    plots.files.push_back({figure_of(text, figures).name, file});
+    require_fonts(file);
   };
   arguments.add(plot);
   arguments.only_if({[&plots] { return !plots.files.empty(); }, "there is no --plot"}, [&] {

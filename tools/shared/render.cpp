@@ -36,13 +36,8 @@ void require(cairo_status_t status) {
               std::string("the plot cannot be drawn: ") + cairo_status_to_string(status));
 }
 
-/// Without a font, cairo draws one of its own without most letters.
-void require_font() {
-  const FcFontSet* fonts = FcConfigGetFonts(nullptr, FcSetSystem);
-  if (fonts != nullptr && fonts->nfont > 0) return;
-  throw Error(ErrorKind::bad_input,
-              "--plot: no font is installed, which PNG and PDF need for their texts; install one, "
-              "such as fonts-dejavu-core, or write .svg");
+std::string ending_of(const std::string& file) {
+  return small_letters(std::filesystem::path(file).extension().string());
 }
 
 double channel(const std::string& colour, std::size_t place) {
@@ -198,11 +193,20 @@ const std::vector<std::string>& image_endings() {
   return endings;
 }
 
+// Without a font, cairo draws one of its own without most letters.
+void require_fonts(const std::string& file) {
+  if (ending_of(file) == ".svg") return;
+  const FcFontSet* fonts = FcConfigGetFonts(nullptr, FcSetSystem);
+  if (fonts != nullptr && fonts->nfont > 0) return;
+  throw Error(ErrorKind::bad_input,
+              "--plot: no font is installed, which PNG and PDF need for their texts; install one, "
+              "such as fonts-dejavu-core, or write .svg");
+}
+
 std::string image_of(const Drawing& drawing, const std::string& file) {
-  const std::string ending = small_letters(std::filesystem::path(file).extension().string());
-  if (ending == ".svg") return to_svg(drawing);
-  require_font();
-  return ending == ".png" ? png(drawing) : pdf(drawing);
+  if (ending_of(file) == ".svg") return to_svg(drawing);
+  require_fonts(file);
+  return ending_of(file) == ".png" ? png(drawing) : pdf(drawing);
 }
 
 }  // namespace excavplan::tools
