@@ -99,7 +99,8 @@ TEST_F(Tools, ReportOfAnExperimentShowsBothDigsOfEachCondition) {
   const std::string file = folder.file("report.html");
   const json result = answer("run-experiment", {"--densities", "10,40", "--report", file});
   const std::string page = content_of(file);
-  EXPECT_TRUE(contains(page, "10.0 %, fixed: "));
+  EXPECT_TRUE(contains(page, ">10.0 %</text>") && contains(page, "tip, planned path"));
+  EXPECT_TRUE(contains(page, "[kg/kJ]</text>"));
   const json scene = drawn_on(page);
   ASSERT_EQ(scene["digs"].size(), 4U);
   EXPECT_EQ(scene["digs"][3]["name"], "40.0 %, fixed path");

@@ -25,6 +25,12 @@ Points tip_path(const DigPath& path) {
   return points;
 }
 
+/// "soft, 10 %"; a condition may be named by its density.
+std::string title_of(const NamedExperiment& experiment) {
+  if (experiment.condition.find('%') != std::string::npos) return experiment.condition;
+  return experiment.condition + ", " + short_number(experiment.result.density_percent, 1) + " %";
+}
+
 std::string gain_text(double percent) {
   return (percent < 0.0 ? "−" : "+") + short_number(std::abs(percent), 0) + " %";
 }
@@ -60,8 +66,7 @@ Figure paths_figure(const std::vector<NamedExperiment>& experiments) {
   const Rectangle view{all.x_min - room, all.y_min - room, all.x_max + room, all.y_max + room};
   for (std::size_t i = 0; i < count; ++i) {
     const ExperimentResult& result = experiments[i].result;
-    Panel panel(experiments[i].condition + ", " + short_number(result.density_percent, 1) + " %",
-                "x from the swing axis [m]", "z [m]");
+    Panel panel(title_of(experiments[i]), "x from the swing axis [m]", "z [m]");
     panel.equal_aspect();
     panel.view(view);
     panel.polygon({{-99.0, 0.0}, {99.0, 0.0}, {99.0, -99.0}, {-99.0, -99.0}},
