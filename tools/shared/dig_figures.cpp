@@ -163,6 +163,9 @@ Panel dig_panel(const DugDig& dug) {
   for (const std::size_t pose : ends) {
     grow(all, bucket_outline(dug.machine, dug.path.poses[pose].joints));
   }
+  const double narrow = std::max(0.0, 1.4 * (all.y_max - all.y_min) - (all.x_max - all.x_min));
+  all.x_min -= 0.5 * narrow;  // a dig that ends early is no wider than the bucket
+  all.x_max += 0.5 * narrow;
   const double room = 0.06 * std::max(1.0, all.x_max - all.x_min);
   panel.view({all.x_min - room, all.y_min - room, all.x_max + room, all.y_max + 2.5 * room});
   panel.equal_aspect();

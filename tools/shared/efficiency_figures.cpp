@@ -79,11 +79,6 @@ Panel log_panel(const DigEfficiency& run, bool last) {
     curve.emplace_back(run.log.time[i] - start, shown.per_si * rate[i]);
     top = std::max(top, curve.back().y());
   }
-  Points counted;
-  for (const Eigen::Vector2d& point : curve) {
-    const double time = point.x() + start;
-    if (time >= run.log.whole.from && time <= run.log.whole.to) counted.push_back(point);
-  }
   const double end = curve.back().x();
   if (run.phases != PhaseSource::none) {
     for (const LogInterval& dig : run.log.digs) {
