@@ -91,14 +91,21 @@ double fill_at(const DugDig& dug, std::size_t pose) {
   return pose <= history.size() ? history[pose - 1].bucket_fill : dug.dig.payload_volume;
 }
 
-/// The last pose of each phase that was dug.
+/// Whether two buckets would cover one another.
+bool looks_alike(const BucketPose& a, const BucketPose& b) {
+  return std::hypot(b.x - a.x, b.z - a.z) < 0.1 && std::abs(b.floor_angle - a.floor_angle) < 0.1;
+}
+
+/// The last pose of each phase that was dug, but for those that the next covers.
 std::vector<std::size_t> ends_of_phases(const DugDig& dug) {
   std::vector<std::size_t> ends;
   const std::vector<DigPose>& poses = dug.path.poses;
   for (std::size_t i = 1; i < poses.size(); ++i) {
     if (poses[i].phase == DigPhase::lift || i > dug.dig.history.size()) break;
     const bool last = i + 1 == poses.size() || i == dug.dig.history.size();
-    if (last || poses[i + 1].phase != poses[i].phase) ends.push_back(i);
+    if (!last && poses[i + 1].phase == poses[i].phase) continue;
+    if (!ends.empty() && looks_alike(poses[ends.back()].bucket, poses[i].bucket)) ends.pop_back();
+    ends.push_back(i);
   }
   return ends;
 }
