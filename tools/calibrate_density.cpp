@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "base/table.hpp"
 #include "shared/calibration_results.hpp"
+#include "shared/law_figure.hpp"
 #include "shared/results.hpp"
 #include "shared/tool.hpp"
 
@@ -33,6 +34,7 @@ struct Inputs {
   int draws = CalibrationOptions{}.draws;
   double cell_size = 0.05;
   std::optional<std::string> out;
+  Plots plots;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -57,6 +59,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                          "cell size of the simulated ground");
       });
   arguments.output("out", inputs.out, "law file to write, for estimate-density --law");
+  declare_plots(arguments, inputs.plots, names_of(calibration_figures()));
 }
 
 DensityCalibration from_samples(const std::string& file) {
@@ -118,6 +121,7 @@ Outcome work(const Inputs& inputs) {
     outcome.lines.push_back("Scans measure what height maps measure: the law for scans is " +
                             calibration.use + ".");
   }
+  write_plots(inputs.plots, calibration_figures(), calibration, outcome.lines);
   return outcome;
 }
 

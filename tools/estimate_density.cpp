@@ -42,7 +42,8 @@ struct Inputs {
   std::optional<DigParameters> dug_path;
   std::optional<double> dug_start;
   SoilInputs soil;
-  std::optional<std::string> plot, report;
+  Plots plots;
+  std::optional<std::string> report;
 };
 
 void declare_estimate(Arguments& arguments, Inputs& inputs) {
@@ -77,7 +78,7 @@ void declare_estimate(Arguments& arguments, Inputs& inputs) {
                    "x at which that path enters the ground: measures the soil that fell back into "
                    "the cut; needs scans in the site frame");
   declare_machine_in_view(arguments, inputs.frames.view);
-  arguments.plot(inputs.plot, "the height change and its zones");
+  declare_plots(arguments, inputs.plots, names_of(estimate_figures()));
   arguments.report(inputs.report);
 }
 
@@ -123,7 +124,7 @@ Outcome work_on_scans(const Inputs& inputs) {
   Outcome outcome = estimate_outcome(counts, options.soil);
   add_machine_warnings(counts, law, machine, scans.before.unit, outcome);
   report.add_to(outcome);
-  draw_estimate(inputs.plot, inputs.report, counts, outcome);
+  draw_estimate(inputs.plots, inputs.report, counts, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);
   return outcome;
 }

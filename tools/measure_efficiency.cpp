@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include "shared/efficiency_figures.hpp"
 #include "shared/efficiency_runs.hpp"
 #include "shared/tool.hpp"
 
@@ -22,7 +23,11 @@ const About about = {
       "two sets of runs, with a test"}},
     true};
 
-void declare(Arguments& arguments, EfficiencyInputs& inputs) {
+struct Inputs : EfficiencyInputs {
+  Plots plots;
+};
+
+void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("RUN.csv", inputs.first.log, "log of a dig");
   arguments.positional("SECOND.csv", inputs.second.log, "log of a second dig to compare");
   inputs.first.declare(arguments, "", "");
@@ -34,6 +39,9 @@ void declare(Arguments& arguments, EfficiencyInputs& inputs) {
   inputs.logs.declare(arguments);
   arguments.flag("own-meters", inputs.own_meters,
                  "each run had its own meter, whose errors are part of that of the gain");
+  declare_plots(arguments, inputs.plots,
+                names_of(run_figures({[&inputs] { return !inputs.runs && !inputs.against; },
+                                      "it is of RUN.csv and SECOND.csv, not of --runs"})));
   const auto has_scans = [&inputs] {
     return inputs.first.has_scans() || inputs.second.has_scans() || inputs.runs;
   };
@@ -49,13 +57,14 @@ void declare(Arguments& arguments, EfficiencyInputs& inputs) {
   });
 }
 
-Outcome work(const EfficiencyInputs& inputs) {
+Outcome work(const Inputs& inputs) {
   Outcome outcome;
   outcome.json["runs"] = nlohmann::ordered_json::array();
   if (inputs.runs || inputs.against) {
     compare_sets(inputs, outcome);
   } else {
-    compare_two(inputs, outcome);
+    const std::vector<DigEfficiency> runs = compare_two(inputs, outcome);
+    write_plots(inputs.plots, run_figures({}), {runs, inputs.own_meters}, outcome.lines);
   }
   outcome.json["trustworthy"] = outcome.trustworthy;
   return outcome;

@@ -4,10 +4,8 @@
 
 #include <excavplan/plan/plan_dig.hpp>
 
-#include "base/files.hpp"
 #include "base/text.hpp"
-#include "shared/dig_report.hpp"
-#include "shared/figures.hpp"
+#include "shared/plan_figures.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/results.hpp"
 #include "shared/search_inputs.hpp"
@@ -43,7 +41,8 @@ struct Inputs {
   double cell_size = PlanOptions{}.cell_size;
   SearchInputs dig_search;
   std::optional<std::string> trajectory;
-  std::optional<std::string> plot, report;
+  Plots plots;
+  std::optional<std::string> report;
 };
 
 SearchUse use_of(const Inputs& inputs) {
@@ -77,7 +76,10 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.output("trajectory", inputs.trajectory,
                    "write the joint trajectory, CSV, or JSON as .json");
   arguments.require_ending({".csv", ".json", ""});
-  arguments.plot(inputs.plot, "the section of the dig");
+  const Arguments::Use searches = {[&inputs] { return inputs.search; }, "nothing is searched"};
+  declare_plots(
+      arguments, inputs.plots,
+      names_of(plan_figures(searches, [&inputs] { return machine_named(inputs.machine); })));
   arguments.report(inputs.report);
 }
 
@@ -119,22 +121,10 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"simulator", inputs.simulator},
                        {"wall_time_s", watch.seconds()}});
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
-  const std::string title = (plan.dig ? "Planned dig in " : "No dig in ") + soil.name + " at " +
-                            readable(density.percent) + " % relative density";
-  const std::string figure =
-      plan.dig
-          ? dig_figure(machine, plan.path, {boom_plane_profile(site.ground)}, title, outcome.lines)
-          : "";
-  if (inputs.report) {
-    const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
-    outcome.report = titled(plan_report(machine, plan, dug), *inputs.report, title, figure);
-  }
-  if (!plan.dig) {
-    if (!plan.stopped) withdraw(inputs.trajectory, inputs.plot, machine, outcome);
-    return outcome;
-  }
-  if (inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);
-  if (inputs.plot) write_file(*inputs.plot, figure);
+  const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
+  draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
+  if (plan.dig && inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);
+  if (!plan.dig && !plan.stopped) withdraw(inputs.trajectory, inputs.plots, machine, outcome);
   return outcome;
 }
 

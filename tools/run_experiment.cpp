@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <memory>
-
 #include "shared/experiment_inputs.hpp"
-#include "shared/experiment_results.hpp"
 #include "shared/results.hpp"
 #include "shared/sensitivity_results.hpp"
+#include "shared/simulation_experiment.hpp"
 #include "shared/tool.hpp"
 #ifdef EXCAVPLAN_STUDY  // they simulate surveys
 #include "shared/field_results.hpp"
@@ -18,9 +16,8 @@ namespace {
 const About about = {
     "run-experiment",
     "repeats the paper's experiments, by default the simulated ones (section 3): digs along the "
-    "fixed path, "
-    "estimates the density from the height maps, digs along the path planned for that density and "
-    "compares the two digs.",
+    "fixed path, estimates the density from the height maps, digs along the path planned for that "
+    "density and compares the two digs.",
     {{"run-experiment", "soft, medium and hard loam (10, 40, 80 %), paths from the library"},
      {"run-experiment --search --densities 0:10:100", "search for each path, at eleven densities"},
      {"run-experiment --preset field", "section 4: the field path, scans, fuel"},
@@ -31,6 +28,7 @@ const About about = {
 struct Inputs {
   std::string machine = "zx120";
   ExperimentInputs experiment;
+  Plots plots;
   std::optional<std::string> report;
 #ifdef EXCAVPLAN_STUDY
   StudyInputs study;
@@ -55,6 +53,18 @@ struct Inputs {
   bool is_simulation() const { return !is_study() && !is_field() && !experiment.sensitivity; }
 };
 
+/// Those of an experiment and that of a study.
+std::vector<FigureName> figures_for(const Inputs& inputs) {
+  std::vector<FigureName> names = names_of(experiment_figures(
+      {[&inputs] { return inputs.is_simulation(); }, "only the experiment of section 3 has it"}));
+#ifdef EXCAVPLAN_STUDY
+  names.push_back({"study",
+                   "density error and gains of a --study by condition, with 95 % intervals",
+                   {[&inputs] { return inputs.is_study(); }, "there is no --study"}});
+#endif
+  return names;
+}
+
 void declare(Arguments& arguments, Inputs& inputs) {
   ExperimentInputs& experiment = inputs.experiment;
   arguments.only_if({[&inputs] { return !inputs.is_study(); }, "a study has its own conditions"},
@@ -77,6 +87,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                       arguments.option("seed", experiment.seed, "seed of all that is drawn");
                       arguments.threads(experiment.threads, "");
                     });
+  declare_plots(arguments, inputs.plots, figures_for(inputs));
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
@@ -85,56 +96,14 @@ Outcome work(const Inputs& inputs, Console& console) {
   const ExperimentInputs& experiment = inputs.experiment;
 #ifdef EXCAVPLAN_STUDY
   if (inputs.is_study()) {
-    return study(machine, inputs.study, experiment.seed, experiment.threads, console);
+    return study(machine, inputs.study, inputs.plots, experiment.seed, experiment.threads, console);
   }
   if (inputs.is_field() && !experiment.sensitivity) {
     return field_experiment(machine, inputs.field, experiment, console);
   }
 #endif
   if (experiment.sensitivity) return sensitivity(machine, experiment, console);
-  const SoilKind soil = soil_named(experiment.soil);
-  const DensityLaw law = law_of(experiment, machine, soil);
-  const ExperimentOptions options = options_of(experiment, machine, soil);
-  if (inputs.report && options.second == SecondGround::left) {
-    usage_error("--report shows digs on fresh ground, not with --second left");
-  }
-  const std::vector<ExperimentCondition> conditions = conditions_of(experiment);
-  const OptionNames names = experiment_option_names();
-  std::vector<NamedExperiment> done;
-  std::string failure;
-  Outcome outcome;
-  outcome.warnings = unlike_law(law, machine.name, soil.name);
-  outcome.json["conditions"] = nlohmann::ordered_json::array();
-  for (const ExperimentCondition& condition : conditions) {
-    const auto count = static_cast<double>(outcome.json["conditions"].size());
-    console.progress(count / static_cast<double>(conditions.size()), condition.name);
-    try {
-      done.push_back({condition.name, naming_options(names, [&] {
-                        return run_experiment(machine, soil, law, condition.density, options);
-                      })});
-      add(done.back(), outcome);
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::bad_input) throw;
-      failure = error.what();
-      add_failure(condition.name, condition.density, failure, outcome);
-    }
-  }
-  if (done.empty()) throw Error(ErrorKind::bad_input, failure);
-  outcome.json["law"] = law.name;
-  outcome.json["regression"] = regression_json(machine, soil, options);
-  outcome.lines.push_back(regression_line(outcome.json["regression"]));
-  outcome.json.update(goal_json(options.plan.search.objective));
-  if (experiment.search) {
-    outcome.json["search"] = search_settings_json(machine, options.plan.search);
-  }
-  outcome.json["start_rule"] =
-      "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
-  if (inputs.report) {
-    Report report = experiment_report(machine, soil, options.plan, done);
-    report.file = *inputs.report;
-    outcome.report = std::make_shared<Report>(std::move(report));
-  }
-  return outcome;
+  return simulation_experiment(machine, experiment, {inputs.plots, inputs.report}, console);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 #include "base/files.hpp"
 #include "machine/dig_path_text.hpp"
+#include "shared/dig_figures.hpp"
 #include "shared/dig_report.hpp"
-#include "shared/figures.hpp"
 #include "shared/fuel_log.hpp"
 #include "shared/joint_loads.hpp"
 #include "shared/results.hpp"
@@ -41,7 +41,8 @@ struct Inputs {
   FuelLogInputs fuel_log;
   bool broken = false;
   BlockSettings blocks;
-  std::optional<std::string> history, plot, report;
+  Plots plots;
+  std::optional<std::string> history, report;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -78,7 +79,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
       [&] { arguments.option("seed", inputs.seed, "seed of noise and blocks"); });
   inputs.fuel_log.declare(arguments);
   arguments.output("history", inputs.history, "write the loads of each step, CSV");
-  arguments.plot(inputs.plot, "the section of the dig");
+  declare_plots(arguments, inputs.plots,
+                names_of(dig_figures([&inputs] { return machine_named(inputs.machine); })));
   arguments.report(inputs.report);
 }
 
@@ -103,15 +105,18 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
   write_scans(inputs.scans, scene, inputs.seed);
   inputs.fuel_log.write(machine, scene, inputs.seed);
   if (inputs.history) write_file(*inputs.history, to_csv(machine, scene));
-  if (!inputs.plot && !inputs.report) return;
   const std::string title =
       "Dig in " + scene.soil + " at " + readable(scene.density_percent) + " % relative density";
-  const std::string figure = dig_figure(
-      machine, scene.path, {boom_plane_profile(scene.before), boom_plane_profile(scene.after)},
-      title, outcome.lines);
-  if (inputs.plot) write_file(*inputs.plot, figure);
+  const DugDig dug = {machine,
+                      scene.path,
+                      scene.dig,
+                      boom_plane_profile(scene.before),
+                      boom_plane_profile(scene.after),
+                      title};
+  write_plots(inputs.plots, dig_figures({}), dug, outcome.lines);
   if (!inputs.report) return;
-  outcome.report = titled(scene_report(machine, scene), *inputs.report, title, figure);
+  outcome.report = titled(scene_report(machine, scene), *inputs.report, title,
+                          to_svg(lay_out(section_figure(dug))));
 }
 
 Outcome work(const Inputs& inputs) {

@@ -375,7 +375,8 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
     plan.dig = best->dig;
     plan.path = best->path;
     plan.evaluations = found->evaluations;
-    plan.search = PlanSearch{best->worth, best->stopped_by, best->refused, best->insight.seen, {}};
+    plan.search = PlanSearch{best->worth, best->stopped_by, best->refused, best->insight.seen,
+                             {},          best->ranks};
     if (best->failed > 0) {
       warn(plan, "simulator_failed",
            std::to_string(best->failed) + " of " + std::to_string(best->evaluations) +
@@ -401,7 +402,11 @@ void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchO
   const bool ended = first && was_stopped(*first);
   const auto found = ended ? *first : search_dig(task.machine, simulator, task.ground, options);
   take(found, found ? &*found : nullptr, plan);
-  if (first && !ended) plan.evaluations += digs_of(*first);
+  if (!first || ended) return;
+  plan.evaluations += digs_of(*first);
+  if (!*first || !plan.search) return;
+  std::vector<double>& ranks = plan.search->ranks;
+  ranks.insert(ranks.begin(), (*first)->ranks.begin(), (*first)->ranks.end());
 }
 
 /// The few digs for each soil do not find the valley on uneven ground: those for the most likely

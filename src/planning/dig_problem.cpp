@@ -85,6 +85,14 @@ std::string first_failure(const SearchResult& found) {
   return {};
 }
 
+std::vector<double> ranks_of(const SearchResult& found) {
+  std::vector<double> ranks;
+  for (const SearchRecord& record : found.history) {
+    if (record.source == SearchRecord::Source::simulated) ranks.push_back(record.outcome.fitness);
+  }
+  return ranks;
+}
+
 /// SoilSimulator::identity(), or if it has none the checksum of three digs, from the paper's path
 /// down to a quarter of its lengths, which few machines and soils forbid.
 std::string identity_of(const SoilSimulator& simulator, const Machine& machine) {
@@ -181,6 +189,7 @@ DigProblem::Best DigProblem::best_of(const SearchResult& found) const {
   result.stopped_by = found.stopped_by;
   result.at_bound = at_bound(result.dig.parameters);
   result.insight = explain(box(), found);
+  result.ranks = ranks_of(found);
   return best;
 }
 

@@ -331,6 +331,7 @@ TEST_F(PlanDig, SearchHasABudgetUnlessToldOtherwise) {
   options.simulator = own_simulator();
   EXPECT_EQ(plan(40.0, options).search->stopped_by, StopReason::evaluations);
   EXPECT_EQ(plan(40.0, options).evaluations, 600);
+  EXPECT_EQ(plan(40.0, options).search->ranks.size(), 600U);
   const DigPlan uncertain = plan(GroundDensity(40.0, 5.0), options);
   EXPECT_GE(uncertain.evaluations, 300);
   EXPECT_LE(uncertain.evaluations, 3 * 100 + 3 * 100 + 3);

@@ -186,6 +186,18 @@ TEST_F(Planner, PlannedPathBeatsThePapersFixedPath) {
   }
 }
 
+TEST_F(Planner, TheRanksAreThoseOfAllDigsSimulated) {
+  const auto found = search_dig(machine_, simulator(60.0), level_, small_search());
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->ranks.size(), static_cast<std::size_t>(found->evaluations));
+  double best = 0.0;
+  for (const double rank : found->ranks) best = std::isnan(rank) ? best : std::max(best, rank);
+  EXPECT_DOUBLE_EQ(best, found->worth);
+  const auto stalls = std::count_if(found->ranks.begin(), found->ranks.end(),
+                                    [](double rank) { return std::isnan(rank); });
+  EXPECT_EQ(stalls, found->infeasible + found->failed);
+}
+
 TEST_F(Planner, SameSeedSameBytesForAnyNumberOfThreads) {
   const auto one = search_dig(machine_, simulator(60.0), level_, small_search(1));
   for (const unsigned threads : {2U, 8U}) {
@@ -195,6 +207,10 @@ TEST_F(Planner, SameSeedSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(one->dig.parameters.drag_length, many->dig.parameters.drag_length);
     EXPECT_EQ(one->dig.energy, many->dig.energy);
     EXPECT_EQ(one->evaluations, many->evaluations);
+    ASSERT_EQ(one->ranks.size(), many->ranks.size());
+    for (std::size_t i = 0; i < one->ranks.size(); ++i) {
+      EXPECT_TRUE(one->ranks[i] == many->ranks[i] || std::isnan(one->ranks[i])) << i;
+    }
   }
 }
 

@@ -9,7 +9,10 @@
 #include <limits>
 #include <set>
 
-#include "shared/figures.hpp"
+#include "shared/change_figure.hpp"
+#include "shared/dig_figures.hpp"
+#include "shared/machine_outline.hpp"
+#include "shared/render.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -46,61 +49,125 @@ TEST(ColourBands, ShowCentimetresBesideDecimetres) {
   EXPECT_EQ(band_colour(9.0, bands), diverging_colour(1.0));
 }
 
-// 100 m in x over 720 px is the widest that fits: 7.2 px a metre, and 10 m in y make 90 px (the
-// least height of 1 : 8), so that the line rises by 10 m * 7.2 px.
+Figure figure_of(const Panel& panel) {
+  Figure figure;
+  figure.rows = {{panel}};
+  return figure;
+}
+
+std::string svg_of(const Panel& panel, const SheetSize& size = {}) {
+  return to_svg(lay_out(figure_of(panel), size));
+}
+
+/// The first line of a colour, from its first to its last point [pt].
+Eigen::Vector2d way_of(const std::string& svg, const std::string& colour) {
+  const auto end = svg.find("\" fill=\"none\" stroke=\"" + colour);
+  const auto start = svg.rfind("d=\"M", end) + 4;
+  const auto point = [&](std::size_t at) {
+    return Eigen::Vector2d(std::stod(svg.substr(at)), std::stod(svg.substr(svg.find(' ', at))));
+  };
+  return point(svg.rfind('L', end) + 1) - point(start);
+}
+
 TEST(Panel, EqualAspectShowsAMetreEquallyLong) {
   Panel panel("", "x", "y");
+  panel.equal_aspect();
   panel.view({0.0, 0.0, 100.0, 10.0});
-  panel.line({{0.0, 0.0}, {100.0, 10.0}}, {});
-  const std::string svg = to_svg({"", {panel}, {}, {}});
-  EXPECT_NE(svg.find("M76 121L796 49\""), std::string::npos) << svg;
-}
-
-/// The heights of the axes of all panels, in the order of the page [px].
-std::vector<double> heights_of_axes(const std::string& svg) {
-  std::vector<double> heights;
-  const std::string border = "\" fill=\"none\" stroke=\"#444444\"/>";
-  for (auto at = svg.find(border); at != std::string::npos; at = svg.find(border, at + 1)) {
-    heights.push_back(std::stod(svg.substr(svg.rfind("height=\"", at) + 8)));
+  panel.line({{0.0, 0.0}, {100.0, 10.0}}, {"#123456"});
+  for (const double width : {40.0, 85.0, 170.0, 500.0}) {
+    const Eigen::Vector2d way = way_of(svg_of(panel, {width, {}}), "#123456");
+    EXPECT_NEAR(way.x() / -way.y(), 10.0, 0.2) << width;
   }
-  return heights;
 }
 
-TEST(Panel, ATallViewIsNoHigherThanItsRowAndHalfAsHighInTheSecondOne) {
-  const auto panel = [](const Rectangle& view, bool equal) {
-    Panel made("", "x", "y");
-    made.view(view);
-    made.equal_aspect(equal);
-    return made;
+TEST(Panel, MirroredXGrowsToTheLeft) {
+  Panel panel("", "y", "x");
+  panel.mirror_x();
+  panel.view({-8.0, 0.0, -2.0, 1.0});
+  const std::string svg = svg_of(panel);
+  const auto x_of = [&](const std::string& text) {
+    const auto at = svg.rfind("<text x=\"", svg.find(">" + text + "</text>"));
+    return std::stod(svg.substr(at + 9));
   };
-  const Rectangle tall = {0.0, 0.0, 10.0, 40.0};
-  const std::vector<double> heights =
-      heights_of_axes(to_svg({"", {panel(tall, true)}, {}, {}, {panel(tall, true)}}));
-  const std::vector<double> rows =
-      heights_of_axes(to_svg({"", {panel(tall, false)}, {}, {}, {panel(tall, false)}}));
-  ASSERT_EQ(heights.size(), 2U);
-  ASSERT_EQ(rows.size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(heights[i], rows[i], 0.01);
-  EXPECT_LT(heights[1], 0.6 * heights[0]);
+  EXPECT_GT(x_of("3"), x_of("7"));
+}
+
+TEST(LayOut, SizesAreThoseAskedFor) {
+  Panel panel("", "x", "y");
+  panel.line({{0.0, 0.0}, {1.0, 1.0}}, {});
+  const Drawing wide = lay_out(figure_of(panel));
+  EXPECT_NEAR(wide.width / points_per_mm, 170.0, 1e-9);
+  const Drawing low = lay_out(figure_of(panel), {85.0, 60.0});
+  EXPECT_NEAR(low.width / points_per_mm, 85.0, 1e-9);
+  EXPECT_NEAR(low.height / points_per_mm, 60.0, 1e-9);
+  EXPECT_NE(to_svg(low).find("width=\"85mm\" height=\"60mm\""), std::string::npos);
+}
+
+TEST(LayOut, PanelsStackOnANarrowSheetAndAreLeftOutOnALowOne) {
+  Figure figure;
+  figure.rows.emplace_back();
+  for (const char* title : {"first", "second", "third"}) {
+    Panel panel(title, "x [m]", "y [m]");
+    panel.line({{0.0, 0.0}, {1.0, 1.0}}, {}, title);
+    figure.rows.front().push_back(panel);
+  }
+  EXPECT_LT(lay_out(figure, {170.0, {}}).height, 0.6 * lay_out(figure, {85.0, {}}).height);
+  const std::string low = to_svg(lay_out(figure, {85.0, 60.0}));
+  EXPECT_EQ(count(low, ">first</text>"), 2U);  // title and legend
+  EXPECT_EQ(count(low, ">third</text>"), 0U);
+}
+
+TEST(LayOut, TheTableIsBelowAll) {
+  Panel panel("", "x", "y");
+  panel.line({{0.0, 0.0}, {1.0, 1.0}}, {});
+  Figure figure = figure_of(panel);
+  figure.title = "Dig";
+  const double alone = lay_out(figure).height;
+  EXPECT_EQ(count(to_svg(lay_out(figure)), ">Dig</text>"), 0U);
+  figure.table = {"payload 800 kg", "", "energy 40 kJ"};
+  EXPECT_GT(lay_out(figure).height, alone + 30.0);
+  const std::string svg = to_svg(lay_out(figure));
+  EXPECT_EQ(count(svg, ">Dig</text>"), 1U);
+  EXPECT_EQ(count(svg, ">energy 40 kJ</text>"), 1U);
 }
 
 TEST(Panel, UnknownPointsInterruptALine) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Panel panel("", "x", "y");
   panel.line({{0.0, 0.0}, {1.0, 1.0}, {2.0, nan}, {3.0, 1.0}, {4.0, 0.0}}, {"#123456"});
-  const std::string svg = to_svg({"", {panel}, {}, {}});
+  const std::string svg = svg_of(panel);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
-  const auto end = svg.find("\" stroke-linejoin=\"round\" fill=\"none\" stroke=\"#123456\"");
+  const auto end = svg.find("\" fill=\"none\" stroke=\"#123456\"");
   ASSERT_NE(end, std::string::npos);
   const auto start = svg.rfind("d=\"", end);
   EXPECT_EQ(count(svg.substr(start, end - start), "M"), 2U);
+}
+
+TEST(Panel, LongLinesKeepTheirSpikesInSmallFiles) {
+  Points line;
+  for (int i = 0; i < 200000; ++i) line.emplace_back(i, i == 123457 ? 9.0 : std::sin(i));
+  Panel panel("", "x", "y");
+  panel.view({0.0, -1.0, 200000.0, 9.0});
+  panel.line(line, {"#123456"});
+  const std::string svg = svg_of(panel);
+  EXPECT_LT(svg.size(), 300000U);
+  const auto end = svg.find("\" fill=\"none\" stroke=\"#123456\"");
+  const auto start = svg.rfind("d=\"M", end) + 4;
+  double highest = 1e9;  // y runs down the page
+  for (auto at = start; at < end; at = svg.find('L', at + 1) + 1) {
+    highest = std::min(highest, std::stod(svg.substr(svg.find(' ', at), 20)));
+    if (svg.find('L', at + 1) > end) break;
+  }
+  EXPECT_LT(highest, 10.0);
 }
 
 TEST(Panel, TextIsEscapedAndLegendsAreGivenOnce) {
   Panel panel("a < b & \"c\"", "x", "y");
   panel.line({{0.0, 0.0}, {1.0, 1.0}}, {}, "k > 1");
   panel.line({{0.0, 1.0}, {1.0, 1.0}}, {}, "k > 1");
-  const std::string svg = to_svg({"", {panel}, {}, {"d < 5 %"}});
+  Figure figure = figure_of(panel);
+  figure.note = "d < 5 %";
+  const std::string svg = to_svg(lay_out(figure));
   EXPECT_EQ(count(svg, ">a &lt; b &amp; &quot;c&quot;</text>"), 1U);
   EXPECT_EQ(count(svg, ">k &gt; 1</text>"), 1U);
   EXPECT_EQ(count(svg, ">d &lt; 5 %</text>"), 1U);
@@ -110,52 +177,97 @@ TEST(Panel, LabelsDoNotCoverOneAnother) {
   Panel panel("", "x", "y");
   panel.view({0.0, 0.0, 10.0, 5.0});
   for (int i = 0; i < 5; ++i) panel.label({5.0, 2.5}, "label " + std::to_string(i));
-  const std::string svg = to_svg({"", {panel}, {}, {}});
+  const std::string svg = svg_of(panel);
   std::set<double> rows;
   for (auto at = svg.find(">label "); at != std::string::npos; at = svg.find(">label ", at + 1)) {
-    rows.insert(std::stod(svg.substr(svg.rfind("y=\"", at) + 3)));
+    rows.insert(std::stod(svg.substr(svg.find("y=\"", svg.rfind("<text", at)) + 3)));
   }
   ASSERT_EQ(rows.size(), 5U);
   for (auto row = rows.begin(), next = std::next(row); next != rows.end(); ++row, ++next) {
-    EXPECT_GE(*next - *row, 17.9);
+    EXPECT_GE(*next - *row, 7.0);
   }
 }
 
-TEST(HeatMap, DrawsRunsOfCellsAndLeavesUnknownOnesOut) {
+Grid grid_of(const HeightMap& map) {
+  return {map.origin, Eigen::Vector2d::Constant(map.cell_size), map.z};
+}
+
+TEST(Map, DrawsRunsOfCellsAndLeavesUnknownOnesOut) {
   HeightMap map = flat_ground({0.0, 0.0, 0.4, 0.1}, 0.1);
   map.z << 0.5, 0.5, std::numeric_limits<double>::quiet_NaN(), -0.5;
   Panel panel("", "x", "y");
-  panel.heat_map(map, {0.5});
-  const std::string svg = to_svg({"", {panel}, ColourBar{{0.5}, "change [m]"}, {}});
-  EXPECT_NE(svg.find("<path fill=\"#053061\" d=\"M0 0h2v1h-2z\"/>"), std::string::npos);
-  EXPECT_NE(svg.find("<path fill=\"#67001f\" d=\"M3 0h1v1h-1z\"/>"), std::string::npos);
-  EXPECT_EQ(count(svg, "v1h-"), 2U);
-  EXPECT_NE(svg.find(">not seen</text>"), std::string::npos);
+  panel.map(grid_of(map), {{0.5}});
+  Figure figure = figure_of(panel);
+  figure.colour_bar = ColourBar{{{0.5}}, "change [m]"};
+  const Drawing drawing = lay_out(figure);
+  double rise = 0.0, fall = 0.0;
+  for (const DrawnItem& item : drawing.items) {
+    const auto* cells = std::get_if<DrawnCells>(&item);
+    if (cells == nullptr || cells->boxes.size() != 1 || cells->boxes[0].top > 0.6 * drawing.height)
+      continue;
+    if (cells->colour == "#053061") rise = cells->boxes[0].width;
+    if (cells->colour == "#67001f") fall = cells->boxes[0].width;
+  }
+  EXPECT_GT(fall, 0.0);
+  EXPECT_NEAR(rise, 2.0 * fall, 1e-6);
+  EXPECT_NE(to_svg(drawing).find(">not seen</text>"), std::string::npos);
 }
 
-TEST(HeatMap, LargeMapsStaySmallFiles) {
+TEST(Map, LargeMapsStaySmallFiles) {
   HeightMap map = flat_ground({0.0, 0.0, 200.0, 150.0}, 0.1);
   for (Eigen::Index i = 0; i < map.z.size(); ++i) map.z(i) = std::sin(static_cast<double>(i));
   Panel panel("", "x", "y");
-  panel.heat_map(map, colour_bands(0.1, 1.0));
-  EXPECT_LT(to_svg({"", {panel}, {}, {}}).size(), 4000000U);
+  panel.map(grid_of(map), {colour_bands(0.1, 1.0)});
+  EXPECT_LT(svg_of(panel).size(), 6000000U);
 }
 
 // Large maps are averaged in blocks, which the last row and column need not fill.
-TEST(HeatMap, LargeMapsShowTheLastRowAndColumnToo) {
+TEST(Map, LargeMapsShowTheLastRowAndColumnToo) {
   const std::vector<double> bands = {0.1};
   const auto shows_change_at = [&](Eigen::Index size, Eigen::Index row, Eigen::Index col) {
     HeightMap map{{0.0, 0.0}, 0.1, Eigen::ArrayXXd::Zero(size, size)};
     map.z(row, col) = 100.0;
     Panel panel("", "x", "y");
-    panel.heat_map(map, bands);
-    return count(to_svg({"", {panel}, {}, {}}), "fill=\"" + band_colour(1.0, bands)) == 1U;
+    panel.map(grid_of(map), {bands});
+    return count(svg_of(panel), "fill=\"" + band_colour(1.0, bands)) == 1U;
   };
   for (const Eigen::Index size : {801, 802, 803}) {
     EXPECT_TRUE(shows_change_at(size, size / 2, size / 2)) << size;
     EXPECT_TRUE(shows_change_at(size, size - 1, size / 2)) << size;
     EXPECT_TRUE(shows_change_at(size, size / 2, size - 1)) << size;
   }
+}
+
+TEST(Colours, OfASequenceRunFromDarkToLight) {
+  EXPECT_EQ(sequential_colour(0.0), "#440154");
+  EXPECT_EQ(sequential_colour(1.0), "#fde725");
+  EXPECT_EQ(sequential_colour(7.0), sequential_colour(1.0));
+}
+
+TEST(Images, StartWithTheirMagicAndAreTheSameBytesAgain) {
+  Panel panel("", "x [m]", "y [m]");
+  panel.line({{0.0, 0.0}, {1.0, 1.0}}, {}, "a line");
+  const Drawing drawing = lay_out(figure_of(panel), {85.0, 60.0});
+  for (const auto& [file, magic] :
+       {std::pair("a.SVG", "<svg"), {"a.png", "\x89PNG"}, {"a.pdf", "%PDF-"}}) {
+    const std::string image = image_of(drawing, file);
+    EXPECT_EQ(image.substr(0, std::string(magic).size()), magic);
+    EXPECT_EQ(image, image_of(drawing, file)) << file;
+  }
+  EXPECT_EQ(image_of(drawing, "a.pdf").find("CreationDate"), std::string::npos);
+}
+
+TEST(Images, OfPngHave300DotsPerInch) {
+  Panel panel("", "x [m]", "y [m]");
+  const std::string png = image_of(lay_out(figure_of(panel), {85.0, 60.0}), "a.png");
+  const auto number = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      value = 256 * value + static_cast<unsigned char>(png[at + i]);
+    return value;
+  };
+  EXPECT_EQ(number(16), 1004);  // 85 mm
+  EXPECT_EQ(number(20), 709);   // 60 mm
 }
 
 /// Level ground of 6 x 4 m with a hole, a spill beside it, a heap and a rut that was left out.
@@ -192,7 +304,14 @@ struct Survey {
   }
 };
 
-/// The place of a text on the page [px].
+/// With its table.
+std::string change_svg(const ChangeSheet& sheet) {
+  Figure figure = height_change_figure(sheet);
+  figure.table = change_table(sheet);
+  return to_svg(lay_out(figure));
+}
+
+/// The place of a text on the page [pt].
 Eigen::Vector2d place_of(const std::string& svg, const std::string& text) {
   const auto at = svg.rfind("<text", svg.find(">" + text));
   if (at == std::string::npos) return {-1.0, -1.0};
@@ -205,21 +324,21 @@ Eigen::Vector2d place_of(const std::string& svg, const std::string& text) {
 TEST(HeightChangeFigure, NamesEachZoneWithItsVolume) {
   Survey survey;
   survey.sheet.lines = {"bulking factor 0.59"};
-  const std::string svg = height_change_figure(survey.sheet);
+  const std::string svg = change_svg(survey.sheet);
   EXPECT_NE(svg.find(">hole 0.180 m³</text>"), std::string::npos);
   EXPECT_NE(svg.find(">heap 0.256 m³</text>"), std::string::npos);
   EXPECT_NE(svg.find(">bulking factor 0.59</text>"), std::string::npos);
-  EXPECT_EQ(svg, height_change_figure(survey.sheet));
+  EXPECT_EQ(svg, change_svg(survey.sheet));
 }
 
 TEST(HeightChangeFigure, LabelOfSpillDoesNotLieOnTheHole) {
-  const std::string svg = height_change_figure(Survey().sheet);
-  EXPECT_GT(place_of(svg, "spill 0.0100 m³").y(), place_of(svg, "hole 0.180 m³").y() + 30.0);
+  const std::string svg = change_svg(Survey().sheet);
+  EXPECT_GT((place_of(svg, "spill 0.0100 m³") - place_of(svg, "hole 0.180 m³")).norm(), 15.0);
 }
 
 TEST(HeightChangeFigure, ShowsSectionsThroughHoleAndHeap) {
   const Survey survey;
-  const std::string svg = height_change_figure(survey.sheet);
+  const std::string svg = change_svg(survey.sheet);
   EXPECT_NE(svg.find(">section through the hole, y = 1.25 m</text>"), std::string::npos);
   EXPECT_NE(svg.find(">section through the heap, "), std::string::npos);
   for (const char* legend : {"ground before", "ground after", "95 % band of a cell", "section"}) {
@@ -227,15 +346,15 @@ TEST(HeightChangeFigure, ShowsSectionsThroughHoleAndHeap) {
   }
   ChangeSheet without = survey.sheet;
   without.before.clear();
-  EXPECT_EQ(height_change_figure(without).find("section"), std::string::npos);
+  EXPECT_EQ(change_svg(without).find("section"), std::string::npos);
   EXPECT_NE(svg.find(">noise of a cell 10.0 mm</text>"), std::string::npos);
 }
 
 TEST(HeightChangeFigure, BandIsThatOfTheNoise) {
   Survey survey;
   const auto width = [&] {
-    const std::string svg = height_change_figure(survey.sheet);
-    const auto end = svg.find("Z\" stroke-linejoin=\"round\" fill=\"#d55e00\"");
+    const std::string svg = change_svg(survey.sheet);
+    const auto end = svg.find("Z\" fill=\"#d55e00\"");
     const auto start = svg.rfind("M", end);
     const std::string path = svg.substr(start + 1, end - start - 1);
     const auto y = [&](std::size_t at) { return std::stod(path.substr(path.find(' ', at) + 1)); };
@@ -243,28 +362,27 @@ TEST(HeightChangeFigure, BandIsThatOfTheNoise) {
   };
   const double narrow = width();
   survey.sheet.change.areas[0].noise_sd = 0.02;
-  EXPECT_GT(narrow, 5.0);
+  EXPECT_GT(narrow, 3.0);
   EXPECT_NEAR(width(), 2.0 * narrow, 0.3 * narrow);  // the axis holds the wider band too
 }
 
-TEST(HeightChangeFigure, ZoomsToWhatWasCounted) {
-  const std::string svg = height_change_figure(Survey().sheet);
-  EXPECT_EQ(svg.find("text-anchor=\"middle\">0.5</text>"), std::string::npos);  // x of the map
-  EXPECT_NE(svg.find("−0.0324 m³ around x 5.8, y 2 m"), std::string::npos);
+TEST(HeightChangeFigure, ListsWhatWasLeftOut) {
+  EXPECT_NE(change_svg(Survey().sheet).find("−0.0324 m³ around x 5.8, y 2 m"), std::string::npos);
 }
 
-/// Whether a number stands below the axis of x.
-bool shows_x(const std::string& svg, const std::string& number) {
-  return svg.find("text-anchor=\"middle\">" + number) != std::string::npos;
+/// Whether a number stands at an axis.
+bool shows(const std::string& svg, const std::string& number) {
+  return svg.find(">" + number + "</text>") != std::string::npos ||
+         svg.find(">" + number + ".0</text>") != std::string::npos;
 }
 
 // The rut begins at x = 5.6 m, the hole and its heap end at 3 m.
 TEST(HeightChangeFigure, WhatWasLeftOutFarAwayIsOutOfView) {
   ChangeSheet sheet = Survey().sheet;
   sheet.before.clear();  // no sections
-  const std::string svg = height_change_figure(sheet);
-  EXPECT_TRUE(shows_x(svg, "2"));
-  for (const char* beyond : {"4", "5"}) EXPECT_FALSE(shows_x(svg, beyond)) << beyond;
+  const std::string svg = change_svg(sheet);
+  EXPECT_TRUE(shows(svg, "2"));
+  for (const char* beyond : {"4", "5"}) EXPECT_FALSE(shows(svg, beyond)) << beyond;
 }
 
 TEST(HeightChangeFigure, WhereNothingWasCountedAllIsInView) {
@@ -273,8 +391,8 @@ TEST(HeightChangeFigure, WhereNothingWasCountedAllIsInView) {
   survey.sheet.change.areas[0].zone.setConstant(-1);
   survey.sheet.before.clear();
   survey.add(ZoneKind::other, {5.6, 0.2, 5.9, 3.8}, -0.03);
-  const std::string svg = height_change_figure(survey.sheet);
-  for (const char* x : {"0", "3", "6"}) EXPECT_TRUE(shows_x(svg, x)) << x;
+  const std::string svg = change_svg(survey.sheet);
+  for (const char* x : {"0", "3", "6"}) EXPECT_TRUE(shows(svg, x)) << x;
 }
 
 TEST(HeightChangeFigure, ListsWarningsOpenChangesAndErrors) {
@@ -288,27 +406,77 @@ TEST(HeightChangeFigure, ListsWarningsOpenChangesAndErrors) {
   change.attribution = {
       {ChangeKind::second_heap, "a second heap 2 m off", {0.031, 0.001}, false, 0.35}};
   survey.sheet.warnings = {{"other_change", std::string(200, 'x') + " left out"}};
-  const std::string svg = height_change_figure(survey.sheet);
-  EXPECT_NE(svg.find(">other_change:</text>"), std::string::npos);
+  const std::string svg = change_svg(survey.sheet);
+  EXPECT_NE(svg.find(">other_change:</text>"), std::string::npos) << svg;
   EXPECT_NE(svg.find("left out, open"), std::string::npos);
   EXPECT_NE(svg.find("a second heap 2 m off (of this dig: 35 %)"), std::string::npos);
   EXPECT_NE(svg.find("noise of the cells"), std::string::npos);
   EXPECT_EQ(svg.find("steep faces"), std::string::npos);  // there are none
 }
 
-TEST(DigFigure, ShowsEveryPhaseAndTheStart) {
+class SectionFigure : public testing::Test {
+ protected:
+  Figure figure() const {
+    const GroundProfile after = with_after ? level : GroundProfile();
+    return section_figure({machine, path, dig, level, after, "Dig"});
+  }
+
+  const GroundProfile level = [](double) { return 0.0; };
   const Machine machine = load_machine(EXCAVPLAN_DATA_SOURCE "/machines/zx120.json");
-  const auto level = [](double) { return 0.0; };
-  const auto dig = make_dig_path_anywhere(machine, paper_fixed_path(), level);
-  const auto* path = std::get_if<DigPath>(&dig);
-  ASSERT_TRUE(path);
-  const std::string svg = dig_figure(machine, *path, {level, {}}, "Dig", {"payload 800 kg"});
+  const DigPath path =
+      std::get<DigPath>(make_dig_path_anywhere(machine, paper_fixed_path(), level));
+  DigResult dig;
+  bool with_after = true;
+};
+
+TEST_F(SectionFigure, ShowsEveryPhaseAndTheStart) {
+  const std::string svg = to_svg(lay_out(figure()));
   for (const char* part : {"tip, penetrate", "tip, drag", "tip, scoop", "tip, lift",
-                           ">start, x = ", "ground before", "payload 800 kg"}) {
+                           ">start, x = ", "ground before", "ground after"}) {
     EXPECT_NE(svg.find(part), std::string::npos) << part;
   }
-  EXPECT_EQ(svg.find("ground after"), std::string::npos);
-  EXPECT_EQ(svg, dig_figure(machine, *path, {level, {}}, "Dig", {"payload 800 kg"}));
+  EXPECT_EQ(svg, to_svg(lay_out(figure())));
+  with_after = false;
+  EXPECT_EQ(to_svg(lay_out(figure())).find("ground after"), std::string::npos);
+}
+
+TEST_F(SectionFigure, ShowsTheWholeMachine) {
+  const MachineOutline outline = machine_outline(machine, path.poses.front().joints);
+  const Rectangle view = figure().rows.front().front().shown();
+  for (const Points* part : {&outline.tracks, &outline.house, &outline.cab, &outline.boom}) {
+    for (const Eigen::Vector2d& point : *part) EXPECT_TRUE(view.contains(point.x(), point.y()));
+  }
+}
+
+double area_of(const Points& polygon) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d& p = polygon[i];
+    const Eigen::Vector2d& q = polygon[(i + 1) % polygon.size()];
+    sum += 0.5 * (p.x() * q.y() - q.x() * p.y());
+  }
+  return std::abs(sum);
+}
+
+TEST_F(SectionFigure, SoilInTheBucketHasItsVolume) {
+  const JointAngles joints = path.poses.back().joints;
+  EXPECT_TRUE(soil_in_bucket(machine, joints, 0.0).empty());
+  for (const double volume : {0.02, 0.1, 0.2, 0.3}) {
+    const double area = area_of(soil_in_bucket(machine, joints, volume));
+    EXPECT_NEAR(area * machine.bucket.width_inside, volume, 1e-3) << volume;
+  }
+  EXPECT_GT(area_of(soil_in_bucket(machine, joints, 0.42)),
+            area_of(soil_in_bucket(machine, joints, 0.33)));
+}
+
+TEST_F(SectionFigure, CylindersAreAsLongAsTheMachineSays) {
+  const JointAngles joints = path.poses.front().joints;
+  const MachineOutline outline = machine_outline(machine, joints);
+  const auto states = cylinder_states(*machine.cylinders, joints);
+  ASSERT_GE(outline.cylinders.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR((outline.cylinders[i][1] - outline.cylinders[i][0]).norm(), states[i].length, 1e-6);
+  }
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <excavplan/soil/density_fit.hpp>
 
 #include "support/report_page.hpp"
+#include "support/svg_figure.hpp"
 #include "support/tool_answers.hpp"
 
 /// @file
@@ -95,6 +96,7 @@ TEST_F(Tools, AStudyWritesItsRunsAndItsTable) {
     EXPECT_EQ(std::count(row.begin(), row.end(), ','), 16) << row;
   }
   EXPECT_TRUE(contains(content_of(out + "/study.md"), "| slope | +10.0 deg | 1 |"));
+  expect_figure(out + "/study.svg", {"slope, +10.0 deg", "gain of the planned dig [%]"});
   EXPECT_TRUE(warns(found, "options_ignored"));
 }
 
@@ -102,7 +104,8 @@ TEST_F(Tools, ReportOfAnExperimentShowsBothDigsOfEachCondition) {
   const std::string file = folder.file("report.html");
   const json result = answer("run-experiment", {"--densities", "10,40", "--report", file});
   const std::string page = content_of(file);
-  EXPECT_TRUE(contains(page, "10.0 %, fixed: "));
+  EXPECT_TRUE(contains(page, ">10.0 %</text>") && contains(page, "tip, planned path"));
+  EXPECT_TRUE(contains(page, "[kg/kJ]</text>"));
   const json scene = drawn_on(page);
   ASSERT_EQ(scene["digs"].size(), 4U);
   EXPECT_EQ(scene["digs"][3]["name"], "40.0 %, fixed path");

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/tool.hpp"
 
+#include "shared/plots.hpp"
+
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
@@ -102,7 +104,7 @@ struct Probe {
 
 Probe run(std::vector<const char*> words, const Outcome& outcome = {}) {
   Probe result;
-  std::optional<std::string> plot;
+  Plots plots;
   std::string method = "surface";
   std::uint64_t seed = 1;
   words.insert(words.begin(), "probe");
@@ -118,7 +120,9 @@ Probe run(std::vector<const char*> words, const Outcome& outcome = {}) {
         arguments.option("cell", result.cell_size, Quantity::length, "edge of a cell");
         arguments.option("seed", seed, "start of the random numbers");
         arguments.choice("method", method, {"surface", "paper"}, "how");
-        arguments.plot(plot, "the change");
+        declare_plots(arguments, plots,
+                      {{"change", "the change"},
+                       {"law", "the law", {[] { return false; }, "there is none"}}});
       },
       [&](Console& console) {
         result.worked = true;
@@ -212,7 +216,24 @@ TEST(Tool, WrongUsageEndsWithTwoAndSaysWhy) {
        "--seed: 99999999999999999999 is too large"},
       {{"a", "--density", "4", "--method", "papr"},
        "--method: 'papr' is not one of surface, paper"},
-      {{"a", "--density", "4", "--plot", "x.png"}, "--plot: 'x.png' must end in .svg"}};
+      {{"a", "--density", "4", "--plot", "x.gif"},
+       "--plot: 'x.gif' must end in .svg or .png or .pdf"},
+      {{"a", "--density", "4", "--plot", "change=x"},
+       "--plot: 'x' must end in .svg or .png or .pdf"},
+      {{"a", "--density", "4", "--plot", "chnge=x.svg"},
+       "--plot: there is no figure 'chnge', expected one of change, law"},
+      {{"a", "--density", "4", "--plot", "law=x.svg"}, "--plot: no figure 'law': there is none"},
+      {{"a", "--density", "4", "--plot", "change="}, "--plot: change= names no file"},
+      {{"a", "--density", "4", "--plot", "change=-"},
+       "--plot: standard output is no file to write, ./- is one of that name"},
+      {{"a", "--density", "4", "--plot", "x.svg", "--plot", "change=./x.svg"},
+       "--plot and --plot name the same file, x.svg"},
+      {{"a", "--density", "4", "--plot", "x.svg", "--plot-size", "39mm"},
+       "--plot-size: 39mm must be 40mm .. 500mm"},
+      {{"a", "--density", "4", "--plot", "x.svg", "--plot-size", "85mm,501mm"},
+       "--plot-size: 501mm must be 40mm .. 500mm"},
+      {{"a", "--density", "4", "--plot", "x.svg", "--plot-size", "1,1,1"},
+       "--plot-size: '1,1,1' must be a width, or width,height"}};
   for (const auto& [words, message] : cases) {
     const Probe probe = run(words);
     EXPECT_EQ(probe.code, 2);

@@ -493,9 +493,10 @@ TEST_F(BadInput, NamesThatAreLoopsOrTooLongAreRefused) {
 
 TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
   const std::string png = folder.file("plot.png");
-  refused(2, "must end in .svg", "estimate-density", {scan, later_scan, "--plot", png});
-  refused(2, "must end in .svg", "simulate-dig", {"--density", "40", "--plot", png});
-  refused(2, "must end in .svg", "plan-path", {"--density", "40", "--plot", png});
+  const std::string gif = folder.file("plot.gif");
+  refused(2, "must end in .svg", "estimate-density", {scan, later_scan, "--plot", gif});
+  refused(2, "must end in .svg", "simulate-dig", {"--density", "40", "--plot", gif});
+  refused(2, "must end in .svg", "plan-path", {"--density", "40", "--plot", gif});
   refused(2, "--trajectory: '" + png + "' must end in .csv or .json", "plan-path",
           {"--density", "40", "--trajectory", png});
   refused(2, "must end in .pcd, .ply", "inspect-cloud", {scan, "--out", png});
@@ -527,7 +528,7 @@ TEST(XmlFault, IsFound) {
 TEST_F(Tools, FiguresAreWellFormedAndShowTheirLabels) {
   const std::string file = folder.file("figure.svg");
   answer("estimate-density", quickstart(folder) + Words{"--plot", file});
-  expect_figure(file, {"hole", "heap"});
+  expect_figure(file, {"hole", "heap", "height after − before [cm]"});
   answer("simulate-dig", {"--density", "40", "--plot", file});
   expect_figure(file, {"loam at 40.0 %", "penetrate", "drag", "scoop"});
   answer("plan-path", {"--density", "80", "--plot", file});

@@ -260,12 +260,6 @@ void Arguments::machine(std::string& name) {
   text("machine", "NAME|FILE", name, "excavator: zx120, or a machine file");
 }
 
-void Arguments::plot(std::optional<std::string>& path, const std::string& shows) {
-  output("plot", path, "plot " + shows + " into this file");
-  entries_.back().placeholder = "FILE.svg";
-  require_ending({".svg"});
-}
-
 void Arguments::require_ending(const std::vector<std::string>& endings) {
   entries_.back().endings = endings;
 }

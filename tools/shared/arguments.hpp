@@ -68,6 +68,9 @@ class Arguments {
     Beside beside = {};
     std::vector<Use> uses = {};             ///< all must hold
     std::vector<std::string> endings = {};  ///< of the name of a file to write; empty: any
+    /// The name of the file in the text; empty: it is the text.
+    std::function<std::string(const std::string& text)> file_in = {};
+    Assign check = {};  ///< called for each text once all are assigned
   };
 
   void positional(const std::string& name, std::string& value, const std::string& help);
@@ -122,7 +125,6 @@ class Arguments {
   void soil(std::string& name);
   void machine(std::string& name);
   void simulator(std::string& word);
-  void plot(std::optional<std::string>& path, const std::string& shows);
   void report(std::optional<std::string>& path);
   void threads(std::uint64_t& count, const std::string& note);
 
@@ -135,10 +137,12 @@ class Arguments {
   /// Those that `declare` declares have an effect only if this holds. May be nested.
   void only_if(const Use& use, const std::function<void()>& declare);
 
+  /// An option of a kind of its own.
+  void add(Entry entry);
+
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:
-  void add(Entry entry);
   std::vector<Entry> entries_;
 };
 

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include "shared/change_figure.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include <excavplan/ground/bulking.hpp>
 
-#include "shared/figures.hpp"
-#include "shared/plot.hpp"
 #include "shared/quantity.hpp"
 
 namespace excavplan::tools {
@@ -18,19 +17,18 @@ struct ZoneStyle {
   Style outline;
 };
 
-// Okabe and Ito's colours, distinct for colour-blind readers too.
 ZoneStyle style_of(ZoneKind kind) {
   switch (kind) {
     case ZoneKind::dig:
-      return {"hole", {"#000000", 2.0}};
+      return {"hole", {colours::black, 1.1}};
     case ZoneKind::spill:
-      return {"spill", {"#009e73", 2.0}};
+      return {"spill", {colours::green, 1.1, "none", 1.0, {2.0, 1.0}}};
     case ZoneKind::dump:
-      return {"heap", {"#e69f00", 2.0}};
+      return {"heap", {colours::orange, 1.1}};
     case ZoneKind::other:
       break;
   }
-  return {"left out", {"#cc79a7", 2.0}};
+  return {"left out", {colours::purple, 1.1, "none", 1.0, {1.0, 1.0}}};
 }
 
 /// A multiple of a step.
@@ -112,9 +110,39 @@ bool is_beyond_hole(const Eigen::Vector2d& middle, const VolumeChange& change) {
          middle.y() >= 0.5 * (hole->extent.y_min + hole->extent.y_max);
 }
 
+/// How an area lies on the page: as x and y, or, if it is longer in y, turned to the left with x
+/// upwards.
+struct Turn {
+  bool is_turned = false;
+
+  Eigen::Vector2d operator()(const Eigen::Vector2d& at) const {
+    return is_turned ? Eigen::Vector2d(-at.y(), at.x()) : at;
+  }
+  Points operator()(Points points) const {
+    for (Eigen::Vector2d& point : points) point = (*this)(point);
+    return points;
+  }
+  Rectangle operator()(const Rectangle& r) const {
+    return is_turned ? Rectangle{-r.y_max, r.x_min, -r.y_min, r.x_max} : r;
+  }
+  Grid operator()(const HeightMap& map) const {
+    const Eigen::Vector2d cell = Eigen::Vector2d::Constant(map.cell_size);
+    if (!is_turned) return {map.origin, cell, map.z};
+    const Rectangle all = (*this)(map.extent());
+    return {{all.x_min, all.y_min}, cell, map.z.transpose().rowwise().reverse()};
+  }
+  Panel panel(const std::string& title) const {
+    Panel panel(title, is_turned ? "y [m]" : "x [m]", is_turned ? "x [m]" : "y [m]");
+    if (is_turned) panel.mirror_x();
+    panel.equal_aspect();
+    return panel;
+  }
+};
+
 /// Names the zone with its volume: hole and heap in their middle, spill outside of its zone on the
 /// side away from the hole.
-void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area, int index) {
+void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area, int index,
+                const Turn& turn) {
   const ChangeZone& zone = change.zones[static_cast<std::size_t>(index)];
   Eigen::Vector2d at = middle_of(area, index);
   if (zone.kind == ZoneKind::spill) {
@@ -122,8 +150,8 @@ void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area
     const double room = 2.5 * area.difference.cell_size;
     at.y() = is_beyond_hole(at, change) ? zone.extent.y_max + room : zone.extent.y_min - room;
   }
-  panel.label(at, std::string(style_of(zone.kind).name) + ' ' +
-                      readable(std::abs(zone.volume.value)) + " m³");
+  panel.label(turn(at), std::string(style_of(zone.kind).name) + ' ' +
+                            readable(std::abs(zone.volume.value)) + " m³");
 }
 
 Rectangle joined(const Rectangle& a, const Rectangle& b) {
@@ -237,7 +265,7 @@ void draw_band(Panel& panel, const Points& line, double half_width) {
   const auto close = [&] {
     above.insert(above.end(), below.rbegin(), below.rend());
     if (above.size() > 2) {
-      panel.polygon(above, {"none", 0.0, "#d55e00", 0.3}, "95 % band of a cell");
+      panel.polygon(above, {"none", 0.0, colours::vermilion, 0.3}, "95 % band of a cell");
     }
     above.clear();
     below.clear();
@@ -259,39 +287,24 @@ Panel section_panel(const Section& section, const HeightMap& before, const AreaC
   const std::string title = "section through the " + section.name + ", " +
                             (section.along_x ? "y = " : "x = ") + rounded(line, 0.01) + " m";
   Panel panel(title, section.along_x ? "x [m]" : "y [m]", "z [m]");
-  panel.equal_aspect(false);
+  panel.shape(0.42);
   draw_band(panel, profiles.after, 1.96 * area.noise_sd);
-  panel.line(profiles.before, {"#777777", 1.5, "none", 1.0, "6 3"}, "ground before");
-  panel.line(profiles.after, {"#d55e00", 1.8}, "ground after");
+  panel.line(profiles.before, {colours::grey, 1.0, "none", 1.0, {3.0, 1.5}}, "ground before");
+  panel.line(profiles.after, {colours::vermilion, 1.2}, "ground after");
   return panel;
 }
 
 /// Where a section lies on the map.
-void draw_place(Panel& map, const Section& section, const HeightMap& on) {
+void draw_place(Panel& map, const Section& section, const HeightMap& on, const Turn& turn) {
   const auto end = [&](Eigen::Index i) -> Eigen::Vector2d {
     return section.along_x ? Eigen::Vector2d(on.x(i), on.y(section.line))
                            : Eigen::Vector2d(on.x(section.line), on.y(i));
   };
-  map.line({end(section.first), end(section.last)}, {"#222222", 1.2, "none", 1.0, "2 4"},
-           "section");
+  map.line(turn(Points{end(section.first), end(section.last)}),
+           {"#222222", 0.8, "none", 1.0, {1.0, 2.0}}, "section");
 }
 
-// ---- The text beside it -----------------------------------------------------------------------
-
-/// Lines of at most this many bytes; those after the first are indented.
-void add_wrapped(const std::string& text, std::vector<std::string>& lines) {
-  constexpr std::size_t most = 72;
-  std::istringstream words(text);
-  std::string line;
-  for (std::string word; words >> word;) {
-    if (!line.empty() && line.size() + 1 + word.size() > most) {
-      lines.push_back(line);
-      line = "   ";
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  lines.push_back(line);
-}
+// ---- The table --------------------------------------------------------------------------------
 
 std::string signed_volume(const Measured& volume) {
   return (volume.value < 0.0 ? "−" : "+") + volume_text(volume);
@@ -302,9 +315,8 @@ void add_open_changes(const VolumeChange& change, std::vector<std::string>& note
     std::vector<std::string> lines;
     for (const AttributedChange& open : change.attribution) {
       if (open.counted != counted) continue;
-      add_wrapped(signed_volume(open.volume) + "  " + open.what +
-                      " (of this dig: " + rounded(100.0 * open.probability, 1.0) + " %)",
-                  lines);
+      lines.push_back(signed_volume(open.volume) + "  " + open.what +
+                      " (of this dig: " + rounded(100.0 * open.probability, 1.0) + " %)");
     }
     if (lines.empty()) continue;
     notes.insert(notes.end(), {"", counted ? "counted, might not be ours" : "left out, open"});
@@ -335,38 +347,23 @@ void add_left_out(const VolumeChange& change, std::vector<std::string>& notes) {
   }
 }
 
-std::vector<std::string> notes_of(const ChangeSheet& sheet) {
-  std::vector<std::string> notes;
-  for (const std::string& line : sheet.lines) add_wrapped(line, notes);
-  for (const AreaChange& area : sheet.change.areas) {
-    notes.push_back("noise of a cell " + readable(1000.0 * area.noise_sd) + " mm");
-  }
-  add_open_changes(sheet.change, notes);
-  add_left_out(sheet.change, notes);
-  if (!sheet.warnings.empty()) notes.insert(notes.end(), {"", "warnings"});
-  for (const Warning& warning : sheet.warnings) {
-    add_wrapped(warning.code + ": " + warning.message, notes);
-  }
-  return notes;
-}
-
 /// Standard deviation of k by source, the largest first.
-std::vector<Bar> error_bars(const VolumeChange& change) {
+void add_errors(const VolumeChange& change, std::vector<std::string>& notes) {
   const BulkingErrors errors = bulking_errors(change);
-  std::vector<Bar> bars = {{"noise of the cells", errors.noise},
-                           {"correlated error", errors.correlated},
-                           {"motion between the scans", errors.datum},
-                           {"unseen ground", errors.holes},
-                           {"steep faces", errors.faces},
-                           {"thin soil", errors.thin},
-                           {"open changes", errors.attribution}};
-  std::stable_sort(bars.begin(), bars.end(),
-                   [](const Bar& a, const Bar& b) { return a.value > b.value; });
-  bars.erase(
-      std::remove_if(bars.begin(), bars.end(), [](const Bar& bar) { return !(bar.value > 0.0); }),
-      bars.end());
-  for (Bar& bar : bars) bar.text = readable(bar.value) + "  " + bar.text;
-  return bars;
+  std::vector<std::pair<double, const char*>> sources = {{errors.noise, "noise of the cells"},
+                                                         {errors.correlated, "correlated error"},
+                                                         {errors.datum, "motion between the scans"},
+                                                         {errors.holes, "unseen ground"},
+                                                         {errors.faces, "steep faces"},
+                                                         {errors.thin, "thin soil"},
+                                                         {errors.attribution, "open changes"}};
+  std::stable_sort(sources.begin(), sources.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (!(sources.front().first > 0.0)) return;
+  notes.insert(notes.end(), {"", "standard deviation of the bulking factor"});
+  for (const auto& [sd, source] : sources) {
+    if (sd > 0.0) notes.push_back(readable(sd) + "  " + source);
+  }
 }
 
 const char* title_of(std::size_t area, std::size_t areas) {
@@ -376,40 +373,56 @@ const char* title_of(std::size_t area, std::size_t areas) {
 
 }  // namespace
 
-std::string height_change_figure(const ChangeSheet& sheet) {
+std::vector<std::string> change_table(const ChangeSheet& sheet) {
+  std::vector<std::string> notes = sheet.lines;
+  for (const AreaChange& area : sheet.change.areas) {
+    notes.push_back("noise of a cell " + readable(1000.0 * area.noise_sd) + " mm");
+  }
+  add_open_changes(sheet.change, notes);
+  add_left_out(sheet.change, notes);
+  if (!sheet.warnings.empty()) notes.insert(notes.end(), {"", "warnings"});
+  for (const Warning& warning : sheet.warnings) {
+    notes.push_back(warning.code + ": " + warning.message);
+  }
+  add_errors(sheet.change, notes);
+  return notes;
+}
+
+Figure height_change_figure(const ChangeSheet& sheet) {
   const VolumeChange& change = sheet.change;
-  const std::vector<double> bands = bands_of(change);
+  const ColourScale scale = {bands_of(change)};
   Figure figure;
   figure.title = "Height change of the ground";
-  figure.colour_bar = ColourBar{bands, "height after − before [cm]", 0.01};
+  figure.colour_bar = ColourBar{scale, "height after − before [cm]", 0.01};
+  std::vector<Panel> maps;
+  std::vector<Panel> sections;
   for (std::size_t i = 0; i < change.areas.size(); ++i) {
     const AreaChange& area = change.areas[i];
-    Panel map(title_of(i, change.areas.size()), "x [m]", "y [m]");
-    map.heat_map(area.difference, bands);
-    map.view(view_of(change, area));
+    const Rectangle view = view_of(change, area);
+    const Turn turn = {view.y_max - view.y_min > 1.1 * (view.x_max - view.x_min)};
+    Panel map = turn.panel(title_of(i, change.areas.size()));
+    map.map(turn(area.difference), scale);
+    map.view(turn(view));
     for (std::size_t j = 0; j < change.zones.size(); ++j) {
       const ChangeZone& zone = change.zones[j];
       const int index = static_cast<int>(j);
       if (!(area.zone == index).any()) continue;
       const ZoneStyle style = style_of(zone.kind);
-      map.strokes(outline(area, index), style.outline, style.name);
-      if (zone.kind != ZoneKind::other) label_zone(map, change, area, index);
+      map.strokes(turn(outline(area, index)), style.outline, style.name);
+      if (zone.kind != ZoneKind::other) label_zone(map, change, area, index, turn);
       const bool cut = zone.kind == ZoneKind::dig || zone.kind == ZoneKind::dump;
       if (!cut || i >= sheet.before.size() || !is_largest_of_its_kind(zone, change)) continue;
       const Section section = section_of(area, zone, index);
-      draw_place(map, section, area.difference);
+      draw_place(map, section, area.difference, turn);
       const bool hole = zone.kind == ZoneKind::dig;
-      figure.lower.insert(hole ? figure.lower.begin() : figure.lower.end(),
-                          section_panel(section, sheet.before[i], area));
+      sections.insert(hole ? sections.begin() : sections.end(),
+                      section_panel(section, sheet.before[i], area));
     }
-    figure.panels.push_back(map);
+    maps.push_back(map);
   }
-  figure.notes = notes_of(sheet);
-  figure.bars = error_bars(change);
-  if (!figure.bars.empty()) {
-    figure.notes.insert(figure.notes.end(), {"", "standard deviation of the bulking factor"});
-  }
-  return to_svg(figure);
+  figure.rows = {maps};
+  if (!sections.empty()) figure.rows.push_back(sections);
+  return figure;
 }
 
 }  // namespace excavplan::tools

@@ -21,22 +21,26 @@ Report scene_report(const Machine& machine, const DigScene& scene) {
   return report;
 }
 
-Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& site) {
+DigResult rehearse(const Machine& machine, const DigPlan& plan, const PlanSite& site) {
+  const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
+  DigOptions options;
+  options.history = true;
+  return checked_dig(*simulator, machine, site.ground, plan.path, options);
+}
+
+Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& site,
+                   const std::optional<DigResult>& dig) {
   Report report;
   report.headline = {"payload_mass_kg", "energy_kj",    "efficiency_kg_per_kj",
                      "cycle.energy_kj", "cycle.time_s", "cycle.rate_t_per_h"};
   report.scene.areas = {{{{"before", site.ground.surface()}}}};
   report.scene.machine = machine;
-  if (!plan.dig) {
+  if (!dig) {
     report.fault = plan.stopped ? "Stopped before any dig was found." : "There is no dig.";
     return report;
   }
-  const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
-  DigOptions options;
-  options.history = true;
-  const DigResult dig = checked_dig(*simulator, machine, site.ground, plan.path, options);
-  report.scene.areas.front().states.push_back({"planned", dig.after(site.ground).surface()});
-  report.scene.digs = {{"planned dig", plan.path, plan.trajectory, dig.history}};
+  report.scene.areas.front().states.push_back({"planned", dig->after(site.ground).surface()});
+  report.scene.digs = {{"planned dig", plan.path, plan.trajectory, dig->history}};
   report.note = "Planned ground and loads are those of the planned dig, simulated once at " +
                 readable(site.density_percent) +
                 " % density; the payload stays in the bucket. The figures are those of the plan.";

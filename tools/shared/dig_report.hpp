@@ -23,7 +23,11 @@ struct PlanSite {
   const SimulatorKind& simulator;
 };
 
-/// A plan; without a dig, only the ground.
-Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& site);
+/// The planned dig, simulated with its history. @param plan  with a dig
+DigResult rehearse(const Machine& machine, const DigPlan& plan, const PlanSite& site);
+
+/// A plan. @param dig  by rehearse(); without one, only the ground
+Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& site,
+                   const std::optional<DigResult>& dig);
 
 }  // namespace excavplan::tools

@@ -68,13 +68,14 @@ std::vector<double> times_of_poses(const Trajectory& trajectory,
 
 }  // namespace
 
-std::vector<TimedStep> timed_steps(const Machine& machine, const DigScene& scene) {
-  const std::vector<DigPose>& poses = scene.path.poses;
-  const Trajectory trajectory = time_dig_path(machine, scene.path, {}, scene.dig.torques);
+std::vector<TimedStep> timed_steps(const Machine& machine, const DigPath& path,
+                                   const DigResult& dig) {
+  const std::vector<DigPose>& poses = path.poses;
+  const Trajectory trajectory = time_dig_path(machine, path, {}, dig.torques);
   const std::vector<double> times = times_of_poses(trajectory, poses);
   std::vector<TimedStep> steps;
-  for (std::size_t i = 0; i < scene.dig.history.size() && i + 1 < times.size(); ++i) {
-    const ForceSample& sample = scene.dig.history[i];
+  for (std::size_t i = 0; i < dig.history.size() && i + 1 < times.size(); ++i) {
+    const ForceSample& sample = dig.history[i];
     const double duration = times[i + 1] - times[i];
     const Eigen::Array3d work =
         sample.torque.array() * (poses[i + 1].joints - poses[i].joints).array();

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/simulation/soil_simulator.hpp>
 
 /// @file
 /// When the steps of a simulated dig happen, and with what power.
@@ -20,6 +20,7 @@ struct TimedStep {
 };
 
 /// Of each step of the dig's history, by time_dig_path(): the machine's speed along the path.
-std::vector<TimedStep> timed_steps(const Machine& machine, const DigScene& scene);
+std::vector<TimedStep> timed_steps(const Machine& machine, const DigPath& path,
+                                   const DigResult& dig);
 
 }  // namespace excavplan::tools

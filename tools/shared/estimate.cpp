@@ -8,7 +8,7 @@
 #include <excavplan/ground/bulking.hpp>
 
 #include "base/files.hpp"
-#include "shared/figures.hpp"
+#include "shared/density_figure.hpp"
 #include "shared/quantity.hpp"
 #include "shared/report.hpp"
 #include "shared/results.hpp"
@@ -297,12 +297,20 @@ void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law
   if (many) outcome.warnings.push_back(*many);
 }
 
-void draw_estimate(const std::optional<std::string>& plot, const std::optional<std::string>& report,
+const FigureTable<DrawnEstimate>& estimate_figures() {
+  static const FigureTable<DrawnEstimate> figures = {
+      {{"change", "height change with its zones, and sections"},
+       [](const DrawnEstimate& drawn) { return height_change_figure(drawn.sheet); }},
+      {{"density", "density with its 95 % interval, and the law with the measured bulking factor"},
+       [](const DrawnEstimate& drawn) { return density_figure(drawn.estimate); }}};
+  return figures;
+}
+
+void draw_estimate(const Plots& plots, const std::optional<std::string>& report,
                    const DensityEstimate& estimate, Outcome& outcome) {
-  if (!plot && !report) return;
-  const std::string figure =
-      height_change_figure({estimate.change, estimate.before, outcome.lines, outcome.warnings});
-  if (plot) write_file(*plot, figure);
+  const DrawnEstimate drawn = {estimate,
+                               {estimate.change, estimate.before, outcome.lines, outcome.warnings}};
+  write_plots(plots, estimate_figures(), drawn, change_table(drawn.sheet));
   if (!report) return;
   Report page;
   page.headline = {"density_percent", "bulking_factor", "volume.excavated_m3", "volume.spilled_m3",
@@ -312,8 +320,8 @@ void draw_estimate(const std::optional<std::string>& plot, const std::optional<s
   page.scene.zones = estimate.change.zones;
   page.note =
       "The ground after the dig is that before it plus the height change that was measured.";
-  outcome.report =
-      titled(std::move(page), *report, "Relative density of the ground from two scans", figure);
+  outcome.report = titled(std::move(page), *report, "Relative density of the ground from two scans",
+                          to_svg(lay_out(height_change_figure(drawn.sheet))));
 }
 
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome) {

@@ -4,6 +4,8 @@
 
 #include <excavplan/survey/density_estimate.hpp>
 
+#include "shared/change_figure.hpp"
+#include "shared/plots.hpp"
 #include "shared/tool.hpp"
 
 /// @file
@@ -29,9 +31,18 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
 void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
                           const Machine& machine, double unit, Outcome& outcome);
 
-/// Writes the figure of an estimate, SVG, and adds the page about it to the outcome, each if there
-/// is a file for it.
-void draw_estimate(const std::optional<std::string>& plot, const std::optional<std::string>& report,
+/// An estimate as its figures show it.
+struct DrawnEstimate {
+  const DensityEstimate& estimate;
+  ChangeSheet sheet;
+};
+
+/// change and density.
+const FigureTable<DrawnEstimate>& estimate_figures();
+
+/// Writes the figures of an estimate that were asked for and adds the page about it to the outcome
+/// if there is a file for it.
+void draw_estimate(const Plots& plots, const std::optional<std::string>& report,
                    const DensityEstimate& estimate, Outcome& outcome);
 
 /// Adds the result of the other method for the same scans.

@@ -13,7 +13,6 @@
 
 #include "base/text.hpp"
 #include "shared/goal_inputs.hpp"
-#include "shared/plot.hpp"
 #include "shared/results.hpp"
 #include "simulation/checked_dig.hpp"
 
@@ -37,36 +36,6 @@ void add_dig(const std::string& name, const Rehearsal& in, const DigPath& path,
   states.push_back({"after", dig.after(in.ground).surface()});
   scene.digs.push_back(played_dig(name, in.machine, path, dig));
   scene.digs.back().state = states.size() - 1;
-}
-
-Points tip_path(const DigPath& path) {
-  Points points;
-  for (const DigPose& pose : path.poses) points.emplace_back(pose.bucket.x, pose.bucket.z);
-  return points;
-}
-
-/// Both paths of each of the first conditions, and what the digs of all are worth.
-Figure experiment_figure(const std::vector<NamedExperiment>& experiments,
-                         const ReportScene& scene) {
-  constexpr std::size_t most_panels = 3;  // ours
-  Figure figure;
-  figure.title = "Digs along the fixed and along the planned path";
-  for (std::size_t i = 0; i < std::min(most_panels, experiments.size()); ++i) {
-    Panel panel(experiments[i].condition, "x [m]", "z [m]");
-    panel.line(tip_path(scene.digs[2 * i].path), {"#0072b2", 2.0}, "tip, planned path");
-    panel.line(tip_path(scene.digs[2 * i + 1].path), {"#d55e00", 2.0, "none", 1.0, "6 4"},
-               "tip, fixed path");
-    figure.panels.push_back(panel);
-  }
-  for (const auto& [condition, result] : experiments) {
-    for (const auto& [path, dig] :
-         {std::pair("fixed", result.fixed), {"planned", result.planned}}) {
-      const double worth = result.objective.worth(dig);
-      figure.bars.push_back(
-          {condition + ", " + path + ": " + worth_text(result.objective, worth), worth});
-    }
-  }
-  return figure;
 }
 
 /// Of Fig. 9: the tip, and what it sweeps below the ground at its start.
@@ -204,7 +173,9 @@ Report experiment_report(const Machine& machine, const SoilKind& soil, const Pla
   for (std::size_t i = 0; i < experiments.size() && i < 6; ++i) {  // ours
     report.headline.push_back("conditions." + std::to_string(i) + ".gain_percent");
   }
-  report.plot = to_svg(experiment_figure(experiments, report.scene));
+  Figure plot = paths_figure(experiments);
+  plot.rows.push_back(efficiency_figure(experiments).rows.front());
+  report.plot = to_svg(lay_out(plot));
   report.note =
       "Ground and loads are those of the dig that is chosen, on level ground; the payload "
       "stays in the bucket.";

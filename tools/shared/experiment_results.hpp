@@ -9,6 +9,7 @@
 
 #include <excavplan/experiment/experiment.hpp>
 
+#include "shared/experiment_figures.hpp"
 #include "shared/report.hpp"
 #include "shared/tool.hpp"
 
@@ -26,11 +27,6 @@ std::string experiment_line(const std::string& condition, const ExperimentResult
 nlohmann::ordered_json regression_json(const Machine& machine, const SoilKind& soil,
                                        const ExperimentOptions& options);
 std::string regression_line(const nlohmann::ordered_json& regression);
-
-struct NamedExperiment {
-  std::string condition;
-  ExperimentResult result;
-};
 
 /// Adds the results of a condition to `conditions` of the outcome, and to its lines and warnings.
 void add(const NamedExperiment& done, Outcome& outcome);

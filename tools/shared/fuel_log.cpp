@@ -52,7 +52,7 @@ std::vector<Stretch> stretches_of(const Machine& machine, const DigScene& scene)
   constexpr double idle_before = 3.0;  // [s]
   constexpr double idle_after = 4.0;
   std::vector<Stretch> stretches = {{"idle", idle_before, 0.0}};
-  for (const TimedStep& step : timed_steps(machine, scene)) {
+  for (const TimedStep& step : timed_steps(machine, scene.path, scene.dig)) {
     stretches.push_back({name(step.phase), step.duration, step.power});
   }
   PlannedDig dig;

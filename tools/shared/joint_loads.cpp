@@ -88,7 +88,7 @@ std::vector<std::string> load_lines(const Machine& machine, const JointLoads& lo
 }
 
 std::string to_csv(const Machine& machine, const DigScene& scene) {
-  const std::vector<TimedStep> steps = timed_steps(machine, scene);
+  const std::vector<TimedStep> steps = timed_steps(machine, scene.path, scene.dig);
   std::string csv =
       "phase,travelled_m,boom_rad,arm_rad,bucket_rad,soil_x_n,soil_z_n,boom_torque_n_m,"
       "arm_torque_n_m,bucket_torque_n_m,bucket_fill_m3";

@@ -261,13 +261,15 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
   return json;
 }
 
-void withdraw(const std::optional<std::string>& trajectory, const std::optional<std::string>& plot,
+void withdraw(const std::optional<std::string>& trajectory, const Plots& plots,
               const Machine& machine, Outcome& outcome) {
   if (trajectory) write_trajectory(*trajectory, {machine.name, {}});
-  std::error_code unknown;
-  if (!plot || !std::filesystem::exists(*plot, unknown)) return;
-  outcome.warnings.push_back(
-      {"plot_not_written", *plot + ": is of an earlier run, as there is no dig to draw"});
+  for (const Plots::File& plot : plots.files) {
+    std::error_code unknown;
+    if (!std::filesystem::exists(plot.file, unknown)) continue;
+    outcome.warnings.push_back(
+        {"plot_not_written", plot.file + ": is of an earlier run, as there is no dig to draw"});
+  }
 }
 
 void write_trajectory(const std::string& file, const Trajectory& trajectory) {

@@ -11,6 +11,7 @@
 #include <excavplan/plan/plan_dig.hpp>
 
 #include "shared/arguments.hpp"
+#include "shared/plots.hpp"
 #include "shared/tool.hpp"
 
 /// @file
@@ -44,7 +45,7 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
 
 /// What an earlier plan left in these files must not be taken for that of this ground, which has
 /// none.
-void withdraw(const std::optional<std::string>& trajectory, const std::optional<std::string>& plot,
+void withdraw(const std::optional<std::string>& trajectory, const Plots& plots,
               const Machine& machine, Outcome& outcome);
 
 /// CSV, or JSON if the file's name ends so.

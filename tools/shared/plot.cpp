@@ -3,154 +3,14 @@
 #include "shared/plot.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <sstream>
+
+#include "base/text.hpp"
 
 namespace excavplan::tools {
-namespace {
-
-constexpr double font = 13.0;         // [px]
-constexpr double line_height = 18.0;  // [px]
-constexpr double character = 0.58;    // mean width of a character over the font size
-const char* const unknown_colour = "#c8c8c8";
-constexpr Eigen::Index most_cells = 400;  // of a heat map, a side; larger maps are averaged
-
-std::string fixed(double value, int decimals) {
-  std::array<char, 400> text;
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
-                                 std::chars_format::fixed, decimals)
-                       .ptr;
-  return {text.data(), end};
-}
-
-/// A coordinate in pixels: two decimals, without trailing zeros.
-std::string px(double value) {
-  std::string text = fixed(value, 2);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text == "-0" ? "0" : text;
-}
-
-/// Characters, not bytes, of UTF-8 text.
-double text_width(const std::string& text) {
-  const auto count = std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  });
-  return character * font * static_cast<double>(count);
-}
-
-std::string attributes(const Style& style) {
-  std::string text = " fill=\"" + style.fill + "\" stroke=\"" + style.stroke + '"';
-  if (style.stroke != "none") text += " stroke-width=\"" + px(style.width) + '"';
-  if (style.opacity < 1.0) text += " opacity=\"" + px(style.opacity) + '"';
-  if (!style.dash.empty()) text += " stroke-dasharray=\"" + style.dash + '"';
-  return text;
-}
-
-struct Ticks {
-  std::vector<double> values;
-  int decimals = 0;
-};
-
-/// Multiples of 1, 2 or 5 times a power of ten, about `wanted` of them.
-Ticks nice_ticks(double low, double high, double wanted) {
-  const double rough = (high - low) / std::max(1.0, wanted);
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  double step = 10.0 * power;
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= rough) {
-      step = factor * power;
-      break;
-    }
-  }
-  Ticks ticks;
-  ticks.decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
-  const double first = std::ceil(low / step - 1e-9);
-  for (double i = first; i * step <= high + 1e-9 * step; ++i) {
-    ticks.values.push_back(i == 0.0 ? 0.0 : i * step);
-  }
-  return ticks;
-}
-
-/// The map itself, or blocks of its cells averaged so that no side has more than most_cells.
-HeightMap thinned(const HeightMap& map) {
-  const Eigen::Index block = (std::max(map.z.rows(), map.z.cols()) + most_cells - 1) / most_cells;
-  if (block <= 1) return map;
-  HeightMap thin{map.origin, map.cell_size * static_cast<double>(block), {}};
-  thin.z.resize((map.z.rows() + block - 1) / block, (map.z.cols() + block - 1) / block);
-  for (Eigen::Index row = 0; row < thin.z.rows(); ++row) {
-    for (Eigen::Index col = 0; col < thin.z.cols(); ++col) {
-      const auto cells =
-          map.z.block(row * block, col * block, std::min(block, map.z.rows() - row * block),
-                      std::min(block, map.z.cols() - col * block));
-      const auto known = cells.isFinite();
-      thin.z(row, col) = known.any()
-                             ? known.select(cells, 0.0).sum() / static_cast<double>(known.count())
-                             : std::numeric_limits<double>::quiet_NaN();
-    }
-  }
-  return thin;
-}
-
-/// The band of a value, counted from 0 in the middle, with its sign.
-int band_of(double value, const std::vector<double>& bands) {
-  const auto beyond = std::upper_bound(bands.begin(), bands.end(), std::abs(value)) - bands.begin();
-  return static_cast<int>(value < 0.0 ? -beyond : beyond);
-}
-
-std::string colour_of_band(int band, std::size_t count) {
-  return diverging_colour(static_cast<double>(band) / static_cast<double>(count));
-}
-
-/// One path per band, in units of cells: runs of equal colour along a row.
-std::map<int, std::string> colour_runs(const HeightMap& map, const std::vector<double>& bands) {
-  std::map<int, std::string> paths;
-  constexpr int unknown = std::numeric_limits<int>::min();
-  const auto level = [&](Eigen::Index row, Eigen::Index col) {
-    const double value = map.z(row, col);
-    return std::isfinite(value) ? band_of(value, bands) : unknown;
-  };
-  for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
-    for (Eigen::Index col = 0; col < map.z.cols();) {
-      const int of_run = level(row, col);
-      const Eigen::Index start = col;
-      while (col < map.z.cols() && level(row, col) == of_run) ++col;
-      if (of_run == unknown) continue;
-      const Eigen::Index length = col - start;
-      paths[of_run] += "M" + std::to_string(start) + ' ' + std::to_string(row) + "h" +
-                       std::to_string(length) + "v1h-" + std::to_string(length) + "z";
-    }
-  }
-  return paths;
-}
-
-}  // namespace
-
-std::string xml_escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 // ---- Panel ------------------------------------------------------------------------------------
 
@@ -169,27 +29,41 @@ void Panel::strokes(const Points& ends, const Style& style, const std::string& l
   shapes_.push_back({Kind::strokes, ends, style, legend});
 }
 
-void Panel::marker(const Eigen::Vector2d& at, const std::string& colour,
-                   const std::string& legend) {
-  shapes_.push_back({Kind::marker, {at}, {"#ffffff", 1.5, colour}, legend});
+void Panel::dots(const Points& at, double radius, const Style& style, const std::string& legend) {
+  shapes_.push_back({Kind::dots, at, style, legend, radius});
+}
+
+void Panel::interval(const Eigen::Vector2d& low, const Eigen::Vector2d& high, const Style& style,
+                     const std::string& legend) {
+  shapes_.push_back({Kind::interval, {low, high}, style, legend});
 }
 
 void Panel::label(const Eigen::Vector2d& at, const std::string& text) {
   shapes_.push_back({Kind::label, {at}, {}, text});
 }
 
-void Panel::heat_map(const HeightMap& map, const std::vector<double>& bands) {
-  const Rectangle all = map.extent();
-  shapes_.push_back({Kind::heat_map,
-                     {{all.x_min, all.y_min}, {all.x_max, all.y_max}},
-                     {"#888888", 1.0, unknown_colour},
-                     map.z.isFinite().all() ? "" : "not seen",
-                     thinned(map),
-                     bands});
+void Panel::map(const Grid& grid, const ColourScale& scale, const std::string& unknown) {
+  const Eigen::Vector2d end(grid.origin.x() + grid.cell.x() * static_cast<double>(grid.z.cols()),
+                            grid.origin.y() + grid.cell.y() * static_cast<double>(grid.z.rows()));
+  shapes_.push_back({Kind::map,
+                     {grid.origin, end},
+                     {"#888888", 0.5, "#c8c8c8"},
+                     grid.z.isFinite().all() ? "" : unknown,
+                     0.0,
+                     grid,
+                     scale});
 }
 
-/// The view, or the bounds of all shapes with a small margin; never empty, never thinner than 1
-/// : 8.
+void Panel::span(double from, double to, const std::string& colour, const std::string& legend) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();  // of y: no part of the view
+  shapes_.push_back({Kind::span, {{from, unknown}, {to, unknown}}, {"none", 0.0, colour}, legend});
+}
+
+bool Panel::has_map() const {
+  return std::any_of(shapes_.begin(), shapes_.end(),
+                     [](const Shape& shape) { return shape.kind == Kind::map; });
+}
+
 Rectangle Panel::shown() const {
   Rectangle all = view_.value_or(Rectangle{});
   if (!view_) {
@@ -203,355 +77,793 @@ Rectangle Panel::shown() const {
       }
     }
     if (!(low <= high).all()) return {0.0, 0.0, 1.0, 1.0};
-    const bool map_only = std::any_of(shapes_.begin(), shapes_.end(), [](const Shape& shape) {
-      return shape.kind == Kind::heat_map;
-    });
-    const Eigen::Array2d margin = (map_only ? 0.0 : 0.04) * (high - low);
+    const Eigen::Array2d margin = (has_map() ? 0.0 : 0.04) * (high - low);
     all = {low.x() - margin.x(), low.y() - margin.y(), high.x() + margin.x(),
            high.y() + margin.y()};
   }
-  const double width = all.x_max - all.x_min;
-  const double height = all.y_max - all.y_min;
-  const double least_width = equal_aspect_ ? std::max(height / 8.0, 1e-6) : 1e-6;
-  const double least_height = equal_aspect_ ? std::max(width / 8.0, 1e-6) : 1e-6;
-  const double grow_x = std::max(0.0, least_width - width) / 2.0;
-  const double grow_y = std::max(0.0, least_height - height) / 2.0;
-  return {all.x_min - grow_x, all.y_min - grow_y, all.x_max + grow_x, all.y_max + grow_y};
+  const auto widen = [](double& low, double& high) {
+    const double least = std::max(1e-6, 1e-9 * std::max(std::abs(low), std::abs(high)));
+    if (high - low >= least) return;
+    const double middle = 0.5 * (low + high);
+    low = middle - 0.5 * std::max(least, 0.1 * std::abs(middle));
+    high = middle + 0.5 * std::max(least, 0.1 * std::abs(middle));
+  };
+  widen(all.x_min, all.x_max);
+  widen(all.y_min, all.y_max);
+  return all;
 }
 
-// ---- Writing ----------------------------------------------------------------------------------
+namespace {
 
-/// Lays out a figure and writes it, from left to right.
-class SvgWriter {
+using Tick = Panel::Tick;
+
+// ---- Ticks ------------------------------------------------------------------------------------
+
+/// Multiples of 1, 2 or 5 times a power of ten, at most about `wanted` of them.
+std::vector<Tick> nice_ticks(double low, double high, double wanted) {
+  const double rough = (high - low) / std::max(1.0, wanted);
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = 10.0 * power;
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= rough * (1.0 - 1e-9)) {
+      step = factor * power;
+      break;
+    }
+  }
+  const int places = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+  std::vector<Tick> ticks;
+  for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) {
+    std::string text = decimals(std::abs(i * step), places);
+    if (i < 0.0) text = "−" + text;
+    ticks.emplace_back(i == 0.0 ? 0.0 : i * step, text);
+  }
+  return ticks;
+}
+
+double widest(const std::vector<Tick>& ticks, double size) {
+  double width = 0.0;
+  for (const Tick& tick : ticks) width = std::max(width, text_width(tick.second, size));
+  return width;
+}
+
+/// Numbers of an x that may grow to the left.
+std::vector<Tick> nice_x_ticks(const Panel& panel, const Rectangle& view, double wanted) {
+  if (!panel.mirrors_x()) return nice_ticks(view.x_min, view.x_max, wanted);
+  std::vector<Tick> ticks = nice_ticks(-view.x_max, -view.x_min, wanted);
+  for (Tick& tick : ticks) tick.first = -tick.first;
+  return ticks;
+}
+
+/// Numbers of x with room between them.
+std::vector<Tick> x_ticks_of(const Panel& panel, const Rectangle& view, double width, double size) {
+  if (panel.x_ticks()) return *panel.x_ticks();
+  double wanted = std::min(8.0, width / (3.0 * size));
+  for (; wanted > 1.0; wanted -= 0.5) {
+    const std::vector<Tick> ticks = nice_x_ticks(panel, view, wanted);
+    const double room = width / std::max(1.0, static_cast<double>(ticks.size()));
+    if (widest(ticks, size) + 0.8 * size < room) return ticks;
+  }
+  return nice_x_ticks(panel, view, 1.0);
+}
+
+std::vector<Tick> y_ticks_of(const Panel& panel, const Rectangle& view, double height,
+                             double size) {
+  if (panel.y_ticks()) return *panel.y_ticks();
+  return nice_ticks(view.y_min, view.y_max, std::clamp(height / (2.4 * size), 1.0, 7.0));
+}
+
+// ---- Maps -------------------------------------------------------------------------------------
+
+constexpr Eigen::Index most_cells = 400;  // of a map, a side; larger ones are averaged
+
+/// The grid itself, or blocks of its cells averaged so that no side has more than most_cells.
+Grid thinned(const Grid& grid) {
+  const Eigen::Index block = (std::max(grid.z.rows(), grid.z.cols()) + most_cells - 1) / most_cells;
+  if (block <= 1) return grid;
+  Grid thin{grid.origin, grid.cell * static_cast<double>(block), {}};
+  thin.z.resize((grid.z.rows() + block - 1) / block, (grid.z.cols() + block - 1) / block);
+  for (Eigen::Index row = 0; row < thin.z.rows(); ++row) {
+    for (Eigen::Index col = 0; col < thin.z.cols(); ++col) {
+      const auto cells =
+          grid.z.block(row * block, col * block, std::min(block, grid.z.rows() - row * block),
+                       std::min(block, grid.z.cols() - col * block));
+      const auto known = cells.isFinite();
+      thin.z(row, col) = known.any()
+                             ? known.select(cells, 0.0).sum() / static_cast<double>(known.count())
+                             : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return thin;
+}
+
+/// A run of cells of one colour along a row.
+struct Run {
+  Eigen::Index row, first, length;
+};
+
+std::map<std::string, std::vector<Run>> runs_by_colour(const Grid& grid, const ColourScale& scale) {
+  std::map<std::string, std::vector<Run>> runs;
+  const auto colour = [&](Eigen::Index row, Eigen::Index col) {
+    const double value = grid.z(row, col);
+    return std::isfinite(value) ? scale.colour(value) : std::string();
+  };
+  for (Eigen::Index row = 0; row < grid.z.rows(); ++row) {
+    for (Eigen::Index col = 0; col < grid.z.cols();) {
+      const std::string of_run = colour(row, col);
+      const Eigen::Index first = col;
+      while (col < grid.z.cols() && colour(row, col) == of_run) ++col;
+      if (!of_run.empty()) runs[of_run].push_back({row, first, col - first});
+    }
+  }
+  return runs;
+}
+
+// ---- Layout -----------------------------------------------------------------------------------
+
+/// Where a panel's data lie on the page.
+struct Frame {
+  Rectangle data;
+  Box box;
+  double margin = 0.0;  ///< left of it [pt]
+  double x(double value) const {
+    return box.left + box.width * (value - data.x_min) / (data.x_max - data.x_min);
+  }
+  double y(double value) const {
+    return box.top + box.height * (data.y_max - value) / (data.y_max - data.y_min);
+  }
+  Eigen::Vector2d at(const Eigen::Vector2d& point) const { return {x(point.x()), y(point.y())}; }
+};
+
+/// The view so large that a metre is as long in both directions.
+Rectangle grown_to(const Rectangle& view, double width, double height) {
+  const double scale =
+      std::max((view.x_max - view.x_min) / width, (view.y_max - view.y_min) / height);
+  const double x = 0.5 * (view.x_min + view.x_max);
+  const double y = 0.5 * (view.y_min + view.y_max);
+  return {x - 0.5 * scale * width, y - 0.5 * scale * height, x + 0.5 * scale * width,
+          y + 0.5 * scale * height};
+}
+
+/// A line of so many points that they cannot be told apart: of each few the lowest and the highest.
+Points thinned(Points line) {
+  constexpr std::size_t most = 8000;
+  if (line.size() <= most) return line;
+  const std::size_t block = (2 * line.size() + most - 1) / most;
+  Points thin = {line.front()};
+  for (auto at = line.begin(); at != line.end();) {
+    const auto end = line.end() - at > static_cast<std::ptrdiff_t>(block)
+                         ? at + static_cast<std::ptrdiff_t>(block)
+                         : line.end();
+    auto [first, second] =
+        std::minmax_element(at, end, [](const auto& a, const auto& b) { return a.y() < b.y(); });
+    if (second < first) std::swap(first, second);
+    thin.insert(thin.end(), {*first, *second});
+    at = end;
+  }
+  thin.push_back(line.back());
+  return thin;
+}
+
+/// Words of a text in lines of at most this width.
+std::vector<std::string> wrapped(const std::string& text, double width, double size) {
+  std::vector<std::string> lines = {""};
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    std::string longer = lines.back().empty() ? word : lines.back() + ' ' + word;
+    if (lines.back().empty() || text_width(longer, size) <= width) {
+      lines.back() = std::move(longer);
+    } else {
+      lines.push_back(word);
+    }
+  }
+  return lines;
+}
+
+/// The text, or as much of it as fits.
+std::string fitted(std::string text, double width, double size, bool bold = false) {
+  if (text_width(text, size, bold) <= width) return text;
+  while (!text.empty() && text_width(text + "…", size, bold) > width) {
+    do {
+      const bool is_middle = (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U;
+      text.pop_back();
+      if (!is_middle) break;
+    } while (!text.empty());
+  }
+  return text.empty() ? text : text + "…";
+}
+
+/// Lays out a figure from above to below and draws it.
+class Sheet {
  public:
-  explicit SvgWriter(const Figure& figure) : figure_(figure) {}
+  Sheet(const Figure& figure, const SheetSize& size)
+      : figure_(figure),
+        scale_(std::max(1.0, size.width / 170.0)),
+        width_(size.width * points_per_mm) {
+    if (size.height) height_ = *size.height * points_per_mm;
+    stack_rows();
+    collect_keys();
+    if (!height_) return;
+    while (!fits() && rows_.size() > 1) {
+      rows_.pop_back();
+      collect_keys();
+    }
+    if (!fits()) keys_.clear();
+    fit_height();
+  }
 
-  std::string write() {
-    const double top = figure_.title.empty() ? 14.0 : 46.0;
-    Eigen::Vector2d end = row_at(figure_.panels, {14.0, top}, 440.0);
-    if (figure_.colour_bar) end.x() = colour_bar({end.x() + 12.0, top + 26.0}, end.y() - 48.0);
-    for (const Panel& panel : figure_.lower) {
-      for (const Panel::Shape& shape : panel.shapes_) add_to_legend(shape);
-    }
-    Eigen::Vector2d corner = column({end.x() + 18.0, top + 34.0}).cwiseMax(end);
-    if (!figure_.lower.empty()) {
-      corner = corner.cwiseMax(row_at(figure_.lower, {14.0, corner.y() + 14.0}, 190.0));
-    }
-    const double title_width = 1.25 * text_width(figure_.title) + 28.0;
-    const double width = std::ceil(std::max(corner.x(), title_width) + 14.0);
-    const double height = std::ceil(corner.y() + 12.0);
-    std::string head = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) +
-                       "\" height=\"" + px(height) + "\" viewBox=\"0 0 " + px(width) + ' ' +
-                       px(height) +
-                       "\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\"" +
-                       " font-size=\"" + px(font) + "\" fill=\"#222222\">\n";
-    if (!figure_.title.empty()) {
-      head += "<title>" + xml_escaped(figure_.title) + "</title>\n";
-    }
-    head += "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
-    if (!figure_.title.empty()) {
-      head += "<text x=\"16\" y=\"30\" font-size=\"" + px(1.25 * font) +
-              "\" font-weight=\"bold\">" + xml_escaped(figure_.title) + "</text>\n";
-    }
-    return head + svg_ + "</svg>\n";
+  Drawing draw() {
+    drawing_.title = figure_.title;
+    drawing_.width = width_;
+    double y = pad();
+    for (const Row& row : rows_) y = draw_row(row, y);
+    if (figure_.colour_bar) y = draw_colour_bar(y);
+    y = draw_legend(y);
+    y = draw_lines(wrapped_note(), y, gap());
+    if (!figure_.table.empty()) y = draw_table(y + gap());
+    drawing_.height = height_.value_or(std::ceil(y + pad()));
+    return std::move(drawing_);
   }
 
  private:
-  /// Where a panel's data lie on the page.
-  struct Frame {
-    Rectangle data;
-    double left = 0.0, top = 0.0, width = 0.0, height = 0.0;  // [px]
-    double x(double value) const {
-      return left + width * (value - data.x_min) / (data.x_max - data.x_min);
-    }
-    double y(double value) const {
-      return top + height * (data.y_max - value) / (data.y_max - data.y_min);
-    }
-    std::string point(const Eigen::Vector2d& at) const {
-      return px(x(at.x())) + ' ' + px(y(at.y()));
-    }
+  struct Row {
+    std::vector<const Panel*> panels;
+    double height = 0.0;  ///< of the axes [pt]
   };
 
-  void text(double x, double y, const std::string& content, const std::string& more = "") {
-    svg_ += "<text x=\"" + px(x) + "\" y=\"" + px(y) + '"' + more + '>' + xml_escaped(content) +
-            "</text>\n";
-  }
+  // Sizes [pt].
+  double number() const { return 7.0 * scale_; }
+  double text() const { return 7.5 * scale_; }
+  double line() const { return 10.0 * scale_; }
+  double pad() const { return 3.0 * scale_; }
+  double gap() const { return 5.0 * scale_; }
+  double inner() const { return width_ - 2.0 * pad(); }
 
-  /// Panels side by side, each of at most this height [px]. @return the lower right corner
-  Eigen::Vector2d row_at(const std::vector<Panel>& panels, const Eigen::Vector2d& corner,
-                         double height) {
-    const auto count = static_cast<double>(panels.size());
-    const Eigen::Vector2d most(count > 1.0 ? 900.0 / count : 720.0, height);
-    Eigen::Vector2d end = corner;
-    for (const Panel& panel : panels) {
-      const Eigen::Vector2d drawn = panel_at(panel, {end.x(), corner.y()}, most);
-      end = {drawn.x(), std::max(end.y(), drawn.y())};
+  void collect_keys() {
+    keys_.clear();
+    for (const Row& row : rows_) {
+      for (const Panel* panel : row.panels) {
+        for (const Panel::Shape& shape : panel->shapes()) {
+          const auto same = [&](const Panel::Shape* key) { return key->text == shape.text; };
+          if (shape.text.empty() || shape.kind == Panel::Kind::label) continue;
+          if (std::none_of(keys_.begin(), keys_.end(), same)) keys_.push_back(&shape);
+        }
+      }
     }
-    return end;
   }
 
-  static Frame frame_of(const Panel& panel, const Eigen::Vector2d& corner,
-                        const Eigen::Vector2d& most) {
-    Frame frame;
-    frame.data = panel.shown();
-    frame.left = corner.x() + 62.0;
-    frame.top = corner.y() + 26.0;
-    frame.width = most.x();
-    frame.height = most.y();
-    if (panel.equal_aspect_) {
-      const double data_width = frame.data.x_max - frame.data.x_min;
-      const double data_height = frame.data.y_max - frame.data.y_min;
-      const double scale = std::min(frame.width / data_width, frame.height / data_height);
-      frame.width = scale * data_width;
-      frame.height = scale * data_height;
+  void stack_rows() {
+    const double least = 50.0 * points_per_mm * scale_;
+    const auto most = std::max<std::size_t>(1, static_cast<std::size_t>(width_ / least));
+    for (const auto& panels : figure_.rows) {
+      for (std::size_t i = 0; i < panels.size(); i += most) {
+        Row row;
+        for (std::size_t j = i; j < std::min(i + most, panels.size()); ++j) {
+          row.panels.push_back(&panels[j]);
+        }
+        rows_.push_back(row);
+      }
     }
-    return frame;
-  }
-
-  /// @return the lower right corner of what was drawn
-  Eigen::Vector2d panel_at(const Panel& panel, const Eigen::Vector2d& corner,
-                           const Eigen::Vector2d& most) {
-    const Frame frame = frame_of(panel, corner, most);
-    const std::string box = "<rect x=\"" + px(frame.left) + "\" y=\"" + px(frame.top) +
-                            "\" width=\"" + px(frame.width) + "\" height=\"" + px(frame.height) +
-                            '"';
-    const std::string clip = "clip" + std::to_string(++clips_);
-    svg_ += "<clipPath id=\"" + clip + "\">" + box + "/></clipPath>\n";
-    svg_ += "<g clip-path=\"url(#" + clip + ")\">\n";
-    const bool map = std::any_of(panel.shapes_.begin(), panel.shapes_.end(),
-                                 [](const auto& s) { return s.kind == Panel::Kind::heat_map; });
-    svg_ += box + " fill=\"" + (map ? unknown_colour : "#fbfbfb") + "\"/>\n";
-    for (const Panel::Shape& shape : panel.shapes_) draw(shape, frame);
-    svg_ += "</g>\n" + box + " fill=\"none\" stroke=\"#444444\"/>\n";
-    labels(panel, frame);
-    axes(panel, frame);
-    return {frame.left + frame.width + 16.0, frame.top + frame.height + 46.0};
-  }
-
-  void axes(const Panel& panel, const Frame& frame) {
-    const double bottom = frame.top + frame.height;
-    const std::string middle = " text-anchor=\"middle\"";
-    std::string marks;
-    const Ticks x_ticks = nice_ticks(frame.data.x_min, frame.data.x_max, frame.width / 60.0);
-    for (const double value : x_ticks.values) {
-      marks += "M" + px(frame.x(value)) + ' ' + px(bottom) + "v5";
-      text(frame.x(value), bottom + 19.0, fixed(value, x_ticks.decimals), middle);
+    for (int pass = 0; pass < 3; ++pass) {  // axes, their numbers, and the room that these take
+      for (Row& row : rows_) {
+        row.height = 0.0;
+        for (const Panel* panel : row.panels) {
+          row.height = std::max(row.height, wanted_height(*panel, axes_width(row)));
+        }
+      }
+      measure_margins();
     }
-    const Ticks y_ticks = nice_ticks(frame.data.y_min, frame.data.y_max, frame.height / 45.0);
-    for (const double value : y_ticks.values) {
-      marks += "M" + px(frame.left) + ' ' + px(frame.y(value)) + "h-5";
-      text(frame.left - 9.0, frame.y(value) + 4.5, fixed(value, y_ticks.decimals),
-           " text-anchor=\"end\"");
-    }
-    svg_ += "<path d=\"" + marks + "\" stroke=\"#444444\"/>\n";
-    text(frame.left + frame.width / 2.0, bottom + 39.0, panel.x_label_, middle);
-    const double x = frame.left - 46.0;
-    const double y = frame.top + frame.height / 2.0;
-    text(x, y, panel.y_label_, middle + " transform=\"rotate(-90 " + px(x) + ' ' + px(y) + ")\"");
-    text(frame.left, frame.top - 9.0, panel.title_, " font-weight=\"bold\"");
   }
 
-  void draw(const Panel::Shape& shape, const Frame& frame) {
-    using Kind = Panel::Kind;
-    switch (shape.kind) {
-      case Kind::line:
-      case Kind::polygon:
-      case Kind::strokes:
-        path(shape, frame);
-        break;
-      case Kind::marker:
-        svg_ += "<circle cx=\"" + px(frame.x(shape.points[0].x())) + "\" cy=\"" +
-                px(frame.y(shape.points[0].y())) + "\" r=\"5.5\"" + attributes(shape.style) +
-                "/>\n";
-        break;
-      case Kind::heat_map:
-        heat_map(shape, frame);
-        break;
-      case Kind::label:
-        return;  // labels come after all shapes
+  void measure_margins() {
+    std::vector<double> found;
+    for (const Row& row : rows_) {
+      found.resize(std::max(found.size(), row.panels.size()), 0.0);
+      for (std::size_t i = 0; i < row.panels.size(); ++i) {
+        found[i] = std::max(found[i], margin_of(*row.panels[i], row));
+      }
     }
-    add_to_legend(shape);
+    left_ = std::move(found);
   }
 
-  void path(const Panel::Shape& shape, const Frame& frame) {
-    std::string d;
-    bool pen_down = false;
-    for (std::size_t i = 0; i < shape.points.size(); ++i) {
-      if (!shape.points[i].allFinite()) {
-        pen_down = false;
+  /// Words beside axes like those of the first panel of a row are given once.
+  static bool repeats_words(const Panel& panel, const Row& row) {
+    const Panel& first = *row.panels.front();
+    return &panel != &first && panel.y_ticks() && panel.y_ticks() == first.y_ticks();
+  }
+
+  double margin_of(const Panel& panel, const Row& row) const {
+    if (repeats_words(panel, row)) return 4.0 * scale_;
+    const Rectangle view = view_in(panel, axes_width(row), row.height);
+    const double numbers = widest(y_ticks_of(panel, view, row.height, number()), number());
+    const double name = panel.y_label().empty() ? 0.0 : line();
+    const double most = 0.6 * inner() / static_cast<double>(row.panels.size());
+    return std::min(numbers + name + 6.5 * scale_, most);
+  }
+
+  /// Room left of the axes of each panel in a column.
+  double left(std::size_t column) const { return column < left_.size() ? left_[column] : 0.0; }
+
+  /// Width of the axes of each panel of a row.
+  double axes_width(const Row& row) const {
+    const auto count = static_cast<double>(row.panels.size());
+    double width = inner() - (count - 1.0) * gap() - count * right();
+    for (std::size_t i = 0; i < row.panels.size(); ++i) width -= left(i);
+    return std::max(10.0, width / count);
+  }
+  double right() const { return 8.0 * scale_; }
+
+  double wanted_height(const Panel& panel, double width) const {
+    const double least = panel.least_height() * scale_;
+    const double most = std::max(least, 80.0 * points_per_mm * scale_);
+    if (!panel.has_equal_aspect()) return std::clamp(panel.shape() * width, least, most);
+    const Rectangle view = panel.shown();
+    const double ratio = (view.y_max - view.y_min) / (view.x_max - view.x_min);
+    return std::max(least, std::clamp(ratio, 0.2, 1.1) * width);
+  }
+
+  /// What a panel shows in axes of this size.
+  Rectangle view_in(const Panel& panel, double width, double height) const {
+    const Rectangle view = panel.shown();
+    return panel.has_equal_aspect() && !panel.has_map() ? grown_to(view, width, height) : view;
+  }
+
+  // Heights of what is not axes.
+  bool has_title(const Row& row) const {
+    return std::any_of(row.panels.begin(), row.panels.end(),
+                       [](const Panel* panel) { return !panel->title().empty(); });
+  }
+  bool hides_x(const Row& row) const {
+    return std::all_of(row.panels.begin(), row.panels.end(),
+                       [](const Panel* panel) { return panel->hides_x(); });
+  }
+  /// Whether the names of y stand above the axes, as one is longer than its axis.
+  bool names_are_above() const {
+    for (const Row& row : rows_) {
+      for (const Panel* panel : row.panels) {
+        if (text_width(panel->y_label(), text()) > row.height + 6.0 * scale_) return true;
+      }
+    }
+    return false;
+  }
+  double head_of(const Row& row) const {
+    const double lines = (has_title(row) ? 1.0 : 0.0) + (names_are_above() ? 1.0 : 0.0);
+    return lines * line() + 3.0 * scale_;
+  }
+  double foot_of(const Row& row) const {
+    if (hides_x(row)) return 3.0 * scale_;
+    const bool named = std::any_of(row.panels.begin(), row.panels.end(),
+                                   [](const Panel* panel) { return !panel->x_label().empty(); });
+    return (named ? 2.0 : 1.0) * line() + 4.0 * scale_;
+  }
+
+  struct LegendLine {
+    std::vector<const Panel::Shape*> keys;
+  };
+  double key_width(const Panel::Shape& key) const {
+    return 18.0 * scale_ + text_width(key.text, number()) + 9.0 * scale_;
+  }
+  std::vector<LegendLine> legend_lines() const {
+    std::vector<LegendLine> lines;
+    double x = 0.0;
+    for (const Panel::Shape* key : keys_) {
+      const double width = key_width(*key);
+      if (lines.empty() || x + width > inner()) {
+        lines.emplace_back();
+        x = 0.0;
+      }
+      lines.back().keys.push_back(key);
+      x += width;
+    }
+    return lines;
+  }
+  std::vector<std::string> wrapped_note() const {
+    if (figure_.note.empty()) return {};
+    return wrapped(figure_.note, inner(), number());
+  }
+  std::vector<std::string> table_lines() const {
+    std::vector<std::string> lines;
+    for (const std::string& row : figure_.table) {
+      for (std::string& part : wrapped(row, inner(), number())) lines.push_back(std::move(part));
+    }
+    return lines;
+  }
+  double fixed_height() const {
+    double height = 2.0 * pad();
+    for (const Row& row : rows_) height += head_of(row) + foot_of(row) + gap();
+    if (figure_.colour_bar) height += 3.0 * line();
+    height += line() * static_cast<double>(legend_lines().size() + wrapped_note().size());
+    if (!wrapped_note().empty()) height += gap();
+    if (!figure_.table.empty()) {
+      height += gap() + line() * (1.0 + static_cast<double>(table_lines().size()));
+    }
+    return height;
+  }
+
+  bool fits() const {
+    return *height_ - fixed_height() >= 32.0 * scale_ * static_cast<double>(rows_.size());
+  }
+
+  /// Shares what is left of a given height among the rows.
+  void fit_height() {
+    for (int pass = 0; pass < 3; ++pass) {  // names above low axes take room, too
+      double sum = 0.0;
+      for (const Row& row : rows_) sum += row.height;
+      const double left =
+          std::max(4.0 * static_cast<double>(rows_.size()), *height_ - fixed_height());
+      for (Row& row : rows_) row.height *= left / sum;
+      measure_margins();
+    }
+  }
+
+  // ---- Drawing ----
+
+  void add(DrawnItem item) { drawing_.items.push_back(std::move(item)); }
+  void put(double x, double y, const std::string& content, double size, Anchor anchor,
+           bool bold = false, bool upright = false) {
+    if (!content.empty()) add(DrawnText{{x, y}, content, size, anchor, upright, bold});
+  }
+  Style thin(const std::string& colour) const { return {colour, 0.5 * scale_}; }
+  Style scaled(Style style) const {
+    style.width *= scale_;
+    for (double& length : style.dash) length *= scale_;
+    return style;
+  }
+
+  double draw_row(const Row& row, double top) {
+    double x = pad();
+    const double y = top + head_of(row);
+    const double width = axes_width(row);
+    for (std::size_t i = 0; i < row.panels.size(); ++i) {
+      const Panel& panel = *row.panels[i];
+      x += left(i);
+      Frame frame{view_in(panel, width, row.height), {x, y, width, row.height}, left(i)};
+      if (panel.has_map() && panel.has_equal_aspect()) shrink(frame);
+      draw_panel(panel, frame, row, top);
+      x += width + right() + gap();
+    }
+    return y + row.height + foot_of(row) + gap();
+  }
+
+  /// Axes as high and wide as the view asks for.
+  static void shrink(Frame& frame) {
+    const double per_metre = std::min(frame.box.width / (frame.data.x_max - frame.data.x_min),
+                                      frame.box.height / (frame.data.y_max - frame.data.y_min));
+    const double width = per_metre * (frame.data.x_max - frame.data.x_min);
+    const double height = per_metre * (frame.data.y_max - frame.data.y_min);
+    frame.box.top += frame.box.height - height;
+    frame.box.width = width;
+    frame.box.height = height;
+  }
+
+  void draw_panel(const Panel& panel, const Frame& frame, const Row& row, double top) {
+    const Box& box = frame.box;
+    const auto xs = x_ticks_of(panel, frame.data, box.width, number());
+    const auto ys = y_ticks_of(panel, frame.data, box.height, number());
+    if (!panel.has_map() && !panel.has_equal_aspect()) draw_grid(frame, ys);
+    add(Clip{box});
+    for (const Panel::Shape& shape : panel.shapes()) draw_shape(shape, frame);
+    add(Clip{});
+    add(DrawnPath{{{{box.left, box.top},
+                    {box.right(), box.top},
+                    {box.right(), box.bottom()},
+                    {box.left, box.bottom()}}},
+                  true,
+                  thin("#444444")});
+    for (const Panel::Shape& shape : panel.shapes()) draw_dots(shape, frame);
+    draw_labels(panel, frame);
+    if (!panel.hides_x()) draw_x(panel, frame, xs);
+    if (!repeats_words(panel, row)) draw_y(panel, frame, ys, names_are_above());
+    const double cell_right = box.left + axes_width(row) + right();
+    if (!panel.title().empty()) {
+      const double baseline = box.top - 3.5 * scale_ - (names_are_above() ? line() : 0.0);
+      put(box.left, std::max(baseline, top + 0.8 * text()),
+          fitted(panel.title(), cell_right - box.left, text(), true), text(), Anchor::start, true);
+    }
+  }
+
+  void draw_grid(const Frame& frame, const std::vector<Tick>& ys) {
+    for (const Tick& tick : ys) {
+      if (tick.second.empty() || tick.first <= frame.data.y_min || tick.first >= frame.data.y_max) {
         continue;
       }
-      const bool starts = !pen_down || (shape.kind == Panel::Kind::strokes && i % 2 == 0);
-      d += (starts ? "M" : "L") + frame.point(shape.points[i]);
-      pen_down = true;
+      const double y = frame.y(tick.first);
+      add(DrawnPath{{{{frame.box.left, y}, {frame.box.right(), y}}}, false, thin("#e4e4e4")});
     }
-    if (d.empty()) return;
-    if (shape.kind == Panel::Kind::polygon) d += "Z";
-    svg_ += "<path d=\"" + d + "\" stroke-linejoin=\"round\"" + attributes(shape.style) + "/>\n";
   }
 
-  void heat_map(const Panel::Shape& shape, const Frame& frame) {
-    const HeightMap& map = shape.map;
-    const double scale_x = map.cell_size * frame.width / (frame.data.x_max - frame.data.x_min);
-    const double scale_y = map.cell_size * frame.height / (frame.data.y_max - frame.data.y_min);
-    svg_ += "<g shape-rendering=\"crispEdges\" transform=\"translate(" + frame.point(map.origin) +
-            ") scale(" + fixed(scale_x, 6) + ' ' + fixed(-scale_y, 6) + ")\">\n";
-    for (const auto& [band, runs] : colour_runs(map, shape.bands)) {
-      svg_ +=
-          "<path fill=\"" + colour_of_band(band, shape.bands.size()) + "\" d=\"" + runs + "\"/>\n";
-    }
-    svg_ += "</g>\n";
-  }
-
-  void labels(const Panel& panel, const Frame& frame) {
-    std::vector<Rectangle> taken;
-    for (const Panel::Shape& shape : panel.shapes_) {
-      if (shape.kind != Panel::Kind::label) continue;
-      const double half = text_width(shape.text) / 2.0 + 3.0;
-      const double low = frame.left + half;
-      const double high = std::max(low, frame.left + frame.width - half);
-      const double x = std::clamp(frame.x(shape.points[0].x()), low, high);
-      const double wanted = frame.y(shape.points[0].y()) + 4.5;
-      double y = wanted;
-      const auto free = [&] {
-        const bool inside = y > frame.top + font && y < frame.top + frame.height - 4.0;
-        return inside && std::none_of(taken.begin(), taken.end(), [&](const Rectangle& box) {
-                 return x - half < box.x_max && x + half > box.x_min &&
-                        std::abs(y - box.y_min) < line_height;
-               });
-      };
-      for (int step = 1; !free() && step < 40; ++step) {
-        y = wanted + (step % 2 == 0 ? -1.0 : 1.0) * (step + 1) / 2 * 0.5 * line_height;
+  void draw_x(const Panel& panel, const Frame& frame, const std::vector<Tick>& ticks) {
+    const Box& box = frame.box;
+    const bool words = panel.x_ticks().has_value();
+    const double room = words && !ticks.empty()
+                            ? (box.width + right()) / static_cast<double>(ticks.size())
+                            : box.width;
+    for (const Tick& tick : ticks) {
+      const double x = frame.x(tick.first);
+      if (x < box.left - 0.1 || x > box.right() + 0.1) continue;
+      if (!words) {
+        add(DrawnPath{
+            {{{x, box.bottom()}, {x, box.bottom() + 2.5 * scale_}}}, false, thin("#444444")});
       }
-      taken.push_back({x - half, y, x + half, y});
-      text(x, y, shape.text,
-           " text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"3.5\" "
-           "stroke-linejoin=\"round\" paint-order=\"stroke\"");
+      put(x, box.bottom() + line(), fitted(tick.second, room, number()), number(), Anchor::middle);
+    }
+    const double cell = box.width + frame.margin + right();
+    const std::string name = fitted(panel.x_label(), cell, text());
+    const double half = 0.5 * text_width(name, text());
+    const double middle = std::clamp(box.left + 0.5 * box.width, pad() + half,
+                                     std::max(pad() + half, width_ - pad() - half));
+    put(middle, box.bottom() + 2.0 * line(), name, text(), Anchor::middle);
+  }
+
+  void draw_y(const Panel& panel, const Frame& frame, const std::vector<Tick>& ticks, bool above) {
+    const Box& box = frame.box;
+    for (const Tick& tick : ticks) {
+      const double y = frame.y(tick.first);
+      if (y < box.top - 0.1 || y > box.bottom() + 0.1) continue;
+      if (!panel.y_ticks()) {
+        add(DrawnPath{{{{box.left - 2.5 * scale_, y}, {box.left, y}}}, false, thin("#444444")});
+      }
+      const std::string shown = fitted(tick.second, frame.margin - 4.0 * scale_, number());
+      const double baseline =
+          std::clamp(y + 0.36 * number(), box.top + 0.5 * number(), box.bottom() + 0.4 * number());
+      put(box.left - 4.0 * scale_, baseline, shown, number(), Anchor::end);
+    }
+    if (above) {
+      const double room = box.width + right() + 0.5 * frame.margin;
+      put(box.left - 0.5 * frame.margin, box.top - 3.5 * scale_,
+          fitted(panel.y_label(), room, text()), text(), Anchor::start);
+      return;
+    }
+    const double half = 0.5 * text_width(panel.y_label(), text());
+    const double middle = std::max(box.top + 0.5 * box.height, half + pad());
+    put(box.left - frame.margin + 0.75 * line(), middle, panel.y_label(), text(), Anchor::middle,
+        false, true);
+  }
+
+  void draw_shape(const Panel::Shape& shape, const Frame& frame) {
+    Style style = scaled(shape.style);
+    switch (shape.kind) {
+      case Panel::Kind::map:
+        return draw_map(shape, frame);
+      case Panel::Kind::label:
+        return;
+      case Panel::Kind::dots:
+        return;
+      case Panel::Kind::span:
+        return draw_span(shape, frame);
+      case Panel::Kind::interval:
+        return draw_interval(frame.at(shape.points[0]), frame.at(shape.points[1]), style);
+      default:
+        break;
+    }
+    add(DrawnPath{parts_of(shape, frame), shape.kind == Panel::Kind::polygon, style});
+  }
+
+  /// Those within the axes, whole also at a border.
+  void draw_dots(const Panel::Shape& shape, const Frame& frame) {
+    if (shape.kind != Panel::Kind::dots) return;
+    for (const Eigen::Vector2d& point : shape.points) {
+      const Eigen::Vector2d at = frame.at(point);
+      if (!at.allFinite() || !frame.box.contains(at, 0.5)) continue;
+      add(DrawnCircle{at, scale_ * shape.radius, scaled(shape.style)});
     }
   }
 
-  void add_to_legend(const Panel::Shape& shape) {
-    if (shape.text.empty() || shape.kind == Panel::Kind::label) return;
-    const auto same = [&](const Panel::Shape* entry) { return entry->text == shape.text; };
-    if (std::none_of(legend_.begin(), legend_.end(), same)) legend_.push_back(&shape);
+  /// Unknown points interrupt a line.
+  static std::vector<Points> parts_of(const Panel::Shape& shape, const Frame& frame) {
+    std::vector<Points> parts;
+    bool interrupted = true;
+    for (std::size_t i = 0; i < shape.points.size(); ++i) {
+      if (!shape.points[i].allFinite()) {
+        interrupted = true;
+        continue;
+      }
+      if (interrupted || (shape.kind == Panel::Kind::strokes && i % 2 == 0)) parts.emplace_back();
+      interrupted = false;
+      parts.back().push_back(frame.at(shape.points[i]));
+    }
+    for (Points& part : parts) part = thinned(std::move(part));
+    return parts;
   }
 
-  /// Bands of equal height with their bounds. @return its right border
-  double colour_bar(const Eigen::Vector2d& corner, double bottom) {
-    const ColourBar& bar = *figure_.colour_bar;
-    const double height = std::clamp(bottom - corner.y(), 120.0, 300.0);
-    const auto count = static_cast<int>(bar.bands.size());
-    const double step = height / (2 * count + 1);
-    double width = 0.0;
-    for (int band = count; band >= -count; --band) {
-      const double y = corner.y() + step * (count - band);
-      svg_ += "<rect x=\"" + px(corner.x()) + "\" y=\"" + px(y) + "\" width=\"16\" height=\"" +
-              px(step + 0.5) + "\" fill=\"" + colour_of_band(band, bar.bands.size()) + "\"/>\n";
-      if (band == -count) break;
-      const std::size_t bound = static_cast<std::size_t>(band > 0 ? band - 1 : -band);
-      const std::string number = (band > 0 ? "+" : "−") + px(bar.bands[bound] / bar.unit);
-      text(corner.x() + 24.0, y + step + 4.5, number);
-      width = std::max(width, text_width(number));
-    }
-    svg_ += "<rect x=\"" + px(corner.x()) + "\" y=\"" + px(corner.y()) +
-            "\" width=\"16\" height=\"" + px(height) + "\" fill=\"none\" stroke=\"#444444\"/>\n";
-    const double x = corner.x() + 24.0 + width + 26.0;
-    const double y = corner.y() + height / 2.0;
-    text(x, y, bar.label,
-         " text-anchor=\"middle\" transform=\"rotate(-90 " + px(x) + ' ' + px(y) + ")\"");
-    return x + 6.0;
+  void draw_interval(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Style& style) {
+    if (!a.allFinite() || !b.allFinite()) return;
+    const Eigen::Vector2d along =
+        (b - a).norm() > 0.0 ? (b - a).normalized().eval() : Eigen::Vector2d(0.0, 1.0);
+    const Eigen::Vector2d cap = 2.2 * scale_ * Eigen::Vector2d(-along.y(), along.x());
+    add(DrawnPath{{{a, b}, {a - cap, a + cap}, {b - cap, b + cap}}, false, style});
   }
 
-  /// Legend, notes and bars. @return the lower right corner
-  Eigen::Vector2d column(const Eigen::Vector2d& corner) {
-    double y = corner.y();
-    double width = 0.0;
-    for (const Panel::Shape* entry : legend_) {
-      legend_sign(*entry, corner.x(), y - 4.5);
-      text(corner.x() + 34.0, y, entry->text);
-      width = std::max(width, 34.0 + text_width(entry->text));
-      y += line_height;
-    }
-    if (!legend_.empty()) y += 0.6 * line_height;
-    for (const std::string& note : figure_.notes) {
-      if (!note.empty()) text(corner.x(), y, note);
-      width = std::max(width, text_width(note));
-      y += note.empty() ? 0.5 * line_height : line_height;
-    }
-    double largest = 0.0;
-    for (const Bar& bar : figure_.bars) largest = std::max(largest, bar.value);
-    for (const Bar& bar : figure_.bars) {
-      constexpr double longest = 90.0;  // [px]
-      const double length = largest > 0.0 ? longest * bar.value / largest : 0.0;
-      svg_ += "<rect x=\"" + px(corner.x()) + "\" y=\"" + px(y - 10.0) + "\" width=\"" +
-              px(length) + "\" height=\"11\" fill=\"#0072b2\"/>\n";
-      text(corner.x() + longest + 8.0, y, bar.text);
-      width = std::max(width, longest + 8.0 + text_width(bar.text));
-      y += line_height;
-    }
-    return {corner.x() + width, y - line_height};
+  void draw_span(const Panel::Shape& shape, const Frame& frame) {
+    const double left = frame.x(shape.points[0].x());
+    const double right_end = frame.x(shape.points[1].x());
+    const Box& box = frame.box;
+    const double strip = 3.5 * scale_;
+    add(DrawnPath{{{{left, box.top},
+                    {right_end, box.top},
+                    {right_end, box.top + strip},
+                    {left, box.top + strip}}},
+                  true,
+                  shape.style});
+    add(DrawnPath{{{{right_end, box.top}, {right_end, box.bottom()}}}, false, thin("#c0c0c0")});
   }
 
-  void legend_sign(const Panel::Shape& entry, double x, double y) {
-    if (entry.kind == Panel::Kind::marker) {
-      svg_ += "<circle cx=\"" + px(x + 12.0) + "\" cy=\"" + px(y) + "\" r=\"5.5\"" +
-              attributes(entry.style) + "/>\n";
-    } else if (entry.style.fill != "none") {
-      svg_ += "<rect x=\"" + px(x) + "\" y=\"" + px(y - 6.0) + "\" width=\"24\" height=\"12\"" +
-              attributes(entry.style) + "/>\n";
+  void draw_map(const Panel::Shape& shape, const Frame& frame) {
+    add(DrawnCells{shape.style.fill,
+                   {cells(shape.grid, {0, 0, shape.grid.z.cols()}, frame, shape.grid.z.rows())}});
+    const Grid grid = thinned(shape.grid);
+    for (const auto& [colour, runs] : runs_by_colour(grid, shape.scale)) {
+      DrawnCells drawn{colour, {}};
+      for (const Run& run : runs) drawn.boxes.push_back(cells(grid, run, frame, 1));
+      add(std::move(drawn));
+    }
+  }
+
+  static Box cells(const Grid& grid, const Run& run, const Frame& frame, Eigen::Index rows) {
+    const auto corner = [&](Eigen::Index row, Eigen::Index col) {
+      return frame.at({grid.origin.x() + grid.cell.x() * static_cast<double>(col),
+                       grid.origin.y() + grid.cell.y() * static_cast<double>(row)});
+    };
+    const Eigen::Vector2d low = corner(run.row, run.first);
+    const Eigen::Vector2d high = corner(run.row + rows, run.first + run.length);
+    return {low.x(), high.y(), high.x() - low.x(), low.y() - high.y()};
+  }
+
+  void draw_labels(const Panel& panel, const Frame& frame) {
+    std::vector<Box> taken;
+    for (const Panel::Shape& shape : panel.shapes()) {
+      if (shape.kind != Panel::Kind::label) continue;
+      const double width = text_width(shape.text, number()) + 4.0 * scale_;
+      if (width > frame.box.width || frame.box.height < line()) continue;
+      const double low = frame.box.left + 0.5 * width;
+      const double x =
+          std::clamp(frame.x(shape.points[0].x()), low, frame.box.right() - 0.5 * width);
+      const double wanted = frame.y(shape.points[0].y()) + 0.36 * number();
+      for (int step = 0; step < 60; ++step) {
+        const double y = wanted + (step % 2 == 0 ? -0.5 : 0.5) * ((step + 1) / 2) * 0.5 * line();
+        const Box box{x - 0.5 * width, y - number(), width, line()};
+        if (!is_free(box, frame.box, taken)) continue;
+        taken.push_back(box);
+        DrawnText drawn{{x, y}, shape.text, number(), Anchor::middle};
+        drawn.halo = true;
+        add(std::move(drawn));
+        break;
+      }
+    }
+  }
+
+  static bool is_free(const Box& box, const Box& frame, const std::vector<Box>& taken) {
+    if (box.top < frame.top || box.bottom() > frame.bottom() + 0.1) return false;
+    return std::none_of(taken.begin(), taken.end(), [&](const Box& other) {
+      return box.left < other.right() && other.left < box.right() && box.top < other.bottom() &&
+             other.top < box.bottom();
+    });
+  }
+
+  // ---- Below the panels ----
+
+  double draw_legend(double y) {
+    for (const LegendLine& keys : legend_lines()) {
+      double width = -9.0 * scale_;
+      for (const Panel::Shape* key : keys.keys) width += key_width(*key);
+      double x = std::max(pad(), 0.5 * (width_ - width));
+      for (const Panel::Shape* key : keys.keys) {
+        draw_key(*key, x, y + 0.5 * line());
+        put(x + 18.0 * scale_, y + 0.5 * line() + 0.36 * number(),
+            fitted(key->text, width_ - pad() - x - 18.0 * scale_, number()), number(),
+            Anchor::start);
+        x += key_width(*key);
+      }
+      y += line();
+    }
+    return y;
+  }
+
+  void draw_key(const Panel::Shape& key, double x, double y) {
+    const double length = 14.0 * scale_;
+    const double half = 3.0 * scale_;
+    Style style = scaled(key.style);
+    if (key.kind == Panel::Kind::dots) {
+      add(DrawnCircle{{x + 0.5 * length, y}, scale_ * std::clamp(key.radius, 1.2, 3.0), style});
+    } else if (key.kind == Panel::Kind::interval) {
+      draw_interval({x, y}, {x + length, y}, style);
+    } else if (key.style.fill != "none") {
+      style.width = std::min(style.width, scale_);
+      add(DrawnPath{
+          {{{x, y - half}, {x + length, y - half}, {x + length, y + half}, {x, y + half}}},
+          true,
+          style});
     } else {
-      svg_ += "<path d=\"M" + px(x) + ' ' + px(y) + "h24\"" + attributes(entry.style) + "/>\n";
+      style.width = std::min(style.width, 2.5 * scale_);
+      add(DrawnPath{{{{x, y}, {x + length, y}}}, false, style});
     }
+  }
+
+  /// Colours from left to right, their numbers and what they are of.
+  double draw_colour_bar(double y) {
+    const ColourBar& bar = *figure_.colour_bar;
+    const double width = std::min(0.85 * inner(), 90.0 * points_per_mm * scale_);
+    const Box box{0.5 * (width_ - width), y, width, 6.0 * scale_};
+    if (bar.scale.bands.empty()) {
+      draw_even_colours(bar, box);
+    } else {
+      draw_bands(bar, box);
+    }
+    add(DrawnPath{{{{box.left, box.top},
+                    {box.right(), box.top},
+                    {box.right(), box.bottom()},
+                    {box.left, box.bottom()}}},
+                  true,
+                  thin("#444444")});
+    put(0.5 * width_, box.bottom() + 2.0 * line(), fitted(bar.label, inner(), text()), text(),
+        Anchor::middle);
+    return y + 3.0 * line();
+  }
+
+  void draw_even_colours(const ColourBar& bar, const Box& box) {
+    constexpr int steps = 40;
+    for (int i = 0; i < steps; ++i) {
+      const double value = bar.scale.low + (bar.scale.high - bar.scale.low) * (i + 0.5) / steps;
+      add(DrawnCells{bar.scale.colour(value),
+                     {{box.left + box.width * i / steps, box.top, box.width / steps, box.height}}});
+    }
+    const double low = bar.scale.low / bar.unit;
+    const double high = bar.scale.high / bar.unit;
+    for (const Tick& tick : nice_ticks(low, high, 6.0)) {
+      const double x = box.left + box.width * (tick.first - low) / (high - low);
+      put(x, box.bottom() + line() - 1.0 * scale_, tick.second, number(), Anchor::middle);
+    }
+  }
+
+  void draw_bands(const ColourBar& bar, const Box& box) {
+    const auto count = static_cast<int>(bar.scale.bands.size());
+    const double step = box.width / (2 * count + 1);
+    double widest_number = 0.0;
+    const auto number_of = [&](int band) {
+      const double bound = bar.scale.bands[static_cast<std::size_t>(std::abs(band) - 1)];
+      return (band > 0 ? "+" : "−") + short_number(bound / bar.unit, 2);
+    };
+    for (int band = 1; band <= count; ++band) {
+      widest_number = std::max(widest_number, text_width(number_of(band), number()));
+    }
+    const int every = static_cast<int>(std::ceil((widest_number + 2.0 * scale_) / step));
+    for (int band = -count; band <= count; ++band) {
+      const double left = box.left + step * (band + count);
+      add(DrawnCells{colour_of_band(band, bar.scale.bands.size()),
+                     {{left, box.top, step, box.height}}});
+      if (band == 0 || std::abs(band) % every != 0) continue;
+      const double x = band > 0 ? left : left + step;
+      put(x, box.bottom() + line() - 1.0 * scale_, number_of(band), number(), Anchor::middle);
+    }
+  }
+
+  double draw_lines(const std::vector<std::string>& lines, double y, double before) {
+    if (!lines.empty()) y += before;
+    for (const std::string& each : lines) {
+      y += line();
+      put(pad(), y - 0.3 * line(), each, number(), Anchor::start);
+    }
+    return y;
+  }
+
+  double draw_table(double y) {
+    y += line();
+    put(pad(), y - 0.3 * line(), fitted(figure_.title, inner(), text(), true), text(),
+        Anchor::start, true);
+    return draw_lines(table_lines(), y, 0.0);
   }
 
   const Figure& figure_;
-  std::string svg_;
-  std::vector<const Panel::Shape*> legend_;
-  int clips_ = 0;
+  double scale_;
+  double width_;
+  std::optional<double> height_ = {};
+  std::vector<Row> rows_;
+  std::vector<const Panel::Shape*> keys_;
+  std::vector<double> left_;  ///< room left of the axes in each column, for numbers and name of y
+  Drawing drawing_;
 };
 
-std::string to_svg(const Figure& figure) { return SvgWriter(figure).write(); }
+}  // namespace
 
-std::string diverging_colour(double value) {
-  constexpr std::array<std::array<int, 3>, 11> anchors = {{{0x67, 0x00, 0x1f},
-                                                           {0xb2, 0x18, 0x2b},
-                                                           {0xd6, 0x60, 0x4d},
-                                                           {0xf4, 0xa5, 0x82},
-                                                           {0xfd, 0xdb, 0xc7},
-                                                           {0xf7, 0xf7, 0xf7},
-                                                           {0xd1, 0xe5, 0xf0},
-                                                           {0x92, 0xc5, 0xde},
-                                                           {0x43, 0x93, 0xc3},
-                                                           {0x21, 0x66, 0xac},
-                                                           {0x05, 0x30, 0x61}}};
-  const double place = (std::clamp(value, -1.0, 1.0) + 1.0) / 2.0 * 10.0;
-  const auto below = std::min<std::size_t>(static_cast<std::size_t>(place), 9);
-  const double share = place - static_cast<double>(below);
-  std::string colour = "#";
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double mixed = (1.0 - share) * anchors[below][i] + share * anchors[below + 1][i];
-    const auto byte = static_cast<unsigned>(std::lround(mixed));
-    colour += "0123456789abcdef"[byte / 16];
-    colour += "0123456789abcdef"[byte % 16];
-  }
-  return colour;
-}
-
-std::vector<double> colour_bands(double least, double largest) {
-  std::vector<double> bands;
-  for (double decade = 1e-3; decade < 1e3; decade *= 10.0) {
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      const double bound = factor * decade;
-      if (bound < least * (1.0 - 1e-9)) continue;
-      if (bound >= largest && !bands.empty()) return bands;
-      bands.push_back(bound);
-    }
-  }
-  return bands;
-}
-
-std::string band_colour(double value, const std::vector<double>& bands) {
-  return colour_of_band(band_of(value, bands), bands.size());
-}
+Drawing lay_out(const Figure& figure, const SheetSize& size) { return Sheet(figure, size).draw(); }
 
 }  // namespace excavplan::tools

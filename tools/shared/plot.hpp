@@ -4,109 +4,130 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <excavplan/ground/height_map.hpp>
 
+#include "shared/colours.hpp"
+#include "shared/drawing.hpp"
+
 /// @file
-/// Plots as SVG text: panels with axes in one row or two, then a colour bar, a legend, lines of
-/// text and bars.
+/// Plots: panels with axes in rows, a colour bar, a legend and a table, laid out for a sheet.
 
 namespace excavplan::tools {
 
-using Points = std::vector<Eigen::Vector2d>;
-
-/// Colours are SVG colours; "none" draws nothing.
-struct Style {
-  std::string stroke = "#000000";
-  double width = 1.5;  ///< [px]
-  std::string fill = "none";
-  double opacity = 1.0;
-  std::string dash = {};  ///< SVG dash pattern, "6 4"
+/// Values on a grid of cells; unknown ones are NaN.
+struct Grid {
+  Eigen::Vector2d origin = {0.0, 0.0};  ///< corner of the first cell
+  Eigen::Vector2d cell = {1.0, 1.0};    ///< size of each
+  Eigen::ArrayXXd z;                    ///< rows along y
 };
 
-/// One pair of axes and what is drawn in it, in this order.
+/// One pair of axes and what is drawn in it, in this order. A legend text of "" gives no entry;
+/// equal entries of a figure appear once.
 class Panel {
  public:
-  Panel(std::string title, std::string x_label, std::string y_label);
-
-  /// A legend text of "" gives no entry; equal entries appear once.
-  void line(const Points& points, const Style& style, const std::string& legend = "");
-  void polygon(const Points& points, const Style& style, const std::string& legend = "");
-  /// Separate strokes from points 0 to 1, 2 to 3, ...
-  void strokes(const Points& ends, const Style& style, const std::string& legend = "");
-  void marker(const Eigen::Vector2d& at, const std::string& colour, const std::string& legend = "");
-  /// Text centred at a point; moved up or down where it would cover another label.
-  void label(const Eigen::Vector2d& at, const std::string& text);
-  /// Cells coloured by band_colour(); unknown cells stay grey, "not seen".
-  void heat_map(const HeightMap& map, const std::vector<double>& bands);
-
-  /// What the axes show; else all that is drawn.
-  void view(const Rectangle& view) { view_ = view; }
-  /// One metre is as long in x as in y.
-  void equal_aspect(bool equal) { equal_aspect_ = equal; }
-
- private:
-  friend class SvgWriter;
-  enum class Kind { line, polygon, strokes, marker, label, heat_map };
+  /// A number on an axis, or a word in its place.
+  using Tick = std::pair<double, std::string>;
+  enum class Kind { line, polygon, strokes, dots, interval, label, map, span };
   struct Shape {
     Kind kind;
     Points points;
     Style style;
     std::string text;  ///< of the legend, or the label
-    HeightMap map = {};
-    std::vector<double> bands = {};
+    double radius = 0.0;
+    Grid grid = {};
+    ColourScale scale = {};
   };
+
+  Panel(std::string title, std::string x_label, std::string y_label);
+
+  void line(const Points& points, const Style& style, const std::string& legend = "");
+  void polygon(const Points& points, const Style& style, const std::string& legend = "");
+  /// Separate strokes from points 0 to 1, 2 to 3, ...
+  void strokes(const Points& ends, const Style& style, const std::string& legend = "");
+  /// @param radius  [pt]
+  void dots(const Points& at, double radius, const Style& style, const std::string& legend = "");
+  /// A line with a short bar at either end.
+  void interval(const Eigen::Vector2d& low, const Eigen::Vector2d& high, const Style& style,
+                const std::string& legend = "");
+  /// Text centred at a point; moved up or down where it would cover another label.
+  void label(const Eigen::Vector2d& at, const std::string& text);
+  /// Coloured cells; unknown ones stay grey, `unknown` in the legend.
+  void map(const Grid& grid, const ColourScale& scale, const std::string& unknown = "not seen");
+  /// A strip along the upper border, from and to an x.
+  void span(double from, double to, const std::string& colour, const std::string& legend);
+
+  /// What the axes show; else all that is drawn.
+  void view(const Rectangle& view) { view_ = view; }
+  /// A metre is as long in x as in y.
+  void equal_aspect() { equal_aspect_ = true; }
+  /// Height over width of the axes, unless equal_aspect().
+  void shape(double height_over_width) { shape_ = height_over_width; }
+  /// Of the axes [pt], also if that is much.
+  void least_height(double height) { least_height_ = height; }
+  /// These instead of numbers.
+  void x_ticks(std::vector<Tick> ticks) { x_ticks_ = std::move(ticks); }
+  void y_ticks(std::vector<Tick> ticks) { y_ticks_ = std::move(ticks); }
+  /// The numbers of x are those of -x: it grows to the left.
+  void mirror_x() { mirrors_x_ = true; }
+  /// Without numbers and name of x, above a panel of the same x.
+  void hide_x() { hides_x_ = true; }
+
+  const std::string& title() const { return title_; }
+  const std::string& x_label() const { return x_label_; }
+  const std::string& y_label() const { return y_label_; }
+  const std::vector<Shape>& shapes() const { return shapes_; }
+  const std::optional<std::vector<Tick>>& x_ticks() const { return x_ticks_; }
+  const std::optional<std::vector<Tick>>& y_ticks() const { return y_ticks_; }
+  bool has_equal_aspect() const { return equal_aspect_; }
+  bool has_map() const;
+  bool hides_x() const { return hides_x_; }
+  bool mirrors_x() const { return mirrors_x_; }
+  double shape() const { return shape_; }
+  double least_height() const { return least_height_; }
+  /// The view, or all shapes with a small margin; never empty.
   Rectangle shown() const;
 
-  std::string title_;
-  std::string x_label_;
-  std::string y_label_;
+ private:
+  std::string title_, x_label_, y_label_;
   std::vector<Shape> shapes_;
   std::optional<Rectangle> view_;
-  bool equal_aspect_ = true;
+  std::optional<std::vector<Tick>> x_ticks_, y_ticks_;
+  bool equal_aspect_ = false;
+  bool hides_x_ = false;
+  bool mirrors_x_ = false;
+  double shape_ = 0.6;
+  double least_height_ = 40.0;
 };
 
-/// The colour scale of heat_map().
+/// The colour scale of the maps.
 struct ColourBar {
-  std::vector<double> bands;
+  ColourScale scale;
   std::string label;
   double unit = 1.0;  ///< the numbers on it are values over this
 };
 
-/// A bar with its text.
-struct Bar {
-  std::string text;
-  double value = 0.0;  ///< >= 0, drawn relative to the largest
-};
-
 struct Figure {
-  std::string title;
-  std::vector<Panel> panels;
-  std::optional<ColourBar> colour_bar;
-  std::vector<std::string> notes;  ///< an empty line is a gap
-  std::vector<Panel> lower = {};   ///< a second row of panels, of half the height
-  std::vector<Bar> bars = {};      ///< below the notes
+  std::string title;  ///< of the file; drawn above a table only
+  /// Panels of a row stand side by side where each is at least 50 mm wide, else below one another.
+  std::vector<std::vector<Panel>> rows;
+  std::optional<ColourBar> colour_bar = {};
+  std::string note = {};                ///< a sentence below the legend
+  std::vector<std::string> table = {};  ///< lines below all; an empty one is a gap
 };
 
-/// The whole file. Equal figures give equal bytes.
-std::string to_svg(const Figure& figure);
+/// Of a sheet that figures are laid out for [mm].
+struct SheetSize {
+  double width = 170.0;
+  std::optional<double> height = {};  ///< else as the figure needs
+};
 
-/// Text with &, <, > and quotes as XML and HTML want them.
-std::string xml_escaped(const std::string& text);
-
-/// Colour of a value from -1 to 1: red, white, blue, distinct for colour-blind readers too
-/// (ColorBrewer's RdBu, C. Brewer).
-std::string diverging_colour(double value);
-
-/// Upper bounds of bands in steps of 1, 2, 5, 10, ... from `least` on, as many as lie below
-/// `largest`, but one at least.
-std::vector<double> colour_bands(double least, double largest);
-
-/// Colour of a value: white below the first bound, then one of diverging_colour() for each band, so
-/// that centimetres show beside decimetres.
-std::string band_colour(double value, const std::vector<double>& bands);
+/// Texts have at least 6 pt; on sheets wider than 170 mm all grows with them. In a given height the
+/// panels become lower, and the last are left out where they do not fit.
+Drawing lay_out(const Figure& figure, const SheetSize& size = {});
 
 }  // namespace excavplan::tools

@@ -10,6 +10,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "shared/study_figure.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -130,17 +131,17 @@ std::string line_of(const StudyResult& result) {
 void declare_study(Arguments& arguments, StudyInputs& inputs) {
   arguments.place("study", inputs.folder,
                   "run the experiment under many conditions, one factor at a time, 30 runs each, "
-                  "and write study.json, runs.csv and study.md into this folder");
+                  "and write study.json, runs.csv, study.md and study.svg into this folder");
   arguments.only_if({[&inputs] { return inputs.folder.has_value(); }, "there is no --study"}, [&] {
     arguments.option("study-runs", inputs.runs, Quantity::ratio,
                      "factor on the number of runs of each condition");
   });
 }
 
-Outcome study(const Machine& machine, const StudyInputs& inputs, std::uint64_t seed,
-              std::uint64_t threads, Console& console) {
+Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& plots,
+              std::uint64_t seed, std::uint64_t threads, Console& console) {
   make_folder(*inputs.folder);
-  for (const char* name : {"/study.json", "/runs.csv", "/study.md"}) {
+  for (const char* name : {"/study.json", "/runs.csv", "/study.md", "/study.svg"}) {
     require_writable(*inputs.folder + name);
   }
   StudyOptions options;
@@ -164,6 +165,9 @@ Outcome study(const Machine& machine, const StudyInputs& inputs, std::uint64_t s
   write_file(*inputs.folder + "/study.json", outcome.json.dump(2) + "\n");
   write_file(*inputs.folder + "/runs.csv", runs_csv(results));
   write_file(*inputs.folder + "/study.md", table(results));
+  const Figure figure = study_figure(results);
+  write_file(*inputs.folder + "/study.svg", to_svg(lay_out(figure)));
+  for (const Plots::File& plot : plots.files) write_plot(plots, plot.file, figure, outcome.lines);
   return outcome;
 }
 

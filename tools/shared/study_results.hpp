@@ -8,6 +8,7 @@
 
 #include <excavplan/study/study.hpp>
 
+#include "shared/plots.hpp"
 #include "shared/tool.hpp"
 
 /// @file
@@ -23,8 +24,9 @@ struct StudyInputs {
 void declare_study(Arguments& arguments, StudyInputs& inputs);
 
 /// Runs the default study and writes its files into the folder: study.json with an entry per
-/// condition, runs.csv with a row per run, study.md with the table to read.
-Outcome study(const Machine& machine, const StudyInputs& inputs, std::uint64_t seed,
-              std::uint64_t threads, Console& console);
+/// condition, runs.csv with a row per run, study.md with the table to read, study.svg with the
+/// figure.
+Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& plots,
+              std::uint64_t seed, std::uint64_t threads, Console& console);
 
 }  // namespace excavplan::tools

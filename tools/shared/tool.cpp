@@ -184,6 +184,10 @@ std::string shown_name(const Arguments::Entry& entry) {
   return entry.positional ? entry.name : "--" + entry.name;
 }
 
+std::string file_in(const Arguments::Entry& entry, const std::string& text) {
+  return entry.file_in ? entry.file_in(text) : text;
+}
+
 void assign(const Arguments::Entry& entry, const ParsedWords::Given& given, StandardInput& input) {
   const std::string name = shown_name(entry);
   if (given.texts.empty()) return;
@@ -197,7 +201,7 @@ void assign(const Arguments::Entry& entry, const ParsedWords::Given& given, Stan
     if (!entry.positional && text.rfind("--", 0) == 0) {
       usage_error(name + " needs a value, got " + text);
     }
-    if ((entry.output || entry.place) && text == "-") {
+    if ((entry.output || entry.place) && file_in(entry, text) == "-") {
       usage_error(name + ": standard output is no file to write, ./- is one of that name");
     }
     entry.assign(entry.input && text == "-" ? input.path() : text);
@@ -212,7 +216,7 @@ std::vector<UsedFile> used_files(const std::vector<Arguments::Entry>& entries,
     const bool writes = entry.output || entry.place;
     if (!writes && !entry.input) continue;
     for (const std::string& text : words.of_entry[i].texts) {
-      files.push_back({shown_name(entry), text, writes});
+      files.push_back({shown_name(entry), file_in(entry, text), writes});
       if (!entry.beside) continue;
       for (const std::string& name : entry.beside(text)) {
         files.push_back({shown_name(entry), name, true});
@@ -240,11 +244,18 @@ void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& wor
       usage_error(shown_name(entries[i]) + " is missing: " + entries[i].help);
     }
   }
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!entries[i].check) continue;
+    for (const std::string& text : words.of_entry[i].texts) entries[i].check(text);
+  }
   refuse_shared_files(used_files(entries, words));
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (!entries[i].output || words.of_entry[i].texts.empty()) continue;
-    require_ending(entries[i], words.of_entry[i].text);
-    require_writable(words.of_entry[i].text);
+    if (!entries[i].output) continue;
+    for (const std::string& text : words.of_entry[i].texts) {
+      const std::string file = file_in(entries[i], text);
+      require_ending(entries[i], file);
+      require_writable(file);
+    }
   }
 }
 

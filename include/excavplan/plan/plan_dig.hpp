@@ -64,6 +64,8 @@ struct PlanSearch {
   /// What knowing an uncertain density would add, as a share of the worth >= 0; nothing for a
   /// density taken as known and for a search that was stopped.
   std::optional<double> value_of_knowing;
+  /// DigSearchResult::ranks; of an uncertain density those of the search in all of its soils.
+  std::vector<double> ranks = {};
 };
 
 /// Details of a look-up.

@@ -72,6 +72,8 @@ struct DigSearchResult {
   /// dig. Not those at 0.
   std::vector<const DigParameterInfo*> at_bound = {};
   SearchInsight insight;  ///< in the order of dig_parameter_table(), the start last if searched
+  /// DigObjective::rank() of each dig simulated, in the order asked; NaN: it stalled or failed.
+  std::vector<double> ranks = {};
 };
 
 /// The dig that a search came nearest to a feasible one with.

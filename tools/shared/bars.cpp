@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/bars.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excavplan::tools {
+namespace {
+
+constexpr double group_width = 0.72;  // of the distance of two groups
+
+void draw_bar(Panel& panel, double left, double width, const Bar& bar, const BarSeries& series) {
+  panel.polygon({{left, 0.0}, {left + width, 0.0}, {left + width, bar.value}, {left, bar.value}},
+                series.style, series.legend);
+  if (!bar.interval || !std::isfinite(bar.interval->first)) return;
+  const double middle = left + 0.5 * width;
+  panel.interval({middle, bar.interval->first}, {middle, bar.interval->second},
+                 {colours::black, 0.8}, "95 % interval");
+}
+
+double top_of(const BarGroup& group) {
+  double top = 0.0;
+  for (const Bar& bar : group.bars) {
+    top = std::max(top, bar.value);
+    if (bar.interval && std::isfinite(bar.interval->second)) {
+      top = std::max(top, bar.interval->second);
+    }
+  }
+  return top;
+}
+
+}  // namespace
+
+Panel bar_panel(const std::string& y_label, const std::vector<BarSeries>& series,
+                const std::vector<BarGroup>& groups) {
+  Panel panel("", "", y_label);
+  std::vector<Panel::Tick> names;
+  double top = 0.0;
+  for (const BarGroup& group : groups) top = std::max(top, top_of(group));
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const double width = group_width / static_cast<double>(std::max<std::size_t>(1, series.size()));
+    const auto middle = static_cast<double>(i);
+    names.emplace_back(middle, groups[i].name);
+    for (std::size_t j = 0; j < groups[i].bars.size(); ++j) {
+      draw_bar(panel, middle - 0.5 * group_width + width * static_cast<double>(j), width,
+               groups[i].bars[j], series[j]);
+    }
+    if (!groups[i].remark.empty()) {
+      panel.label({middle, top_of(groups[i]) + 0.07 * top}, groups[i].remark);
+    }
+  }
+  panel.x_ticks(std::move(names));
+  panel.view({-0.55, 0.0, static_cast<double>(groups.size()) - 0.45, top > 0.0 ? 1.18 * top : 1.0});
+  return panel;
+}
+
+}  // namespace excavplan::tools

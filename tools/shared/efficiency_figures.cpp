@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/efficiency_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/text.hpp"
+#include "shared/bars.hpp"
+#include "shared/efficiency_results.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+constexpr double within_95 = 1.96;
+
+std::string name_of(const DigEfficiency& run) {
+  return std::filesystem::path(run.file).stem().string();
+}
+
+/// "m³/mL"
+std::string unit_text(std::string symbol) {
+  const std::size_t cube = symbol.find("m3");
+  if (cube != std::string::npos) symbol.replace(cube, 2, "m³");
+  return symbol;
+}
+
+Bar bar_of(const DigEfficiency& run) {
+  const Measured value = run.value();
+  Bar bar{value.value};
+  if (std::isfinite(value.sd)) {
+    bar.interval = {value.value - within_95 * value.sd, value.value + within_95 * value.sd};
+  }
+  return bar;
+}
+
+Figure bars_figure(const DrawnRuns& drawn) {
+  const std::vector<DigEfficiency>& runs = drawn.runs;
+  Figure figure;
+  figure.title = "Efficiency of each run";
+  std::vector<BarGroup> groups;
+  for (const DigEfficiency& run : runs) {
+    groups.push_back({name_of(run), {bar_of(run)}, readable(run.value().value, run.value().sd)});
+  }
+  Panel panel = bar_panel("efficiency [" + unit_text(runs.front().symbol()) + "]",
+                          {{"", {"#444444", 0.6, "#9ecae1"}}}, groups);
+  figure.rows = {{panel}};
+  if (runs.size() == 2) {
+    const Measured gain = efficiency_gain(runs[0], runs[1], drawn.own_meters);
+    const auto [low, high] = gain_interval(gain);
+    figure.note = "Gain of the second run: " + readable(gain.value, gain.sd) + " %";
+    figure.note += std::isfinite(low)
+                       ? ", 95 % interval " + readable(low) + " .. " + readable(high) + " %."
+                       : ".";
+  }
+  return figure;
+}
+
+/// Rates of the log as a figure shows them.
+struct ShownRate {
+  const char* label;
+  double per_si;
+};
+
+ShownRate rate_of(Spent spent) {
+  if (spent == Spent::fuel) return {"fuel flow [mL/s]", 1.0};
+  return {"power [kW]", 1e-3};
+}
+
+Panel log_panel(const DigEfficiency& run, bool last) {
+  const ShownRate shown = rate_of(run.spent);
+  Panel panel(name_of(run), "time [s]", shown.label);
+  const std::vector<double> rate = run.log.rate();
+  const double start = run.log.time.front();
+  Points curve;
+  double top = 0.0;
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    curve.emplace_back(run.log.time[i] - start, shown.per_si * rate[i]);
+    top = std::max(top, curve.back().y());
+  }
+  const double end = curve.back().x();
+  if (run.phases != PhaseSource::none) {
+    for (const LogInterval& dig : run.log.digs) {
+      panel.span(dig.from - start, dig.to - start, colours::orange, "penetrate, drag and scoop");
+      Points area;
+      for (const Eigen::Vector2d& point : curve) {
+        const double time = point.x() + start;
+        if (time >= dig.from && time <= dig.to) area.push_back(point);
+      }
+      if (area.size() < 2) continue;
+      area.insert(area.begin(), {area.front().x(), 0.0});
+      area.emplace_back(area.back().x(), 0.0);
+      panel.polygon(area, {"none", 0.0, "#fbe7c0"});
+    }
+  }
+  panel.line(curve, {colours::blue, 1.2}, "log");
+  if (run.idle) {
+    const double idle = shown.per_si * run.idle->rate;
+    panel.line({{0.0, idle}, {end, idle}}, {colours::grey, 0.9, "none", 1.0, {3.0, 2.0}},
+               run.idle->is_found ? "idling, found in the log" : "idling, as stated");
+  }
+  panel.view({0.0, 0.0, end, 1.15 * std::max(top, 1e-9)});
+  panel.shape(0.32);
+  if (!last) panel.hide_x();
+  return panel;
+}
+
+Figure fuel_figure(const DrawnRuns& drawn) {
+  const std::vector<DigEfficiency>& runs = drawn.runs;
+  Figure figure;
+  figure.title = "Rate of fuel or energy over time";
+  double end = 0.0;
+  double top = 0.0;
+  std::vector<Panel> panels;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    panels.push_back(log_panel(runs[i], i + 1 == runs.size()));
+    end = std::max(end, panels.back().shown().x_max);
+    top = std::max(top, panels.back().shown().y_max);
+  }
+  for (Panel& panel : panels) {
+    panel.view({0.0, 0.0, end, top});
+    figure.rows.push_back({panel});
+  }
+  return figure;
+}
+
+}  // namespace
+
+FigureTable<DrawnRuns> run_figures(const Arguments::Use& of_logs) {
+  return {
+      {{"efficiency", "efficiency of each run with its 95 % interval", of_logs}, bars_figure},
+      {{"fuel", "fuel flow or power over time, with the dig and idling", of_logs}, fuel_figure}};
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <excavplan/survey/efficiency.hpp>
+
+#include "shared/plots.hpp"
+
+/// @file
+/// Figures of measure-efficiency, of one run or two.
+
+namespace excavplan::tools {
+
+struct DrawnRuns {
+  const std::vector<DigEfficiency>& runs;
+  bool own_meters = false;  ///< as efficiency_gain() takes it
+};
+
+/// efficiency and fuel. @param of_logs  possible for logs, not for sets of runs
+FigureTable<DrawnRuns> run_figures(const Arguments::Use& of_logs);
+
+}  // namespace excavplan::tools

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/plots.hpp"
+
+#include <algorithm>
+
+#include "base/files.hpp"
+#include "shared/render.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+constexpr double least_size = 40.0;  // [mm]
+constexpr double most_size = 500.0;  // [mm]
+
+/// "NAME=FILE": letters and dashes before the first '=' are a name.
+struct PlotWords {
+  std::string name;  ///< empty: the main figure
+  std::string file;
+};
+
+PlotWords words_of(const std::string& text) {
+  const std::size_t end =
+      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ-");
+  if (end == std::string::npos || end == 0 || text[end] != '=') return {"", text};
+  return {text.substr(0, end), text.substr(end + 1)};
+}
+
+bool is_possible(const FigureName& figure) {
+  return !figure.possible.holds || figure.possible.holds();
+}
+
+/// Nothing for the main figure.
+const FigureName* named(const std::string& text, const std::vector<FigureName>& figures) {
+  const PlotWords words = words_of(text);
+  if (words.file.empty()) usage_error("--plot: " + text + " names no file");
+  if (words.name.empty()) return nullptr;
+  const auto same = [&](const FigureName& figure) { return figure.name == words.name; };
+  const auto found = std::find_if(figures.begin(), figures.end(), same);
+  if (found != figures.end()) return &*found;
+  std::string all;
+  for (const FigureName& figure : figures) all += (all.empty() ? "" : ", ") + figure.name;
+  usage_error("--plot: there is no figure '" + words.name + "', expected one of " + all);
+}
+
+const FigureName& figure_of(const std::string& text, const std::vector<FigureName>& figures) {
+  const FigureName* figure = named(text, figures);
+  if (figure == nullptr) {
+    const auto first = std::find_if(figures.begin(), figures.end(), is_possible);
+    figure = first == figures.end() ? &figures.front() : &*first;
+  }
+  if (is_possible(*figure)) return *figure;
+  usage_error("--plot: no figure '" + figure->name + "': " + figure->possible.otherwise);
+}
+
+double side(const std::string& text) {
+  const double length = 1000.0 * parse_quantity("--plot-size", text, Quantity::length);
+  if (length >= least_size * (1.0 - 1e-9) && length <= most_size * (1.0 + 1e-9)) return length;
+  usage_error("--plot-size: " + text + " must be 40mm .. 500mm");
+}
+
+SheetSize sheet_size(const std::string& text) {
+  const std::vector<std::string> sides = split(text, ',');
+  if (sides.size() > 2) {
+    usage_error("--plot-size: '" + text + "' must be a width, or width,height");
+  }
+  SheetSize size{side(sides[0]), {}};
+  if (sides.size() == 2) size.height = side(sides[1]);
+  return size;
+}
+
+std::string help_of(const std::vector<FigureName>& figures) {
+  std::string help = "draw a figure into this file; NAME:";
+  for (const FigureName& figure : figures) {
+    help += (help.back() == ':' ? " " : "; ") + figure.name + ", " + figure.help +
+            (&figure == &figures.front() ? " (default)" : "");
+  }
+  return help + ". May be given several times";
+}
+
+}  // namespace
+
+bool Plots::has(const std::string& figure) const {
+  return std::any_of(files.begin(), files.end(),
+                     [&](const File& file) { return file.figure == figure; });
+}
+
+void declare_plots(Arguments& arguments, Plots& plots, const std::vector<FigureName>& figures) {
+  Arguments::Entry plot;
+  plot.name = "plot";
+  plot.placeholder = "[NAME=]FILE.svg|png|pdf";
+  plot.help = help_of(figures);
+  plot.output = true;
+  plot.repeated = true;
+  plot.endings = image_endings();
+  plot.file_in = [](const std::string& text) { return words_of(text).file; };
+  plot.assign = [figures](const std::string& text) { named(text, figures); };
+  plot.check = [&plots, figures](const std::string& text) {
+    const std::string file = words_of(text).file;
+    plots.files.push_back({figure_of(text, figures).name, file});
+    require_fonts(file);
+  };
+  arguments.add(plot);
+  arguments.only_if({[&plots] { return !plots.files.empty(); }, "there is no --plot"}, [&] {
+    Arguments::Entry size;
+    size.name = "plot-size";
+    size.placeholder = "LENGTH[,LENGTH]";
+    size.default_text = "170mm";
+    size.help = "width of the plots, or width and height, that they are laid out for [m]";
+    size.assign = [&plots](const std::string& text) { plots.size = sheet_size(text); };
+    arguments.add(size);
+    arguments.flag("plot-table", plots.table, "put the table of the results below the plots");
+  });
+}
+
+void write_plot(const Plots& plots, const std::string& file, Figure figure,
+                const std::vector<std::string>& table) {
+  if (plots.table) figure.table = table;
+  write_file(file, image_of(lay_out(figure, plots.size), file));
+}
+
+}  // namespace excavplan::tools
