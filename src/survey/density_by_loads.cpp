@@ -11,6 +11,7 @@
 #include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "soil/sound_soil.hpp"
 #include "survey/joined_density.hpp"
 
 namespace excavplan {
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double step = 10.0;         // of density [%]; ours
 constexpr std::size_t draws = 40;     // ours
+constexpr double within = 0.99;       // of the limits of friction; ours
 constexpr double least_slope = 1e-4;  // of the logarithm [1/%]: such loads have no weight; ours
 
 /// Work of the joints, that against the soil times a factor [J].
@@ -52,12 +54,18 @@ SoilKind drawn_strength(const SoilKind& soil, const StrengthScatter& scatter, st
   Random random(seed);
   const auto factor = [&random](double sd) { return std::exp(sd * random.normal()); };
   SoilKind drawn = soil;
-  drawn.cohesion_loosest *= factor(scatter.cohesion);
+  drawn.cohesion_loosest =
+      std::min(most_cohesion, soil.cohesion_loosest * factor(scatter.cohesion));
   drawn.adhesion_ratio = std::min(1.0, soil.adhesion_ratio * factor(scatter.adhesion_ratio));
-  const double friction = factor(scatter.friction);
+  const double densest = soil.friction_loosest + soil.friction_gain;
+  const double friction =
+      std::clamp(factor(scatter.friction),
+                 flattest_friction / (within * std::min(soil.friction_loosest, densest)),
+                 within * steepest_friction / std::max(soil.friction_loosest, densest));
   drawn.friction_loosest *= friction;
   drawn.friction_gain *= friction;
-  drawn.cone_index_reference *= factor(scatter.cone_index);
+  drawn.cone_index_reference = std::clamp(soil.cone_index_reference * factor(scatter.cone_index),
+                                          least_cone_index, most_cone_index);
   return drawn;
 }
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/survey/density_by_loads.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -28,13 +30,14 @@ class DensityByLoads : public testing::Test {
     test::Coverage loads, scans, both;
     int disagree = 0;
 
-    void print(double scans_sd) const {
+    void print(const std::string& soil, double scans_sd) const {
       const auto text = [](const test::Coverage& sum) {
         return readable(100.0 * sum.share(), 3) + " % / " + readable(sum.rms(), 3) + " / " +
                readable(sum.mean_sd(), 3);
       };
-      std::cout << "  scans to " << readable(scans_sd, 2) << " points, inside / rms / sd: loads "
-                << text(loads) << ", scans " << text(scans) << ", both " << text(both) << '\n';
+      std::cout << "  " << soil << ", scans to " << readable(scans_sd, 2)
+                << " points, inside / rms / sd: loads " << text(loads) << ", scans " << text(scans)
+                << ", both " << text(both) << '\n';
     }
   };
 
@@ -46,33 +49,41 @@ class DensityByLoads : public testing::Test {
     return simulator.make(digger_, soil, density)->dig(ground_, path_).energy.total;
   }
 
-  /// Digs in drawn soils of all densities; the scans have normal errors.
-  Sums runs(const SoilKind& kind, const SimulatorKind& simulator, int count,
-            double scans_sd) const {
+  /// Digs of the other simulator in drawn soils of all densities; the scans have normal errors.
+  std::vector<Sums> runs(const SoilKind& kind, int count,
+                         const std::vector<double>& scans_sds) const {
     const WorkOverDensity curve = expected(kind);
-    Sums sums;
+    std::vector<Sums> all(scans_sds.size());
     for (int run = 0; run < count; ++run) {
       Random random(static_cast<std::uint64_t>(run), 9);
       const SoilKind soil = drawn_strength(drawn_soil(kind, {}, random.bits()), {}, random.bits());
       const double truth = 100.0 * (run + random.uniform()) / count;
       const double meter = 1.0 + 0.02 * random.normal();
-      const double measured = work(soil, truth, simulator) * meter;
-      RelativeDensity scans;
-      scans.raw_percent = truth + scans_sd * random.normal();
-      scans.percent = std::clamp(scans.raw_percent, 0.0, 100.0);
-      scans.sd_given_law_percent = scans_sd;
-      set_error(scans, scans_sd);
-      const LoadsDensity found = density_by_loads(curve, {measured, 0.02 * measured}, scans);
-      RelativeDensity alone;
-      alone.percent = found.density_percent.value;
-      alone.sd_percent = found.density_percent.sd;
-      alone.interval_percent = found.interval_percent;
-      sums.loads.add(alone, truth);
-      sums.scans.add(scans, truth);
-      sums.both.add(found.density, truth);
-      sums.disagree += found.disagrees();
+      const double measured = work(soil, truth, simulator_kinds().back()) * meter;
+      const double scans_error = random.normal();
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const RelativeDensity scans = by_scans(truth + scans_sds[i] * scans_error, scans_sds[i]);
+        const LoadsDensity found = density_by_loads(curve, {measured, 0.02 * measured}, scans);
+        RelativeDensity alone;
+        alone.percent = found.density_percent.value;
+        alone.sd_percent = found.density_percent.sd;
+        alone.interval_percent = found.interval_percent;
+        all[i].loads.add(alone, truth);
+        all[i].scans.add(scans, truth);
+        all[i].both.add(found.density, truth);
+        all[i].disagree += found.disagrees();
+      }
     }
-    return sums;
+    return all;
+  }
+
+  static RelativeDensity by_scans(double percent, double sd) {
+    RelativeDensity density;
+    density.raw_percent = percent;
+    density.percent = std::clamp(percent, 0.0, 100.0);
+    density.sd_given_law_percent = sd;
+    set_error(density, sd);
+    return density;
   }
 
   const Machine machine_ = load_machine(find_data_file("machines/zx120.json"));
@@ -97,25 +108,28 @@ TEST_F(DensityByLoads, HarderSoilTakesMoreWorkAndSoilsScatter) {
 }
 
 TEST_F(DensityByLoads, IntervalsHoldTheTruthInDigsOfTheOtherSimulator) {
-  for (const double scans_sd : {3.0, 10.0}) {
-    const Sums sums = runs(loam_, simulator_kinds().back(), 200, scans_sd);
-    sums.print(scans_sd);
-    for (const test::Coverage& each : {sums.loads, sums.both}) {
-      EXPECT_GE(each.share(), 0.90);
-      EXPECT_LE(each.share(), 0.99);
+  const std::vector<double> scans_sds = {3.0, 10.0, 20.0};
+  for (const SoilLaw& kind : shipped_soil_laws()) {
+    SCOPED_TRACE(kind.soil.name);
+    const std::vector<Sums> all = runs(kind.soil, 200, scans_sds);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Sums& sums = all[i];
+      sums.print(kind.soil.name, scans_sds[i]);
+      for (const test::Coverage& each : {sums.loads, sums.both}) {
+        EXPECT_GE(each.share(), 0.90);
+        EXPECT_LE(each.share(), 0.99);
+      }
+      EXPECT_LT(sums.both.rms(), sums.scans.rms());
+      EXPECT_LT(sums.both.mean_sd(), sums.scans.mean_sd());
+      EXPECT_LE(sums.disagree, 5);
     }
-    EXPECT_LT(sums.both.rms(), sums.scans.rms());
-    EXPECT_LT(sums.both.mean_sd(), sums.scans.mean_sd());
-    EXPECT_LE(sums.disagree, 5);
   }
 }
 
 TEST_F(DensityByLoads, LoadsOfAnotherDigAreNotUsedAndEndTrust) {
   const WorkOverDensity curve = expected(loam_);
   const double usual = std::exp(curve.at(40.0).log_work);
-  RelativeDensity scans;
-  scans.percent = scans.raw_percent = 40.0;
-  set_error(scans, 3.0);
+  const RelativeDensity scans = by_scans(40.0, 3.0);
   const LoadsDensity near = density_by_loads(curve, {1.2 * usual, 0.02 * usual}, scans);
   EXPECT_FALSE(near.disagrees());
   EXPECT_TRUE(near.density.trustworthy);
@@ -126,6 +140,22 @@ TEST_F(DensityByLoads, LoadsOfAnotherDigAreNotUsedAndEndTrust) {
   EXPECT_FALSE(far.density.trustworthy);
   EXPECT_EQ(far.density.percent, 40.0);
   EXPECT_EQ(far.weight, 0.0);
+}
+
+TEST_F(DensityByLoads, ADrawnSoilIsASoil) {
+  SoilKind hard = loam_;
+  hard.friction_gain = 1.05 - hard.friction_loosest;
+  hard.cohesion_loosest = hard.cone_index_reference = 1e6;
+  hard.adhesion_ratio = 1.0;
+  SoilKind soft = loam_;
+  soft.friction_loosest = 0.01;
+  soft.cone_index_reference = 1.0;
+  const StrengthScatter wide = {1.0, 1.0, 1.0, 1.0, 0.2};
+  for (const SoilKind& kind : {hard, soft, loam_}) {
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+      EXPECT_NO_THROW(require_soil(drawn_strength(kind, wide, seed)));
+    }
+  }
 }
 
 TEST_F(DensityByLoads, RefusesWorkAndScatterThatAreNone) {
