@@ -7,6 +7,7 @@
 #include "shared/recordings.hpp"
 #include "shared/results.hpp"
 #include "shared/scans.hpp"
+#include "shared/second_densities.hpp"
 #include "shared/soil_inputs.hpp"
 #include "shared/survey_planning.hpp"
 #include "shared/tool.hpp"
@@ -39,9 +40,8 @@ struct Inputs {
   MethodInputs method;
   bool still = false;
   std::optional<std::string> plan_survey;
-  std::optional<DigParameters> dug_path;
-  std::optional<double> dug_start;
   SoilInputs soil;
+  SecondDensities second;
   Plots plots;
   std::optional<std::string> report;
 };
@@ -71,12 +71,8 @@ void declare_estimate(Arguments& arguments, Inputs& inputs) {
   declare_soil(arguments, inputs.soil);
   arguments.only_if({[&inputs] { return inputs.method.uses("surface"); },
                      "--method paper has no error to weigh a second density by"},
-                    [&] { declare_payload(arguments, inputs.soil); });
-  arguments.option("dug-path", inputs.dug_path,
-                   "the path that was dug: the law is then one of digs along it");
-  arguments.option("dug-start", inputs.dug_start, Quantity::length,
-                   "x at which that path enters the ground: measures the soil that fell back into "
-                   "the cut; needs scans in the site frame");
+                    [&] { inputs.second.declare(arguments); });
+  declare_dug_path(arguments, inputs.method);
   declare_machine_in_view(arguments, inputs.frames.view);
   declare_plots(arguments, inputs.plots, names_of(estimate_figures()));
   arguments.report(inputs.report);
@@ -102,8 +98,7 @@ DigScans scans_of(const Inputs& inputs, ScanReport& report) {
 DensityOptions options_of(const Inputs& inputs, const Machine& machine) {
   DensityOptions options = inputs.options;
   options.registered = !inputs.still;
-  apply_method(inputs.method, options);
-  if (inputs.dug_path) options.dug_path = DugPath{machine, *inputs.dug_path, inputs.dug_start};
+  apply_method(inputs.method, machine, options);
   return options;
 }
 
@@ -111,18 +106,19 @@ Outcome work_on_scans(const Inputs& inputs) {
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
     usage_error("--dump-before and --dump-after must be given together");
   }
-  if (inputs.dug_start && !inputs.dug_path) usage_error("--dug-start needs --dug-path");
   ScanReport report;
   const DigScans scans = scans_of(inputs, report);
   const Machine machine = machine_named(inputs.frames.view.machine);
   DensityOptions options = options_of(inputs, machine);
   const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
+  inputs.second.apply_to(options);
   const auto by_method = [&] { return estimate(inputs.method, scans, law, options); };
   const BothEstimates both =
       naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
   const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   Outcome outcome = estimate_outcome(counts, options.soil);
   add_machine_warnings(counts, law, machine, scans.before.unit, outcome);
+  inputs.second.add_warnings(counts, outcome);
   report.add_to(outcome);
   draw_estimate(inputs.plots, inputs.report, counts, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);

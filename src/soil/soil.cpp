@@ -16,9 +16,6 @@
 namespace excavplan {
 namespace {
 
-constexpr double steepest_friction = 1.05;  // 60 deg; no soil has more [rad]
-// The resistance has terms of cohesion over its tangent; ours [rad].
-constexpr double flattest_friction = 0.01;
 constexpr double least_overburden_depth = 0.01;  // the stress law ends here: q -> 0 at the surface
 constexpr double pascal_per_kilopascal = 1000.0;
 
@@ -36,7 +33,7 @@ constexpr SoilNumber soil_numbers[] = {
     {"void_ratio_max", &SoilKind::void_ratio_max, 0.01, most_void_ratio},
     {"void_ratio_min", &SoilKind::void_ratio_min, 0.01, most_void_ratio},
     {"void_ratio_loose", &SoilKind::void_ratio_loose, 0.01, most_void_ratio},
-    {"cohesion_loosest_pa", &SoilKind::cohesion_loosest, 0.0, 1e6},
+    {"cohesion_loosest_pa", &SoilKind::cohesion_loosest, 0.0, most_cohesion},
     {"cohesion_growth", &SoilKind::cohesion_growth, 0.0, 10.0},
     {"friction_loosest_rad", &SoilKind::friction_loosest, flattest_friction, steepest_friction},
     {"friction_gain_rad", &SoilKind::friction_gain, -steepest_friction, steepest_friction},
@@ -45,12 +42,12 @@ constexpr SoilNumber soil_numbers[] = {
     {"angle_of_repose_rad", &SoilKind::angle_of_repose, 0.05, steepest_friction}};
 
 constexpr SoilNumber numbers_by_density[] = {
-    {"reference_pa", &SoilKind::cone_index_reference, 1.0, 1e9},
+    {"reference_pa", &SoilKind::cone_index_reference, least_cone_index, most_cone_index},
     {"rate_m3_per_kg", &SoilKind::cone_index_rate, 0.0, 0.1},
     {"reference_density_kg_m3", &SoilKind::cone_index_reference_density, 1.0, 1e4}};
 
 constexpr SoilNumber numbers_by_stress[] = {
-    {"reference_pa", &SoilKind::cone_index_reference, 1.0, 1e9},
+    {"reference_pa", &SoilKind::cone_index_reference, least_cone_index, most_cone_index},
     {"rate", &SoilKind::cone_index_rate, 0.0, 20.0},
     {"stress_exponent", &SoilKind::cone_index_stress_exponent, 0.0, 2.0}};
 

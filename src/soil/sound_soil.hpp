@@ -10,6 +10,12 @@ namespace excavplan {
 
 /// Of any soil, also a loose one; ours.
 constexpr double most_void_ratio = 20.0;
+constexpr double most_cohesion = 1e6;       ///< of the loosest state; ours [Pa]
+constexpr double steepest_friction = 1.05;  ///< 60 deg; no soil has more [rad]
+/// The resistance has terms of cohesion over its tangent; ours [rad].
+constexpr double flattest_friction = 0.01;
+constexpr double least_cone_index = 1.0;  ///< of a law's reference; ours [Pa]
+constexpr double most_cone_index = 1e9;   ///< likewise
 
 /// bank_state_of_void_ratio() of a soil and a void ratio that were checked before.
 SoilState checked_bank_state(const SoilKind& soil, double void_ratio);

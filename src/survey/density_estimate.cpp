@@ -167,18 +167,23 @@ std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& sur
 
 // ---- What is known beside the volumes ---------------------------------------------------------
 
+/// The path that was dug, on the ground before it.
+DigPath path_of(const DugPath& dug, const HeightMap& before) {
+  const auto path = make_dig_path(dug.machine, dug.parameters, *dug.start_x,
+                                  profile_under_bucket(before, dug.machine));
+  if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
+    throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
+  }
+  return std::get<DigPath>(path);
+}
+
 /// Loose soil on the floor of the path that was dug.
 Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const VolumeChange& change) {
   const HeightMap& before = surfaces.before.height;
   HeightMap after = realigned(surfaces.after.height, surfaces.alignment);
   const AreaChange& area = change.areas.front();
   after.z = area.difference.z.isNaN().select(after.z - area.datum, before.z + area.difference.z);
-  const auto path = make_dig_path(dug.machine, dug.parameters, *dug.start_x,
-                                  profile_under_bucket(before, dug.machine));
-  if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
-    throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
-  }
-  return measure_fallback(dug.machine, std::get<DigPath>(path), before, after);
+  return measure_fallback(dug.machine, path_of(dug, before), before, after);
 }
 
 /// Nothing where the start of the dug path is not known.
@@ -186,6 +191,27 @@ std::optional<Fallback> fallback_of(const DensityOptions& options, const Surface
                                     const VolumeChange& change) {
   if (!options.dug_path || !options.dug_path->start_x) return std::nullopt;
   return fallback_of(*options.dug_path, surfaces.dig.surfaces, change);
+}
+
+/// Work of the joints over density in digs on the ground that was dug; a warning where the scan
+/// does not show enough of it.
+void add_work(const DensityOptions& options, const Surfaces& surfaces, LawsForDig& laws) {
+  if (!options.joint_work) return;
+  constexpr double cell = 0.05;
+  constexpr double widest_gap = 0.3;  // that is filled; ours [m]
+  const DugPath& dug = *options.dug_path;
+  const HeightMap& before = surfaces.dig.surfaces.before.height;
+  try {
+    const Terrain ground =
+        undisturbed(resampled(before, planning_extent(dug.machine), cell, widest_gap));
+    const DigPath path = path_of(dug, before);
+    const LoadedDig dig = {dug.machine, path, ground, *options.soil.kind, options.soil.scatter};
+    laws.work = work_over_density(dig, laws.law.freed_form, options.threads);
+  } catch (const Error& error) {
+    laws.warnings.push_back({"loads_not_used", std::string("the dig of the joint loads cannot be "
+                                                           "simulated on the scanned ground: ") +
+                                                   error.what()});
+  }
 }
 
 Warning warning_of(const BlockReport& report) {
@@ -242,6 +268,12 @@ void check(const DensityLaw& law, const DensityOptions& options) {
     require_in("weight of a soil", possible.weight, 0.0, 1.0);
   }
   if (options.payload_mass) require_measured("payload_mass [kg]", *options.payload_mass);
+  if (options.joint_work) {
+    require_measured("joint_work [J]", *options.joint_work);
+    require(
+        options.dug_path && options.dug_path->start_x && options.soil.kind && !options.soil.unknown,
+        "joint_work needs the path that was dug, its start and the kind of soil");
+  }
   if (const auto& water = options.soil.water_content) {
     require(water->value >= 0.0 && water->value <= 10.0, "water_content", water->value,
             "in 0 .. 10, a share of the dry mass: 12 % is 0.12");
@@ -266,7 +298,8 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
 
   DensityEstimate known;  // whatever the method
   known.fallback = fallback_of(options, surfaces, surface);
-  const LawsForDig laws = laws_for_dig(law, options, known.fallback);
+  LawsForDig laws = laws_for_dig(law, options, known.fallback);
+  add_work(options, surfaces, laws);
   known.law = laws.law;
   known.cell_size = seen.cell_size;
   known.machine_points = seen.machine_points();

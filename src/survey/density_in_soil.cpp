@@ -10,6 +10,7 @@
 #include <excavplan/ground/bulking.hpp>
 
 #include "base/normal_mixture.hpp"
+#include "survey/joined_density.hpp"
 
 namespace excavplan {
 namespace {
@@ -19,13 +20,6 @@ constexpr double real_weight = 0.05;  // of a soil that the site may have; ours
 struct RawDensity {
   double sd = 0.0;  ///< without the excess over 0 .. 100 %, and without disagreement
   DensityInSoil found;
-};
-
-/// Densities by law and payload, in this order, and their covariance.
-struct TwoDensities {
-  Eigen::Vector2d percent;
-  Eigen::Matrix2d covariance;     ///< [points^2]
-  Eigen::Matrix2d by_scans = {};  ///< the part of it by volumes, fallback and mass
 };
 
 /// Finds the density by the payload and joins it with that by the law.
@@ -60,7 +54,7 @@ class PayloadReader {
     const double by_law = answer.found.density.raw_percent;
     weigh(by_law);
     TwoDensities both{{by_law, density_}, error_by_scans()};
-    both.by_scans = both.covariance;
+    both.by_measurement = both.covariance;
     both.covariance += density_scatter(soil_, law_.freed_form, 0.5 * (by_law + density_), scatter_);
     add_path(residual_sd_at(law_.form, by_law), both);
     state(both, answer.found);
@@ -125,7 +119,7 @@ class PayloadReader {
   /// Scatter of the law beyond that of the soils: of other paths, where the fallback is the law's,
   /// which then errs in the payload's density too.
   void add_path(double law_scatter, TwoDensities& both) const {
-    const double of_soils = both.covariance(0, 0) - both.by_scans(0, 0);
+    const double of_soils = both.covariance(0, 0) - both.by_measurement(0, 0);
     const double rest = law_scatter * law_scatter - of_soils;
     if (!(rest > 0.0)) return;
     const double shared = dig_.fallback ? 0.0 : per_log_ / k_ / density_slope(law_.freed_form, k_);
@@ -139,7 +133,7 @@ class PayloadReader {
     payload.mass = mass_;
     payload.dug_mass = {dug * mass_.value, dug * mass_.sd};
     payload.bulk_density = {bulk_density_,
-                            bulk_density_ * std::sqrt(both.by_scans(1, 1)) / per_log_};
+                            bulk_density_ * std::sqrt(both.by_measurement(1, 1)) / per_log_};
     payload.law_density_percent = {both.percent(0), std::sqrt(both.covariance(0, 0))};
     payload.density_percent = {both.percent(1), std::sqrt(both.covariance(1, 1))};
   }
@@ -148,19 +142,16 @@ class PayloadReader {
   /// too small: the deviation is multiplied by the Birge ratio, the root of chi^2 per degree of
   /// freedom (Birge 1932, Phys. Rev. 40, 207), of which there is one.
   static void join(const TwoDensities& both, RawDensity& answer) {
-    const Eigen::Matrix2d& c = both.covariance;
-    const double variance = c(0, 0) + c(1, 1) - 2.0 * c(0, 1);  // of the difference
-    const double difference = (both.percent(1) - both.percent(0)) / std::sqrt(variance);
-    const double by_mass = std::clamp((c(0, 0) - c(0, 1)) / variance, 0.0, 1.0);
-    const Eigen::Vector2d share(1.0 - by_mass, by_mass);
+    const JoinedDensity mean = joined(both);
     RelativeDensity& density = answer.found.density;
-    density.raw_percent = share.dot(both.percent);
-    density.percent = std::clamp(density.raw_percent, 0.0, 100.0);
-    density.sd_given_law_percent = std::sqrt(share.dot(both.by_scans * share));
-    answer.sd = std::sqrt(share.dot(c * share));
-    set_error(density, answer.sd * std::max(1.0, std::abs(difference)));
-    answer.found.payload->disagreement = difference;
-    answer.found.evidence *= std::exp(-0.5 * difference * difference) / std::sqrt(variance);
+    density.raw_percent = mean.percent;
+    density.percent = std::clamp(mean.percent, 0.0, 100.0);
+    density.sd_given_law_percent = mean.measurement_sd;
+    answer.sd = mean.sd;
+    set_error(density, mean.sd * std::max(1.0, std::abs(mean.disagreement)));
+    answer.found.payload->disagreement = mean.disagreement;
+    answer.found.evidence *=
+        std::exp(-0.5 * mean.disagreement * mean.disagreement) / mean.difference_sd;
   }
 
   const DensityLaw& law_;

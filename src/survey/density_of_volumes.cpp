@@ -13,15 +13,15 @@
 #include "base/normal_mixture.hpp"
 #include "base/text.hpp"
 #include "survey/density_in_soil.hpp"
+#include "survey/joined_density.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double same_path = 1e-3;            // [rad], [m]
-constexpr double fallback_tolerance = 0.1;    // of the simulator's fallback; ours
-constexpr double least_fallback = 0.0;        // of any path in any soil; ours
-constexpr double most_fallback = 0.5;         // likewise
-constexpr double largest_disagreement = 2.5;  // of payload and law, in standard deviations
+constexpr double same_path = 1e-3;          // [rad], [m]
+constexpr double fallback_tolerance = 0.1;  // of the simulator's fallback; ours
+constexpr double least_fallback = 0.0;      // of any path in any soil; ours
+constexpr double most_fallback = 0.5;       // likewise
 
 bool same_numbers(const std::array<double, 3>& path, const DigParameters& dug) {
   return std::abs(path[0] - dug.penetration_angle) < same_path &&
@@ -137,22 +137,77 @@ DugVolumes as_read(const Reading& reading, const VolumeChange& change, DugVolume
   return dig;
 }
 
-/// The interval of the mixture of the likely readings.
-void widen_by_readings(DensityEstimate& estimate) {
+/// The interval of the mixture of the likely readings, which move the density of the scans.
+/// @param scans  the density by them alone
+/// @param share  of that one in the answer
+void widen_by_readings(const RelativeDensity& scans, double share, DensityEstimate& estimate) {
   RelativeDensity& density = *estimate.density;
   const double explained =
       variance_by_readings(estimate.change) / std::pow(estimate.bulking->sd, 2);
   const double rest = std::sqrt(std::pow(density.sd_percent, 2) -
-                                explained * std::pow(density.sd_given_law_percent, 2));
+                                explained * std::pow(share * scans.sd_given_law_percent, 2));
   std::vector<NormalPart> parts;
   for (const DensityReading& each : estimate.readings) {
     if (is_unseen(each.reading)) continue;
-    const double shift = each.density_percent - estimate.readings.front().density_percent;
+    const double shift = share * (each.density_percent - estimate.readings.front().density_percent);
     parts.push_back({each.reading.weight, std::clamp(density.percent + shift, 0.0, 100.0), rest});
   }
   if (parts.size() < 2 || !(rest > 0.0)) return;
   density.interval_percent = {std::clamp(quantile_of(parts, 0.025), 0.0, 100.0),
                               std::clamp(quantile_of(parts, 0.975), 0.0, 100.0)};
+}
+
+// ---- Second densities -------------------------------------------------------------------------
+
+Warning disagreement_of(const LoadsDensity& loads) {
+  return {"loads_disagree",
+          "the joints did " + readable(loads.work.value / 1000.0, 3) + " kJ, which is " +
+              readable(std::abs(loads.disagreement), 2) + " standard deviations " +
+              (loads.disagreement > 0.0 ? "more" : "less") +
+              " than expected at the density of the scans, " +
+              readable(loads.by_scans.percent, loads.by_scans.sd_percent) +
+              " %: the log is not that of this dig, the dig was not along the path given, or the "
+              "soil is of another kind; the loads are not used",
+          true};
+}
+
+Warning disagreement_of(const SuccessiveDensity& successive) {
+  const PriorDensity& prior = successive.prior;
+  const double prior_sd =
+      std::hypot(prior.independent_sd_percent, prior.shared_sd_percent, prior.drift_sd_percent);
+  return {"prior_disagrees",
+          "earlier digs give a density of " + readable(prior.raw_percent, prior_sd) +
+              " %, this one " +
+              readable(successive.this_dig.percent, successive.this_dig.sd_percent) + " %, " +
+              readable(std::abs(successive.disagreement), 2) +
+              " standard deviations apart: the ground is another here, or a survey is wrong; the "
+              "density is that of this dig alone",
+          true};
+}
+
+/// Joins loads and prior with the density of the scans. Returns the share of the scans.
+double join_second(const LawsForDig& laws, const DensityOptions& options,
+                   DensityEstimate& estimate) {
+  double share = 1.0;
+  if (laws.work) {
+    estimate.loads = density_by_loads(*laws.work, *options.joint_work, *estimate.density);
+    estimate.density = estimate.loads->density;
+    share *= 1.0 - estimate.loads->weight;
+    if (estimate.loads->disagrees()) estimate.warnings.push_back(disagreement_of(*estimate.loads));
+  }
+  if (!options.prior) return share;
+  if (!options.prior->trustworthy) {
+    estimate.warnings.push_back({"prior_not_trustworthy",
+                                 "the density of earlier digs is not trustworthy and is not used: "
+                                 "the density is that of this dig alone"});
+    return share;
+  }
+  estimate.successive = combined(*options.prior, *estimate.density);
+  estimate.density = estimate.successive->density;
+  if (estimate.successive->disagrees()) {
+    estimate.warnings.push_back(disagreement_of(*estimate.successive));
+  }
+  return share * (1.0 - estimate.successive->weight);
 }
 
 /// Finds the density of a dig in what is known of the soil.
@@ -205,7 +260,7 @@ void set_densities(const DensityReader& reader, const DugVolumes& dig, bool unkn
 
 LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
                         std::optional<Fallback>& fallback) {
-  LawsForDig laws = {law, options.soil.possible, {}};
+  LawsForDig laws = {law, options.soil.possible, {}, {}};
   const auto& dug = options.dug_path;
   if (options.soil.assumed) {
     laws.warnings.push_back({"soil_assumed", "the soil is assumed to be " + law.soil +
@@ -254,7 +309,9 @@ void set_density(DensityEstimate& estimate, const LawsForDig& laws, const Densit
          "scatter of the law"});
   }
   set_densities(DensityReader(laws, options), dig, options.soil.unknown, estimate);
-  if (!options.soil.unknown) widen_by_readings(estimate);
+  const RelativeDensity scans = *estimate.density;
+  const double share = known_error ? join_second(laws, options, estimate) : 1.0;
+  if (!options.soil.unknown) widen_by_readings(scans, share, estimate);
   estimate.trustworthy = known_error && estimate.density->trustworthy;
   for (const Warning& warning : estimate.density->warnings) estimate.warnings.push_back(warning);
   if (estimate.payload && std::abs(estimate.payload->disagreement) > largest_disagreement) {

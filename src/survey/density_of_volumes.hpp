@@ -13,7 +13,9 @@ namespace excavplan {
 struct LawsForDig {
   DensityLaw law;
   std::vector<SoilLaw> possible;
-  std::vector<Warning> warnings;  ///< soil_assumed, law_of_other_path, dug_path_doubtful
+  std::optional<WorkOverDensity> work;  ///< expected of the joints, if theirs was measured
+  std::vector<Warning>
+      warnings;  ///< soil_assumed, law_of_other_path, dug_path_doubtful, loads_not_used
 };
 
 /// Drops a measured fallback that cannot be that of a dig along the path.

@@ -252,6 +252,12 @@ Reading reading_of(const LogTable& log) {
          "boom_piston_speed_m_per_s");
 }
 
+/// One power is that of the joints by its name, or because it was stated.
+bool is_of_joints(const DigLogSource& source, const Reading& reading) {
+  if (reading.meter != LogMeter::power) return reading.meter != LogMeter::fuel_flow;
+  return source.rate_column || column_name(reading.first_column).base == "joint_power";
+}
+
 // ---- What counts ------------------------------------------------------------------------------
 
 LogInterval interval_of(const DigLogSource& source, const std::vector<double>& time) {
@@ -386,6 +392,7 @@ DigLog read_dig_log(const DigLogSource& source) {
   result.file = source.file;
   Reading reading = reading_of(log);
   result.meter = reading.meter;
+  result.of_joints = is_of_joints(source, reading);
   result.spent = reading.meter == LogMeter::fuel_flow ? Spent::fuel : Spent::energy;
   result.rates = std::move(reading.rates);
   result.time = times_of(log);

@@ -312,6 +312,8 @@ std::vector<Warning> causes_of(std::vector<Warning> warnings) {
         "hole_in_shadow",
         "implausible_energy",
         "implausible_fuel",
+        "loads_disagree",
+        "loads_not_used",
         "machine_pose",
         "object_on_soil",
         "object_taken_out",

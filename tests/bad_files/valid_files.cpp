@@ -91,7 +91,7 @@ constexpr const char* path_from =
 
 constexpr const char* density_from =
     R"({"tool": "estimate-density", "density_percent": 41.5, "density_sd_percent": 4.25,
- "law_soil": "loam", "trustworthy": true,
+ "density_raw_percent": 41.5, "density_sd_given_law_percent": 2.5, "law_soil": "loam", "trustworthy": true,
  "zones": [{"kind": "dig", "extent_m": [4.5, -0.5, 6.5, 0.5]}], "warnings": []})";
 
 constexpr const char* matrix = "# scanner\n0 -1 0 4.25\n1 0 0 0.0\n0 0 1 2.125\n0 0 0 1\n";

@@ -11,6 +11,7 @@
 #include "fuzz/file_readers.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/quantity.hpp"
+#include "shared/stated_density.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -20,7 +21,10 @@ std::string read_density_from(const std::string& path) {
   const GroundDensity density = tools::density_of(input);
   DigPlan plan;
   plan.dig = PlannedDig{};
+  const tools::StatedDensity stated = tools::stated_density(path);  // as --prior takes it
   return Said()
+      .add("raw", stated.raw_percent)
+      .add("independent", stated.independent_sd)
       .add("percent", density.percent)
       .add("sd", density.sd_percent)
       .add("soil", density.soil)

@@ -166,6 +166,85 @@ TEST_F(Tools, APathThatWasNotDugEndsTrust) {
   }
 }
 
+TEST_F(BadInput, LoadsOfTheJointsGiveASecondDensity) {
+  const std::string log = folder.file("loads.csv");
+  const json dug = answer("simulate-dig", {"--density", "40", "--start", "6.05", "--simulator",
+                                           "section", "--history", log});
+  const Words scans = quickstart(folder) + Words{"--soil", "loam"};
+  const Words path = {"--dug-path", "45deg,0.35m,1.5m", "--dug-start", "6.05"};
+  const json alone = answer("estimate-density", scans + path);
+  const json both = answer("estimate-density", scans + path + Words{"--loads", log, "--strict"});
+  EXPECT_TRUE(alone["density_by_loads"].is_null());
+  const std::string loads = "/density_by_loads";
+  EXPECT_NEAR(number(both, loads + "/work_kj"), number(dug, "/energy_kj"), 1.0);
+  EXPECT_NEAR(number(both, loads + "/density_percent"), 40.0, 10.0);
+  EXPECT_EQ(number(both, loads + "/scans_density_percent"), number(alone, "/density_percent"));
+  EXPECT_LT(number(both, "/density_sd_percent"), number(alone, "/density_sd_percent"));
+  EXPECT_LT(number(both, loads + "/weight"), 0.2);
+  const std::string harder = folder.file("harder.csv");
+  answer("simulate-dig",
+         {"--density", "100", "--start", "6.05", "--path", "45deg,0.6m,2m", "--history", harder});
+  refused(2, "--loads needs --dug-path and --dug-start", "estimate-density",
+          scans + Words{"--loads", log});
+  refused(2, "--loads needs the kind of the soil: --soil", "estimate-density",
+          quickstart(folder) + path + Words{"--loads", log});
+  refused(2, "--from: 100 s is outside", "estimate-density",
+          scans + path + Words{"--loads", log, "--from", "100"});
+  const std::string fuel = folder.file("fuel.csv");
+  answer("simulate-dig", {"--density", "40", "--fuel-log", fuel});
+  refused(3, "records fuel flow, expected the loads of the joints", "estimate-density",
+          scans + path + Words{"--loads", fuel});
+}
+
+TEST_F(BadInput, ThePriorOfTheLastDigIsCombined) {
+  const Words words = quickstart(folder) + Words{"--soil", "loam"};
+  const std::string file = folder.file("prior.json");
+  const json alone = answer("estimate-density", words);
+  folder.write("prior.json", alone.dump());
+  const auto with = [&](const json& prior, const Words& more = {}, int code = 0) {
+    folder.write("prior.json", prior.dump());
+    return answer("estimate-density", words + Words{"--prior", file} + more, code);
+  };
+  const json both = with(alone, {"--prior-drift", "0", "--strict"});
+  const double own = number(alone, "/density_sd_given_law_percent");
+  EXPECT_NEAR(number(both, "/prior/weight"), 0.5, 1e-6);
+  EXPECT_NEAR(number(both, "/density_sd_given_law_percent"), own / std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(number(both, "/prior/combined_shared_sd_percent"),
+              number(both, "/prior/shared_sd_percent"), 1e-6);
+  EXPECT_EQ(number(both, "/prior/this_dig_density_sd_percent"),
+            number(alone, "/density_sd_percent"));
+  EXPECT_LT(number(with(alone), "/prior/weight"), 0.2);   // the usual drift
+  const json third = with(both, {"--prior-drift", "0"});  // a chain
+  EXPECT_NEAR(number(third, "/density_sd_given_law_percent"), own / std::sqrt(3.0), 1e-6);
+
+  json other = alone;
+  other["density_percent"] = other["density_raw_percent"] = 80.0;
+  const json apart = with(other, {"--strict"}, 4);
+  EXPECT_TRUE(warns(apart, "prior_disagrees"));
+  EXPECT_EQ(apart["density_percent"], alone["density_percent"]);
+  json untrusted = other;
+  untrusted["trustworthy"] = false;
+  const json ignored = with(untrusted, {"--strict"});
+  EXPECT_TRUE(warns(ignored, "prior_not_trustworthy"));
+  EXPECT_TRUE(ignored["prior"].is_null());
+  json away = alone;
+  for (json& zone : away["zones"]) zone["extent_m"] = {20.0, 20.0, 21.0, 21.0};
+  EXPECT_TRUE(warns(with(away), "density_from_elsewhere"));
+
+  const auto refuses = [&](json prior, const char* key, const json& value,
+                           const std::string& reason) {
+    prior[key] = value;
+    folder.write("prior.json", prior.dump());
+    refused(3, reason, "estimate-density", words + Words{"--prior", file});
+  };
+  refuses(alone, "soil", "sand", "must be the same soil");
+  refuses(alone, "density_raw_percent", 500.0, "density_raw_percent");
+  refuses(alone, "density_sd_given_law_percent", 50.0, "density_sd_given_law_percent");
+  refuses(alone, "density_percent", nullptr, "density_percent");
+  refused(2, "--prior-drift", "estimate-density",
+          words + Words{"--prior", file, "--prior-drift=-1"});
+}
+
 TEST_F(Tools, AWeighedPayloadIsOfNoUseToTheMethodOfThePaper) {
   const Words words =
       quickstart(folder) + Words{"--payload-mass", "480", "--moisture", "0.1", "--soil", "loam"};

@@ -123,6 +123,32 @@ nlohmann::ordered_json payload_json(const PayloadDensity& payload) {
           {"disagreement_sds", payload.disagreement}};
 }
 
+nlohmann::ordered_json loads_json(const LoadsDensity& loads) {
+  return {{"work_kj", loads.work.value / 1000.0},
+          {"work_sd_kj", loads.work.sd / 1000.0},
+          {"density_percent", loads.density_percent.value},
+          {"density_sd_percent", loads.density_percent.sd},
+          {"density_interval_percent", loads.interval_percent},
+          {"scans_density_percent", loads.by_scans.percent},
+          {"scans_density_sd_percent", loads.by_scans.sd_percent},
+          {"weight", loads.weight},
+          {"disagreement_sds", loads.disagreement}};
+}
+
+nlohmann::ordered_json prior_json(const SuccessiveDensity& successive) {
+  const PriorDensity& prior = successive.prior;
+  return {{"density_percent", std::clamp(prior.raw_percent, 0.0, 100.0)},
+          {"independent_sd_percent", prior.independent_sd_percent},
+          {"shared_sd_percent", prior.shared_sd_percent},
+          {"drift_sd_percent", prior.drift_sd_percent},
+          {"this_dig_density_percent", successive.this_dig.percent},
+          {"this_dig_density_sd_percent", successive.this_dig.sd_percent},
+          {"combined_independent_sd_percent", successive.density.sd_given_law_percent},
+          {"combined_shared_sd_percent", successive.shared_sd_percent},
+          {"weight", successive.weight},
+          {"disagreement_sds", successive.disagreement}};
+}
+
 nlohmann::ordered_json soils_json(const std::vector<SoilAnswer>& soils) {
   auto list = nlohmann::ordered_json::array();
   for (const SoilAnswer& soil : soils) {
@@ -173,6 +199,10 @@ nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
   if (estimate.any_soil) json["any_soil"] = density_json(*estimate.any_soil);
   json["payload"] = nullptr;
   if (estimate.payload) json["payload"] = payload_json(*estimate.payload);
+  json["density_by_loads"] = nullptr;
+  if (estimate.loads) json["density_by_loads"] = loads_json(*estimate.loads);
+  json["prior"] = nullptr;
+  if (estimate.successive) json["prior"] = prior_json(*estimate.successive);
   json["fallback"] = estimate.fallback ? fallback_json(*estimate.fallback) : nullptr;
   json["blocks"] = blocks_json(estimate.blocks);
   json["law"] = estimate.law.name;
@@ -238,6 +268,21 @@ std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
         " kg/m3 in place, density " +
         readable(payload->density_percent.value, payload->density_percent.sd) + " %; by the law " +
         readable(payload->law_density_percent.value, payload->law_density_percent.sd) + " %");
+  }
+  if (const auto& loads = estimate.loads) {
+    lines.push_back(
+        "loads      " + readable(loads->work.value / 1000.0, 3) + " kJ of the joints, density " +
+        readable(loads->density_percent.value, loads->density_percent.sd) + " %; by the scans " +
+        readable(loads->by_scans.percent, loads->by_scans.sd_percent) + " %");
+  }
+  if (const auto& successive = estimate.successive) {
+    const PriorDensity& prior = successive->prior;
+    const double sd =
+        std::hypot(prior.independent_sd_percent, prior.shared_sd_percent, prior.drift_sd_percent);
+    const RelativeDensity& own = successive->this_dig;
+    lines.push_back("prior      " + readable(std::clamp(prior.raw_percent, 0.0, 100.0), sd) +
+                    " % with its drift, weight " + readable(successive->weight, 2) + "; this dig " +
+                    readable(own.percent, own.sd_percent) + " %");
   }
   lines.push_back("density    " + readable(d.percent, d.sd_percent) + " %, 95 % interval " +
                   readable(d.interval_percent[0]) + " .. " + readable(d.interval_percent[1]) +

@@ -55,7 +55,7 @@ const OptionNames log_options = {
     {"state the unit", "or give --time-unit or --rate-unit"},
     {"the areas of the pistons are unknown", "the file of --machine states no hydraulics"}};
 
-void LogInputs::declare(Arguments& arguments) {
+void LogFormat::declare(Arguments& arguments) {
   arguments.text("time-column", "NAME", time_column, "column of the time (default: found)");
   arguments.text("time-unit", "UNIT", time_unit,
                  "its unit, if its name does not say it: " + usual_units(Measure::time));
@@ -71,36 +71,48 @@ void LogInputs::declare(Arguments& arguments) {
   arguments.choice("phases", phases, {"auto", "marked", "found", "none"},
                    "how the digs in a log are known: by its column phase, by the joint angles, or "
                    "not; auto: by the column if there is one");
+  arguments.option("meter-sd", meter_sd, Quantity::percent,
+                   "standard deviation of the meter, of its reading");
+}
+
+void LogFormat::apply_to(DigLogSource& source) const {
+  static const std::map<std::string, PhaseSource> sources = {
+      {"marked", PhaseSource::marked}, {"found", PhaseSource::found}, {"none", PhaseSource::none}};
+  source.time_column = time_column;
+  source.time_unit = time_unit;
+  source.rate_column = rate_column;
+  source.rate_unit = rate_unit;
+  const auto word = std::find(meter_words.begin(), meter_words.end(), meter);
+  if (meter != "auto") source.meter = static_cast<LogMeter>(word - meter_words.begin() - 1);
+  source.delimiter = sign_of(delimiter);
+  source.decimal_mark = sign_of(decimal);
+  if (phases != "auto") source.phases = sources.at(phases);
+}
+
+double LogFormat::meter_share() const {
+  if (!(meter_sd >= 0.0 && meter_sd <= 100.0)) {
+    usage_error("--meter-sd: " + number_text(meter_sd) + " must be in 0 .. 100");
+  }
+  return meter_sd / 100.0;
+}
+
+void LogInputs::declare(Arguments& arguments) {
+  format.declare(arguments);
   arguments.choice("count", count, {"dig", "cycle"},
                    "what counts of a log with phases: penetrate, drag and scoop, or all");
   arguments.text(
       "idle", "RATE", idle,
       "fuel flow or power at rest, such as 2.8L/h (default: the low plateau of the log)");
   arguments.flag("subtract-idle", subtracts_idle, "idling is no part of the consumption");
-  arguments.option("meter-sd", meter_sd, Quantity::percent,
-                   "standard deviation of the meter, of its reading");
   arguments.machine(machine);
 }
 
 void LogInputs::apply_to(LoggedDig& dig) const {
-  static const std::map<std::string, PhaseSource> sources = {
-      {"marked", PhaseSource::marked}, {"found", PhaseSource::found}, {"none", PhaseSource::none}};
-  dig.time_column = time_column;
-  dig.time_unit = time_unit;
-  dig.rate_column = rate_column;
-  dig.rate_unit = rate_unit;
-  const auto word = std::find(meter_words.begin(), meter_words.end(), meter);
-  if (meter != "auto") dig.meter = static_cast<LogMeter>(word - meter_words.begin() - 1);
-  dig.delimiter = sign_of(delimiter);
-  dig.decimal_mark = sign_of(decimal);
-  if (phases != "auto") dig.phases = sources.at(phases);
+  format.apply_to(dig);
   dig.counted = count == "cycle" ? Counted::cycle : Counted::dig;
   if (idle) dig.idle = parse_rate(*idle);
   dig.subtracts_idle = subtracts_idle;
-  if (!(meter_sd >= 0.0 && meter_sd <= 100.0)) {
-    usage_error("--meter-sd: " + number_text(meter_sd) + " must be in 0 .. 100");
-  }
-  dig.meter_sd = meter_sd / 100.0;
+  dig.meter_sd = format.meter_share();
   dig.pistons = piston_areas(machine_named(machine));
 }
 

@@ -13,14 +13,26 @@
 
 namespace excavplan::tools {
 
+/// How a log is written, and the error of its meter.
+struct LogFormat {
+  std::optional<std::string> time_column, rate_column;
+  std::string time_unit, rate_unit;
+  std::string delimiter = "auto", decimal = "auto", phases = "auto", meter = "auto";
+  double meter_sd = 2.0;  ///< [%]
+
+  void declare(Arguments& arguments);
+  void apply_to(DigLogSource& source) const;
+  /// Of the reading. @throws Error (bad_input)
+  double meter_share() const;
+};
+
 /// How the logs of all runs are written and what of them counts.
 struct LogInputs {
-  std::optional<std::string> time_column, rate_column, idle;
-  std::string time_unit, rate_unit;
-  std::string delimiter = "auto", decimal = "auto", phases = "auto", count = "dig", meter = "auto";
+  LogFormat format;
+  std::optional<std::string> idle;
+  std::string count = "dig";
   std::string machine = "zx120";
   bool subtracts_idle = false;
-  double meter_sd = 2.0;  ///< [%]
 
   void declare(Arguments& arguments);
   /// Into one run. @throws Error (bad_input)

@@ -54,7 +54,17 @@ void declare_method(Arguments& arguments, MethodInputs& inputs) {
   arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
 }
 
-void apply_method(const MethodInputs& inputs, DensityOptions& options) {
+void declare_dug_path(Arguments& arguments, MethodInputs& inputs) {
+  arguments.option("dug-path", inputs.dug_path,
+                   "the path that was dug: the law is then one of digs along it");
+  arguments.option("dug-start", inputs.dug_start, Quantity::length,
+                   "x at which that path enters the ground: measures the soil that fell back into "
+                   "the cut; needs scans in the site frame");
+}
+
+void apply_method(const MethodInputs& inputs, const Machine& machine, DensityOptions& options) {
+  if (inputs.dug_start && !inputs.dug_path) usage_error("--dug-start needs --dug-path");
+  if (inputs.dug_path) options.dug_path = DugPath{machine, *inputs.dug_path, inputs.dug_start};
   if (inputs.method == "paper") options.method = VolumeMethod::paper;
   options.paper = paper_options(inputs);
 }

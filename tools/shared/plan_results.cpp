@@ -3,9 +3,7 @@
 #include "shared/plan_results.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <utility>
 
 #include <excavplan/error.hpp>
@@ -16,12 +14,10 @@
 #include "shared/arguments.hpp"
 #include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
+#include "shared/stated_density.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-constexpr double near_the_hole = 5.0;       // ours [m]
-constexpr double most_density_sd = 1000.0;  // ours [points]: long before, any density is as likely
 
 nlohmann::ordered_json search_json(const PlanSearch& search, const DigGoalInfo& goal) {
   nlohmann::ordered_json json = {{"stopped_by", name(search.stopped_by)},
@@ -107,77 +103,14 @@ std::string source_line(const DigPlan& plan) {
   return "source       " + std::string(name(plan.method)) + digs + "; start: " + plan.start_rule;
 }
 
-/// What a plan takes of a result of estimate-density.
-struct StatedDensity {
-  GroundDensity density;
-  bool of_any_soil = false;      ///< by --soil unknown
-  std::vector<Rectangle> holes;  ///< that it was measured in
-};
-
-/// What estimate-density always states: of a result that lost one of these, a density would be
-/// taken as exact, as trusted or as that of any soil.
-void require_whole_estimate(const JsonObject& result) {
-  if (!result.has("tool")) return;
-  for (const char* key : {"density_sd_percent", "trustworthy", "law_soil"}) {
-    if (!result.has(key))
-      result.fail(key, "is missing, expected a result of estimate-density --json");
-  }
-}
-
-std::vector<Rectangle> holes_in(JsonObject& result) {
-  std::vector<Rectangle> holes;
-  if (!result.states("zones")) return holes;
-  for (JsonObject& zone : result.objects("zones")) {
-    const bool is_hole = zone.text("kind") == name(ZoneKind::dig);
-    const auto edge = zone.numbers("extent_m", 4);
-    if (edge[0] > edge[2] || edge[1] > edge[3]) {
-      zone.fail("extent_m", "must be [x_min, y_min, x_max, y_max], each min at most its max");
-    }
-    if (is_hole) holes.push_back({edge[0], edge[1], edge[2], edge[3]});
-  }
-  return holes;
-}
-
-StatedDensity read_density(const std::string& file) {
-  JsonObject result = JsonObject::result_of("estimate-density", file);
-  StatedDensity stated{result.number("density_percent", 0.0, 100.0), false, {}};
-  require_whole_estimate(result);
-  GroundDensity& density = stated.density;
-  if (result.states("density_sd_percent")) {
-    density.sd_percent = result.number("density_sd_percent", 0.0, most_density_sd);
-  }
-  if (result.has("trustworthy")) density.trustworthy = result.flag("trustworthy");
-  for (const char* key : {"law_soil", "soil"}) {  // the one that was said decides
-    if (result.states(key)) density.soil = result.text(key);
-  }
-  stated.of_any_soil = result.text_or("law", "") == "any soil";
-  stated.holes = holes_in(result);
-  return stated;
-}
-
-/// From (x, 0) to the nearest of some holes [m]; 0 if there are none.
-double distance_to(const std::vector<Rectangle>& holes, double x) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Rectangle& hole : holes) {
-    const double aside = std::max({hole.y_min, -hole.y_max, 0.0});
-    const double beyond = std::max({hole.x_min - x, x - hole.x_max, 0.0});
-    least = std::min(least, std::hypot(beyond, aside));
-  }
-  return std::isfinite(least) ? least : 0.0;
-}
-
 /// Of a plan for the density of a file.
 std::vector<Warning> source_warnings(const DigPlan& plan, const std::string& file,
                                      bool scanned_ground) {
-  const StatedDensity stated = read_density(file);
+  const StatedDensity stated = stated_density(file);
   std::vector<Warning> warnings;
-  const double away =
-      scanned_ground && plan.dig ? distance_to(stated.holes, plan.dig->start_x) : 0.0;
-  if (away > near_the_hole) {
-    warnings.push_back({"density_from_elsewhere",
-                        file + ": the density was measured " + readable(away) +
-                            " m from where this dig begins; it holds for ground near its hole that "
-                            "is of the same soil"});
+  if (scanned_ground && plan.dig) {
+    const double x = plan.dig->start_x;
+    if (const auto far = elsewhere(stated, file, {x, 0.0, x, 0.0})) warnings.push_back(*far);
   }
   if (stated.of_any_soil) {
     warnings.push_back({"density_of_unknown_soil",
@@ -216,7 +149,7 @@ void check(const DensityInput& input) {
 
 GroundDensity density_of(const DensityInput& input) {
   GroundDensity density =
-      input.percent ? GroundDensity(*input.percent) : read_density(*input.file).density;
+      input.percent ? GroundDensity(*input.percent) : stated_density(*input.file).density;
   density.sd_percent = input.sd.value_or(density.sd_percent);
   return density;
 }

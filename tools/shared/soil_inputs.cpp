@@ -15,37 +15,6 @@ namespace {
 
 constexpr const char* usual_soil = "loam";
 constexpr const char* any_soil = "unknown";
-constexpr double usual_mass_error = 0.01;      // of a machine's scale, as a share
-constexpr double usual_moisture_error = 0.01;  // of a measured water content; ours
-constexpr double most_moisture = 2.0;          // ours: only peat holds more
-
-/// "VALUE" or "VALUE,SD". @throws Error (bad_input)
-Measured parse_measured(const std::string& option, const std::string& text, Quantity quantity) {
-  const std::vector<std::string> parts = split(text, ',');
-  if (parts.empty() || parts.size() > 2) usage_error(option + ": '" + text + "' is not VALUE,SD");
-  Measured measured{parse_quantity(option, parts[0], quantity), -1.0};
-  if (parts.size() == 2) {
-    measured.sd = parse_quantity(option, parts[1], quantity);
-    if (measured.sd < 0.0) usage_error(option + ": the standard deviation must be at least 0");
-  }
-  return measured;
-}
-
-void set_payload(const std::string& text, DensityOptions& options) {
-  Measured mass = parse_measured("--payload-mass", text, Quantity::mass);
-  if (!(mass.value > 0.0)) usage_error("--payload-mass: must be above 0");
-  if (mass.sd < 0.0) mass.sd = usual_mass_error * mass.value;
-  options.payload_mass = mass;
-}
-
-void set_moisture(const std::string& text, DensityOptions& options) {
-  Measured water = parse_measured("--moisture", text, Quantity::ratio);
-  if (!(water.value >= 0.0 && water.value <= most_moisture)) {
-    usage_error("--moisture: must be in 0 .. " + number_text(most_moisture) + " (12 % is 0.12)");
-  }
-  if (water.sd < 0.0) water.sd = usual_moisture_error;
-  options.soil.water_content = water;
-}
 
 const SoilLaw* find(const std::vector<SoilLaw>& laws, const std::string& soil) {
   const auto found = std::find_if(laws.begin(), laws.end(),
@@ -75,23 +44,11 @@ void declare_law(Arguments& arguments, SoilInputs& inputs) {
                  "law file");
 }
 
-void declare_payload(Arguments& arguments, SoilInputs& inputs) {
-  arguments.text("payload-mass", "MASS[,SD]", inputs.payload_mass,
-                 "mass of the soil that was dumped, weighed by the machine [kg]: a second density "
-                 "by weight (default SD: 1 %)");
-  arguments.text("moisture", "NUMBER[,SD]", inputs.moisture,
-                 "water per dry mass of the soil, for --payload-mass (default: that of the soil; "
-                 "default SD: 0.01)");
-}
-
 DensityLaw law_named(const std::string& name) {
   return load_density_law(shipped_or_file("laws", name == "default" ? "zx120-loam" : name));
 }
 
 DensityLaw law_of(const SoilInputs& inputs, const std::string& machine, DensityOptions& options) {
-  if (inputs.moisture && !inputs.payload_mass) usage_error("--moisture needs --payload-mass");
-  if (inputs.payload_mass) set_payload(*inputs.payload_mass, options);
-  if (inputs.moisture) set_moisture(*inputs.moisture, options);
   SoilKnowledge& soil = options.soil;
   soil.possible = shipped_soil_laws();
   soil.unknown = inputs.soil == any_soil;

@@ -11,21 +11,17 @@
 #include "shared/arguments.hpp"
 
 /// @file
-/// What the command line says of the soil that was dug: --soil, --law, --payload-mass, --moisture.
+/// What the command line says of the soil that was dug: --soil and --law.
 
 namespace excavplan::tools {
 
 struct SoilInputs {
   std::optional<std::string> soil;  ///< name, file or "unknown"
   std::string law = "default";
-  std::optional<std::string> payload_mass;
-  std::optional<std::string> moisture;
 };
 
 void declare_soil(Arguments& arguments, SoilInputs& inputs);
 void declare_law(Arguments& arguments, SoilInputs& inputs);
-/// --payload-mass and --moisture.
-void declare_payload(Arguments& arguments, SoilInputs& inputs);
 
 /// The law of a file or a shipped one; "default" is that of the built-in simulator in loam.
 DensityLaw law_named(const std::string& name);

@@ -93,7 +93,7 @@ struct DigResult {
     return terrain;
   }
 
-  /// The paper's eq. 7, f = payload mass / energy [kg/J]; 0 without energy.
+  /// The paper's eq. 8, f = payload mass / energy [kg/J]; 0 without energy.
   double efficiency() const { return energy.total > 0.0 ? payload_mass / energy.total : 0.0; }
 };
 

@@ -14,9 +14,11 @@
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/simulation/fallback.hpp>
 #include <excavplan/soil/density_law.hpp>
+#include <excavplan/survey/density_by_loads.hpp>
 #include <excavplan/survey/paper_options.hpp>
 #include <excavplan/survey/scan_surface.hpp>
 #include <excavplan/survey/soil_answers.hpp>
+#include <excavplan/survey/successive_density.hpp>
 
 /// @file
 /// From the scans of one dig to the relative density of the ground and its error
@@ -56,7 +58,10 @@ struct DensityOptions {
   std::optional<DugPath> dug_path;  ///< if it is known
   SoilKnowledge soil;               ///< its kind, or the kinds that it may be
   std::optional<Measured> payload_mass;  ///< moist soil that was dumped, if it was weighed [kg]
-  unsigned threads = 0;                  ///< 0: one per core; the result is the same for any number
+  /// Of the joints in the dig, joint_work() [J]; needs the dug path with its start and the kind.
+  std::optional<Measured> joint_work;
+  std::optional<PriorDensity> prior;  ///< by digs before this one in the same soil
+  unsigned threads = 0;               ///< 0: one per core; the result is the same for any number
 };
 
 /// Registration of the scan after to the scan before.
@@ -87,7 +92,9 @@ struct DensityEstimate {
   std::vector<SoilAnswer> soils;                 ///< in each of SoilKnowledge::possible
   std::optional<RelativeDensity> any_soil;       ///< in any of them: their mixture
   std::optional<PayloadDensity> payload;         ///< if the payload was weighed, in a kind of soil
-  std::vector<DensityReading> readings;          ///< as VolumeChange::readings
+  std::optional<LoadsDensity> loads;             ///< if the work of the joints was measured
+  std::optional<SuccessiveDensity> successive;   ///< if earlier digs gave a density to trust
+  std::vector<DensityReading> readings;          ///< as VolumeChange::readings; of the scans alone
   double density_without_fallback = 0.0;         ///< assuming no fallback, where k is known [%]
   DensityLaw law;                                ///< that was used, or fitted for the dug path
   bool trustworthy = true;                       ///< false: see the warnings
@@ -108,7 +115,8 @@ struct DensityEstimate {
 /// back and for the voids between blocks as far as these are known, each with its error; the law
 /// gives the density. Where the path that was dug and the kind of soil are known and the law is of
 /// the built-in simulator, it is one fitted for that path. Warnings beside those of the volumes:
-/// soil_assumed, law_of_other_path, dug_path_doubtful (ends trust), payload_disagrees (ends trust),
+/// soil_assumed, law_of_other_path, dug_path_doubtful (ends trust), loads_not_used,
+/// prior_not_trustworthy, payload_disagrees, loads_disagree and prior_disagrees (which end trust),
 /// density_above_range, density_below_range, volume_error_unknown, blocks. It is not trustworthy if
 /// a zone was cut off or partly unseen, if the soil lies in blocks, if the error of the volumes is
 /// not known, or if the density is further outside 0

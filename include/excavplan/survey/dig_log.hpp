@@ -68,6 +68,7 @@ struct DigLog {
   std::string file;                      ///< for messages
   Spent spent = Spent::fuel;             ///< kind of the rate
   LogMeter meter = LogMeter::fuel_flow;  ///< its columns
+  bool of_joints = false;                ///< power of the joints, not of engine, shaft or pump
   std::vector<double> time;              ///< strictly increasing [s]
   /// Fuel flow [mL/s], or power [W]: of the machine, or of each joint, whose negative part does not
   /// count. One row of the log each.

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/second_densities.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+#include "shared/stated_density.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+constexpr double usual_mass_error = 0.01;      // of a machine's scale, as a share
+constexpr double usual_moisture_error = 0.01;  // of a measured water content; ours
+constexpr double most_moisture = 2.0;          // ours: only peat holds more
+
+/// "VALUE" or "VALUE,SD". @throws Error (bad_input)
+Measured measured_of(const std::string& option, const std::string& text, Quantity quantity) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.empty() || parts.size() > 2) usage_error(option + ": '" + text + "' is not VALUE,SD");
+  Measured measured{parse_quantity(option, parts[0], quantity), -1.0};
+  if (parts.size() == 2) {
+    measured.sd = parse_quantity(option, parts[1], quantity);
+    if (measured.sd < 0.0) usage_error(option + ": the standard deviation must be at least 0");
+  }
+  return measured;
+}
+
+Measured mass_of(const std::string& text) {
+  Measured mass = measured_of("--payload-mass", text, Quantity::mass);
+  if (!(mass.value > 0.0)) usage_error("--payload-mass: must be above 0");
+  if (mass.sd < 0.0) mass.sd = usual_mass_error * mass.value;
+  return mass;
+}
+
+Measured moisture_of(const std::string& text) {
+  Measured water = measured_of("--moisture", text, Quantity::ratio);
+  if (!(water.value >= 0.0 && water.value <= most_moisture)) {
+    usage_error("--moisture: must be in 0 .. " + number_text(most_moisture) + " (12 % is 0.12)");
+  }
+  if (water.sd < 0.0) water.sd = usual_moisture_error;
+  return water;
+}
+
+/// The work of the joints in the log of a dig.
+Measured work_of(const SecondDensities& inputs, const DensityOptions& options) {
+  if (!options.dug_path || !options.dug_path->start_x) {
+    usage_error("--loads needs --dug-path and --dug-start: the dig is simulated");
+  }
+  if (!options.soil.kind || options.soil.assumed || options.soil.unknown) {
+    usage_error("--loads needs the kind of the soil: --soil");
+  }
+  DigLogSource source;
+  source.file = *inputs.loads;
+  source.from = inputs.from;
+  source.to = inputs.to;
+  source.prefix = "--";
+  inputs.log.apply_to(source);
+  source.pistons = piston_areas(options.dug_path->machine);
+  OptionNames names = log_options;
+  names.push_back({"state from when to when", "give --from and --to"});
+  return naming_options(names,
+                        [&] { return joint_work(read_dig_log(source), inputs.log.meter_share()); });
+}
+
+PriorDensity prior_of(const SecondDensities& inputs, const SoilKnowledge& soil) {
+  const StatedDensity stated = stated_density(*inputs.prior);
+  const std::string& its = stated.density.soil;
+  if (soil.kind && !soil.unknown && !its.empty() && its != soil.kind->name) {
+    throw Error(ErrorKind::bad_file, *inputs.prior + ": its density was measured in " + its +
+                                         ", this dig is in " + soil.kind->name +
+                                         "; must be the same soil");
+  }
+  const double sd = stated.density.sd_percent;
+  const double excess = stated.raw_percent - stated.density.percent;
+  const double shared = sd * sd - excess * excess - std::pow(stated.independent_sd, 2);
+  return {stated.raw_percent, stated.independent_sd, std::sqrt(std::max(0.0, shared)),
+          inputs.drift.value_or(usual_drift_percent), stated.density.trustworthy};
+}
+
+}  // namespace
+
+void SecondDensities::declare(Arguments& arguments) {
+  arguments.text("payload-mass", "MASS[,SD]", payload_mass,
+                 "mass of the soil that was dumped, weighed by the machine [kg]: a second density "
+                 "by weight (default SD: 1 %)");
+  arguments.text("moisture", "NUMBER[,SD]", moisture,
+                 "water per dry mass of the soil, for --payload-mass (default: that of the soil; "
+                 "default SD: 0.01)");
+  arguments.file("prior", prior,
+                 "result of estimate-density --json for the dig before this one, in the same soil: "
+                 "its density is combined with that of this dig");
+  arguments.only_if({[this] { return prior.has_value(); }, "there is no --prior"}, [&] {
+    arguments.option("prior-drift", drift, Quantity::percent,
+                     "standard deviation of the density from that dig to this one (default: " +
+                         number_text(usual_drift_percent) + ")");
+  });
+  arguments.file("loads", loads,
+                 "log of the joints in this dig, CSV: torques and rates, pressures and piston "
+                 "speeds, or powers, also as of simulate-dig --history: a second density by the "
+                 "work; needs --dug-path, --dug-start and --soil");
+  arguments.only_if({[this] { return loads.has_value(); }, "there is no --loads"}, [&] {
+    arguments.option("from", from, Quantity::time,
+                     "time at which the dig starts in the log (default: the log's first)");
+    arguments.option("to", to, Quantity::time, "time at which it ends (default: the log's last)");
+    log.declare(arguments);
+  });
+}
+
+void SecondDensities::apply_to(DensityOptions& options) const {
+  if (moisture && !payload_mass) usage_error("--moisture needs --payload-mass");
+  if (payload_mass) options.payload_mass = mass_of(*payload_mass);
+  if (moisture) options.soil.water_content = moisture_of(*moisture);
+  if (drift && !(*drift >= 0.0 && *drift <= most_density_sd)) {
+    usage_error("--prior-drift: " + number_text(*drift) + " % is outside 0 .. " +
+                number_text(most_density_sd));
+  }
+  if (loads) options.joint_work = work_of(*this, options);
+  if (prior) options.prior = prior_of(*this, options.soil);
+}
+
+void SecondDensities::add_warnings(const DensityEstimate& estimate, Outcome& outcome) const {
+  if (!estimate.successive) return;
+  const auto& zones = estimate.change.zones;
+  const auto hole = std::find_if(zones.begin(), zones.end(),
+                                 [](const ChangeZone& zone) { return zone.kind == ZoneKind::dig; });
+  if (hole == zones.end()) return;
+  if (const auto far = elsewhere(stated_density(*prior), *prior, hole->extent)) {
+    outcome.warnings.push_back(*far);
+  }
+}
+
+}  // namespace excavplan::tools
