@@ -20,7 +20,8 @@ constexpr double near_the_hole = 5.0;  // ours [m]
 /// taken as exact, as trusted or as that of any soil.
 void require_whole_estimate(const JsonObject& result) {
   if (!result.has("tool")) return;
-  for (const char* key : {"density_sd_percent", "trustworthy", "law_soil"}) {
+  for (const char* key : {"density_sd_percent", "density_raw_percent",
+                          "density_sd_given_law_percent", "trustworthy", "law_soil"}) {
     if (!result.has(key))
       result.fail(key, "is missing, expected a result of estimate-density --json");
   }
@@ -64,9 +65,13 @@ StatedDensity stated_density(const std::string& file) {
   const double sd = density.sd_percent;
   stated.raw_percent = density.percent;
   if (result.states("density_raw_percent")) {
-    // set_error() counts the excess as an error.
-    stated.raw_percent =
-        result.number("density_raw_percent", density.percent - sd, density.percent + sd);
+    stated.raw_percent = result.number("density_raw_percent");
+    if (std::clamp(stated.raw_percent, 0.0, 100.0) != density.percent ||
+        std::abs(stated.raw_percent - density.percent) > sd) {
+      result.fail("density_raw_percent",
+                  "is " + number_text(stated.raw_percent) +
+                      ", must be density_percent, or as far outside 0 .. 100 as its sd at most");
+    }
   }
   stated.independent_sd = sd;  // one that nobody splits is of another measurement
   if (result.states("density_sd_given_law_percent")) {
