@@ -162,8 +162,12 @@ double ExperimentResult::gain_percent() const { return gain_percent(objective); 
 double ExperimentResult::gain_percent(const DigObjective& by) const {
   return gain(by, planned, fixed);
 }
-double ExperimentResult::path_gain_percent() const { return gain(objective, planned, fixed_moved); }
-double ExperimentResult::start_gain_percent() const { return gain(objective, fixed_moved, fixed); }
+double ExperimentResult::path_gain_percent() const {
+  return fixed_moved ? gain(objective, planned, *fixed_moved) : std::nan("");
+}
+double ExperimentResult::start_gain_percent() const {
+  return fixed_moved ? gain(objective, *fixed_moved, fixed) : std::nan("");
+}
 
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options) {
@@ -178,16 +182,23 @@ ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, co
   Dug fixed = experiment.dig(options.fixed_path, {});
   result.fixed = fixed.dig;
   result.fixed_path = std::move(fixed.path);
-  const DigScene scene = experiment.scene(result.fixed);
-  result.volumes = scene.volumes;
-  result.estimate = options.survey ? options.survey(scene)
-                                   : relative_density(law, {scene.volumes.bulking_factor, 0.0});
-  experiment.go_on(scene);
-  Dug planned = experiment.dig_as_planned(experiment.plan(result.estimate.percent));
+  if (options.estimate && options.second == SecondGround::fresh) {
+    result.estimate = *options.estimate;
+  } else {
+    const DigScene scene = experiment.scene(result.fixed);
+    result.volumes = scene.volumes;
+    result.estimate = options.estimate ? *options.estimate
+                      : options.survey ? options.survey(scene)
+                                       : relative_density(law, {scene.volumes.bulking_factor, 0.0});
+    experiment.go_on(scene);
+  }
+  Dug planned = experiment.dig_as_planned(
+      experiment.plan(options.planned_density.value_or(result.estimate.percent)));
   result.planned = planned.dig;
   result.planned_path = std::move(planned.path);
   result.start_rule = experiment.rule_behind(result.planned);
-  result.fixed_moved = experiment.dig(options.fixed_path, result.start_rule).dig;
+  const auto moved = experiment.attempt(options.fixed_path, result.start_rule);
+  if (const auto* dug = std::get_if<Dug>(&moved)) result.fixed_moved = dug->dig;
   return result;
 }
 

@@ -12,7 +12,8 @@ namespace {
 using Eigen::Index;
 
 constexpr double spare_top = 0.03;  // seen beyond a pile, as the next may be higher [m]; ours
-constexpr double farthest = 5.0;    // that soil is sought a place from the level top [m]; ours
+constexpr double surely_beyond = 1.0 + 1e-9;  // whatever is rounded
+constexpr double farthest = 5.0;  // that soil is sought a place from the level top [m]; ours
 
 }  // namespace
 
@@ -71,7 +72,10 @@ void PileAhead::look_at_cell(Index row, Index col, double along, double share, d
   const std::size_t cell = ground_.at(row, col);
   const double height = ground_.height(cell);
   const double across = std::max(0.0, std::abs(ground_.before().bank.y(row)) - half_width_);
-  const double distance = across > 0.0 ? std::sqrt(along * along + across * across) : along;
+  const double square = along * along + across * across;
+  const double room = seen_to_ - height;
+  if (slope_ * slope_ * square > surely_beyond * room * room) return;  // spares most roots
+  const double distance = across > 0.0 ? std::sqrt(square) : along;
   const double base = height + slope_ * distance;
   if (distance > reach || !(base < seen_to_)) return;  // also on unknown ground
   places_.push_back({cell, base, share});

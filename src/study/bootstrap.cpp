@@ -14,7 +14,7 @@ namespace excavplan {
 StudyMean bootstrap_mean(const std::vector<double>& values, std::uint64_t seed) {
   constexpr int samples = 2000;
   const double none = std::numeric_limits<double>::quiet_NaN();
-  if (values.empty()) return {none, {none, none}};
+  if (values.empty()) return {none, {none, none}, 0};
   const auto count = static_cast<double>(values.size());
   std::vector<double> means;
   means.reserve(samples);
@@ -29,7 +29,8 @@ StudyMean bootstrap_mean(const std::vector<double>& values, std::uint64_t seed) 
     return means[static_cast<std::size_t>(std::lround(share * (samples - 1)))];
   };
   return {std::accumulate(values.begin(), values.end(), 0.0) / count,
-          {quantile(0.025), quantile(0.975)}};
+          {quantile(0.025), quantile(0.975)},
+          static_cast<int>(values.size())};
 }
 
 }  // namespace excavplan

@@ -31,7 +31,7 @@ void add_densities(Conditions& all) {
 
 /// The fixed path would lift the machine in most hard soil.
 void add_held_down(Conditions& all) {
-  for (const double density : {65.0, 80.0}) {
+  for (const double density : {65.0, 80.0, 95.0}) {
     add(all, "machine held down", readable(density) + " %", [=](StudySetting& s) {
       s.density_percent = density;
       s.held_down = true;
@@ -63,6 +63,7 @@ void add_soils(Conditions& all) {
 void add_sensors(Conditions& all) {
   add(
       all, "sensor", "none", [](StudySetting&) {}, many);
+  all.back().compared = 0;  // they are those of the reference
   add(all, "sensor", "lidar", [](StudySetting& s) { s.sensor = StudySensor::lidar; });
   add(
       all, "sensor", "D435i at 3 m", [](StudySetting& s) { s.sensor = StudySensor::d435i; }, many);
@@ -85,6 +86,8 @@ void add_laws(Conditions& all) {
 }
 
 void add_plans(Conditions& all, const Machine& machine) {
+  add(all, "plan", "for 50 %, whatever the soil",
+      [](StudySetting& s) { s.plan = StudyPlan::not_adapted; });
   add(all, "plan", "searched on the true ground",
       [](StudySetting& s) { s.plan = StudyPlan::search; });
   add(all, "plan", "searched on ground seen by D435i", [](StudySetting& s) {

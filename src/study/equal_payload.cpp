@@ -6,9 +6,8 @@
 
 namespace excavplan {
 
-ExperimentOptions at_equal_payload(DigObjective::Goal goal, const ExperimentResult& found,
+ExperimentOptions at_equal_payload(DigObjective::Goal goal, const ExperimentResult& found, int digs,
                                    ExperimentOptions options) {
-  constexpr int digs = 120;  // of a search that begins warm; ours
   PlanOptions& plan = options.plan;
   plan.method = PlanMethod::search;
   plan.library.reset();
@@ -16,7 +15,7 @@ ExperimentOptions at_equal_payload(DigObjective::Goal goal, const ExperimentResu
   plan.search.objective.min_fill = std::min(1.0, found.fixed.fill);
   plan.search.stop.evaluations = digs;
   plan.search.start = {{found.planned.parameters, found.planned.start_x}};
-  options.survey = [estimate = found.estimate](const DigScene&) { return estimate; };
+  options.estimate = found.estimate;
   return options;
 }
 

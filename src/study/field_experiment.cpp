@@ -14,6 +14,8 @@
 namespace excavplan {
 namespace {
 
+constexpr int equal_digs = 1000;  // of the search at no less payload; ours
+
 constexpr int most_digs = 10000;  // ours
 
 /// The same dig, its soil in blocks where it is hard; dug with the machine held down, as it was if
@@ -58,8 +60,9 @@ class FieldExperiment {
       return survey(in_blocks(machine_, first, dug, digs, seed), seed, run);
     };
     const ExperimentResult found = run_experiment(machine_, soil_, law_, density, options);
-    const ExperimentResult equal = run_experiment(
-        machine_, soil_, law_, density, at_equal_payload(found.objective.goal, found, options));
+    const ExperimentResult equal =
+        run_experiment(machine_, soil_, law_, density,
+                       at_equal_payload(found.objective.goal, found, equal_digs, options));
     run.estimate = found.estimate;
     run.held_down = !found.held_because.empty();
     run.energy_gain = found.gain_percent();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -21,14 +22,17 @@
 #include "base/random.hpp"
 #include "study/equal_payload.hpp"
 #include "study/study_row.hpp"
+#include "study/study_summary.hpp"
 #include "study/study_survey.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double lowest_density = 5.0;    // of the runs [%]
-constexpr double highest_density = 95.0;  // [%]
-constexpr double rough_length = 0.3;      // over which rough ground is correlated [m]; ours
+constexpr double lowest_density = 5.0;     // of the runs [%]
+constexpr double highest_density = 95.0;   // [%]
+constexpr double whatever_density = 50.0;  // of a plan that is not adapted [%]; ours
+constexpr int searched_digs = 200;         // of a search at no less payload; ours, docs/results.md
+constexpr double rough_length = 0.3;       // over which rough ground is correlated [m]; ours
 
 // Of a condition; ours.
 constexpr double steepest = 0.6;  // [rad]
@@ -156,154 +160,136 @@ double density_of_run(const StudySetting& setting, std::uint64_t index) {
                                           (highest_density - lowest_density) * share);
 }
 
-ExperimentOptions options_of(const Machine& machine, const StudySetting& setting,
-                             const Shelf& shelf, std::uint64_t seed) {
-  ExperimentOptions options;
-  options.survey = [&setting, &shelf, seed](const DigScene& scene) {
-    return surveyed_density(scene, setting.sensor, shelf.soil(setting), shelf.law(setting), seed);
+/// One run.
+struct StudyTask {
+  const Machine& machine;
+  const StudySetting& setting;
+  const Shelf& shelf;
+  double density;
+  std::uint64_t seed;
+
+  const SoilKind& soil() const { return shelf.soil(setting); }
+  const DensityLaw& law() const { return shelf.law(setting); }
+  ExperimentOptions options() const;
+};
+
+ExperimentOptions StudyTask::options() const {
+  ExperimentOptions made;
+  made.survey = [this](const DigScene& scene) {
+    return surveyed_density(scene, setting.sensor, soil(), law(), seed);
   };
-  options.fixed_path = setting.fixed_path;
-  options.digs = simulator_of_word(setting.digs);
-  if (setting.drawn_soil) options.dug_soil = drawn_soil(shelf.soil(setting), {}, seed);
-  options.second = setting.second;
-  PlanOptions& plan = options.plan;
+  made.fixed_path = setting.fixed_path;
+  made.digs = simulator_of_word(setting.digs);
+  if (setting.drawn_soil) made.dug_soil = drawn_soil(soil(), {}, seed);
+  made.second = setting.second;
+  PlanOptions& plan = made.plan;
   plan.search.threads = 1;
   plan.search.seed = seed;
   plan.library = shelf.library(setting);
   if (setting.plan == StudyPlan::search) plan.method = PlanMethod::search;
+  if (setting.plan == StudyPlan::not_adapted) made.planned_density = whatever_density;
   if (setting.slope != 0.0 || setting.roughness > 0.0) {
-    options.ground = study_ground(machine, setting, plan.cell_size, seed);
+    made.ground = study_ground(machine, setting, plan.cell_size, seed);
   }
   if (setting.plan == StudyPlan::search && setting.sensor != StudySensor::none) {
-    options.seen = [&machine, sensor = setting.sensor, seed](const Terrain& ground) {
-      return surveyed_ground(ground, machine, sensor, seed);
+    made.seen = [this](const Terrain& ground) {
+      return surveyed_ground(ground, machine, setting.sensor, seed);
     };
   }
-  return options;
+  return made;
 }
 
-StudyRun run_with(const RelativeDensity& estimate) {
-  StudyRun run;
+void set_estimate(StudyRun& run, const RelativeDensity& estimate) {
   run.estimate_percent = estimate.percent;
   run.estimate_sd = estimate.sd_percent;
   run.interval = estimate.interval_percent;
   run.trustworthy = estimate.trustworthy;
-  return run;
 }
 
-StudyRun single_dig(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
-                    double density, std::uint64_t seed) {
-  const SoilKind& soil = shelf.soil(setting);
-  const DensityLaw& law = shelf.law(setting);
-  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
-  const ExperimentResult energy = run_experiment(machine, soil, law, density, options);
-  StudyRun run = run_with(energy.estimate);
-  const auto at_equal = [&](DigObjective::Goal goal) {
-    return run_experiment(machine, soil, law, density, at_equal_payload(goal, energy, options));
+StudyGain gain_of(const ExperimentResult& result) {
+  return {result.gain_percent(), result.path_gain_percent(),
+          result.planned.payload_mass / result.fixed.payload_mass};
+}
+
+/// Of a planned dig: what it throws is in the run.
+template <typename Dig>
+void attempt(StudyRun& run, Dig dig) {
+  try {
+    dig();
+  } catch (const Error& error) {
+    if (run.plan_failure.empty()) run.plan_failure = error.what();
+  }
+}
+
+void single_dig(const StudyTask& task, StudyRun& run) {
+  ExperimentOptions options = task.options();
+  bool surveyed = false;
+  options.survey = [&, survey = options.survey](const DigScene& scene) {
+    const RelativeDensity estimate = survey(scene);
+    set_estimate(run, estimate);
+    surveyed = true;
+    return estimate;
   };
-  const ExperimentResult equal = at_equal(DigObjective::Goal::energy);
-  const ExperimentResult cycle = at_equal(DigObjective::Goal::cycle);
-  run.held_down = !energy.held_because.empty();
-  run.energy_gain = energy.gain_percent();
-  run.path_gain = energy.path_gain_percent();
-  run.energy_payload = energy.planned.payload_mass / energy.fixed.payload_mass;
-  run.equal_gain = equal.gain_percent();
-  run.equal_payload = equal.planned.payload_mass / equal.fixed.payload_mass;
-  run.cycle_gain = cycle.gain_percent();
-  run.cycle_payload = cycle.planned.payload_mass / cycle.fixed.payload_mass;
-  return run;
+  const auto experiment = [&](const ExperimentOptions& made) {
+    return run_experiment(task.machine, task.soil(), task.law(), task.density, made);
+  };
+  std::optional<ExperimentResult> energy;
+  attempt(run, [&] { energy = experiment(options); });
+  if (!surveyed) throw Error(ErrorKind::bad_input, std::exchange(run.plan_failure, {}));
+  if (!energy) return;
+  run.held_down = !energy->held_because.empty();
+  run.energy = gain_of(*energy);
+  const auto at_equal = [&](DigObjective::Goal goal) {
+    return gain_of(experiment(at_equal_payload(goal, *energy, searched_digs, options)));
+  };
+  attempt(run, [&] { run.equal = at_equal(DigObjective::Goal::energy); });
+  attempt(run, [&] { run.cycle = at_equal(DigObjective::Goal::cycle); });
 }
 
 double percent_over(double planned, double fixed) { return 100.0 * (planned / fixed - 1.0); }
 
-StudyRun digs_in_a_row(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
-                       double density, std::uint64_t seed) {
-  const SoilKind& soil = shelf.soil(setting);
-  const DensityLaw& law = shelf.law(setting);
-  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
-  const ExperimentResult first = run_experiment(machine, soil, law, density, options);
-  ExperimentOptions in_row = at_equal_payload(DigObjective::Goal::cycle, first, options);
-  in_row.survey = options.survey;
-  const DigRow row(machine, soil, density, in_row);
-  const RowTotal fixed = row.fixed(setting.row);
-  RelativeDensity last;
-  const RowTotal planned = row.planned(fixed.digs, first.estimate, last);
-  StudyRun run = run_with(last);
+void digs_in_a_row(const StudyTask& task, StudyRun& run) {
+  const ExperimentOptions options = task.options();
+  const ExperimentResult first =
+      run_experiment(task.machine, task.soil(), task.law(), task.density, options);
+  set_estimate(run, first.estimate);
   run.held_down = !first.held_because.empty();
-  run.energy_gain = percent_over(planned.mass / planned.energy, fixed.mass / fixed.energy);
-  run.path_gain = run.equal_gain = run.energy_gain;
-  run.energy_payload = planned.mass / fixed.mass;
-  run.cycle_gain =
-      percent_over(planned.mass / planned.cycle_energy, fixed.mass / fixed.cycle_energy);
-  run.cycle_payload = run.equal_payload = run.energy_payload;
-  return run;
+  ExperimentOptions in_row =
+      at_equal_payload(DigObjective::Goal::cycle, first, searched_digs, options);
+  const DigRow row(task.machine, task.soil(), task.density, in_row);
+  const RowTotal fixed = row.fixed(task.setting.row);
+  attempt(run, [&] {
+    RelativeDensity last;
+    const RowTotal planned = row.planned(fixed.digs, first.estimate, last);
+    set_estimate(run, last);
+    run.energy.payload = run.cycle.payload = planned.mass / fixed.mass;
+    run.energy.gain = percent_over(planned.mass / planned.energy, fixed.mass / fixed.energy);
+    run.cycle.gain =
+        percent_over(planned.mass / planned.cycle_energy, fixed.mass / fixed.cycle_energy);
+  });
 }
 
-StudyRun estimate_alone(const Machine& machine, const StudySetting& setting, const Shelf& shelf,
-                        double density, std::uint64_t seed) {
-  const ExperimentOptions options = options_of(machine, setting, shelf, seed);
-  StudyRun run =
-      run_with(options.survey(first_dig(machine, shelf.soil(setting), density, options)));
-  run.compared = false;
-  return run;
+void estimate_alone(const StudyTask& task, StudyRun& run) {
+  const ExperimentOptions options = task.options();
+  set_estimate(run, options.survey(first_dig(task.machine, task.soil(), task.density, options)));
 }
 
 StudyRun run_once(const Machine& machine, const StudyCondition& condition, const Shelf& shelf,
                   std::uint64_t seed, std::uint64_t index) {
-  const StudySetting& setting = condition.setting;
-  const double density = density_of_run(setting, index);
-  const std::uint64_t own_seed = Random(seed, index).bits();
+  const StudyTask task = {machine, condition.setting, shelf,
+                          density_of_run(condition.setting, index), Random(seed, index).bits()};
   StudyRun run;
+  run.density_percent = task.density;
+  run.compared = static_cast<int>(index) < condition.compared;
   try {
-    const auto kind = static_cast<int>(index) >= condition.compared ? estimate_alone
-                      : setting.row > 1                             ? digs_in_a_row
-                                                                    : single_dig;
-    run = kind(machine, setting, shelf, density, own_seed);
+    const auto make = !run.compared               ? estimate_alone
+                      : condition.setting.row > 1 ? digs_in_a_row
+                                                  : single_dig;
+    make(task, run);
   } catch (const Error& error) {
     run.failure = error.what();
   }
-  run.density_percent = density;
   return run;
-}
-
-void summarise(StudyResult& result, std::uint64_t seed) {
-  std::vector<double> energy, path, equal, cycle, energy_payload, equal_payload, cycle_payload;
-  double squares = 0.0, sum = 0.0, inside = 0.0;
-  for (const StudyRun& run : result.runs) {
-    if (!run.failure.empty()) {
-      ++result.failed;
-      continue;
-    }
-    const double error = run.estimate_percent - run.density_percent;
-    squares += error * error;
-    sum += error;
-    inside += run.density_percent >= run.interval[0] && run.density_percent <= run.interval[1];
-    result.untrusted += run.trustworthy ? 0 : 1;
-    if (!run.compared) continue;
-    ++result.compared;
-    if (run.held_down && !result.condition.setting.held_down) {
-      ++result.held_down;
-      continue;
-    }
-    energy.push_back(run.energy_gain);
-    path.push_back(run.path_gain);
-    energy_payload.push_back(run.energy_payload);
-    equal.push_back(run.equal_gain);
-    equal_payload.push_back(run.equal_payload);
-    cycle.push_back(run.cycle_gain);
-    cycle_payload.push_back(run.cycle_payload);
-  }
-  const auto count = static_cast<double>(result.runs.size()) - result.failed;
-  result.rms = std::sqrt(squares / count);
-  result.bias = sum / count;
-  result.inside = inside / count;
-  result.energy_gain = bootstrap_mean(energy, seed);
-  result.path_gain = bootstrap_mean(path, seed);
-  result.equal_gain = bootstrap_mean(equal, seed);
-  result.equal_payload = bootstrap_mean(equal_payload, seed);
-  result.cycle_gain = bootstrap_mean(cycle, seed);
-  result.energy_payload = bootstrap_mean(energy_payload, seed);
-  result.cycle_payload = bootstrap_mean(cycle_payload, seed);
 }
 
 }  // namespace
@@ -350,7 +336,7 @@ std::vector<StudyResult> run_study(const Machine& machine,
     if (options.progress && !options.progress(share, name)) stopped = true;
   });
   if (stopped) return {};
-  for (StudyResult& result : results) summarise(result, options.seed);
+  summarise(results, options.seed);
   return results;
 }
 

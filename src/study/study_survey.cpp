@@ -15,7 +15,7 @@ namespace {
 
 constexpr double camera_height = 3.0;  // above the ground [m]; ours
 constexpr double poor_share = 3.0;     // of the errors of a poor sensor; ours
-constexpr int averaged_frames = 30;    // of a camera; ours
+constexpr int averaged_frames = 10;    // of a camera; ours
 
 /// Half the pixels of the sensor in both directions, which make a study ten times faster and its
 /// surveys no better.

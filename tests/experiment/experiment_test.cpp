@@ -103,8 +103,9 @@ TEST_F(ExperimentTest, DigsOnTheGroundGivenAndPlansOnThatSeen) {
 
 TEST_F(ExperimentTest, SplitsTheGainIntoPathAndStart) {
   const ExperimentResult result = run(looked_up());
-  EXPECT_EQ(to_vector(result.fixed_moved.parameters), to_vector(paper_fixed_path()));
-  EXPECT_NE(result.fixed_moved.start_x, result.fixed.start_x);
+  ASSERT_TRUE(result.fixed_moved);
+  EXPECT_EQ(to_vector(result.fixed_moved->parameters), to_vector(paper_fixed_path()));
+  EXPECT_NE(result.fixed_moved->start_x, result.fixed.start_x);
   EXPECT_EQ(result.start_rule.kind, StartRule::Kind::least_work);
   EXPECT_GT(result.gain_percent(), 0.0);
   EXPECT_NEAR(

@@ -13,6 +13,7 @@
 #include <excavplan/data_files.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/angles.hpp"
 #include "base/random.hpp"
 #include "support/errors.hpp"
 
@@ -30,12 +31,12 @@ class Study : public testing::Test {
   static std::string numbers(const StudyResult& result) {
     std::string text;
     for (const StudyRun& run : result.runs) {
-      for (const double value : {run.density_percent, run.estimate_percent, run.energy_gain,
-                                 run.equal_gain, run.cycle_gain, run.cycle_payload}) {
+      for (const double value : {run.density_percent, run.estimate_percent, run.energy.gain,
+                                 run.equal.gain, run.cycle.gain, run.cycle.payload}) {
         text += std::to_string(value) + " ";
       }
     }
-    return text + std::to_string(result.energy_gain.interval[0]);
+    return text + std::to_string(result.energy.gain.interval[0]);
   }
 
   const Machine machine_ = load_machine(shipped_or_file("machines", "zx120"));
@@ -127,11 +128,11 @@ TEST_F(Study, GainsAtEqualPayloadLiftNoLess) {
   const StudyResult result = run(medium, 2);
   for (const StudyRun& each : result.runs) {
     EXPECT_EQ(each.failure, "");
-    EXPECT_GT(each.energy_gain, each.equal_gain);
-    EXPECT_GT(each.equal_payload, 0.97);
-    EXPECT_GT(each.cycle_payload, 0.97);
-    EXPECT_GT(each.equal_gain, 0.0);
-    EXPECT_GT(each.cycle_gain, 0.0);
+    EXPECT_GT(each.energy.gain, each.equal.gain);
+    EXPECT_GT(each.equal.payload, 0.97);
+    EXPECT_GT(each.cycle.payload, 0.97);
+    EXPECT_GT(each.equal.gain, 0.0);
+    EXPECT_GT(each.cycle.gain, 0.0);
   }
 }
 
@@ -140,12 +141,57 @@ TEST_F(Study, AMachineThatIsHeldDownTellsTheGainInHardSoil) {
   hard.density_percent = 80.0;
   const StudyResult moved = run(hard, 1);
   EXPECT_EQ(moved.held_down, 1);
-  EXPECT_TRUE(std::isnan(moved.energy_gain.mean));
+  EXPECT_TRUE(std::isnan(moved.energy.gain.mean));
   hard.held_down = true;
   const StudyResult held = run(hard, 1);
   EXPECT_EQ(held.runs[0].failure, "");
   EXPECT_EQ(held.held_down, 0);
-  EXPECT_GT(held.energy_gain.mean, 0.0);
+  EXPECT_GT(held.energy.gain.mean, 0.0);
+}
+
+TEST_F(Study, APlanThatFailsKeepsTheEstimate) {
+  StudySetting rising;  // its third run has hard soil, for which the library knows no dig there
+  rising.slope = 5.0 * pi / 180.0;
+  const StudyResult result = run(rising, 3);
+  EXPECT_EQ(result.failed, 0);
+  EXPECT_EQ(result.unplanned, 1);
+  const StudyRun& third = result.runs[2];
+  EXPECT_EQ(third.failure, "");
+  EXPECT_NE(third.plan_failure.find("no path for a density of"), std::string::npos)
+      << third.plan_failure;
+  EXPECT_NEAR(third.estimate_percent, third.density_percent, 10.0);
+  EXPECT_TRUE(std::isnan(third.energy.gain));
+  EXPECT_EQ(result.energy.gain.values, 2);
+}
+
+TEST_F(Study, GainsAreComparedWithThoseOfTheSameRunsOfTheFirstCondition) {
+  StudySetting soft, other;
+  soft.density_percent = 20.0;
+  other.law = StudyLaw::own_engine;
+  StudyOptions options;
+  options.draws = 12;
+  const auto results = run_study(
+      machine_,
+      {{"reference", "", {}, 2, 2}, {"law", "own", other, 2, 2}, {"density", "20 %", soft, 1, 1}},
+      options);
+  EXPECT_EQ(results[0].energy.over_first.mean, 0.0);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    sum += results[1].runs[i].cycle.gain - results[0].runs[i].cycle.gain;
+  }
+  EXPECT_EQ(results[1].cycle.over_first.values, 2);
+  EXPECT_DOUBLE_EQ(results[1].cycle.over_first.mean, 0.5 * sum);
+  EXPECT_EQ(results[2].energy.over_first.values, 0);
+  EXPECT_EQ(results[2].densities[0], 20.0);
+}
+
+TEST_F(Study, APlanThatIsNotAdaptedIsTheSameForEachDensity) {
+  StudySetting soft;
+  soft.plan = StudyPlan::not_adapted;
+  soft.density_percent = 5.0;
+  StudySetting adapted = soft;
+  adapted.plan = StudyPlan::look_up;
+  EXPECT_LT(run(soft, 1).energy.gain.mean, run(adapted, 1).energy.gain.mean);
 }
 
 TEST_F(Study, ARunThatFailsEndsNoOther) {
@@ -155,7 +201,7 @@ TEST_F(Study, ARunThatFailsEndsNoOther) {
   const StudyResult result = run(hard, 2);
   EXPECT_EQ(result.failed, 2);
   EXPECT_NE(result.runs[0].failure, "");
-  EXPECT_TRUE(std::isnan(result.energy_gain.mean));
+  EXPECT_TRUE(std::isnan(result.energy.gain.mean));
 }
 
 TEST_F(Study, RunsThatAreNotComparedEstimateTheSame) {
@@ -172,7 +218,7 @@ TEST_F(Study, RunsThatAreNotComparedEstimateTheSame) {
   EXPECT_EQ(results[1].compared, 1);
   EXPECT_FALSE(results[1].runs[1].compared);
   EXPECT_EQ(results[0].rms, results[1].rms);
-  EXPECT_EQ(results[0].runs[0].energy_gain, results[1].energy_gain.mean);
+  EXPECT_EQ(results[0].runs[0].energy.gain, results[1].energy.gain.mean);
 }
 
 TEST_F(Study, ASurveyWithErrorsIsWorseThanOneWithout) {
@@ -194,8 +240,8 @@ TEST_F(Study, DigsInARowGoOnWhereTheLastEnded) {
   row.density_percent = 40.0;
   const StudyResult result = run(row, 1);
   ASSERT_EQ(result.runs[0].failure, "");
-  EXPECT_GT(result.runs[0].cycle_payload, 0.5);
-  EXPECT_LT(result.runs[0].cycle_payload, 4.0);
+  EXPECT_GT(result.runs[0].cycle.payload, 0.5);
+  EXPECT_LT(result.runs[0].cycle.payload, 4.0);
 }
 
 TEST_F(Study, ItStopsWhenAskedTo) {

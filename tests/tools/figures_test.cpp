@@ -214,9 +214,9 @@ TEST(StudyFigure, HasARowForEachConditionAndTheGains) {
     results[i].condition.level = levels[i];
     results[i].rms = 4.0;
     const double gain = 10.0 + 5.0 * static_cast<double>(i);
-    results[i].energy_gain = {gain, {gain - 3.0, gain + 3.0}};
-    results[i].equal_gain = {std::nan(""), {}};
-    results[i].cycle_gain = {gain + 1.0, {gain - 1.0, gain + 2.0}};
+    results[i].energy.gain = {gain, {gain - 3.0, gain + 3.0}, 30};
+    results[i].equal.gain = {std::nan(""), {}, 0};
+    results[i].cycle.gain = {gain + 1.0, {gain - 1.0, gain + 2.0}, 30};
   }
   for (const double width : {40.0, 85.0, 170.0}) {
     const std::string svg =

@@ -93,7 +93,7 @@ TEST_F(Tools, AStudyWritesItsRunsAndItsTable) {
   EXPECT_EQ(json::parse(content_of(out + "/study.json"))["study"], found["study"]);
   std::istringstream rows(std::regex_replace(runs, std::regex("\"[^\"]*\""), ""));
   for (std::string row; std::getline(rows, row);) {
-    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 16) << row;
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 19) << row;
   }
   EXPECT_TRUE(contains(content_of(out + "/study.md"), "| slope | +10.0 deg | 1 |"));
   expect_figure(out + "/study.svg", {"slope, +10.0 deg", "gain of the planned dig [%]"});

@@ -11,19 +11,19 @@ namespace excavplan::tools {
 namespace {
 
 struct Gain {
-  StudyMean StudyResult::*mean;
+  StudyGains StudyResult::*goal;
   const char* legend;
   Style style;
   double offset;  ///< of its row
 };
 
 const std::array<Gain, 3> gains = {
-    {{&StudyResult::energy_gain, "gain, mass per energy of the dig", {colours::blue, 0.9}, 0.26},
-     {&StudyResult::equal_gain,
+    {{&StudyResult::energy, "gain, mass per energy of the dig", {colours::blue, 0.9}, 0.26},
+     {&StudyResult::equal,
       "gain at no less payload",
       {colours::vermilion, 0.9, "none", 1.0, {2.0, 1.0}},
       0.0},
-     {&StudyResult::cycle_gain,
+     {&StudyResult::cycle,
       "gain per cycle",
       {colours::green, 0.9, "none", 1.0, {0.9, 0.9}},
       -0.26}}};
@@ -64,7 +64,8 @@ double largest_shown(const std::vector<StudyResult>& results) {
   std::vector<double> means;
   for (const StudyResult& result : results) {
     for (const Gain& gain : gains) {
-      if (std::isfinite((result.*gain.mean).mean)) means.push_back((result.*gain.mean).mean);
+      if (std::isfinite((result.*gain.goal).gain.mean))
+        means.push_back((result.*gain.goal).gain.mean);
     }
   }
   if (means.empty()) return 1.0;
@@ -78,8 +79,8 @@ Panel gain_panel(const std::vector<StudyResult>& results) {
   double high = 1.0;
   for (const StudyResult& result : results) {
     for (const Gain& gain : gains) {
-      const auto& interval = (result.*gain.mean).interval;
-      if (!std::isfinite((result.*gain.mean).mean)) continue;
+      const auto& interval = (result.*gain.goal).gain.interval;
+      if (!std::isfinite((result.*gain.goal).gain.mean)) continue;
       low = std::min(low, interval[0]);
       high = std::max(high, interval[1]);
     }
@@ -91,7 +92,7 @@ Panel gain_panel(const std::vector<StudyResult>& results) {
   for (const Gain& gain : gains) {
     Points means;
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const StudyMean& mean = results[i].*gain.mean;
+      const StudyMean& mean = (results[i].*gain.goal).gain;
       if (!std::isfinite(mean.mean)) continue;
       const double y = row_of(i) + gain.offset;
       if (mean.mean > high) {

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/study_results.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <mutex>
 #include <vector>
 
@@ -18,8 +16,17 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json mean_json(const StudyMean& mean) {
-  if (std::isnan(mean.mean)) return nullptr;
-  return {{"mean", mean.mean}, {"interval_95", {mean.interval[0], mean.interval[1]}}};
+  if (mean.values == 0) return nullptr;
+  return {{"mean", mean.mean},
+          {"interval_95", {mean.interval[0], mean.interval[1]}},
+          {"runs", mean.values}};
+}
+
+ordered_json gains_json(const StudyGains& gains) {
+  return {{"gain_percent", mean_json(gains.gain)},
+          {"gain_path_percent", mean_json(gains.of_path)},
+          {"payload_ratio", mean_json(gains.payload)},
+          {"gain_over_reference_points", mean_json(gains.over_first)}};
 }
 
 ordered_json condition_json(const StudyResult& result) {
@@ -27,19 +34,17 @@ ordered_json condition_json(const StudyResult& result) {
           {"level", result.condition.level},
           {"runs", result.runs.size()},
           {"failed", result.failed},
-          {"compared", result.compared},
-          {"held_down", result.held_down},
           {"not_trustworthy", result.untrusted},
           {"density_rms_points", result.rms},
           {"density_bias_points", result.bias},
           {"density_inside_95", result.inside},
-          {"gain_percent", mean_json(result.energy_gain)},
-          {"gain_path_percent", mean_json(result.path_gain)},
-          {"payload_ratio", mean_json(result.energy_payload)},
-          {"gain_equal_payload_percent", mean_json(result.equal_gain)},
-          {"equal_payload_ratio", mean_json(result.equal_payload)},
-          {"gain_cycle_percent", mean_json(result.cycle_gain)},
-          {"cycle_payload_ratio", mean_json(result.cycle_payload)}};
+          {"compared", result.compared},
+          {"held_down", result.held_down},
+          {"not_planned", result.unplanned},
+          {"densities_percent", {result.densities[0], result.densities[1]}},
+          {"energy", gains_json(result.energy)},
+          {"equal_payload", gains_json(result.equal)},
+          {"cycle", gains_json(result.cycle)}};
 }
 
 /// A cell of CSV: text in quotes, nothing for what is not known.
@@ -52,78 +57,106 @@ std::string cell(double value) { return std::isnan(value) ? "" : number_text(val
 
 /// Of a run, between density and failure; what is not known is not a number.
 std::vector<double> values_of(const StudyRun& run) {
-  std::vector<double> values = {run.estimate_percent,
-                                run.estimate_sd,
-                                run.interval[0],
-                                run.interval[1],
-                                run.trustworthy ? 1.0 : 0.0,
-                                run.held_down ? 1.0 : 0.0,
-                                run.energy_gain,
-                                run.path_gain,
-                                run.energy_payload,
-                                run.equal_gain,
-                                run.equal_payload,
-                                run.cycle_gain,
-                                run.cycle_payload};
-  constexpr std::ptrdiff_t estimated = 5;
   const double nothing = std::nan("");
-  if (!run.compared) std::fill(values.begin() + estimated, values.end(), nothing);
-  if (!run.failure.empty()) std::fill(values.begin(), values.end(), nothing);
+  std::vector<double> values(5, nothing);
+  if (run.failure.empty()) {
+    values = {run.estimate_percent, run.estimate_sd, run.interval[0], run.interval[1],
+              run.trustworthy ? 1.0 : 0.0};
+  }
+  const bool compared = run.failure.empty() && run.compared;
+  values.push_back(compared ? (run.held_down ? 1.0 : 0.0) : nothing);
+  for (const StudyGain& of : {run.energy, run.equal, run.cycle}) {
+    values.insert(values.end(), {of.gain, of.of_path, of.payload});
+  }
   return values;
 }
 
 std::string runs_csv(const std::vector<StudyResult>& results) {
   std::string csv =
       "factor,level,density_percent,estimate_percent,estimate_sd_percent,interval_low_percent,"
-      "interval_high_percent,trustworthy,held_down,gain_percent,gain_path_percent,payload_ratio,"
-      "gain_equal_payload_percent,equal_payload_ratio,gain_cycle_percent,cycle_payload_ratio,"
-      "failure\n";
+      "interval_high_percent,trustworthy,held_down";
+  for (const std::string goal : {"energy", "equal_payload", "cycle"}) {
+    csv += "," + goal + "_gain_percent," + goal + "_gain_path_percent," + goal + "_payload_ratio";
+  }
+  csv += ",failure,plan_failure\n";
   for (const StudyResult& result : results) {
     for (const StudyRun& run : result.runs) {
       csv += cell(result.condition.factor) + "," + cell(result.condition.level) + "," +
              cell(run.density_percent);
       for (const double value : values_of(run)) csv += "," + cell(value);
-      csv += "," + (run.failure.empty() ? "" : cell(run.failure)) + "\n";
+      for (const std::string& why : {run.failure, run.plan_failure}) {
+        csv += "," + (why.empty() ? "" : cell(why));
+      }
+      csv += "\n";
     }
   }
   return csv;
 }
 
 std::string text_of(const StudyMean& mean) {
-  if (std::isnan(mean.mean)) return "-";
+  if (mean.values == 0) return "-";
   return decimals(mean.mean, 1) + " (" + decimals(mean.interval[0], 1) + " .. " +
          decimals(mean.interval[1], 1) + ")";
 }
 
-std::string number_of(double value) { return std::isnan(value) ? "-" : decimals(value, 1); }
-
-std::string ratio_of(const StudyMean& mean) {
-  return std::isnan(mean.mean) ? "-" : decimals(mean.mean, 2);
+std::string number_of(double value, int digits = 1) {
+  return std::isnan(value) ? "-" : decimals(value, digits);
 }
 
-std::string table(const std::vector<StudyResult>& results) {
-  std::string text =
-      "| factor | level | runs | failed | held down | not trusted | rms d | bias d | in 95 % "
-      "| gain % | payload | gain at equal payload % | payload | gain per cycle % | payload |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+std::string joined_cells(const std::vector<std::string>& cells) {
+  std::string row = "|";
+  for (const std::string& each : cells) row += " " + each + " |";
+  return row + "\n";
+}
+
+std::string heading_of(const std::vector<std::string>& columns) {
+  return joined_cells(columns) + joined_cells(std::vector<std::string>(columns.size(), "---"));
+}
+
+std::string density_table(const std::vector<StudyResult>& results) {
+  std::string text = heading_of({"factor", "level", "runs", "no estimate", "not trusted",
+                                 "rms [points]", "bias [points]", "in 95 %"});
   for (const StudyResult& result : results) {
-    text += "| " + result.condition.factor + " | " + result.condition.level + " | " +
-            std::to_string(result.runs.size()) + " | " + std::to_string(result.failed) + " | " +
-            std::to_string(result.held_down) + " | " + std::to_string(result.untrusted) + " | " +
-            number_of(result.rms) + " | " + number_of(result.bias) + " | " +
-            (std::isnan(result.inside) ? "-" : decimals(100.0 * result.inside, 0) + " %") + " | " +
-            text_of(result.energy_gain) + " | " + ratio_of(result.energy_payload) + " | " +
-            text_of(result.equal_gain) + " | " + ratio_of(result.equal_payload) + " | " +
-            text_of(result.cycle_gain) + " | " + ratio_of(result.cycle_payload) + " |\n";
+    text += joined_cells(
+        {result.condition.factor, result.condition.level, std::to_string(result.runs.size()),
+         std::to_string(result.failed), std::to_string(result.untrusted), number_of(result.rms),
+         number_of(result.bias),
+         std::isnan(result.inside) ? "-" : decimals(100.0 * result.inside, 0) + " %"});
   }
   return text;
 }
 
+/// With the paths' part for the paper's goal; the difference to the reference is of equal runs.
+std::string gain_table(const std::vector<StudyResult>& results) {
+  std::string text = heading_of(
+      {"factor", "level", "held down", "no plan", "n", "densities [%]", "gain [%]",
+       "of the path [%]", "payload", "over the reference [points]", "gain at no less payload [%]",
+       "payload", "gain per cycle [%]", "payload", "over the reference [points]"});
+  for (const StudyResult& result : results) {
+    const int n = result.energy.gain.values;
+    text += joined_cells(
+        {result.condition.factor, result.condition.level, std::to_string(result.held_down),
+         std::to_string(result.unplanned), std::to_string(n),
+         n == 0 ? "-"
+                : decimals(result.densities[0], 0) + " .. " + decimals(result.densities[1], 0),
+         text_of(result.energy.gain), number_of(result.energy.of_path.mean),
+         number_of(result.energy.payload.mean, 2), text_of(result.energy.over_first),
+         text_of(result.equal.gain), number_of(result.equal.payload.mean, 2),
+         text_of(result.cycle.gain), number_of(result.cycle.payload.mean, 2),
+         text_of(result.cycle.over_first)});
+  }
+  return text;
+}
+
+std::string tables(const std::vector<StudyResult>& results) {
+  return "Density\n\n" + density_table(results) + "\nGains\n\n" + gain_table(results);
+}
+
 std::string line_of(const StudyResult& result) {
   return result.condition.factor + ", " + result.condition.level + ": density within " +
-         number_of(result.rms) + " points rms; gain " + text_of(result.energy_gain) +
-         " %, at equal payload " + text_of(result.equal_gain) + " %, per cycle " +
-         text_of(result.cycle_gain) + " %";
+         number_of(result.rms) + " points rms; gain " + text_of(result.energy.gain) +
+         " %, at no less payload " + text_of(result.equal.gain) + " %, per cycle " +
+         text_of(result.cycle.gain) + " % (" + std::to_string(result.energy.gain.values) + " runs)";
 }
 
 }  // namespace
@@ -164,7 +197,7 @@ Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& pl
   }
   write_file(*inputs.folder + "/study.json", outcome.json.dump(2) + "\n");
   write_file(*inputs.folder + "/runs.csv", runs_csv(results));
-  write_file(*inputs.folder + "/study.md", table(results));
+  write_file(*inputs.folder + "/study.md", tables(results));
   const Figure figure = study_figure(results);
   write_file(*inputs.folder + "/study.svg", to_svg(lay_out(figure)));
   for (const Plots::File& plot : plots.files) write_plot(plots, plot.file, figure, outcome.lines);

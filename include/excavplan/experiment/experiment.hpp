@@ -37,6 +37,8 @@ struct ExperimentOptions {
   /// The density that a survey of the first dig gives; empty: the law on its height maps, which
   /// have no error.
   std::function<RelativeDensity(const DigScene& first)> survey = {};
+  std::optional<RelativeDensity> estimate = {};  ///< known before: the first dig is not surveyed
+  std::optional<double> planned_density = {};    ///< planned for; empty: as estimated [%]
   /// The ground as the plan sees it; empty: as it is.
   std::function<Terrain(const Terrain& ground)> seen = {};
 
@@ -46,15 +48,16 @@ struct ExperimentOptions {
 /// One soil, dug along both paths.
 struct ExperimentResult {
   double density_percent = 0.0;  ///< the true one
-  HeightMapVolumes volumes;      ///< of the dig along the fixed path, with its bulking factor
+  HeightMapVolumes volumes;      ///< of the dig along the fixed path, if it is surveyed
   RelativeDensity estimate;      ///< from that bulking factor, or by the survey
   PlannedDig fixed;              ///< begins with the largest margin
   PlannedDig planned;            ///< for the estimate, dug in the true soil
   DigPath fixed_path;            ///< of `fixed`
   DigPath planned_path;          ///< of `planned`
   StartRule start_rule;          ///< that puts the start of the planned dig nearest to where it is
-  PlannedDig fixed_moved;        ///< the fixed path, its start by that rule
-  DigObjective objective;        ///< that the dig was planned for
+  /// The fixed path, its start by that rule; nothing if it stalls there.
+  std::optional<PlannedDig> fixed_moved;
+  DigObjective objective;  ///< that the dig was planned for
   /// Why the fixed path would lift or drag the machine: then it is held down in all digs here, as
   /// if only its joints could stall. Empty if it need not be.
   std::string held_because;
@@ -65,9 +68,9 @@ struct ExperimentResult {
   double gain_percent() const;
   /// The same by another objective: what a dig planned for one is worth by the other.
   double gain_percent(const DigObjective& by) const;
-  /// Of the planned path over the fixed one, both begun by start_rule [%].
+  /// Of the planned path over the fixed one, both begun by start_rule [%]; NaN if that one stalls.
   double path_gain_percent() const;
-  /// Of the fixed path begun by start_rule over its own start [%].
+  /// Of the fixed path begun by start_rule over its own start [%]; NaN if it stalls.
   double start_gain_percent() const;
 };
 

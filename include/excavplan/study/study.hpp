@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,15 @@
 
 namespace excavplan {
 
-/// One run of a condition. Gains are those of the planned over the fixed dig, or of the sums over a
-/// row of digs [%].
+/// Of the planned over the fixed dig, or of the sums over a row of digs; not a number where there
+/// is none.
+struct StudyGain {
+  double gain = std::numeric_limits<double>::quiet_NaN();     ///< in the goal planned for [%]
+  double of_path = std::numeric_limits<double>::quiet_NaN();  ///< both begun by one rule [%]
+  double payload = std::numeric_limits<double>::quiet_NaN();  ///< planned over fixed [-]
+};
+
+/// One run of a condition.
 struct StudyRun {
   double density_percent = 0.0;                   ///< the true one
   double estimate_percent = 0.0;                  ///< estimated
@@ -29,44 +37,50 @@ struct StudyRun {
   /// The fixed path would lift or drag the machine, which is held down in all digs of the run: no
   /// gain can be told from it.
   bool held_down = false;
-  double energy_gain = 0.0;     ///< planned for mass per energy of the dig, the paper's f
-  double path_gain = 0.0;       ///< its part that is the path's, both begun by one rule
-  double energy_payload = 0.0;  ///< payload of that dig over that of the fixed one [-]
-  double equal_gain = 0.0;      ///< planned for the same at no less payload than the fixed dig's
-  double equal_payload = 0.0;   ///< payload of that dig over that of the fixed one [-]
-  double cycle_gain = 0.0;  ///< planned for mass per energy of the whole cycle, at no less payload
-  double cycle_payload = 0.0;  ///< payload of that dig over that of the fixed one [-]
-  std::string failure = {};    ///< why there is no result; empty if there is
+  StudyGain energy = {};     ///< planned for mass per energy of the dig, the paper's f
+  StudyGain equal = {};      ///< planned for the same at no less payload than the fixed dig's
+  StudyGain cycle = {};      ///< planned for mass per energy of the whole cycle, at no less payload
+  std::string failure = {};  ///< why the fixed path gives no estimate; empty if it does
+  std::string plan_failure = {};  ///< why the first goal that fails cannot be planned or dug
 };
 
 /// Mean with its 95 % interval.
 struct StudyMean {
   double mean = 0.0;                            ///< of the values
   std::array<double, 2> interval = {0.0, 0.0};  ///< by bootstrap over the runs
+  int values = 0;                               ///< number of them
 };
 
 /// Mean of these with the percentile interval of 2000 bootstrap samples (Efron and Tibshirani 1993,
 /// chapter 13). The same seed gives the same interval. NaN without values.
 StudyMean bootstrap_mean(const std::vector<double>& values, std::uint64_t seed);
 
+/// Of the runs that tell a gain.
+struct StudyGains {
+  StudyMean gain = {};     ///< [%]
+  StudyMean of_path = {};  ///< [%]
+  StudyMean payload = {};  ///< [-]
+  /// Of the gain over that of the same run of the first condition [points]; without values where
+  /// the condition sets the density.
+  StudyMean over_first = {};
+};
+
 /// A condition with its runs.
 struct StudyResult {
-  StudyCondition condition;       ///< that was run
-  std::vector<StudyRun> runs;     ///< in order
-  int failed = 0;                 ///< runs without a result
-  int compared = 0;               ///< runs without failure that planned and dug
-  int held_down = 0;              ///< of them, those that tell no gain
-  int untrusted = 0;              ///< runs whose estimate is not trustworthy, failed ones aside
-  double rms = 0.0;               ///< error of the estimated density, failed runs aside [points]
-  double bias = 0.0;              ///< likewise [points]
-  double inside = 0.0;            ///< share of the runs whose 95 % interval holds the density [-]
-  StudyMean energy_gain = {};     ///< [%]
-  StudyMean path_gain = {};       ///< [%]
-  StudyMean equal_gain = {};      ///< [%]
-  StudyMean equal_payload = {};   ///< [-]
-  StudyMean cycle_gain = {};      ///< [%]
-  StudyMean energy_payload = {};  ///< [-]
-  StudyMean cycle_payload = {};   ///< [-]
+  StudyCondition condition;    ///< that was run
+  std::vector<StudyRun> runs;  ///< in order
+  int failed = 0;              ///< runs whose fixed path gives no estimate
+  int untrusted = 0;           ///< of the others, those whose estimate is not trustworthy
+  int compared = 0;            ///< runs that planned and dug
+  int held_down = 0;           ///< of them, those that tell no gain
+  int unplanned = 0;           ///< of the rest, those with a goal that cannot be planned or dug
+  double rms = 0.0;            ///< error of the estimated density, failed runs aside [points]
+  double bias = 0.0;           ///< likewise [points]
+  double inside = 0.0;         ///< share of the runs whose 95 % interval holds the density [-]
+  std::array<double, 2> densities = {0.0, 0.0};  ///< least and most of the runs that tell a gain
+  StudyGains energy = {};                        ///< as of a run
+  StudyGains equal = {};                         ///< likewise
+  StudyGains cycle = {};                         ///< likewise
 };
 
 /// Settings of run_study().
@@ -83,7 +97,7 @@ struct StudyOptions {
 /// the same soil and the same ground: conditions are compared run by run.
 ///
 /// @throws Error (bad_input) if a name is unknown or a number is out of range; what one run cannot
-/// do, a stall on the fixed path for instance, is in its `failure`
+/// do, a stall on the fixed path for instance, is in its `failure` or `plan_failure`
 std::vector<StudyResult> run_study(const Machine& machine,
                                    const std::vector<StudyCondition>& conditions,
                                    const StudyOptions& options = {});

@@ -35,8 +35,9 @@ enum class StudyLaw {
 
 /// How the second dig is chosen.
 enum class StudyPlan {
-  look_up,  ///< from the library
-  search    ///< for the ground as the survey shows it
+  look_up,     ///< from the library
+  search,      ///< for the ground as the survey shows it
+  not_adapted  ///< from the library for 50 %, whatever the survey says
 };
 
 /// All that a condition may change; the defaults are those of the reference condition.
@@ -74,9 +75,8 @@ std::vector<StudyCondition> default_study(const Machine& machine);
 DigParameters paper_field_path();
 
 /// The fixed path that is sized to the bucket: the paper's angle and penetration, and a drag that
-/// just fills the heaped capacity with soil of 50 %: swept volume times the bulking factor. A
-/// fairer baseline than a path that leaves the bucket half empty or pushes soil ahead of a full
-/// one.
+/// sweeps as much as the heaped capacity holds of soil of 50 %, by its bulking factor. What spills
+/// and falls back is not in it: simulated, it fills about half of the bucket.
 DigParameters path_sized_to_bucket(const Machine& machine, const SoilKind& soil);
 
 }  // namespace excavplan
