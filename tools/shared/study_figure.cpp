@@ -73,6 +73,16 @@ double largest_shown(const std::vector<StudyResult>& results) {
   return std::max(10.0, 2.0 * means[means.size() * 9 / 10]);
 }
 
+/// In the order of the legend.
+std::string gains_beyond(const StudyResult& result, double high) {
+  std::string text;
+  for (const Gain& gain : gains) {
+    const double mean = (result.*gain.goal).gain.mean;
+    if (mean > high) text += (text.empty() ? "" : ", ") + short_number(mean, 0);
+  }
+  return text;
+}
+
 Panel gain_panel(const std::vector<StudyResult>& results) {
   Panel panel("", "gain of the planned dig [%]", "");
   double low = 0.0;
@@ -95,14 +105,15 @@ Panel gain_panel(const std::vector<StudyResult>& results) {
       const StudyMean& mean = (results[i].*gain.goal).gain;
       if (!std::isfinite(mean.mean)) continue;
       const double y = row_of(i) + gain.offset;
-      if (mean.mean > high) {
-        panel.label({high, y}, short_number(mean.mean, 0) + " % →");
-        continue;
-      }
+      if (mean.mean > high) continue;
       means.emplace_back(mean.mean, y);
       panel.interval({mean.interval[0], y}, {mean.interval[1], y}, gain.style, gain.legend);
     }
     panel.dots(means, 1.3, {"none", 0.0, gain.style.stroke});
+  }
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const std::string beyond = gains_beyond(results[i], high);
+    if (!beyond.empty()) panel.label({high, row_of(i)}, beyond + " % →");
   }
   return panel;
 }
