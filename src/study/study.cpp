@@ -31,7 +31,7 @@ namespace {
 constexpr double lowest_density = 5.0;     // of the runs [%]
 constexpr double highest_density = 95.0;   // [%]
 constexpr double whatever_density = 50.0;  // of a plan that is not adapted [%]; ours
-constexpr int searched_digs = 200;         // of a search at no less payload; ours, docs/results.md
+constexpr int searched_digs = 250;         // of a search at no less payload; ours, docs/results.md
 constexpr double rough_length = 0.3;       // over which rough ground is correlated [m]; ours
 
 // Of a condition; ours.
@@ -239,6 +239,7 @@ void single_dig(const StudyTask& task, StudyRun& run) {
   if (!energy) return;
   run.held_down = !energy->held_because.empty();
   run.energy = gain_of(*energy);
+  if (run.held_down && !task.setting.held_down) return;  // no gain is told
   const auto at_equal = [&](DigObjective::Goal goal) {
     return gain_of(experiment(at_equal_payload(goal, *energy, searched_digs, options)));
   };
