@@ -14,6 +14,7 @@
 namespace excavplan {
 namespace {
 
+constexpr int frames = 30;        // of the camera, averaged; ours
 constexpr int equal_digs = 1000;  // of the search at no less payload; ours
 
 constexpr int most_digs = 10000;  // ours
@@ -74,7 +75,8 @@ class FieldExperiment {
   }
 
   RelativeDensity survey(const DigScene& scene, std::uint64_t seed, FieldRun& run) const {
-    const DensityEstimate estimate = surveyed_dig(scene, StudySensor::d435i, soil_, law_, seed);
+    const DensityEstimate estimate =
+        surveyed_dig(scene, {StudySensor::d435i, seed, frames}, soil_, law_);
     RelativeDensity density = *estimate.density;
     density.trustworthy = estimate.trustworthy;
     run.bulking_factor = estimate.bulking->value;

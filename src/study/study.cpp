@@ -176,7 +176,7 @@ struct StudyTask {
 ExperimentOptions StudyTask::options() const {
   ExperimentOptions made;
   made.survey = [this](const DigScene& scene) {
-    return surveyed_density(scene, setting.sensor, soil(), law(), seed);
+    return surveyed_density(scene, {setting.sensor, seed}, soil(), law());
   };
   made.fixed_path = setting.fixed_path;
   made.digs = simulator_of_word(setting.digs);
@@ -193,7 +193,7 @@ ExperimentOptions StudyTask::options() const {
   }
   if (setting.plan == StudyPlan::search && setting.sensor != StudySensor::none) {
     made.seen = [this](const Terrain& ground) {
-      return surveyed_ground(ground, machine, setting.sensor, seed);
+      return surveyed_ground(ground, machine, {setting.sensor, seed});
     };
   }
   return made;

@@ -15,17 +15,16 @@ namespace {
 
 constexpr double camera_height = 3.0;  // above the ground [m]; ours
 constexpr double poor_share = 3.0;     // of the errors of a poor sensor; ours
-constexpr int averaged_frames = 10;    // of a camera; ours
 
 /// Half the pixels of the sensor in both directions, which make a study ten times faster and its
 /// surveys no better.
-DepthCamera study_camera(StudySensor sensor) {
+DepthCamera study_camera(const StudyScan& scan) {
   DepthCamera camera = with_errors_of(sensor_of_word("d435i"), {});
   camera.width /= 2;
   camera.height /= 2;
   camera.pattern_length /= 2.0;
-  camera.frames = averaged_frames;
-  if (sensor == StudySensor::poor) {
+  camera.frames = scan.frames;
+  if (scan.sensor == StudySensor::poor) {
     camera.noise *= poor_share;
     camera.pattern_noise *= poor_share;
     camera.disparity_step *= poor_share;
@@ -69,27 +68,27 @@ std::vector<Eigen::Vector2d> points_along(const DigPath& path) {
   return points;
 }
 
-SceneScans scans_of(const DigScene& scene, StudySensor sensor, std::uint64_t seed) {
-  if (sensor != StudySensor::lidar) {
+SceneScans scans_of(const DigScene& scene, const StudyScan& scan) {
+  if (scan.sensor != StudySensor::lidar) {
     std::vector<Eigen::Vector2d> above = points_along(scene.path);
     above.push_back(scene.dump_at);
-    return scan_scene(scene, study_camera(sensor), seed,
+    return scan_scene(scene, study_camera(scan), scan.seed,
                       places_above(above, scene.before.surface()));
   }
   const Lidar lidar;
-  return {scan_surface(scene.before.surface(), lidar, 2 * seed),
-          scan_surface(scene.after.surface(), lidar, 2 * seed + 1)};
+  return {scan_surface(scene.before.surface(), lidar, 2 * scan.seed),
+          scan_surface(scene.after.surface(), lidar, 2 * scan.seed + 1)};
 }
 
 }  // namespace
 
-DensityEstimate surveyed_dig(const DigScene& scene, StudySensor sensor, const SoilKind& soil,
-                             const DensityLaw& law, std::uint64_t seed) {
-  SceneScans points = scans_of(scene, sensor, seed);
+DensityEstimate surveyed_dig(const DigScene& scene, const StudyScan& scan, const SoilKind& soil,
+                             const DensityLaw& law) {
+  SceneScans points = scans_of(scene, scan);
   DigScans scans{scan_of(std::move(points.before), "before"),
                  scan_of(std::move(points.after), "after"), std::nullopt};
-  if (sensor == StudySensor::lidar) {
-    for (Scan* scan : {&scans.before, &scans.after}) scan->sensor_origin = Lidar().position;
+  if (scan.sensor == StudySensor::lidar) {
+    for (Scan* each : {&scans.before, &scans.after}) each->sensor_origin = Lidar().position;
   }
   DensityOptions options;
   options.registered = false;
@@ -100,32 +99,31 @@ DensityEstimate surveyed_dig(const DigScene& scene, StudySensor sensor, const So
   return estimate;
 }
 
-RelativeDensity surveyed_density(const DigScene& scene, StudySensor sensor, const SoilKind& soil,
-                                 const DensityLaw& law, std::uint64_t seed) {
-  if (sensor == StudySensor::none) {
+RelativeDensity surveyed_density(const DigScene& scene, const StudyScan& scan, const SoilKind& soil,
+                                 const DensityLaw& law) {
+  if (scan.sensor == StudySensor::none) {
     return relative_density(law, {scene.volumes.bulking_factor, 0.0});
   }
-  const DensityEstimate estimate = surveyed_dig(scene, sensor, soil, law, seed);
+  const DensityEstimate estimate = surveyed_dig(scene, scan, soil, law);
   RelativeDensity density = *estimate.density;
   density.trustworthy = estimate.trustworthy;
   return density;
 }
 
-Terrain surveyed_ground(const Terrain& ground, const Machine& machine, StudySensor sensor,
-                        std::uint64_t seed) {
-  if (sensor == StudySensor::none) return ground;
+Terrain surveyed_ground(const Terrain& ground, const Machine& machine, const StudyScan& scan) {
+  if (scan.sensor == StudySensor::none) return ground;
   const HeightMap surface = ground.surface();
   std::vector<Eigen::Vector3d> points;
-  if (sensor == StudySensor::lidar) {
-    points = scan_surface(surface, Lidar(), seed);
+  if (scan.sensor == StudySensor::lidar) {
+    points = scan_surface(surface, Lidar(), scan.seed);
   } else {
-    const DepthCamera camera = study_camera(sensor);
+    const DepthCamera camera = study_camera(scan);
     for (const double x : {3.5, 5.5, 7.5}) {  // all of the reach [m]; ours
       DepthCamera placed = camera;
       const CameraPlace place = places_above({{x, 0.0}}, surface).front();
       placed.position = place.position;
       placed.target = place.target;
-      const auto seen = scan_surface(surface, placed, seed + static_cast<std::uint64_t>(x));
+      const auto seen = scan_surface(surface, placed, scan.seed + static_cast<std::uint64_t>(x));
       points.insert(points.end(), seen.begin(), seen.end());
     }
   }
