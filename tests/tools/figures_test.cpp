@@ -5,6 +5,11 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <excavplan/data_files.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/scene.hpp>
+
+#include "shared/dig_timing.hpp"
 #include "shared/study_figure.hpp"
 #include "support/svg_figure.hpp"
 #include "support/svg_layout.hpp"
@@ -204,6 +209,25 @@ TEST_F(FigureValues, WithoutFontsOnlySvgIsDrawn) {
   }
   answer("simulate-dig", {"--density", "40", "--plot", folder.file("f.svg")});
   ::unsetenv("FONTCONFIG_FILE");
+}
+
+TEST(DigTiming, BeginsWhereTheDigDoesNotWhereItsApproachDoes) {
+  const Machine machine = load_machine(shipped_or_file("machines", "zx120"));
+  const SoilKind loam = load_soil(shipped_or_file("soils", "loam"));
+  SceneOptions options;
+  options.history = true;
+  const Terrain ground =
+      undisturbed(flat_ground(scene_extent(machine, default_dump_point()), 0.05));
+  const DigScene scene = run_scene(machine, loam, 40.0, ground, options);
+  DigPath with_approach = scene.path;
+  with_approach.approach =
+      std::get<std::vector<DigPose>>(way_down(machine, scene.path, boom_plane_profile(ground)));
+  ASSERT_FALSE(with_approach.approach.empty());
+  const auto steps = tools::timed_steps(machine, scene.path, scene.dig);
+  const auto same = tools::timed_steps(machine, with_approach, scene.dig);
+  ASSERT_EQ(steps.size(), same.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(steps[i].time, same[i].time) << i;
+  EXPECT_NEAR(steps.back().time + 0.5 * steps.back().duration, scene.duration, 0.02);
 }
 
 TEST(StudyFigure, HasARowForEachConditionAndTheGains) {

@@ -71,7 +71,9 @@ std::vector<double> times_of_poses(const Trajectory& trajectory,
 std::vector<TimedStep> timed_steps(const Machine& machine, const DigPath& path,
                                    const DigResult& dig) {
   const std::vector<DigPose>& poses = path.poses;
-  const Trajectory trajectory = time_dig_path(machine, path, {}, dig.torques);
+  DigPath alone = path;
+  alone.approach.clear();
+  const Trajectory trajectory = time_dig_path(machine, alone, {}, dig.torques);
   const std::vector<double> times = times_of_poses(trajectory, poses);
   std::vector<TimedStep> steps;
   for (std::size_t i = 0; i < dig.history.size() && i + 1 < times.size(); ++i) {
