@@ -92,7 +92,7 @@ class FieldExperiment {
 };
 
 void summarise(FieldResult& result, std::uint64_t seed) {
-  std::vector<double> gain, volume, energy, equal_gain, equal_volume, equal_energy, equal_path;
+  std::vector<const FieldRun*> telling;
   for (const FieldRun& run : result.runs) {
     if (!run.failure.empty()) {
       ++result.failed;
@@ -103,22 +103,28 @@ void summarise(FieldResult& result, std::uint64_t seed) {
       ++result.held_down;
       continue;
     }
-    energy.push_back(run.energy_gain);
-    equal_energy.push_back(run.equal_energy_gain);
-    equal_path.push_back(run.equal_path_gain);
-    const double fixed = run.fixed.dig.payload_volume;
-    gain.push_back(fuel_gain_percent(run.planned, run.fixed));
-    volume.push_back(run.planned.dig.payload_volume / fixed);
-    equal_gain.push_back(fuel_gain_percent(run.equal, run.fixed));
-    equal_volume.push_back(run.equal.dig.payload_volume / fixed);
+    telling.push_back(&run);
   }
-  result.gain = bootstrap_mean(gain, seed);
-  result.volume_ratio = bootstrap_mean(volume, seed);
-  result.equal_gain = bootstrap_mean(equal_gain, seed);
-  result.energy_gain = bootstrap_mean(energy, seed);
-  result.equal_energy_gain = bootstrap_mean(equal_energy, seed);
-  result.equal_path_gain = bootstrap_mean(equal_path, seed);
-  result.equal_volume_ratio = bootstrap_mean(equal_volume, seed);
+  const auto mean = [&](auto value) {
+    std::vector<double> values;
+    for (const FieldRun* run : telling) values.push_back(value(*run));
+    return bootstrap_mean(values, seed);
+  };
+  const auto gain_of = [&](FuelledDig FieldRun::*dig) {
+    return mean([=](const FieldRun& run) { return fuel_gain_percent(run.*dig, run.fixed); });
+  };
+  const auto volume_of = [&](FuelledDig FieldRun::*dig) {
+    return mean([=](const FieldRun& run) {
+      return (run.*dig).dig.payload_volume / run.fixed.dig.payload_volume;
+    });
+  };
+  result.gain = gain_of(&FieldRun::planned);
+  result.volume_ratio = volume_of(&FieldRun::planned);
+  result.equal_gain = gain_of(&FieldRun::equal);
+  result.equal_volume_ratio = volume_of(&FieldRun::equal);
+  result.energy_gain = mean([](const FieldRun& run) { return run.energy_gain; });
+  result.equal_energy_gain = mean([](const FieldRun& run) { return run.equal_energy_gain; });
+  result.equal_path_gain = mean([](const FieldRun& run) { return run.equal_path_gain; });
 }
 
 }  // namespace

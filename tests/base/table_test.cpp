@@ -11,6 +11,7 @@
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
+#include "support/utf16.hpp"
 
 namespace excavplan {
 namespace {
@@ -84,13 +85,6 @@ TEST(Table, WhatAFileHoldsIsShownShortAndSafe) {
 
 // ---- What spreadsheets and loggers write ------------------------------------------------------
 
-/// The text in UTF-16.
-std::string utf16(const std::string& text, bool big_endian, bool with_mark) {
-  std::string bytes = with_mark ? (big_endian ? "\xFE\xFF" : "\xFF\xFE") : "";
-  for (const char c : text) bytes += big_endian ? std::string{'\0', c} : std::string{c, '\0'};
-  return bytes;
-}
-
 TEST(Table, EveryDialectReadsTheSame) {
   const std::string plain = "k,note,d\n1.25,a,40\n-3,b,0.5\n";
   const std::string semicolons = "k;note;d\n1,25;a;40\n-3;b;0,5\n";
@@ -103,9 +97,9 @@ TEST(Table, EveryDialectReadsTheSame) {
       {"decimal comma in quotes", "k,note,d\n\"1,25\",a,40\n-3,b,\"0,5\"\n"},
       {"tabs and decimal comma", "k\tnote\td\n1,25\ta\t40\n-3\tb\t0,5\n"},
       {"byte order mark", "\xEF\xBB\xBF" + plain},
-      {"UTF-16 LE", utf16(plain, false, true)},
-      {"UTF-16 BE", utf16(semicolons, true, true)},
-      {"UTF-16 without mark", utf16(plain, false, false)},
+      {"UTF-16 LE", test::utf16(plain, false, true)},
+      {"UTF-16 BE", test::utf16(semicolons, true, true)},
+      {"UTF-16 without mark", test::utf16(plain, false, false)},
       {"CRLF", "k,note,d\r\n1.25,a,40\r\n-3,b,0.5\r\n"},
       {"CR", "k,note,d\r1.25,a,40\r-3,b,0.5"},
       {"quotes", "\"k\",\"note\",\"d\"\n\"1.25\",\"a\",\"40\"\n\"-3\",\"b\",\"0.5\"\n"},
@@ -169,9 +163,9 @@ TEST(Table, BrokenTextIsRefusedWithItsLine) {
   EXPECT_EQ(refusal("k,d\n1,\"2\n"), "t.csv: line 2: a quote is not closed");
   EXPECT_EQ(refusal("k,d\n\"1\"2,3\n"), "t.csv: line 2: found text behind the quotes of '1'");
   EXPECT_EQ(refusal("1,2\n3,4\n"), "t.csv: line 1: found numbers, expected names of columns");
-  EXPECT_EQ(refusal(utf16("k,d\n1,2\n", false, true) + "x"),
+  EXPECT_EQ(refusal(test::utf16("k,d\n1,2\n", false, true) + "x"),
             "t.csv: line 3: UTF-16 ends in half a character");
-  EXPECT_EQ(refusal(utf16("k,d\n1,2\n", false, true) + std::string("\x00\xD8", 2)),
+  EXPECT_EQ(refusal(test::utf16("k,d\n1,2\n", false, true) + std::string("\x00\xD8", 2)),
             "t.csv: line 3: UTF-16 with half a pair of characters");
   EXPECT_EQ(refusal(std::string("k,d\n1,\0\n", 8)), "t.csv: line 2: found a control character");
 }

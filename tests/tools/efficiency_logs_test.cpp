@@ -14,6 +14,7 @@
 
 #include "support/run_program.hpp"
 #include "support/tool_answers.hpp"
+#include "support/utf16.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -51,12 +52,6 @@ class EfficiencyLogs : public testing::Test {
 
   TemporaryFolder folder;
 };
-
-std::string utf16(const std::string& text, bool big_endian) {
-  std::string bytes = big_endian ? "\xFE\xFF" : "\xFF\xFE";
-  for (const char c : text) bytes += big_endian ? std::string{'\0', c} : std::string{c, '\0'};
-  return bytes;
-}
 
 TEST_F(EfficiencyLogs, TwelveDialectsHoldTheSameFuel) {
   const std::string plain = "time_s,fuel_flow_ml_per_s\n0.5,1.5\n4.5,2.5\n8.5,1.5\n";

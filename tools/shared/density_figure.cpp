@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.hpp"
 #include "base/text.hpp"
 #include "shared/law_curve.hpp"
 
@@ -22,7 +23,7 @@ class CutNormal {
   }
   double operator()(double d) const {
     const double off = (d - mean_) / sd_;
-    return std::exp(-0.5 * off * off) / (sd_ * std::sqrt(2.0 * 3.14159265358979) * inside_);
+    return std::exp(-0.5 * off * off) / (sd_ * std::sqrt(2.0 * pi) * inside_);
   }
 
  private:

@@ -10,16 +10,12 @@
 
 #include "base/text.hpp"
 #include "shared/results.hpp"
+#include "shared/study_results.hpp"
 
 namespace excavplan::tools {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json mean_json(const StudyMean& mean) {
-  if (std::isnan(mean.mean)) return nullptr;
-  return {{"mean", mean.mean}, {"interval_95", {mean.interval[0], mean.interval[1]}}};
-}
 
 ordered_json fuelled_json(const FuelledDig& fuelled) {
   ordered_json json = dig_json(fuelled.dig);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "base/angles.hpp"
+
 namespace excavplan::tools {
 namespace {
 
@@ -130,7 +132,7 @@ void add_body(const Machine& machine, MachineOutline& outline) {
   constexpr int steps = 8;
   const auto end = [&](double x, double sense) {
     for (int i = 0; i <= steps; ++i) {
-      const double angle = 3.14159265358979 * (i / static_cast<double>(steps) - 0.5);
+      const double angle = pi * (i / static_cast<double>(steps) - 0.5);
       outline.tracks.emplace_back(x + sense * bend * std::cos(angle),
                                   bend + sense * bend * std::sin(angle));
     }

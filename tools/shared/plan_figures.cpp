@@ -8,6 +8,7 @@
 
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/angles.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"
@@ -31,7 +32,7 @@ struct ShownNumber {
 
   explicit ShownNumber(const DigParameterInfo& of) : info(&of) {
     const bool is_angle = std::string(of.unit) == "rad";
-    if (is_angle) per_si = 180.0 / 3.14159265358979323846;
+    if (is_angle) per_si = 180.0 / pi;
     label = std::string(of.text) + (is_angle ? " [deg]" : " [m]");
   }
   double of(const DigParameters& dig) const { return per_si * (dig.*info->field); }

@@ -543,12 +543,7 @@ class Sheet {
     add(Clip{box});
     for (const Panel::Shape& shape : panel.shapes()) draw_shape(shape, frame);
     add(Clip{});
-    add(DrawnPath{{{{box.left, box.top},
-                    {box.right(), box.top},
-                    {box.right(), box.bottom()},
-                    {box.left, box.bottom()}}},
-                  true,
-                  thin("#444444")});
+    draw_box(box, thin("#444444"));
     for (const Panel::Shape& shape : panel.shapes()) draw_dots(shape, frame);
     draw_labels(panel, frame);
     if (!panel.hides_x()) draw_x(panel, frame, xs);
@@ -569,6 +564,15 @@ class Sheet {
       const double y = frame.y(tick.first);
       add(DrawnPath{{{{frame.box.left, y}, {frame.box.right(), y}}}, false, thin("#e4e4e4")});
     }
+  }
+
+  void draw_box(const Box& box, const Style& style) {
+    add(DrawnPath{{{{box.left, box.top},
+                    {box.right(), box.top},
+                    {box.right(), box.bottom()},
+                    {box.left, box.bottom()}}},
+                  true,
+                  style});
   }
 
   void draw_x(const Panel& panel, const Frame& frame, const std::vector<Tick>& ticks) {
@@ -678,12 +682,7 @@ class Sheet {
     const double right_end = frame.x(shape.points[1].x());
     const Box& box = frame.box;
     const double strip = 3.5 * scale_;
-    add(DrawnPath{{{{left, box.top},
-                    {right_end, box.top},
-                    {right_end, box.top + strip},
-                    {left, box.top + strip}}},
-                  true,
-                  shape.style});
+    draw_box({left, box.top, right_end - left, strip}, shape.style);
     add(DrawnPath{{{{right_end, box.top}, {right_end, box.bottom()}}}, false, thin("#c0c0c0")});
   }
 
@@ -788,12 +787,7 @@ class Sheet {
     } else {
       draw_bands(bar, box);
     }
-    add(DrawnPath{{{{box.left, box.top},
-                    {box.right(), box.top},
-                    {box.right(), box.bottom()},
-                    {box.left, box.bottom()}}},
-                  true,
-                  thin("#444444")});
+    draw_box(box, thin("#444444"));
     put(0.5 * width_, box.bottom() + 2.0 * line(), fitted(bar.label, inner(), text()), text(),
         Anchor::middle);
     return y + 3.0 * line();

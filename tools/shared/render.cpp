@@ -13,13 +13,13 @@
 
 #include <excavplan/error.hpp>
 
+#include "base/angles.hpp"
 #include "base/text.hpp"
 
 namespace excavplan::tools {
 namespace {
 
 constexpr double dots_per_inch = 300.0;
-constexpr double pi = 3.14159265358979323846;
 
 struct Free {
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }

@@ -15,18 +15,17 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json mean_json(const StudyMean& mean) {
-  if (mean.values == 0) return nullptr;
-  return {{"mean", mean.mean},
-          {"interval_95", {mean.interval[0], mean.interval[1]}},
-          {"runs", mean.values}};
+ordered_json counted_json(const StudyMean& mean) {
+  ordered_json json = mean_json(mean);
+  if (!json.is_null()) json["runs"] = mean.values;
+  return json;
 }
 
 ordered_json gains_json(const StudyGains& gains) {
-  return {{"gain_percent", mean_json(gains.gain)},
-          {"gain_path_percent", mean_json(gains.of_path)},
-          {"payload_ratio", mean_json(gains.payload)},
-          {"gain_over_reference_points", mean_json(gains.over_first)}};
+  return {{"gain_percent", counted_json(gains.gain)},
+          {"gain_path_percent", counted_json(gains.of_path)},
+          {"payload_ratio", counted_json(gains.payload)},
+          {"gain_over_reference_points", counted_json(gains.over_first)}};
 }
 
 ordered_json condition_json(const StudyResult& result) {
@@ -160,6 +159,11 @@ std::string line_of(const StudyResult& result) {
 }
 
 }  // namespace
+
+ordered_json mean_json(const StudyMean& mean) {
+  if (mean.values == 0) return nullptr;
+  return {{"mean", mean.mean}, {"interval_95", {mean.interval[0], mean.interval[1]}}};
+}
 
 void declare_study(Arguments& arguments, StudyInputs& inputs) {
   arguments.place("study", inputs.folder,

@@ -21,6 +21,9 @@ struct StudyInputs {
   double runs = 1.0;  ///< factor on their number
 };
 
+/// {mean, interval_95}; null without values.
+nlohmann::ordered_json mean_json(const StudyMean& mean);
+
 void declare_study(Arguments& arguments, StudyInputs& inputs);
 
 /// Runs the default study and writes its files into the folder: study.json with an entry per
