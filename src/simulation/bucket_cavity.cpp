@@ -16,9 +16,9 @@ using Eigen::Vector2d;
 
 constexpr double steepest_face = 80.0 * pi / 180.0;  // of soil, however cohesive; ours
 
-Vector2d turned(const Vector2d& v, double angle) {
-  return {v.x() * std::cos(angle) - v.y() * std::sin(angle),
-          v.x() * std::sin(angle) + v.y() * std::cos(angle)};
+/// `by`: the unit vector at the angle of the turn.
+Vector2d turned(const Vector2d& v, const Vector2d& by) {
+  return {v.x() * by.x() - v.y() * by.y(), v.x() * by.y() + v.y() * by.x()};
 }
 
 }  // namespace
@@ -30,10 +30,11 @@ Cavity::Cavity(const Bucket& bucket) : bucket_(bucket), corners_(bucket.profile.
 void Cavity::turn_to(double phi3) {
   if (phi3 == phi3_) return;
   phi3_ = phi3;
+  const Vector2d direction(std::cos(phi3), std::sin(phi3));
   double x_min = 0.0;
   double x_max = 0.0;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    corners_[i] = turned(bucket_.profile[i] - bucket_.profile.front(), phi3);
+    corners_[i] = turned(bucket_.profile[i] - bucket_.profile.front(), direction);
     x_min = std::min(x_min, corners_[i].x());
     x_max = std::max(x_max, corners_[i].x());
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <excavplan/error.hpp>
@@ -198,27 +199,28 @@ class Dig {
     double low = -std::numeric_limits<double>::infinity();
     double high = -low;
     level = std::max(level, top_of_pile_);
-    double last_level = level;
+    double top = level;
     double last_left = 0.0;
+    PileAhead::Size pile;
     for (int i = 0; i < 60; ++i) {  // secants within the bounds found
-      if (pile_.look(level)) low = -std::numeric_limits<double>::infinity();
-      const PileAhead::Size pile = pile_.size(level);
-      const double left = fill_ - room(level) - pile.volume;
+      const double last_top = std::exchange(top, level);
+      if (pile_.look(top)) low = -std::numeric_limits<double>::infinity();
+      pile = pile_.size(top);
+      const double left = fill_ - room(top) - pile.volume;
       if (std::abs(left) < spill_error) break;
-      (left > 0.0 ? low : high) = level;
-      if (i > 0) gain_ = (last_left - left) / (level - last_level);
+      (left > 0.0 ? low : high) = top;
+      if (i > 0) gain_ = (last_left - left) / (top - last_top);
       if (!(gain_ > 0.0)) gain_ = pile.area;
-      last_level = level;
       last_left = left;
-      level += left / gain_;
+      level = top + left / gain_;
       if (gain_ > 0.0 && level > low && level < high) continue;
       level = std::isinf(high) ? low + 0.1 : std::isinf(low) ? high - 0.1 : 0.5 * (low + high);
     }
-    const double spilled = std::min(fill_, pile_.size(level).volume);
+    const double spilled = std::min(fill_, pile.volume);
     if (!(spilled > 0.0)) return;
-    top_of_pile_ = level;
+    top_of_pile_ = top;
     fill_ = fill_ - spilled > rounding ? fill_ - spilled : 0.0;
-    moving_.include(pile_.lay(level, spilled));
+    moving_.include(pile_.lay(top, spilled / pile.volume));
   }
 
   // ---- energy ----------------------------------------------------------------------------------

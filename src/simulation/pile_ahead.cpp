@@ -39,6 +39,10 @@ bool PileAhead::look(double top) {
     const CellBlock level = {swath_.first_row(), swath_.end_row(), lip - ahead, lip + 1};
     seen_ = ground_.widened(level, around);
     ground_.cover(seen_);
+    across_.clear();
+    for (Index row = seen_.row_begin; row < seen_.row_end; ++row) {
+      across_.push_back(std::max(0.0, std::abs(ground_.before().bank.y(row)) - half_width_));
+    }
     for (Index col = seen_.col_begin; col < seen_.col_end; ++col) look_at_column(col, reach);
     if (foot_ + rim < reach || reach > farthest) return true;
   }
@@ -58,28 +62,35 @@ void PileAhead::look_at_column(Index col, double reach) {
   const Index first = std::max(seen_.row_begin, swath_.first_row() - rows);
   const Index end = std::min(seen_.row_end, swath_.end_row() + rows);
   const double ahead = behind ? 0.0 : std::min(1.0, (lip_x_ - left) / map.cell_size);
-  const auto look_at_rows = [&](Index begin, Index stop, double share) {
-    for (Index row = begin; row < stop; ++row) look_at_cell(row, col, along, share, reach);
-  };
-  look_at_rows(first, swath_.first_row(), 1.0);
-  if (ahead > 0.0) look_at_rows(swath_.first_row(), swath_.end_row(), ahead);
-  look_at_rows(swath_.end_row(), end, 1.0);
+  const ColumnAhead column = {col, along, reach};
+  look_at_rows(first, swath_.first_row(), column, 1.0);
+  if (ahead > 0.0) look_at_rows(swath_.first_row(), swath_.end_row(), column, ahead);
+  look_at_rows(swath_.end_row(), end, column, 1.0);
 }
 
-/// `along`: distance from the level top in the direction of travel, `share`: of the cell that is
-/// ahead of the lip.
-void PileAhead::look_at_cell(Index row, Index col, double along, double share, double reach) {
-  const std::size_t cell = ground_.at(row, col);
-  const double height = ground_.height(cell);
-  const double across = std::max(0.0, std::abs(ground_.before().bank.y(row)) - half_width_);
-  const double square = along * along + across * across;
-  const double room = seen_to_ - height;
-  if (slope_ * slope_ * square > surely_beyond * room * room) return;  // spares most roots
-  const double distance = across > 0.0 ? std::sqrt(square) : along;
-  const double base = height + slope_ * distance;
-  if (distance > reach || !(base < seen_to_)) return;  // also on unknown ground
-  places_.push_back({cell, base, share});
-  foot_ = std::max(foot_, distance);
+/// `share`: of each cell that is ahead of the lip.
+void PileAhead::look_at_rows(Index begin, Index end, const ColumnAhead& column, double share) {
+  const double along_square = column.along * column.along;
+  const double slope_square = slope_ * slope_;
+  const double seen_to = seen_to_;
+  const std::size_t first = ground_.at(begin, column.col);
+  const double* across = across_.data() + (begin - seen_.row_begin);
+  for (Index i = 0; i < end - begin; ++i) {
+    const std::size_t cell = first + static_cast<std::size_t>(i);
+    const double height = ground_.height(cell);
+    const double square = along_square + across[i] * across[i];
+    const double room = seen_to - height;
+    if (slope_square * square > surely_beyond * room * room) continue;  // spares most roots
+    const double distance = across[i] > 0.0 ? std::sqrt(square) : column.along;
+    const double base = height + slope_ * distance;
+    if (distance > column.reach || !(base < seen_to)) continue;  // also on unknown ground
+    // Written in place: a copy of a whole Place waits for each of its members.
+    Place& place = places_.emplace_back();
+    place.cell = cell;
+    place.base = base;
+    place.share = share;
+    foot_ = std::max(foot_, distance);
+  }
 }
 
 PileAhead::Size PileAhead::size(double top) const {
@@ -93,8 +104,7 @@ PileAhead::Size PileAhead::size(double top) const {
   return {volume * cell_area, area * cell_area};
 }
 
-CellBlock PileAhead::lay(double top, double volume) {
-  const double share = volume / size(top).volume;
+CellBlock PileAhead::lay(double top, double share) {
   for (const Place& place : places_) {
     if (!(top > place.base)) continue;
     ground_.raise_loose(place.cell, share * place.share * (top - place.base));

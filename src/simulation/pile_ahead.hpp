@@ -33,9 +33,9 @@ class PileAhead {
   };
   Size size(double top) const;
 
-  /// Raises the ground to such a pile, of which `volume` is its size but for rounding; returns the
-  /// cells that it is on.
-  CellBlock lay(double top, double volume);
+  /// Raises the ground by this share of such a pile, 1 but for rounding; returns the cells that it
+  /// is on.
+  CellBlock lay(double top, double share);
 
  private:
   /// A cell that the pile may cover.
@@ -44,8 +44,13 @@ class PileAhead {
     double base = 0.0;   ///< level of the pile's top from which on it is covered [m]
     double share = 0.0;  ///< of it that lies ahead of the lip
   };
+  struct ColumnAhead {
+    Eigen::Index col = 0;
+    double along = 0.0;  ///< from the level top in the direction of travel [m]
+    double reach = 0.0;  ///< from the level top, up to which soil is sought [m]
+  };
   void look_at_column(Eigen::Index col, double reach);
-  void look_at_cell(Eigen::Index row, Eigen::Index col, double along, double share, double reach);
+  void look_at_rows(Eigen::Index begin, Eigen::Index end, const ColumnAhead& column, double share);
 
   GroundWindow& ground_;
   const Swath& swath_;
@@ -56,6 +61,7 @@ class PileAhead {
   double seen_to_ = 0.0;  ///< top for which all places are known
   double foot_ = 0.0;     ///< of that pile, from its level top [m]
   CellBlock seen_;
+  std::vector<double> across_;  ///< of the rows seen, beyond the sides of the bucket [m]
   std::vector<Place> places_;
 };
 
