@@ -11,6 +11,7 @@
 #include "fuzz/file_readers.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/quantity.hpp"
+#include "shared/settings_file.hpp"
 #include "shared/stated_density.hpp"
 
 namespace excavplan::test {
@@ -77,10 +78,32 @@ std::string read_option(const std::string& path) {
   return said.text();
 }
 
+/// As --config of a tool with an option of each form.
+std::string read_settings(const std::string& path) {
+  tools::Arguments arguments;
+  bool flag = false;
+  std::string word;
+  std::vector<CameraPlace> places;
+  arguments.flag("search", flag, "");
+  arguments.text("soil", "NAME", word, "");
+  arguments.option("camera", places, "");
+  const tools::StatedSettings stated =
+      tools::read_settings_file(path, "plan-path", arguments.entries());
+  Said said;
+  for (const auto& option : stated.options) {
+    said.add("entry", static_cast<double>(option.entry));
+    for (const std::string& text : option.texts) said.add("text", text);
+  }
+  return said.add("others", static_cast<double>(stated.not_of_tool.size())).text();
+}
+
 }  // namespace
 
 std::vector<FileReader> tool_readers() {
-  return {{"density_from", read_density_from}, {"samples", read_samples}, {"option", read_option}};
+  return {{"density_from", read_density_from},
+          {"samples", read_samples},
+          {"option", read_option},
+          {"settings", read_settings}};
 }
 
 }  // namespace excavplan::test

@@ -121,7 +121,7 @@ TEST_P(EveryTool, HelpNamesEveryOptionAndShowsExamples) {
   EXPECT_EQ(help.code, 0);
   EXPECT_EQ(help.err, "");
   for (const std::string& option :
-       GetParam().options + Words{"--json", "--quiet", "--version", "--help"}) {
+       GetParam().options + Words{"--json", "--quiet", "--config", "--version", "--help"}) {
     EXPECT_TRUE(contains(help.out, option + " ")) << option;
   }
   EXPECT_TRUE(contains(help.out, "Usage: " + tool));

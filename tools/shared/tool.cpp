@@ -21,6 +21,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "shared/report.hpp"
+#include "shared/settings_file.hpp"
 #include "shared/stack.hpp"
 #include "shared/standard_input.hpp"
 #include "shared/used_files.hpp"
@@ -107,6 +108,7 @@ struct Common {
   bool json = false;
   bool quiet = false;
   bool strict = false;
+  std::optional<std::string> config;
 };
 
 void declare_common(Arguments& arguments, const About& about, Common& common) {
@@ -114,6 +116,9 @@ void declare_common(Arguments& arguments, const About& about, Common& common) {
   if (about.can_be_untrustworthy) {
     arguments.flag("strict", common.strict, "exit with 4 if the result is not trustworthy");
   }
+  arguments.file("config", common.config,
+                 "file of settings for options that are not given: keys as options, [" +
+                     about.name + "] for this tool alone (TOML)");
   arguments.flag("quiet", common.quiet,
                  "print no summary, notes, progress or warnings, only errors");
   arguments.flag("version", common.version, "print the version and exit");
@@ -159,6 +164,31 @@ ParsedWords sort_words(int argc, const char* const* argv,
   for (std::size_t i = 0; i < entries.size(); ++i) words.of_entry[i].texts = options[i]->results();
   words.left_over = app.remaining();
   return words;
+}
+
+/// Takes from --config what the command line does not give. @return what was taken, as a line for
+/// the user; empty without --config
+std::string add_settings(const std::vector<Arguments::Entry>& entries, const About& about,
+                         StandardInput& input, ParsedWords& words) {
+  const auto config = std::find_if(entries.begin(), entries.end(),
+                                   [](const auto& entry) { return entry.name == "config"; });
+  ParsedWords::Given& file = words.of_entry[static_cast<std::size_t>(config - entries.begin())];
+  if (file.texts.empty()) return {};
+  std::string& path = file.texts.back();
+  if (path == "-") path = input.path();
+  StatedSettings stated = read_settings_file(path, about.name, entries);
+  std::string taken;
+  for (StatedSettings::Option& option : stated.options) {
+    ParsedWords::Given& given = words.of_entry[option.entry];
+    if (!given.texts.empty() || option.texts.empty()) continue;
+    given.texts = std::move(option.texts);
+    taken += (taken.empty() ? " --" : ", --") + entries[option.entry].name;
+  }
+  std::string line = path + ":" + (taken.empty() ? " nothing" : "") + taken;
+  for (std::size_t i = 0; i < stated.not_of_tool.size(); ++i) {
+    line += (i == 0 ? "; no options of " + about.name + ": " : ", ") + stated.not_of_tool[i];
+  }
+  return line;
 }
 
 void refuse_left_over(const std::vector<std::string>& left_over,
@@ -386,7 +416,7 @@ int run(int argc, const char* const* argv, const About& about,
   const std::size_t own = arguments.entries().size();
   declare_common(arguments, about, common);
 
-  const ParsedWords words = sort_words(argc, argv, arguments.entries());
+  ParsedWords words = sort_words(argc, argv, arguments.entries());
   const auto given = [&](const std::string& name) {
     const auto& entries = arguments.entries();
     const auto at = std::find_if(entries.begin(), entries.end(),
@@ -402,9 +432,11 @@ int run(int argc, const char* const* argv, const About& about,
     return 0;
   }
   refuse_left_over(words.left_over, arguments.entries());
+  const std::string settings = add_settings(arguments.entries(), about, input, words);
   const Signals signals(about.can_stop_early);
   assign(arguments.entries(), words, input);
   Console console(common.quiet, ::isatty(STDERR_FILENO) == 1, signals);
+  if (!settings.empty()) console.note("settings from " + input.named(settings));
   Outcome outcome = work(console);
   for (Warning& each : ignored_options(arguments.entries(), words)) {
     outcome.warnings.push_back(std::move(each));

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shared/arguments.hpp"
+
+namespace excavplan::tools {
+
+/// What a file of settings states.
+struct StatedSettings {
+  struct Option {
+    std::size_t entry = 0;           ///< index of the option
+    std::vector<std::string> texts;  ///< as on the command line; empty: a flag that is off
+  };
+  std::vector<Option> options;
+  std::vector<std::string> not_of_tool;  ///< keys before all tables that this tool has no option of
+};
+
+/// Reads a file of settings in TOML 1.0 (`docs/formats.md#settings`). Keys are options; those in
+/// the table [TOOL] must be of this tool, those before all tables are used if it has them, those in
+/// tables of other tools are not looked at. Of one option the table wins.
+///
+/// A list is one value after the other where an option may be repeated, else joined with commas.
+/// @throws Error (bad_file) naming file, line, column and rule
+StatedSettings read_settings_file(const std::string& path, const std::string& tool,
+                                  const std::vector<Arguments::Entry>& entries);
+
+/// The same of a text, which messages call `name`.
+StatedSettings parse_settings(const std::string& name, const std::string& text,
+                              const std::string& tool,
+                              const std::vector<Arguments::Entry>& entries);
+
+}  // namespace excavplan::tools
