@@ -71,3 +71,14 @@ install(
   DESTINATION ${package_dir} COMPONENT Development)
 install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/excavplan COMPONENT Runtime)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT Runtime)
+install(FILES README.md CHANGELOG.md SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT Documentation)
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT Documentation
+  PATTERN "Doxyfile.in" EXCLUDE)
+
+# What `cmake --install` wrote last, as it lists that itself.
+if(PROJECT_IS_TOP_LEVEL)
+  add_custom_target(uninstall COMMAND ${CMAKE_COMMAND}
+    -D MANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt
+    -P ${PROJECT_SOURCE_DIR}/cmake/excavplan-uninstall.cmake)
+endif()

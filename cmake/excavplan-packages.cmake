@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+
+# Debian packages by `cpack` in the build folder: excavplan (tools, data, shared libraries),
+# libexcavplan-dev (headers, libraries to link, CMake and pkg-config files) and excavplan-doc.
+# scripts/packages makes them in a way that gives the same bytes again.
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME excavplan)
+set(CPACK_PACKAGE_VENDOR "The excavplan authors")
+set(CPACK_PACKAGE_CONTACT "The excavplan authors <excavplan@example.invalid>")  # no mail is read
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL Runtime Development Documentation)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME excavplan)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS fonts-dejavu-core)  # texts of --plot F.png, F.pdf
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
+"${PROJECT_DESCRIPTION}
+ The command line tools, with machines, soils, laws and path libraries.")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexcavplan-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS 
+  "libeigen3-dev, libnlopt-dev, libnlopt-cxx-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, libbz2-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS  # excavplan::survey
+  "libpcl-dev, libopencv-core-dev, libopencv-imgcodecs-dev, zlib1g-dev")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+"${PROJECT_DESCRIPTION}
+ Headers, libraries, CMake and pkg-config files.")
+
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME excavplan-doc)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
+set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION
+"${PROJECT_DESCRIPTION}
+ The guide, methods, formats and examples.")
+
+include(CPack)

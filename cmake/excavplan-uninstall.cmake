@@ -1,0 +1,25 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+
+# Removes the files named in MANIFEST, and the folders of excavplan that are empty then.
+if(NOT EXISTS ${MANIFEST})
+  message(FATAL_ERROR "${MANIFEST}: not found; nothing was installed from this build folder")
+endif()
+file(STRINGS ${MANIFEST} files)
+foreach(file IN LISTS files)
+  set(path "$ENV{DESTDIR}${file}")
+  if(NOT EXISTS ${path} AND NOT IS_SYMLINK ${path})
+    continue()
+  endif()
+  file(REMOVE ${path})
+  message(STATUS "Removed ${path}")
+  cmake_path(GET path PARENT_PATH folder)
+  while(folder MATCHES "/excavplan(/|$)")
+    file(GLOB left LIST_DIRECTORIES true ${folder}/*)
+    if(left)
+      break()
+    endif()
+    file(REMOVE_RECURSE ${folder})
+    cmake_path(GET folder PARENT_PATH folder)
+  endwhile()
+endforeach()
