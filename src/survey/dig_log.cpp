@@ -372,9 +372,10 @@ std::vector<double> DigLog::rate() const {
 }
 
 double DigLog::integral(const LogInterval& during, double idle) const {
+  const LogRows rows = rows_around(time, during);
   double sum = 0.0;
   for (const std::vector<double>& part : rates) {
-    for (std::size_t i = 1; i < time.size(); ++i) {
+    for (std::size_t i = rows.first + 1; i < rows.last; ++i) {
       const double from = std::max(time[i - 1], during.from);
       const double to = std::min(time[i], during.to);
       if (!(from < to)) continue;

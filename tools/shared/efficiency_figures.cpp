@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "shared/bars.hpp"
 #include "shared/efficiency_results.hpp"
+#include "survey/dig_phases.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -84,9 +85,9 @@ Panel log_panel(const DigEfficiency& run, bool last) {
     for (const LogInterval& dig : run.log.digs) {
       panel.span(dig.from - start, dig.to - start, colours::orange, "penetrate, drag and scoop");
       Points area;
-      for (const Eigen::Vector2d& point : curve) {
-        const double time = point.x() + start;
-        if (time >= dig.from && time <= dig.to) area.push_back(point);
+      const LogRows rows = rows_around(run.log.time, dig);
+      for (std::size_t i = rows.first; i < rows.last; ++i) {
+        if (run.log.time[i] >= dig.from && run.log.time[i] <= dig.to) area.push_back(curve[i]);
       }
       if (area.size() < 2) continue;
       area.insert(area.begin(), {area.front().x(), 0.0});
