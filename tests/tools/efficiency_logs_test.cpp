@@ -254,8 +254,8 @@ TEST_F(EfficiencyLogs, IdlingIsFoundOrStatedAndBothFiguresAreThere) {
   const std::string steady = "time_s,fuel_flow_ml_per_s\n0,2\n10,2\n";
   EXPECT_TRUE(run(steady).at("idle").is_null());
   EXPECT_EQ(refusal(steady, {"--subtract-idle"}),
-            "log.csv: idling cannot be subtracted: the log shows none for 2 s, and --idle is not "
-            "given");
+            "log.csv: idling cannot be subtracted: the log shows none for 2 s: give --idle");
+  EXPECT_EQ(refusal(steady, {"--idle", "5kW"}), "--idle is a power, but log.csv records fuel");
   EXPECT_EQ(refusal(steady, {"--idle", "3"}),
             "--idle: '3' is no rate, expected one such as 2.8L/h, 0.8mL/s or 5kW");
 }

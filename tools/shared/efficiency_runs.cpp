@@ -33,7 +33,7 @@ DigEfficiency measure(const RunInputs& inputs, const EfficiencyInputs& all, Outc
   for (std::string& line : run_lines(run)) outcome.lines.push_back(std::move(line));
   for (const Warning& each : run.warnings) {
     outcome.warnings.push_back(
-        {each.code, with_option_names(each.message, heap_options), each.ends_trust});
+        {each.code, with_option_names(each.message, names), each.ends_trust});
   }
   outcome.trustworthy = outcome.trustworthy && run.trustworthy;
   return run;
