@@ -71,28 +71,16 @@ std::string time_name(const LogTable& log) {
                               ", expected one of them: state the column of the time");
 }
 
-/// Times of day, which may pass midnight.
-std::optional<std::vector<double>> clock_times(const LogTable& log, const std::string& name) {
-  constexpr double day = 86400.0;
-  const std::vector<std::string> texts = log.table.texts(name);
-  if (texts.front().find(':') == std::string::npos) return std::nullopt;
-  std::vector<double> times;
-  double days = 0.0;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    const auto seconds = seconds_of_clock(texts[i]);
-    if (!seconds) {
-      refuse(log.source.file, at_line(log.table, i) + safe_text(name, 40) + " is " +
-                                  quoted(texts[i]) + ", expected a time as 13:05:59.250");
-    }
-    if (!times.empty() && *seconds + days < times.back() - 0.5 * day) days += day;
-    times.push_back(*seconds + days);
-  }
-  return times;
+std::vector<double> read_clock(const LogTable& log, const std::string& name,
+                               const std::vector<std::string>& texts) {
+  ClockTimes times = clock_times(texts);
+  if (times.fault.empty()) return std::move(times.seconds);
+  refuse(log.source.file, at_line(log.table, times.bad_row) + safe_text(name, 40) + " is " +
+                              quoted(texts[times.bad_row]) + ", " + times.fault);
 }
 
 void require_increasing(const LogTable& log, const std::vector<double>& time,
                         const std::string& name) {
-  if (time.size() < 2) refuse(log.source.file, "holds one row, at least 2 are needed");
   for (std::size_t i = 1; i < time.size(); ++i) {
     if (time[i] > time[i - 1]) continue;
     refuse(log.source.file, at_line(log.table, i) + safe_text(name, 40) + " is " +
@@ -103,12 +91,13 @@ void require_increasing(const LogTable& log, const std::vector<double>& time,
 
 std::vector<double> times_of(const LogTable& log) {
   const std::string name = time_name(log);
-  auto time = clock_times(log, name);
-  if (!time) {
-    time = log.values(named_column(log.source.file, name, Measure::time, log.source.time_unit));
-  }
-  require_increasing(log, *time, name);
-  return *time;
+  if (log.table.rows() < 2) refuse(log.source.file, "holds one row, at least 2 are needed");
+  const std::vector<std::string> texts = log.table.texts(name);
+  if (texts.front().find(':') != std::string::npos) return read_clock(log, name, texts);
+  std::vector<double> time =
+      log.values(named_column(log.source.file, name, Measure::time, log.source.time_unit));
+  require_increasing(log, time, name);
+  return time;
 }
 
 // ---- Fuel and power ---------------------------------------------------------------------------

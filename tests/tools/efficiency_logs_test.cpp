@@ -105,6 +105,48 @@ TEST_F(EfficiencyLogs, WhatIsNotClearIsRefusedWithLineAndColumn) {
             "log.csv: line 3: time is '12:60:00', expected a time as 13:05:59.250");
 }
 
+TEST_F(EfficiencyLogs, DatesAreReadAsTheirColumnShowsThem) {
+  const auto of = [&](const std::string& first, const std::string& second) {
+    const std::string head = "time;fuel_flow_ml_per_s\n";
+    return fuel(head + first + " 23:59:57,5;2\n" + second + " 00:00:05,5;2\n");
+  };
+  for (const auto& [first, second] :
+       std::vector<std::pair<std::string, std::string>>{{"2026-11-23", "2026-11-24"},
+                                                        {"2024/02/29", "2024/03/01"},
+                                                        {"23.11.2026", "24.11.2026"},
+                                                        {"9.3.2026", "10.3.2026"},
+                                                        {"11/23/2026", "11/24/2026"},
+                                                        {"23/11/2026", "24/11/2026"},
+                                                        {"12/12/2026", "12/13/2026"}}) {
+    EXPECT_NEAR(of(first, second), 16.0, 1e-5) << first;
+  }
+  const std::string halves = "time,power_w\n3/4/2026 11:59:55 AM,1000\n3/4/2026 12:00:05 PM,1000\n";
+  EXPECT_NEAR(run(halves).at("energy_kj").get<double>(), 10.0, 1e-9) << "either month";
+}
+
+TEST_F(EfficiencyLogs, DatesThatAreNoneOrGoBackAreRefusedWithTheirLine) {
+  const auto message = [&](const std::string& first, const std::string& second) {
+    return refusal("time,power_w\n" + first + ",1\n" + second + ",1\n");
+  };
+  EXPECT_EQ(
+      message("2026-02-28 10:00:00", "2026-02-30 10:00:00"),
+      "log.csv: line 3: time is '2026-02-30 10:00:00', a date that the calendar does not have");
+  EXPECT_EQ(
+      message("13/13/2026 10:00:00", "13/14/2026 10:00:00"),
+      "log.csv: line 2: time is '13/13/2026 10:00:00', a date that the calendar does not have");
+  EXPECT_EQ(message("2026-11-23T10:00:00", "2026-11-22T10:00:05"),
+            "log.csv: line 3: time is '2026-11-22T10:00:05', must be later than "
+            "'2026-11-23T10:00:00' of the row before");
+  EXPECT_EQ(message("10:00:05", "10:00:00"),
+            "log.csv: line 3: time is '10:00:00', must be later than '10:00:05' of the row before");
+  EXPECT_EQ(message("01/02/2026 23:59:59", "01/03/2026 00:00:01"),
+            "log.csv: line 2: time is '01/02/2026 23:59:59', whose day and month may be either: "
+            "write dates as 2026-11-23");
+  EXPECT_EQ(message("2026-11-23 10:00:00", "10:00:05"),
+            "log.csv: line 3: time is '10:00:05', expected a date or none as in "
+            "'2026-11-23 10:00:00'");
+}
+
 TEST_F(EfficiencyLogs, OptionsSayWhatALogDoesNot) {
   const std::string log = "Zeit;Verbrauch\n0;1,200\n60000;1,200\n";
   EXPECT_NEAR(fuel(log, {"--time-column", "Zeit", "--time-unit", "ms", "--rate-column", "Verbrauch",
