@@ -52,12 +52,22 @@ struct LogTable {
     for (double& value : list) value *= column.factor;
     return list;
   }
+  /// The column that is stated, with its unit or without.
+  std::string named(const std::string& name) const {
+    if (table.has(name)) return name;
+    std::vector<std::string> found;
+    for (const std::string& each : table.names()) {
+      if (column_name(each).base == column_name(name).base) found.push_back(each);
+    }
+    if (found.size() != 1) table.column(name);  // which says what there is
+    return found[0];
+  }
 };
 
 // ---- Time -------------------------------------------------------------------------------------
 
 std::string time_name(const LogTable& log) {
-  if (log.source.time_column) return *log.source.time_column;
+  if (log.source.time_column) return log.named(*log.source.time_column);
   std::vector<std::string> found;
   for (const std::string& name : log.table.names()) {
     const std::string base = column_name(name).base;
@@ -65,7 +75,10 @@ std::string time_name(const LogTable& log) {
     if (std::find(known.begin(), known.end(), base) != known.end()) found.push_back(name);
   }
   if (found.size() == 1) return found[0];
-  if (found.empty()) log.table.column("time_s");  // which says what there is
+  if (found.empty()) {
+    refuse(log.source.file, "has no column 'time_s', its columns are: " + log.table.listed_names() +
+                                ": state the column of the time");
+  }
   refuse(log.source.file, "holds both " + safe_text(found[0], 40) + " and " +
                               safe_text(found[1], 40) +
                               ", expected one of them: state the column of the time");
@@ -119,7 +132,7 @@ std::optional<Reading> read_one(const LogTable& log, LogMeter meter) {
 
 /// The column that is stated: fuel flow or power, as its unit says.
 Reading read_stated(const LogTable& log) {
-  const std::string& name = *log.source.rate_column;
+  const std::string name = log.named(*log.source.rate_column);
   const std::string own = column_name(name).unit.value_or("");
   const std::string unit = log.source.rate_unit.empty() ? own : log.source.rate_unit;
   const bool is_power = factor_of(unit, Measure::power).has_value();
@@ -238,7 +251,20 @@ Reading reading_of(const LogTable& log) {
          "has no column of fuel or power, expected one of fuel_flow_ml_per_s, fuel_flow_l_per_h, "
          "power_w, or of boom, arm and bucket each boom_power_w, boom_torque_n_m with "
          "boom_rate_rad_per_s, or boom_head_pressure_pa with boom_rod_pressure_pa and "
-         "boom_piston_speed_m_per_s");
+         "boom_piston_speed_m_per_s; its columns are: " +
+             log.table.listed_names() + ": state the column of fuel or power");
+}
+
+/// What is finite in the file may not be so in other units, or as a product.
+void require_finite(const LogTable& log, const Reading& reading) {
+  for (const std::vector<double>& part : reading.rates) {
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    const auto bad = std::find_if_not(part.begin(), part.end(), is_finite);
+    if (bad == part.end()) continue;
+    refuse(log.source.file, at_line(log.table, static_cast<std::size_t>(bad - part.begin())) +
+                                name(reading.meter) + " of " + safe_text(reading.first_column, 40) +
+                                " is too large for a number");
+  }
 }
 
 /// One power is that of the joints by its name, or because it was stated.
@@ -381,6 +407,7 @@ DigLog read_dig_log(const DigLogSource& source) {
   DigLog result;
   result.file = source.file;
   Reading reading = reading_of(log);
+  require_finite(log, reading);
   result.meter = reading.meter;
   result.of_joints = is_of_joints(source, reading);
   result.spent = reading.meter == LogMeter::fuel_flow ? Spent::fuel : Spent::energy;

@@ -160,6 +160,38 @@ TEST_F(EfficiencyLogs, OptionsSayWhatALogDoesNot) {
   EXPECT_NEAR(run(both, {"--meter", "power"}).at("energy_kj").get<double>(), 70.0, 1e-12);
 }
 
+TEST_F(EfficiencyLogs, ColumnsAreStatedWithTheirUnitOrWithout) {
+  const std::string log = "Clock [ms],Motor [L/h],Pumpe [L/h]\n0,7.2,1\n10000,7.2,1\n";
+  for (const char* name : {"Motor", "motor", "Motor [L/h]"}) {
+    EXPECT_NEAR(fuel(log, {"--time-column", "Clock", "--rate-column", name}), 20.0, 1e-9) << name;
+  }
+  EXPECT_EQ(refusal(log, {"--rate-column", "Motto"}),
+            "log.csv: has no column 'Motto', its columns are: Clock [ms], Motor [L/h], Pumpe "
+            "[L/h]");
+  EXPECT_EQ(refusal("Zeit,Motor [L/h]\n0,7.2\n10,7.2\n"),
+            "log.csv: has no column of fuel or power, expected one of fuel_flow_ml_per_s, "
+            "fuel_flow_l_per_h, power_w, or of boom, arm and bucket each boom_power_w, "
+            "boom_torque_n_m with boom_rate_rad_per_s, or boom_head_pressure_pa with "
+            "boom_rod_pressure_pa and boom_piston_speed_m_per_s; its columns are: Zeit, Motor "
+            "[L/h]: give --rate-column");
+  EXPECT_EQ(refusal("Zeit,Motor [L/h]\n0,7.2\n10,7.2\n", {"--rate-column", "Motor"}),
+            "log.csv: has no column 'time_s', its columns are: Zeit, Motor [L/h]: give "
+            "--time-column");
+  EXPECT_EQ(refusal("time_s,fuel_flow_l_per_h\n0,2\n9,2\n", {"--rate-unit", "mL/s"}),
+            "log.csv: column 'fuel_flow_l_per_h' is in 'l_per_h' by its name, but 'mL/s' is stated "
+            "as its unit");
+  EXPECT_NEAR(fuel("time_s,fuel_flow_l_per_h\n0,3.6\n9,3.6\n", {"--rate-unit", "L/h"}), 9.0, 1e-9);
+}
+
+TEST_F(EfficiencyLogs, ReadingsBeyondAllNumbersAreRefused) {
+  EXPECT_EQ(refusal("time_s,power [kW]\n0,1\n9,1e308\n"),
+            "log.csv: line 3: power of power [kW] is too large for a number");
+  const json large = run("time_s,power [W]\n0,1e306\n9,1e306\n");
+  const ProgramResult text =
+      run_program("measure-efficiency", {folder.file("log.csv"), "--volume", "0.4"});
+  EXPECT_NE(text.out.find("9.00e+303 ± 1.8e+302 kJ"), std::string::npos) << text.out;
+}
+
 TEST_F(EfficiencyLogs, UnitsOfFuelFlowAgree) {
   for (const auto& [unit, rate] :
        std::vector<std::pair<std::string, std::string>>{{"mL/s", "2"},
