@@ -13,6 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "support/run_program.hpp"
+#include "support/svg_figure.hpp"
+#include "support/svg_layout.hpp"
 #include "support/tool_answers.hpp"
 #include "support/utf16.hpp"
 
@@ -499,12 +501,63 @@ TEST_F(RunSets, FaultsAreNamedByTheLineOfTheTable) {
             "bulking_factor, volume_m3, volume_sd_m3, bank_volume_m3, bank_volume_sd_m3, mass_kg, "
             "mass_sd_kg, from_s, to_s, dump_before, dump_after, pit_before, pit_after, "
             "bucket_before, bucket_after");
+  const std::string low =
+      folder.write("low.csv", "file,volume_m3\ngood0.csv,0.4\ngood1.csv,-0.4\n");
+  EXPECT_EQ(message({"--runs", good, "--against", low}),
+            "low.csv: line 3: volume_m3: -0.4, must be above 0");
+  EXPECT_EQ(run({"--runs", good, "--against", low}).code, 3);
+  const std::string none = folder.write("none.csv", "file,mass_kg\ngood0.csv,4\n,4\n");
+  EXPECT_EQ(message({"--runs", good, "--against", none}),
+            "none.csv: line 3: file is '', expected the name of a log");
   const std::string one = table("one", {2.0});
   EXPECT_EQ(message({"--runs", one, "--against", good}),
             "the set of --runs has 1 run, a comparison needs 2 or more");
   EXPECT_EQ(message({"--runs", good}), "--runs and --against go together");
   EXPECT_EQ(message({good, "--runs", good, "--against", good}),
             "--runs and --against exclude RUN.csv, SECOND.csv and options of a second dig");
+}
+
+TEST_F(RunSets, ARecordingThatCountsTwiceIsNotTrusted) {
+  const std::string operators = table("operator", {2.0, 2.1, 1.9});
+  const auto codes = [&](const std::string& set) {
+    const ProgramResult result = run({"--runs", set, "--against", operators, "--json"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    const json found = json::parse(result.out, nullptr, false);
+    Words list;
+    for (const json& warning : found.at("warnings")) list.push_back(warning.at("code"));
+    EXPECT_EQ(found.at("trustworthy").get<bool>(), list.empty());
+    return list;
+  };
+  EXPECT_EQ(codes(table("plan", {1.6, 1.7, 1.5})), Words{});
+  EXPECT_EQ(codes(table("copy", {1.6, 1.7, 1.6})), Words{"repeated_run"}) << "by content";
+  EXPECT_EQ(codes(table("other", {1.6, 1.7, 2.0})), Words{"repeated_run"}) << "of the other set";
+  const std::string parts = folder.write(
+      "parts.csv", "file,volume_m3,from_s,to_s\nplan0.csv,0.2,0,5\nplan0.csv,0.2,5,10\n");
+  EXPECT_EQ(codes(parts), Words{}) << "two digs of a longer log";
+}
+
+TEST_F(RunSets, TextSaysWhereIntervalAndTestDiffer) {
+  const auto last = [&](const std::string& plan, const std::string& operators) {
+    const std::string text = run({"--runs", plan, "--against", operators}).out;
+    return text.substr(text.rfind('\n', text.size() - 2) + 1, 12);
+  };
+  EXPECT_EQ(last(table("p3", {1.0, 1.01, 1.02}), table("o3", {2.0, 2.01, 2.02})), "the interval");
+  EXPECT_EQ(last(table("p4", {1.0, 1.01, 1.02, 1.03}), table("o4", {2.0, 2.01, 2.02, 2.03})),
+            "gain: 98.5 %");
+}
+
+TEST_F(RunSets, FigureShowsEveryRun) {
+  const std::string operators = table("operator", {2.0, 2.1, 1.9, 2.2});
+  const std::string plan = table("plan", {1.6, 1.7, 1.5, 1.55});
+  const std::string file = folder.file("sets.svg");
+  for (const char* size : {"40mm", "85mm", "300mm", "170mm"}) {
+    const ProgramResult result =
+        run({"--runs", plan, "--against", operators, "--plot", file, "--plot-size", size});
+    ASSERT_EQ(result.code, 0) << result.err;
+    expect_legible(content_of(file), size);
+  }
+  expect_figure(file, {"efficiency [m³/mL]", "against", "runs", "geometric mean", "a run",
+                       "4 runs against 4, gain: 29"});
 }
 
 TEST(SampleRecordings, RepeatTheFieldExperiment) {
