@@ -39,9 +39,15 @@ void declare(Arguments& arguments, Inputs& inputs) {
   inputs.logs.declare(arguments);
   arguments.flag("own-meters", inputs.own_meters,
                  "each run had its own meter, whose errors are part of that of the gain");
-  declare_plots(arguments, inputs.plots,
-                names_of(run_figures({[&inputs] { return !inputs.runs && !inputs.against; },
-                                      "it is of RUN.csv and SECOND.csv, not of --runs"})));
+  std::vector<FigureName> figures =
+      names_of(run_figures({[&inputs] { return !inputs.runs && !inputs.against; },
+                            "it is of RUN.csv and SECOND.csv, not of --runs"}));
+  for (const FigureName& figure :
+       names_of(set_figures({[&inputs] { return inputs.runs && inputs.against; },
+                             "it is of --runs and --against"}))) {
+    figures.push_back(figure);
+  }
+  declare_plots(arguments, inputs.plots, figures);
   const auto has_scans = [&inputs] {
     return inputs.first.has_scans() || inputs.second.has_scans() || inputs.runs;
   };
@@ -61,7 +67,8 @@ Outcome work(const Inputs& inputs) {
   Outcome outcome;
   outcome.json["runs"] = nlohmann::ordered_json::array();
   if (inputs.runs || inputs.against) {
-    compare_sets(inputs, outcome);
+    const ComparedSets sets = compare_sets(inputs, outcome);
+    write_plots(inputs.plots, set_figures({}), sets, outcome.lines);
   } else {
     const std::vector<DigEfficiency> runs = compare_two(inputs, outcome);
     write_plots(inputs.plots, run_figures({}), {runs, inputs.own_meters}, outcome.lines);

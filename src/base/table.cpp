@@ -114,12 +114,16 @@ std::vector<std::string> Table::texts(const std::string& name) const {
 
 std::size_t Table::index_of(const std::string& name) const {
   if (const auto at = index(name)) return *at;
-  std::string found;
-  for (const std::string& other : names_) {
-    found += (found.empty() ? "" : ", ") + safe_text(other, longest_name);
+  throw Error(ErrorKind::bad_file, path_ + ": has no column " + excavplan::quoted(name) +
+                                       ", its columns are: " + listed_names());
+}
+
+std::string Table::listed_names() const {
+  std::string list;
+  for (const std::string& name : names_) {
+    list += (list.empty() ? "" : ", ") + safe_text(name, longest_name);
   }
-  throw Error(ErrorKind::bad_file,
-              path_ + ": has no column '" + name + "', its columns are: " + found);
+  return list;
 }
 
 std::optional<std::size_t> Table::index(string_view name) const {

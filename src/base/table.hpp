@@ -39,6 +39,8 @@ class Table {
   const std::string& path() const { return path_; }
   std::size_t rows() const { return lines_.size(); }
   const std::vector<std::string>& names() const { return names_; }
+  /// "time_s, power_w", for messages.
+  std::string listed_names() const;
   /// Line of the file in which a row begins.
   std::size_t line(std::size_t row) const { return lines_[row]; }
   /// What was stated or found.

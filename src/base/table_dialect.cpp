@@ -91,6 +91,23 @@ std::optional<Marked> marked_number(string_view field) {
   return Marked{field[before], !in_groups};
 }
 
+/// The mark that a time of day has before its decimals, or that goes with a date of points. Both
+/// speak for it only where the numbers leave it open: times are often written by other means.
+std::optional<char> mark_beside(string_view field) {
+  const std::size_t colon = field.rfind(':');
+  if (colon != field.npos) {
+    const std::size_t end = colon + 1 + digits_from(field, colon + 1);
+    if (end < field.size() && (field[end] == ',' || field[end] == '.')) return field[end];
+  }
+  const std::size_t day = digits_from(field, 0);
+  const std::size_t month = digits_from(field, day + 1);
+  const std::size_t year = digits_from(field, day + month + 2);
+  const bool has_points =
+      day + month + 1 < field.size() && field[day] == '.' && field[day + month + 1] == '.';
+  if (has_points && day >= 1 && month >= 1 && year == 4) return ',';
+  return std::nullopt;
+}
+
 /// The first field that says something, and where.
 struct Evidence {
   std::string field;
@@ -141,10 +158,12 @@ char find_decimal_mark(const std::string& path, string_view text, char delimiter
   std::vector<string_view> fields;
   std::optional<Evidence> point;
   std::optional<Evidence> comma;
+  std::optional<char> beside;
   records.next(fields);
   const std::vector<std::string> names(fields.begin(), fields.end());
   while (records.next(fields)) {
     for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (!beside) beside = mark_beside(fields[i]);
       const auto marked = marked_number(fields[i]);
       if (!marked) continue;
       auto& known = marked->mark == '.' ? point : comma;
@@ -163,6 +182,7 @@ char find_decimal_mark(const std::string& path, string_view text, char delimiter
   }
   if (proven(comma)) return ',';
   if (proven(point) || (!point && !comma)) return '.';
+  if (beside == (comma ? ',' : '.')) return *beside;
   const Evidence& open = comma ? *comma : *point;
   throw Error(ErrorKind::bad_file, path + ": " + open.place + open.field +
                                        ", which may be a decimal or thousands: state the decimal "

@@ -93,14 +93,26 @@ void require_printable(const std::string& path, string_view text) {
   }
 }
 
+/// With a mark of the other byte order, letters have their zero byte where others have their own.
+void require_order_of_mark(const std::string& path, string_view bytes, bool big_endian) {
+  const std::size_t low = big_endian ? 1 : 0;
+  if (bytes.size() < 4 || bytes[low] != '\0' || bytes[low + 2] != '\0') return;
+  refuse_line(path, 1, "UTF-16 whose bytes are in the other order than its mark states");
+}
+
+std::string from_marked_utf16(const std::string& path, string_view bytes, bool big_endian) {
+  require_order_of_mark(path, bytes, big_endian);
+  return from_utf16(path, bytes, big_endian);
+}
+
 }  // namespace
 
 std::string table_text(const std::string& path, std::string content) {
   const auto is_zero = [&](std::size_t at) { return content.size() > 1 && content[at] == '\0'; };
   if (begins_with(content, "\xFF\xFE")) {
-    content = from_utf16(path, string_view(content).substr(2), false);
+    content = from_marked_utf16(path, string_view(content).substr(2), false);
   } else if (begins_with(content, "\xFE\xFF")) {
-    content = from_utf16(path, string_view(content).substr(2), true);
+    content = from_marked_utf16(path, string_view(content).substr(2), true);
   } else if (is_zero(0) != is_zero(1)) {
     content = from_utf16(path, content, is_zero(0));
   } else if (begins_with(content, "\xEF\xBB\xBF")) {

@@ -84,6 +84,16 @@ std::string_view whole_characters(std::string_view text, std::size_t most) {
   return text.substr(0, most);
 }
 
+/// More digits than a person reads.
+bool is_long(double value) { return std::abs(value) >= 1e15; }
+
+std::string with_exponent(double value, int digits) {
+  char text[64];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, digits - 1).ptr;
+  return {text, end};
+}
+
 }  // namespace
 
 std::string number_text(double value) {
@@ -107,6 +117,7 @@ std::string decimals(double value, int digits) {
 
 std::string readable(double value, int digits) {
   if (!std::isfinite(value)) return "unknown";
+  if (is_long(value)) return with_exponent(value, digits);
   if (std::abs(value) < negligible) value = 0.0;
   const double magnitude = value == 0.0 ? 0.0 : std::floor(std::log10(std::abs(value)));
   int places = std::clamp(digits - 1 - static_cast<int>(magnitude), 0, 17);
@@ -118,6 +129,7 @@ std::string readable(double value, int digits) {
 
 std::string readable(double value, double sd) {
   if (!std::isfinite(sd) || sd < negligible) return readable(value);
+  if (is_long(value) || is_long(sd)) return readable(value) + " ± " + readable(sd, 2);
   const std::string deviation = readable(sd, 2);
   const std::size_t point = deviation.find('.');
   const int places =

@@ -25,7 +25,7 @@ void check(bool holds, const std::string& what, double value, const char* rule) 
 Measured stated(const Measured& amount, const std::string& name) {
   const auto [value, sd] = amount;
   check(value > 0.0 && std::isfinite(value), name, value, "above 0");
-  check(!(sd < 0.0) && !std::isinf(sd), name + "-sd", sd, "0 or more");
+  check(!(sd < 0.0) && !(sd > value), name + "-sd", sd, "0 or more and at most the amount");
   return amount;
 }
 
@@ -43,7 +43,8 @@ std::optional<Measured> factor_of(const LoggedDig& dig) {
   const auto [value, sd] = *dig.bulking_factor;
   const std::string name = dig.prefix + "bulking-factor";
   check(value >= 1.0 && value <= largest_factor, name, value, "in 1 .. 3");
-  check(sd >= 0.0 && std::isfinite(sd), name + ", its standard deviation", sd, "0 or more");
+  check(sd >= 0.0 && sd <= value, name + ", its standard deviation", sd,
+        "0 or more and at most the factor");
   return dig.bulking_factor;
 }
 

@@ -86,7 +86,7 @@ Measured joint_work(const DigLog& log, double meter_sd) {
   }
   const double work = log.integral(log.digs.front());
   if (!(work > 0.0 && std::isfinite(work))) {
-    refuse("the joints do a work of " + number_text(work) + " J in it, must be above 0");
+    refuse("the joints do a work of " + number_text(work) + " J in it, must be above 0 and finite");
   }
   return {work, meter_sd * work};
 }

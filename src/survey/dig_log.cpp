@@ -52,12 +52,22 @@ struct LogTable {
     for (double& value : list) value *= column.factor;
     return list;
   }
+  /// The column that is stated, with its unit or without.
+  std::string named(const std::string& name) const {
+    if (table.has(name)) return name;
+    std::vector<std::string> found;
+    for (const std::string& each : table.names()) {
+      if (column_name(each).base == column_name(name).base) found.push_back(each);
+    }
+    if (found.size() != 1) table.column(name);  // which says what there is
+    return found[0];
+  }
 };
 
 // ---- Time -------------------------------------------------------------------------------------
 
 std::string time_name(const LogTable& log) {
-  if (log.source.time_column) return *log.source.time_column;
+  if (log.source.time_column) return log.named(*log.source.time_column);
   std::vector<std::string> found;
   for (const std::string& name : log.table.names()) {
     const std::string base = column_name(name).base;
@@ -65,34 +75,25 @@ std::string time_name(const LogTable& log) {
     if (std::find(known.begin(), known.end(), base) != known.end()) found.push_back(name);
   }
   if (found.size() == 1) return found[0];
-  if (found.empty()) log.table.column("time_s");  // which says what there is
+  if (found.empty()) {
+    refuse(log.source.file, "has no column 'time_s', its columns are: " + log.table.listed_names() +
+                                ": state the column of the time");
+  }
   refuse(log.source.file, "holds both " + safe_text(found[0], 40) + " and " +
                               safe_text(found[1], 40) +
                               ", expected one of them: state the column of the time");
 }
 
-/// Times of day, which may pass midnight.
-std::optional<std::vector<double>> clock_times(const LogTable& log, const std::string& name) {
-  constexpr double day = 86400.0;
-  const std::vector<std::string> texts = log.table.texts(name);
-  if (texts.front().find(':') == std::string::npos) return std::nullopt;
-  std::vector<double> times;
-  double days = 0.0;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    const auto seconds = seconds_of_clock(texts[i]);
-    if (!seconds) {
-      refuse(log.source.file, at_line(log.table, i) + safe_text(name, 40) + " is " +
-                                  quoted(texts[i]) + ", expected a time as 13:05:59.250");
-    }
-    if (!times.empty() && *seconds + days < times.back() - 0.5 * day) days += day;
-    times.push_back(*seconds + days);
-  }
-  return times;
+std::vector<double> read_clock(const LogTable& log, const std::string& name,
+                               const std::vector<std::string>& texts) {
+  ClockTimes times = clock_times(texts);
+  if (times.fault.empty()) return std::move(times.seconds);
+  refuse(log.source.file, at_line(log.table, times.bad_row) + safe_text(name, 40) + " is " +
+                              quoted(texts[times.bad_row]) + ", " + times.fault);
 }
 
 void require_increasing(const LogTable& log, const std::vector<double>& time,
                         const std::string& name) {
-  if (time.size() < 2) refuse(log.source.file, "holds one row, at least 2 are needed");
   for (std::size_t i = 1; i < time.size(); ++i) {
     if (time[i] > time[i - 1]) continue;
     refuse(log.source.file, at_line(log.table, i) + safe_text(name, 40) + " is " +
@@ -103,12 +104,13 @@ void require_increasing(const LogTable& log, const std::vector<double>& time,
 
 std::vector<double> times_of(const LogTable& log) {
   const std::string name = time_name(log);
-  auto time = clock_times(log, name);
-  if (!time) {
-    time = log.values(named_column(log.source.file, name, Measure::time, log.source.time_unit));
-  }
-  require_increasing(log, *time, name);
-  return *time;
+  if (log.table.rows() < 2) refuse(log.source.file, "holds one row, at least 2 are needed");
+  const std::vector<std::string> texts = log.table.texts(name);
+  if (texts.front().find(':') != std::string::npos) return read_clock(log, name, texts);
+  std::vector<double> time =
+      log.values(named_column(log.source.file, name, Measure::time, log.source.time_unit));
+  require_increasing(log, time, name);
+  return time;
 }
 
 // ---- Fuel and power ---------------------------------------------------------------------------
@@ -130,7 +132,7 @@ std::optional<Reading> read_one(const LogTable& log, LogMeter meter) {
 
 /// The column that is stated: fuel flow or power, as its unit says.
 Reading read_stated(const LogTable& log) {
-  const std::string& name = *log.source.rate_column;
+  const std::string name = log.named(*log.source.rate_column);
   const std::string own = column_name(name).unit.value_or("");
   const std::string unit = log.source.rate_unit.empty() ? own : log.source.rate_unit;
   const bool is_power = factor_of(unit, Measure::power).has_value();
@@ -249,7 +251,20 @@ Reading reading_of(const LogTable& log) {
          "has no column of fuel or power, expected one of fuel_flow_ml_per_s, fuel_flow_l_per_h, "
          "power_w, or of boom, arm and bucket each boom_power_w, boom_torque_n_m with "
          "boom_rate_rad_per_s, or boom_head_pressure_pa with boom_rod_pressure_pa and "
-         "boom_piston_speed_m_per_s");
+         "boom_piston_speed_m_per_s; its columns are: " +
+             log.table.listed_names() + ": state the column of fuel or power");
+}
+
+/// What is finite in the file may not be so in other units, or as a product.
+void require_finite(const LogTable& log, const Reading& reading) {
+  for (const std::vector<double>& part : reading.rates) {
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    const auto bad = std::find_if_not(part.begin(), part.end(), is_finite);
+    if (bad == part.end()) continue;
+    refuse(log.source.file, at_line(log.table, static_cast<std::size_t>(bad - part.begin())) +
+                                name(reading.meter) + " of " + safe_text(reading.first_column, 40) +
+                                " is too large for a number");
+  }
 }
 
 /// One power is that of the joints by its name, or because it was stated.
@@ -372,9 +387,10 @@ std::vector<double> DigLog::rate() const {
 }
 
 double DigLog::integral(const LogInterval& during, double idle) const {
+  const LogRows rows = rows_around(time, during);
   double sum = 0.0;
   for (const std::vector<double>& part : rates) {
-    for (std::size_t i = 1; i < time.size(); ++i) {
+    for (std::size_t i = rows.first + 1; i < rows.last; ++i) {
       const double from = std::max(time[i - 1], during.from);
       const double to = std::min(time[i], during.to);
       if (!(from < to)) continue;
@@ -391,6 +407,7 @@ DigLog read_dig_log(const DigLogSource& source) {
   DigLog result;
   result.file = source.file;
   Reading reading = reading_of(log);
+  require_finite(log, reading);
   result.meter = reading.meter;
   result.of_joints = is_of_joints(source, reading);
   result.spent = reading.meter == LogMeter::fuel_flow ? Spent::fuel : Spent::energy;

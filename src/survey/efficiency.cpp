@@ -9,59 +9,13 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "survey/bucket_content.hpp"
+#include "survey/log_doubts.hpp"
 #include "survey/scan_checks.hpp"
 
 namespace excavplan {
 namespace {
 
 // ---- What was spent ---------------------------------------------------------------------------
-
-/// Longest interval between two rows of what counts, if it is an outlier.
-std::optional<Warning> gap_in(const DigLog& log) {
-  constexpr double most_usual_steps = 10.0;  // ours
-  const std::vector<double>& time = log.time;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < time.size(); ++i) {
-    if (time[i] > log.whole.from && time[i - 1] < log.whole.to) {
-      steps.push_back(time[i] - time[i - 1]);
-    }
-  }
-  const double longest = *std::max_element(steps.begin(), steps.end());
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  if (!(longest > most_usual_steps * *middle)) return std::nullopt;
-  return Warning{"gap_in_log", log.file + ": no row for " + readable(longest) + " s, where " +
-                                   readable(*middle) +
-                                   " s are usual: the consumption during the gap is interpolated"};
-}
-
-/// A rate that no machine has, or one that is higher outside the dig.
-void warn_of_rate(const DigLog& log, double scale, DigEfficiency& result) {
-  const bool is_fuel = result.spent == Spent::fuel;
-  const double most = is_fuel ? 28.0 : 2000.0;  // [mL/s], 100 L/h; [kW]; ours: of a 100-t machine
-  constexpr double much_less = 0.8;             // ours
-  const RunShare& dig = result.dig;
-  const double rate = dig.cost / dig.duration;
-  const std::string unit = is_fuel ? " mL/s" : " kW";
-  if (rate > most) {
-    result.warnings.push_back({is_fuel ? "implausible_fuel" : "implausible_energy",
-                               log.file + ": " + readable(rate) + unit + " on average is above " +
-                                   readable(most) +
-                                   ", more than a 100-t excavator takes: check the unit"});
-  }
-  const LogInterval all{log.time.front(), log.time.back()};
-  const double rest = (all.to - all.from) - dig.duration;
-  const double beside = (scale * log.integral(all) - dig.cost) / rest;
-  if (log.phases == PhaseSource::none && rest >= dig.duration && rate < much_less * beside) {
-    result.warnings.push_back(
-        {"dig_below_rest", log.file + ": " + readable(rate) + unit + " on average from " +
-                               number_text(log.digs.front().from) + " to " +
-                               number_text(log.digs.back().to) + " s, but " + readable(beside) +
-                               unit +
-                               " in the rest of the log: that is no dig, unless the machine works "
-                               "harder before or after; check its times"});
-  }
-}
 
 RunShare share_of(const DigLog& log, const std::vector<LogInterval>& parts, double scale,
                   const std::optional<IdleRate>& idle) {
@@ -76,27 +30,35 @@ RunShare share_of(const DigLog& log, const std::vector<LogInterval>& parts, doub
   return share;
 }
 
+std::optional<IdleRate> stated_idle(const LoggedDig& dig, Spent spent) {
+  if (!dig.idle) return std::nullopt;
+  require(*dig.idle >= 0.0 && std::isfinite(*dig.idle), "idle", *dig.idle, "0 or more");
+  if (dig.idle_kind.value_or(spent) == spent) return IdleRate{*dig.idle, false};
+  const bool is_fuel = spent == Spent::fuel;
+  throw Error(ErrorKind::bad_input, std::string("the rate at rest is ") +
+                                        (is_fuel ? "a power" : "a fuel flow") + ", but " +
+                                        dig.file + " records " + (is_fuel ? "fuel" : "power"));
+}
+
 std::optional<IdleRate> idle_rate(const LoggedDig& dig, const DigLog& log) {
-  if (dig.idle) {
-    require(*dig.idle >= 0.0 && std::isfinite(*dig.idle), dig.prefix + "idle", *dig.idle,
-            "0 or more");
-    return IdleRate{*dig.idle, false};
-  }
+  if (dig.idle) return stated_idle(dig, log.spent);
   const auto found = idle_of(log);
   if (found) return IdleRate{*found, true};
   if (!dig.subtracts_idle) return std::nullopt;
   throw Error(ErrorKind::bad_input,
-              dig.file + ": idling cannot be subtracted: the log shows none for 2 s, and " +
-                  dig.prefix + "idle is not given");
+              dig.file +
+                  ": idling cannot be subtracted: the log shows none for 2 s: state the "
+                  "rate at rest");
 }
 
 void require_cost(const LoggedDig& dig, const DigLog& log, double cost) {
-  if (cost > 0.0) return;
+  if (cost > 0.0 && std::isfinite(cost)) return;
   throw Error(ErrorKind::bad_file,
               dig.file + ": " + name(log.meter) + (dig.subtracts_idle ? " above idling" : "") +
                   " adds up to " + number_text(cost) + (log.spent == Spent::fuel ? " mL" : " kJ") +
                   " from " + number_text(log.digs.front().from) + " to " +
-                  number_text(log.digs.back().to) + " s, must be above 0");
+                  number_text(log.digs.back().to) + " s, must be " +
+                  (std::isfinite(cost) ? "above 0" : "finite"));
 }
 
 void read_cost(const LoggedDig& dig, DigEfficiency& result) {
@@ -115,10 +77,9 @@ void read_cost(const LoggedDig& dig, DigEfficiency& result) {
   result.cost = dig.subtracts_idle ? *counted.above_idle : counted.cost;
   result.duration = counted.duration;
   require_cost(dig, log, result.cost);
-  require_in(dig.prefix + "meter-sd", dig.meter_sd, 0.0, 1.0);
+  require_in("meter-sd", dig.meter_sd, 0.0, 1.0);
   result.cost_sd = dig.meter_sd * result.cost;
-  if (auto gap = gap_in(log)) result.warnings.push_back(std::move(*gap));
-  warn_of_rate(log, scale, result);
+  result.warnings = doubts_of(dig, result);
 }
 
 // ---- Efficiency -------------------------------------------------------------------------------
@@ -129,10 +90,11 @@ std::optional<Warning> implausible_work(const DigEfficiency& dig, double most) {
   constexpr double span = 6000.0;  // from the least to the most
   const double efficiency = dig.value().value;
   if (efficiency <= most && efficiency >= most / span) return std::nullopt;
-  return Warning{"implausible_energy", dig.file + ": " + readable(efficiency) + " " + dig.symbol() +
-                                           " is outside " + readable(most / span) + " .. " +
-                                           readable(most) +
-                                           ": check the units of power, time and payload"};
+  return Warning{"implausible_energy",
+                 dig.file + ": " + readable(efficiency) + " " + dig.symbol() + " is outside " +
+                     readable(most / span) + " .. " + readable(most) +
+                     ": check the units of power, time and payload",
+                 true};
 }
 
 /// More than a 12-t excavator could lift while it idles: 0.45 m^3 (of 1500 kg/m^3) in 8 s at 2 L/h.
@@ -148,19 +110,16 @@ std::optional<Warning> implausible(const DigEfficiency& dig) {
                    dig.file + ": " + readable(efficiency) + " " + dig.symbol() + " is below " +
                        readable(least) +
                        ", a hundredth of what excavators reach: check the units of time and fuel, "
-                       "and the dig's times"};
+                       "and the dig's times",
+                   true};
   }
   if (!(efficiency > most)) return std::nullopt;
   return Warning{"implausible_fuel",
                  dig.file + ": " + readable(efficiency) + " " + dig.symbol() + " is above " +
                      readable(most) +
                      ", which a 12-t excavator would reach idling: check the unit of the fuel "
-                     "flow. The gain of one run over another of the same meter still holds"};
-}
-
-bool casts_doubt(const Warning& warning) {
-  const auto codes = {"implausible_fuel", "implausible_energy", "gap_in_log", "dig_below_rest"};
-  return warning.ends_trust || std::find(codes.begin(), codes.end(), warning.code) != codes.end();
+                     "flow. The gain of one run over another of the same meter still holds",
+                 true};
 }
 
 }  // namespace
@@ -192,7 +151,8 @@ DigEfficiency measure_efficiency(const LoggedDig& dig) {
   result.warnings.insert(result.warnings.end(), lifted.warnings.begin(), lifted.warnings.end());
   if (auto warning = implausible(result)) result.warnings.push_back(std::move(*warning));
   result.warnings = causes_of(std::move(result.warnings));
-  result.trustworthy = std::none_of(result.warnings.begin(), result.warnings.end(), casts_doubt);
+  result.trustworthy = std::none_of(result.warnings.begin(), result.warnings.end(),
+                                    [](const Warning& warning) { return warning.ends_trust; });
   return result;
 }
 

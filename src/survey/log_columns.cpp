@@ -129,14 +129,24 @@ std::optional<ColumnName> suffixed(string_view name) {
   throw Error(ErrorKind::bad_file, file + ": " + why);
 }
 
+/// Of the unit that the column's name says, or else of the stated one.
 double factor_in(const std::string& file, const std::string& name, Measure measure,
-                 const std::string& unit) {
+                 const std::string& stated) {
   const std::string column = "column " + quoted(name);
+  const std::string own = column_name(name).unit.value_or("");
+  const auto of_own = factor_of(own, measure);
+  const auto of_stated = factor_of(stated, measure);
+  if (of_own && !stated.empty() && of_own != of_stated) {
+    refuse(file, column + " is in " + quoted(own) + " by its name, but " + quoted(stated) +
+                     " is stated as its unit");
+  }
+  if (of_own) return *of_own;
+  const std::string& unit = stated.empty() ? own : stated;
   if (unit.empty()) {
     refuse(file, column + " states no unit, expected one as in 'NAME [UNIT]', of " +
                      usual_units(measure) + ": state the unit");
   }
-  if (const auto factor = factor_of(unit, measure)) return *factor;
+  if (of_stated) return *of_stated;
   refuse(file, column + " is in " + quoted(unit) + ", expected one of " + usual_units(measure));
 }
 
@@ -194,15 +204,14 @@ std::optional<FoundColumn> find_column(const std::string& file,
                        ", expected one of them" +
                        (is_rate ? ": state the column of fuel or power" : ""));
     }
-    found = FoundColumn{name, factor_in(file, name, channel.measure, parts.unit.value_or(unit))};
+    found = FoundColumn{name, factor_in(file, name, channel.measure, unit)};
   }
   return found;
 }
 
 FoundColumn named_column(const std::string& file, const std::string& name, Measure measure,
                          const std::string& unit) {
-  const std::string own = column_name(name).unit.value_or("");
-  return {name, factor_in(file, name, measure, unit.empty() ? own : unit)};
+  return {name, factor_in(file, name, measure, unit)};
 }
 
 }  // namespace excavplan

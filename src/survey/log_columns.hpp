@@ -44,7 +44,8 @@ struct FoundColumn {
 
 /// The column of these names that is one of the channel: none, or the only one. `unit` is of a
 /// column that does not say its own; may be empty.
-/// @throws Error (bad_file) if there are two, or one lacks a unit or has another
+/// @throws Error (bad_file) if there are two, or one lacks a unit, has another, or one that is not
+/// the stated one
 std::optional<FoundColumn> find_column(const std::string& file,
                                        const std::vector<std::string>& names,
                                        const Channel& channel, const std::string& unit);

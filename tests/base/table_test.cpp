@@ -136,6 +136,12 @@ TEST(Table, WhatCanBeReadInTwoWaysIsRefusedUnlessItIsStated) {
   EXPECT_EQ(refusal("k;d\n1.234;1\n"),
             "t.csv: line 2: k is '1.234', which may be a decimal or thousands: state the decimal "
             "mark");
+  for (const char* beside : {"10:00:00,5", "23.11.2026 10:00:00", "23.11.2026"}) {
+    const Table settled = table_of("k;t\n1,234;" + std::string(beside) + "\n");
+    EXPECT_EQ(settled.column("k")[0], 1.234) << beside;
+  }
+  EXPECT_EQ(table_of("k;t\n1.234;10:00:00.5\n").column("k")[0], 1.234);
+  EXPECT_EQ(table_of("k;t\n2.5;10:00:00,5\n").column("k")[0], 2.5);
   EXPECT_EQ(refusal("k;d\n1,5;1\n2;2.5\n"),
             "t.csv: line 2: k is '1,5', but line 3: d is '2.5': state the decimal mark");
   EXPECT_EQ(refusal("k,e;d\n1,2;3\n"), "t.csv: has no column 'k', its columns are: k,e, d");
@@ -163,6 +169,10 @@ TEST(Table, BrokenTextIsRefusedWithItsLine) {
   EXPECT_EQ(refusal("k,d\n1,\"2\n"), "t.csv: line 2: a quote is not closed");
   EXPECT_EQ(refusal("k,d\n\"1\"2,3\n"), "t.csv: line 2: found text behind the quotes of '1'");
   EXPECT_EQ(refusal("1,2\n3,4\n"), "t.csv: line 1: found numbers, expected names of columns");
+  EXPECT_EQ(refusal("\xFF\xFE" + test::utf16("k,d\n1,2\n", true, false)),
+            "t.csv: line 1: UTF-16 whose bytes are in the other order than its mark states");
+  EXPECT_EQ(refusal("\xFE\xFF" + test::utf16("k,d\n1,2\n", false, false)),
+            "t.csv: line 1: UTF-16 whose bytes are in the other order than its mark states");
   EXPECT_EQ(refusal(test::utf16("k,d\n1,2\n", false, true) + "x"),
             "t.csv: line 3: UTF-16 ends in half a character");
   EXPECT_EQ(refusal(test::utf16("k,d\n1,2\n", false, true) + std::string("\x00\xD8", 2)),

@@ -102,6 +102,13 @@ TEST(SafeText, Utf8IsWhatAnotherDecoderSays) {
   }
 }
 
+TEST(Readable, LongNumbersHaveAnExponent) {
+  EXPECT_EQ(readable(999e12), "999000000000000");
+  EXPECT_EQ(readable(1.234e15), "1.23e+15");
+  EXPECT_EQ(readable(-1e308, 2), "-1.0e+308");
+  EXPECT_EQ(readable(0.4, 1e308), "0.400 ± 1.0e+308");
+}
+
 TEST(NearestWord, OfAWordOfAnyLengthIsNoneAtOnce) {
   const std::vector<string> words(100, string(256, 'x'));
   EXPECT_EQ(nearest_word(string(256, 'x'), words), words.front());

@@ -11,6 +11,7 @@
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
+#include "survey/dig_phases.hpp"
 
 namespace excavplan {
 namespace {
@@ -83,6 +84,28 @@ TEST_F(Efficiency, MessagesNameTheFields) {
   EXPECT_EQ(error_of([&] { measure_efficiency(empty); }), "volume: 0, must be above 0");
   empty.prefix = "--second-";
   EXPECT_EQ(error_of([&] { measure_efficiency(empty); }), "--second-volume: 0, must be above 0");
+}
+
+// What a dig costs is summed over its rows, so that many digs cost no more than one.
+TEST(LogRows, OfAllDigsAreAsManyAsThoseOfTheLog) {
+  constexpr std::size_t rows = 10000;
+  DigLog log;
+  log.rates = {{}};
+  for (std::size_t i = 0; i < rows; ++i) {
+    log.time.push_back(0.1 * static_cast<double>(i));
+    log.rates[0].push_back(i % 2 == 0 ? 1.0 : 3.0);
+  }
+  std::size_t looked_at = 0;
+  double sum = 0.0;
+  for (std::size_t i = 1; i + 1 < rows; i += 2) {
+    const LogInterval dig{log.time[i] - 0.05, log.time[i] + 0.05};
+    const LogRows around = rows_around(log.time, dig);
+    looked_at += around.last - around.first;
+    sum += log.integral(dig);
+  }
+  EXPECT_LE(looked_at, 2 * rows);
+  EXPECT_NEAR(sum, 0.1 * 2.5 * (rows / 2 - 1), 1e-6);
+  EXPECT_EQ(rows_around(log.time, {-1.0, 1e9}).last, rows);
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "support/run_program.hpp"
+#include "support/svg_figure.hpp"
+#include "support/svg_layout.hpp"
 #include "support/tool_answers.hpp"
 #include "support/utf16.hpp"
 
@@ -105,6 +107,48 @@ TEST_F(EfficiencyLogs, WhatIsNotClearIsRefusedWithLineAndColumn) {
             "log.csv: line 3: time is '12:60:00', expected a time as 13:05:59.250");
 }
 
+TEST_F(EfficiencyLogs, DatesAreReadAsTheirColumnShowsThem) {
+  const auto of = [&](const std::string& first, const std::string& second) {
+    const std::string head = "time;fuel_flow_ml_per_s\n";
+    return fuel(head + first + " 23:59:57,5;2\n" + second + " 00:00:05,5;2\n");
+  };
+  for (const auto& [first, second] :
+       std::vector<std::pair<std::string, std::string>>{{"2026-11-23", "2026-11-24"},
+                                                        {"2024/02/29", "2024/03/01"},
+                                                        {"23.11.2026", "24.11.2026"},
+                                                        {"9.3.2026", "10.3.2026"},
+                                                        {"11/23/2026", "11/24/2026"},
+                                                        {"23/11/2026", "24/11/2026"},
+                                                        {"12/12/2026", "12/13/2026"}}) {
+    EXPECT_NEAR(of(first, second), 16.0, 1e-5) << first;
+  }
+  const std::string halves = "time,power_w\n3/4/2026 11:59:55 AM,1000\n3/4/2026 12:00:05 PM,1000\n";
+  EXPECT_NEAR(run(halves).at("energy_kj").get<double>(), 10.0, 1e-9) << "either month";
+}
+
+TEST_F(EfficiencyLogs, DatesThatAreNoneOrGoBackAreRefusedWithTheirLine) {
+  const auto message = [&](const std::string& first, const std::string& second) {
+    return refusal("time,power_w\n" + first + ",1\n" + second + ",1\n");
+  };
+  EXPECT_EQ(
+      message("2026-02-28 10:00:00", "2026-02-30 10:00:00"),
+      "log.csv: line 3: time is '2026-02-30 10:00:00', a date that the calendar does not have");
+  EXPECT_EQ(
+      message("13/13/2026 10:00:00", "13/14/2026 10:00:00"),
+      "log.csv: line 2: time is '13/13/2026 10:00:00', a date that the calendar does not have");
+  EXPECT_EQ(message("2026-11-23T10:00:00", "2026-11-22T10:00:05"),
+            "log.csv: line 3: time is '2026-11-22T10:00:05', must be later than "
+            "'2026-11-23T10:00:00' of the row before");
+  EXPECT_EQ(message("10:00:05", "10:00:00"),
+            "log.csv: line 3: time is '10:00:00', must be later than '10:00:05' of the row before");
+  EXPECT_EQ(message("01/02/2026 23:59:59", "01/03/2026 00:00:01"),
+            "log.csv: line 2: time is '01/02/2026 23:59:59', whose day and month may be either: "
+            "write dates as 2026-11-23");
+  EXPECT_EQ(message("2026-11-23 10:00:00", "10:00:05"),
+            "log.csv: line 3: time is '10:00:05', expected a date or none as in "
+            "'2026-11-23 10:00:00'");
+}
+
 TEST_F(EfficiencyLogs, OptionsSayWhatALogDoesNot) {
   const std::string log = "Zeit;Verbrauch\n0;1,200\n60000;1,200\n";
   EXPECT_NEAR(fuel(log, {"--time-column", "Zeit", "--time-unit", "ms", "--rate-column", "Verbrauch",
@@ -116,6 +160,38 @@ TEST_F(EfficiencyLogs, OptionsSayWhatALogDoesNot) {
   const std::string both = "time_s,fuel_flow_ml_per_s,power_w\n0,1,7000\n10,1,7000\n";
   EXPECT_NEAR(fuel(both, {"--meter", "fuel"}), 10.0, 1e-12);
   EXPECT_NEAR(run(both, {"--meter", "power"}).at("energy_kj").get<double>(), 70.0, 1e-12);
+}
+
+TEST_F(EfficiencyLogs, ColumnsAreStatedWithTheirUnitOrWithout) {
+  const std::string log = "Clock [ms],Motor [L/h],Pumpe [L/h]\n0,7.2,1\n10000,7.2,1\n";
+  for (const char* name : {"Motor", "motor", "Motor [L/h]"}) {
+    EXPECT_NEAR(fuel(log, {"--time-column", "Clock", "--rate-column", name}), 20.0, 1e-9) << name;
+  }
+  EXPECT_EQ(refusal(log, {"--rate-column", "Motto"}),
+            "log.csv: has no column 'Motto', its columns are: Clock [ms], Motor [L/h], Pumpe "
+            "[L/h]");
+  EXPECT_EQ(refusal("Zeit,Motor [L/h]\n0,7.2\n10,7.2\n"),
+            "log.csv: has no column of fuel or power, expected one of fuel_flow_ml_per_s, "
+            "fuel_flow_l_per_h, power_w, or of boom, arm and bucket each boom_power_w, "
+            "boom_torque_n_m with boom_rate_rad_per_s, or boom_head_pressure_pa with "
+            "boom_rod_pressure_pa and boom_piston_speed_m_per_s; its columns are: Zeit, Motor "
+            "[L/h]: give --rate-column");
+  EXPECT_EQ(refusal("Zeit,Motor [L/h]\n0,7.2\n10,7.2\n", {"--rate-column", "Motor"}),
+            "log.csv: has no column 'time_s', its columns are: Zeit, Motor [L/h]: give "
+            "--time-column");
+  EXPECT_EQ(refusal("time_s,fuel_flow_l_per_h\n0,2\n9,2\n", {"--rate-unit", "mL/s"}),
+            "log.csv: column 'fuel_flow_l_per_h' is in 'l_per_h' by its name, but 'mL/s' is stated "
+            "as its unit");
+  EXPECT_NEAR(fuel("time_s,fuel_flow_l_per_h\n0,3.6\n9,3.6\n", {"--rate-unit", "L/h"}), 9.0, 1e-9);
+}
+
+TEST_F(EfficiencyLogs, ReadingsBeyondAllNumbersAreRefused) {
+  EXPECT_EQ(refusal("time_s,power [kW]\n0,1\n9,1e308\n"),
+            "log.csv: line 3: power of power [kW] is too large for a number");
+  const json large = run("time_s,power [W]\n0,1e306\n9,1e306\n");
+  const ProgramResult text =
+      run_program("measure-efficiency", {folder.file("log.csv"), "--volume", "0.4"});
+  EXPECT_NE(text.out.find("9.00e+303 ± 1.8e+302 kJ"), std::string::npos) << text.out;
 }
 
 TEST_F(EfficiencyLogs, UnitsOfFuelFlowAgree) {
@@ -254,8 +330,8 @@ TEST_F(EfficiencyLogs, IdlingIsFoundOrStatedAndBothFiguresAreThere) {
   const std::string steady = "time_s,fuel_flow_ml_per_s\n0,2\n10,2\n";
   EXPECT_TRUE(run(steady).at("idle").is_null());
   EXPECT_EQ(refusal(steady, {"--subtract-idle"}),
-            "log.csv: idling cannot be subtracted: the log shows none for 2 s, and --idle is not "
-            "given");
+            "log.csv: idling cannot be subtracted: the log shows none for 2 s: give --idle");
+  EXPECT_EQ(refusal(steady, {"--idle", "5kW"}), "--idle is a power, but log.csv records fuel");
   EXPECT_EQ(refusal(steady, {"--idle", "3"}),
             "--idle: '3' is no rate, expected one such as 2.8L/h, 0.8mL/s or 5kW");
 }
@@ -425,12 +501,63 @@ TEST_F(RunSets, FaultsAreNamedByTheLineOfTheTable) {
             "bulking_factor, volume_m3, volume_sd_m3, bank_volume_m3, bank_volume_sd_m3, mass_kg, "
             "mass_sd_kg, from_s, to_s, dump_before, dump_after, pit_before, pit_after, "
             "bucket_before, bucket_after");
+  const std::string low =
+      folder.write("low.csv", "file,volume_m3\ngood0.csv,0.4\ngood1.csv,-0.4\n");
+  EXPECT_EQ(message({"--runs", good, "--against", low}),
+            "low.csv: line 3: volume_m3: -0.4, must be above 0");
+  EXPECT_EQ(run({"--runs", good, "--against", low}).code, 3);
+  const std::string none = folder.write("none.csv", "file,mass_kg\ngood0.csv,4\n,4\n");
+  EXPECT_EQ(message({"--runs", good, "--against", none}),
+            "none.csv: line 3: file is '', expected the name of a log");
   const std::string one = table("one", {2.0});
   EXPECT_EQ(message({"--runs", one, "--against", good}),
             "the set of --runs has 1 run, a comparison needs 2 or more");
   EXPECT_EQ(message({"--runs", good}), "--runs and --against go together");
   EXPECT_EQ(message({good, "--runs", good, "--against", good}),
             "--runs and --against exclude RUN.csv, SECOND.csv and options of a second dig");
+}
+
+TEST_F(RunSets, ARecordingThatCountsTwiceIsNotTrusted) {
+  const std::string operators = table("operator", {2.0, 2.1, 1.9});
+  const auto codes = [&](const std::string& set) {
+    const ProgramResult result = run({"--runs", set, "--against", operators, "--json"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    const json found = json::parse(result.out, nullptr, false);
+    Words list;
+    for (const json& warning : found.at("warnings")) list.push_back(warning.at("code"));
+    EXPECT_EQ(found.at("trustworthy").get<bool>(), list.empty());
+    return list;
+  };
+  EXPECT_EQ(codes(table("plan", {1.6, 1.7, 1.5})), Words{});
+  EXPECT_EQ(codes(table("copy", {1.6, 1.7, 1.6})), Words{"repeated_run"}) << "by content";
+  EXPECT_EQ(codes(table("other", {1.6, 1.7, 2.0})), Words{"repeated_run"}) << "of the other set";
+  const std::string parts = folder.write(
+      "parts.csv", "file,volume_m3,from_s,to_s\nplan0.csv,0.2,0,5\nplan0.csv,0.2,5,10\n");
+  EXPECT_EQ(codes(parts), Words{}) << "two digs of a longer log";
+}
+
+TEST_F(RunSets, TextSaysWhereIntervalAndTestDiffer) {
+  const auto last = [&](const std::string& plan, const std::string& operators) {
+    const std::string text = run({"--runs", plan, "--against", operators}).out;
+    return text.substr(text.rfind('\n', text.size() - 2) + 1, 12);
+  };
+  EXPECT_EQ(last(table("p3", {1.0, 1.01, 1.02}), table("o3", {2.0, 2.01, 2.02})), "the interval");
+  EXPECT_EQ(last(table("p4", {1.0, 1.01, 1.02, 1.03}), table("o4", {2.0, 2.01, 2.02, 2.03})),
+            "gain: 98.5 %");
+}
+
+TEST_F(RunSets, FigureShowsEveryRun) {
+  const std::string operators = table("operator", {2.0, 2.1, 1.9, 2.2});
+  const std::string plan = table("plan", {1.6, 1.7, 1.5, 1.55});
+  const std::string file = folder.file("sets.svg");
+  for (const char* size : {"40mm", "85mm", "300mm", "170mm"}) {
+    const ProgramResult result =
+        run({"--runs", plan, "--against", operators, "--plot", file, "--plot-size", size});
+    ASSERT_EQ(result.code, 0) << result.err;
+    expect_legible(content_of(file), size);
+  }
+  expect_figure(file, {"efficiency [m³/mL]", "against", "runs", "geometric mean", "a run",
+                       "4 runs against 4, gain: 29"});
 }
 
 TEST(SampleRecordings, RepeatTheFieldExperiment) {

@@ -301,7 +301,8 @@ TEST_F(MeasureEfficiency, ColumnsMustGiveEitherFuelOrEnergy) {
             "a.csv: has no column of fuel or power, expected one of fuel_flow_ml_per_s, "
             "fuel_flow_l_per_h, power_w, or of boom, arm and bucket each boom_power_w, "
             "boom_torque_n_m with boom_rate_rad_per_s, or boom_head_pressure_pa with "
-            "boom_rod_pressure_pa and boom_piston_speed_m_per_s");
+            "boom_rod_pressure_pa and boom_piston_speed_m_per_s; its columns are: time_s, speed: "
+            "give --rate-column");
   EXPECT_EQ(message("fuel_flow_ml_per_s,power_w", "0,1,1\n1,1,1\n"),
             "a.csv: holds both fuel_flow_ml_per_s and power_w, expected one of them: give --meter");
   EXPECT_EQ(message("boom_power_w,arm_power_w", "0,1,1\n1,1,1\n"),
@@ -326,7 +327,13 @@ TEST_F(MeasureEfficiency, PayloadIsGivenInOneWay) {
   EXPECT_EQ(refusal(2, {a, "--mass", "1", "--volume-sd", "1"}),
             "--volume-sd needs --volume, which is missing");
   EXPECT_EQ(refusal(2, {a, "--mass", "0"}), "--mass: 0, must be above 0");
-  EXPECT_EQ(refusal(2, {a, "--mass", "1", "--mass-sd", "-1"}), "--mass-sd: -1, must be 0 or more");
+  EXPECT_EQ(refusal(2, {a, "--mass", "1", "--mass-sd", "-1"}),
+            "--mass-sd: -1, must be 0 or more and at most the amount");
+  EXPECT_EQ(refusal(2, {a, "--mass", "1", "--mass-sd", "1e308"}),
+            "--mass-sd: 1e+308, must be 0 or more and at most the amount");
+  EXPECT_EQ(refusal(2, {a, "--volume", "0,391"}),
+            "--volume: '0,391' has a comma where decimals follow a point, expected a volume such "
+            "as 0.4 or 400L");
   EXPECT_EQ(refusal(2, {a, "--mass", "1", "--second-mass", "1"}),
             "SECOND.csv is missing, but options of a second dig are given");
 }

@@ -72,7 +72,9 @@ std::vector<Job> jobs() {
               "The void ratios of loam were derived from the paper's line."}}}},
           {"measure-efficiency",
            run_pair,
-           {{"efficiency", {"efficiency [m³/mL]", "95 % interval", "Gain of the second run"}},
+           {{"efficiency",
+             {"efficiency [m³/mL]", "95 % interval",
+              "± is one standard deviation. Gain of the second run"}},
             {"fuel", {"fuel flow [mL/s]", "time [s]", "idling"}}}}};
 }
 
@@ -190,9 +192,11 @@ TEST_F(FigureValues, AFigureWithoutWhatItNeedsIsRefusedBeforeTheWork) {
           {"--density", "40", "--plot", "landscape=" + folder.file("l.svg")});
   refused(2, "--plot: no figure 'study': there is no --study", "run-experiment",
           {"--plot", "study=" + folder.file("s.svg")});
-  refused(
-      2, "--plot: no figure 'efficiency': it is of RUN.csv", "measure-efficiency",
-      {"--runs", folder.file("a"), "--against", folder.file("b"), "--plot", folder.file("e.svg")});
+  refused(2, "--plot: no figure 'fuel': it is of RUN.csv", "measure-efficiency",
+          {"--runs", folder.file("a"), "--against", folder.file("b"), "--plot",
+           "fuel=" + folder.file("e.svg")});
+  refused(2, "--plot: no figure 'sets': it is of --runs", "measure-efficiency",
+          run_pair + Words{"--plot", "sets=" + folder.file("e.svg")});
   auto machine = json::parse(content_of(shipped("machines/zx120.json")));
   machine.erase("cylinders");
   machine.erase("hydraulics");

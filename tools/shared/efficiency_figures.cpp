@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "shared/bars.hpp"
 #include "shared/efficiency_results.hpp"
+#include "survey/dig_phases.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -46,10 +47,12 @@ Figure bars_figure(const DrawnRuns& drawn) {
   Panel panel = bar_panel("efficiency [" + unit_text(runs.front().symbol()) + "]",
                           {{"", {"#444444", 0.6, "#9ecae1"}}}, groups);
   figure.rows = {{panel}};
+  const auto has_sd = [](const DigEfficiency& run) { return std::isfinite(run.value().sd); };
+  if (std::any_of(runs.begin(), runs.end(), has_sd)) figure.note = "± is one standard deviation. ";
   if (runs.size() == 2) {
     const Measured gain = efficiency_gain(runs[0], runs[1], drawn.own_meters);
     const auto [low, high] = gain_interval(gain);
-    figure.note = "Gain of the second run: " + readable(gain.value, gain.sd) + " %";
+    figure.note += "Gain of the second run: " + readable(gain.value, gain.sd) + " %";
     figure.note += std::isfinite(low)
                        ? ", 95 % interval " + readable(low) + " .. " + readable(high) + " %."
                        : ".";
@@ -84,9 +87,9 @@ Panel log_panel(const DigEfficiency& run, bool last) {
     for (const LogInterval& dig : run.log.digs) {
       panel.span(dig.from - start, dig.to - start, colours::orange, "penetrate, drag and scoop");
       Points area;
-      for (const Eigen::Vector2d& point : curve) {
-        const double time = point.x() + start;
-        if (time >= dig.from && time <= dig.to) area.push_back(point);
+      const LogRows rows = rows_around(run.log.time, dig);
+      for (std::size_t i = rows.first; i < rows.last; ++i) {
+        if (run.log.time[i] >= dig.from && run.log.time[i] <= dig.to) area.push_back(curve[i]);
       }
       if (area.size() < 2) continue;
       area.insert(area.begin(), {area.front().x(), 0.0});
@@ -125,12 +128,51 @@ Figure fuel_figure(const DrawnRuns& drawn) {
   return figure;
 }
 
+/// The runs of a set side by side in the bar of their mean.
+Points dots_of(const std::vector<DigEfficiency>& runs, double middle) {
+  constexpr double spread = 0.5;
+  Points dots;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(runs.size());
+    dots.emplace_back(middle + spread * (share - 0.5), runs[i].value().value);
+  }
+  return dots;
+}
+
+Figure sets_figure(const ComparedSets& sets) {
+  const std::string symbol = sets.runs.front().symbol();
+  const SetComparison& found = sets.comparison;
+  Panel panel = bar_panel(
+      "efficiency [" + unit_text(symbol) + "]", {{"geometric mean", {"#444444", 0.6, "#9ecae1"}}},
+      {{"against", {{found.first.geometric_mean}}}, {"runs", {{found.second.geometric_mean}}}});
+  double top = panel.shown().y_max;
+  double middle = 0.0;
+  for (const std::vector<DigEfficiency>* set : {&sets.against, &sets.runs}) {
+    const Points dots = dots_of(*set, middle);
+    for (const Eigen::Vector2d& dot : dots) top = std::max(top, 1.08 * dot.y());
+    panel.dots(dots, 2.0, {"#ffffff", 0.5, colours::vermilion}, "a run");
+    middle += 1.0;
+  }
+  const Rectangle shown = panel.shown();
+  panel.view({shown.x_min, 0.0, shown.x_max, top});
+  Figure figure;
+  figure.title = "Efficiency of the runs of both sets";
+  figure.rows = {{panel}};
+  figure.note = std::to_string(found.second.runs) + " runs against " +
+                std::to_string(found.first.runs) + ", " + set_lines(found, symbol)[2] + ".";
+  return figure;
+}
+
 }  // namespace
 
 FigureTable<DrawnRuns> run_figures(const Arguments::Use& of_logs) {
   return {
       {{"efficiency", "efficiency of each run with its 95 % interval", of_logs}, bars_figure},
       {{"fuel", "fuel flow or power over time, with the dig and idling", of_logs}, fuel_figure}};
+}
+
+FigureTable<ComparedSets> set_figures(const Arguments::Use& of_sets) {
+  return {{{"sets", "every run of both sets, their means and the gain", of_sets}, sets_figure}};
 }
 
 }  // namespace excavplan::tools

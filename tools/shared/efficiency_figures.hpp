@@ -6,10 +6,11 @@
 
 #include <excavplan/survey/efficiency.hpp>
 
+#include "shared/efficiency_runs.hpp"
 #include "shared/plots.hpp"
 
 /// @file
-/// Figures of measure-efficiency, of one run or two.
+/// Figures of measure-efficiency, of one run or two, or of two sets.
 
 namespace excavplan::tools {
 
@@ -20,5 +21,8 @@ struct DrawnRuns {
 
 /// efficiency and fuel. @param of_logs  possible for logs, not for sets of runs
 FigureTable<DrawnRuns> run_figures(const Arguments::Use& of_logs);
+
+/// sets. @param of_sets  possible for sets of runs only
+FigureTable<ComparedSets> set_figures(const Arguments::Use& of_sets);
 
 }  // namespace excavplan::tools

@@ -150,10 +150,19 @@ std::vector<std::string> set_lines(const SetComparison& sets, const std::string&
                                      std::string(sets.permutation.is_exact ? "all " : "") +
                                      divisions + " divisions"
                                : std::string("Welch's t-test");
-  return {line("against: ", sets.first), line("runs:    ", sets.second),
-          "gain: " + readable(sets.gain_percent) + " %, 95 % interval " +
-              readable(sets.gain_low_percent) + " .. " + readable(sets.gain_high_percent) +
-              " %; p = " + readable(sets.p_value(), 2) + " (" + test + ")"};
+  std::vector<std::string> lines = {
+      line("against: ", sets.first), line("runs:    ", sets.second),
+      "gain: " + readable(sets.gain_percent) + " %, 95 % interval " +
+          readable(sets.gain_low_percent) + " .. " + readable(sets.gain_high_percent) +
+          " %; p = " + readable(sets.p_value(), 2) + " (" + test + ")"};
+  constexpr double level = 0.05;  // of an interval of 95 %
+  const bool interval_shows = sets.gain_low_percent > 0.0 || sets.gain_high_percent < 0.0;
+  if (interval_shows != (sets.p_value() < level)) {
+    lines.push_back(
+        "the interval, which takes the scatter for normal, says otherwise than the permutation "
+        "test, which does not and decides: more runs are needed");
+  }
+  return lines;
 }
 
 std::pair<double, double> gain_interval(const Measured& gain_percent) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/efficiency_runs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -33,50 +34,91 @@ DigEfficiency measure(const RunInputs& inputs, const EfficiencyInputs& all, Outc
   for (std::string& line : run_lines(run)) outcome.lines.push_back(std::move(line));
   for (const Warning& each : run.warnings) {
     outcome.warnings.push_back(
-        {each.code, with_option_names(each.message, heap_options), each.ends_trust});
+        {each.code, with_option_names(each.message, names), each.ends_trust});
   }
   outcome.trustworthy = outcome.trustworthy && run.trustworthy;
   return run;
 }
 
-/// Efficiencies of the runs of a set.
-std::vector<double> measure_set(const std::string& table_or_folder, const EfficiencyInputs& all,
-                                std::string& symbol, Outcome& outcome) {
-  std::vector<double> values;
+std::vector<DigEfficiency> measure_set(const std::string& table_or_folder,
+                                       const EfficiencyInputs& all, Outcome& outcome) {
+  std::vector<DigEfficiency> measured;
   for (const SetRun& run : runs_of(table_or_folder, all.first)) {
     try {
-      const DigEfficiency found = measure(run.inputs, all, outcome);
-      if (symbol.empty()) symbol = found.symbol();
-      if (symbol != found.symbol()) {
-        usage_error("the runs cannot be compared: " + found.file + " is in " + found.symbol() +
-                    ", others in " + symbol);
-      }
-      values.push_back(found.value().value);
+      measured.push_back(measure(run.inputs, all, outcome));
     } catch (const Error& error) {
-      throw Error(error.kind(), run.place + error.what());
+      const std::string message = with_option_names(error.what(), run.columns);
+      const bool is_of_table = message != error.what();
+      throw Error(is_of_table ? ErrorKind::bad_file : error.kind(), run.place + message);
     }
+  }
+  return measured;
+}
+
+/// Efficiencies in one unit.
+std::vector<double> values_of(const std::vector<DigEfficiency>& runs, const std::string& symbol) {
+  std::vector<double> values;
+  for (const DigEfficiency& run : runs) {
+    if (run.symbol() != symbol) {
+      usage_error("the runs cannot be compared: " + run.file + " is in " + run.symbol() +
+                  ", others in " + symbol);
+    }
+    values.push_back(run.value().value);
   }
   return values;
 }
 
+bool is_same_recording(const DigLog& a, const DigLog& b) {
+  const bool overlap = a.whole.from < b.whole.to && b.whole.from < a.whole.to;
+  return overlap && a.time == b.time && a.rates == b.rates;
+}
+
+/// By content, as a copy of a file has another name.
+void warn_of_repeated(const ComparedSets& sets, Outcome& outcome) {
+  std::vector<const DigEfficiency*> seen;
+  for (const std::vector<DigEfficiency>* set : {&sets.against, &sets.runs}) {
+    for (const DigEfficiency& run : *set) {
+      const auto same = std::find_if(seen.begin(), seen.end(), [&](const DigEfficiency* other) {
+        return is_same_recording(run.log, other->log);
+      });
+      if (same == seen.end()) {
+        seen.push_back(&run);
+        continue;
+      }
+      outcome.trustworthy = false;
+      outcome.warnings.push_back({"repeated_run",
+                                  run.file + ": the same recording as that of " + (*same)->file +
+                                      ": it counts as two runs, and the test takes them for "
+                                      "independent ones",
+                                  true});
+    }
+  }
+}
+
 }  // namespace
 
-void compare_sets(const EfficiencyInputs& inputs, Outcome& outcome) {
+ComparedSets compare_sets(const EfficiencyInputs& inputs, Outcome& outcome) {
   if (!inputs.runs || !inputs.against) usage_error("--runs and --against go together");
   if (inputs.first.log || inputs.second.any()) {
     usage_error("--runs and --against exclude RUN.csv, SECOND.csv and options of a second dig");
   }
-  std::string symbol;
-  const std::vector<double> first = measure_set(*inputs.against, inputs, symbol, outcome);
-  const std::vector<double> second = measure_set(*inputs.runs, inputs, symbol, outcome);
+  ComparedSets sets;
+  sets.against = measure_set(*inputs.against, inputs, outcome);
+  sets.runs = measure_set(*inputs.runs, inputs, outcome);
+  const std::string symbol = sets.against.front().symbol();
   const OptionNames names = {{"the first set", "the set of --against"},
                              {"the second set", "the set of --runs"}};
-  const SetComparison sets = naming_options(names, [&] { return compare_runs(first, second); });
-  outcome.json["sets"] = to_json(sets);
-  outcome.json["gain_percent"] = sets.gain_percent;
+  sets.comparison = naming_options(names, [&] {
+    return compare_runs(values_of(sets.against, symbol), values_of(sets.runs, symbol));
+  });
+  warn_of_repeated(sets, outcome);
+  const SetComparison& found = sets.comparison;
+  outcome.json["sets"] = to_json(found);
+  outcome.json["gain_percent"] = found.gain_percent;
   outcome.json["gain_sd_percent"] = unknown;
-  outcome.json["gain_interval_percent"] = {sets.gain_low_percent, sets.gain_high_percent};
-  outcome.lines = set_lines(sets, symbol);
+  outcome.json["gain_interval_percent"] = {found.gain_low_percent, found.gain_high_percent};
+  outcome.lines = set_lines(found, symbol);
+  return sets;
 }
 
 std::vector<DigEfficiency> compare_two(const EfficiencyInputs& inputs, Outcome& outcome) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <excavplan/survey/efficiency.hpp>
+#include <excavplan/survey/run_comparison.hpp>
 
 #include "shared/logged_dig.hpp"
 #include "shared/scans.hpp"
@@ -32,7 +33,15 @@ struct EfficiencyInputs {
 /// rate for figures.
 std::vector<DigEfficiency> compare_two(const EfficiencyInputs& inputs, Outcome& outcome);
 
-/// The set of --runs against that of --against.
-void compare_sets(const EfficiencyInputs& inputs, Outcome& outcome);
+/// Two sets of runs and what comes of them.
+struct ComparedSets {
+  std::vector<DigEfficiency> against;
+  std::vector<DigEfficiency> runs;
+  SetComparison comparison;
+};
+
+/// The set of --runs against that of --against. A recording that counts more than once is warned of
+/// (repeated_run), which ends trust.
+ComparedSets compare_sets(const EfficiencyInputs& inputs, Outcome& outcome);
 
 }  // namespace excavplan::tools

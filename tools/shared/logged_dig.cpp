@@ -6,6 +6,8 @@
 #include <cmath>
 #include <initializer_list>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "base/read_double.hpp"
 #include "shared/quantity.hpp"
@@ -25,15 +27,16 @@ std::optional<char> sign_of(const std::string& word) {
 const std::vector<std::string> meter_words = {"auto",         "fuel",    "power",
                                               "joint-powers", "torques", "pressures"};
 
-/// "2.8L/h" [mL/s], "5kW" [W].
-double parse_rate(const std::string& text) {
+/// "2.8L/h" [mL/s], "5kW" [W], and which it is.
+std::pair<double, Spent> parse_rate(const std::string& text) {
   double value = 0.0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = read_double(text.data(), end, value);
   const std::string unit(stop, end);
   if (error == std::errc{} && std::isfinite(value)) {
-    for (const Measure measure : {Measure::flow, Measure::power}) {
-      if (const auto factor = factor_of(unit, measure)) return value * *factor;
+    for (const auto& [measure, kind] :
+         {std::pair(Measure::flow, Spent::fuel), {Measure::power, Spent::energy}}) {
+      if (const auto factor = factor_of(unit, measure)) return {value * *factor, kind};
     }
   }
   usage_error("--idle: '" + text + "' is no rate, expected one such as 2.8L/h, 0.8mL/s or 5kW");
@@ -53,6 +56,12 @@ const OptionNames log_options = {
     {"state the column of fuel or power", "give --rate-column"},
     {"state the meter", "give --meter"},
     {"state the unit", "or give --time-unit or --rate-unit"},
+    {"the rate at rest is", "--idle is"},
+    {"state the rate at rest", "give --idle"},
+    {"state when the dig begins and ends, or what counts",
+     "give --from and --to, or --phases found; --subtract-idle or --count cycle if idling is to be "
+     "left out or in"},
+    {"check the rate at rest", "check --idle"},
     {"the areas of the pistons are unknown", "the file of --machine states no hydraulics"}};
 
 void LogFormat::declare(Arguments& arguments) {
@@ -110,7 +119,7 @@ void LogInputs::declare(Arguments& arguments) {
 void LogInputs::apply_to(LoggedDig& dig) const {
   format.apply_to(dig);
   dig.counted = count == "cycle" ? Counted::cycle : Counted::dig;
-  if (idle) dig.idle = parse_rate(*idle);
+  if (idle) std::tie(dig.idle, dig.idle_kind) = parse_rate(*idle);
   dig.subtracts_idle = subtracts_idle;
   dig.meter_sd = format.meter_share();
   dig.pistons = piston_areas(machine_named(machine));

@@ -96,6 +96,7 @@ double parse_quantity(const std::string& what, const std::string& text, Quantity
   std::string suffix(stop, end);
   suffix.erase(0, suffix.find_first_not_of(' '));
   if (suffix.empty()) return value;
+  if (suffix[0] == ',') refuse("has a comma where decimals follow a point");
   const auto known =
       std::find_if(units.begin(), units.end(), [&](const Unit& row) { return suffix == row.text; });
   if (known == units.end()) {

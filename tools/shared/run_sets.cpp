@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "base/table.hpp"
@@ -48,14 +49,35 @@ void require_known(const Table& table) {
   }
 }
 
+/// "--volume-sd" is "volume_sd_m3".
+OptionNames columns_of(const Table& table) {
+  static const OptionNames all = {{"--bank-volume-sd", "bank_volume_sd_m3"},
+                                  {"--bank-volume", "bank_volume_m3"},
+                                  {"--volume-sd", "volume_sd_m3"},
+                                  {"--volume", "volume_m3"},
+                                  {"--mass-sd", "mass_sd_kg"},
+                                  {"--mass", "mass_kg"},
+                                  {"--from", "from_s"},
+                                  {"--to", "to_s"},
+                                  {"--bulking-factor", "bulking_factor"}};
+  OptionNames names;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(names),
+               [&](const auto& name) { return table.has(name.second); });
+  return names;
+}
+
 std::vector<SetRun> runs_of_table(const std::string& path, const RunInputs& common) {
   const Table table = Table::read(path);
   require_known(table);
   const fs::path folder = fs::path(path).parent_path();
   const std::vector<std::string> files = table.texts("file");
+  const OptionNames columns = columns_of(table);
   std::vector<SetRun> runs;
   for (std::size_t i = 0; i < table.rows(); ++i) {
-    SetRun run{common, path + ": line " + std::to_string(table.line(i)) + ": "};
+    SetRun run{common, path + ": line " + std::to_string(table.line(i)) + ": ", columns};
+    if (files[i].empty()) {
+      throw Error(ErrorKind::bad_file, run.place + "file is '', expected the name of a log");
+    }
     run.inputs.log = (folder / files[i]).string();
     runs.push_back(std::move(run));
   }
@@ -68,7 +90,7 @@ std::vector<SetRun> runs_of_table(const std::string& path, const RunInputs& comm
     if (!table.has(name)) continue;
     const std::vector<std::string> names = table.texts(name);
     for (std::size_t i = 0; i < names.size(); ++i) {
-      runs[i].inputs.*member = (folder / names[i]).string();
+      if (!names[i].empty()) runs[i].inputs.*member = (folder / names[i]).string();
     }
   }
   if (table.has("bulking_factor")) {
@@ -89,7 +111,7 @@ std::vector<SetRun> runs_of_folder(const std::string& folder, const RunInputs& c
   std::sort(names.begin(), names.end());
   std::vector<SetRun> runs;
   for (const std::string& name : names) {
-    runs.push_back({common, ""});
+    runs.push_back({common, "", {}});
     runs.back().inputs.log = name;
   }
   return runs;

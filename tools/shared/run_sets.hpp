@@ -12,7 +12,8 @@ namespace excavplan::tools {
 /// One of a set of runs.
 struct SetRun {
   RunInputs inputs;
-  std::string place;  ///< "runs.csv: line 3: ", of a table of runs; else empty
+  std::string place;         ///< "runs.csv: line 3: ", of a table of runs; else empty
+  OptionNames columns = {};  ///< options that the table states, and by which column
 };
 
 /// The runs of a set: a table with the column `file` and columns named as the options of a run

@@ -59,7 +59,8 @@ struct LoggedDig : DigLogSource {
   Counted counted = Counted::dig;        ///< what of the log
   /// Fuel flow [mL/s] or power [W] of the machine at rest; else the low plateau of the log.
   std::optional<double> idle = {};
-  bool subtracts_idle = false;  ///< whether idling is no part of the cost
+  std::optional<Spent> idle_kind = {};  ///< of which these are; else what the log records
+  bool subtracts_idle = false;          ///< whether idling is no part of the cost
   /// Of the meter, relative, the same in the whole log [-]; ours,
   /// docs/efficiency.md#what-the-numbers-are.
   double meter_sd = 0.02;
@@ -107,9 +108,10 @@ struct DigEfficiency {
 /// of scans of the dump area is that of the heap which rose between them.
 ///
 /// Warnings, after each of which it is not trustworthy: gap_in_log (a pause of more than 10 usual
-/// steps), implausible_fuel and implausible_energy (a payload or a rate far beyond those of
-/// excavators), dig_below_rest (in a log without phases: the machine took less per second in the
-/// dig than in the rest of the log, which is at least as long), bucket_partly_unseen. Of scans also
+/// steps), implausible_fuel and implausible_energy (a payload, a mean rate or a reading far beyond
+/// those of excavators), idle_above_dig, bucket_partly_unseen. In a log without phases also
+/// dig_below_rest (the machine took less per second in the dig than in the rest of the log, which
+/// is at least as long) and idle_in_dig (idling for 2 s or more counts as the dig). Of scans also
 /// those of measure_change(), units and frame.
 ///
 /// @throws Error (bad_file) as read_dig_log() or naming the rule if it adds up to nothing, or as
