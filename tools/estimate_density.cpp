@@ -111,14 +111,14 @@ Outcome work_on_scans(const Inputs& inputs) {
   const Machine machine = machine_named(inputs.frames.view.machine);
   DensityOptions options = options_of(inputs, machine);
   const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
-  inputs.second.apply_to(options);
+  inputs.second.apply_to(law, options);
   const auto by_method = [&] { return estimate(inputs.method, scans, law, options); };
   const BothEstimates both =
       naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
   const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   Outcome outcome = estimate_outcome(counts, options.soil);
   add_machine_warnings(counts, law, machine, scans.before.unit, outcome);
-  inputs.second.add_warnings(counts, outcome);
+  inputs.second.check(counts, outcome);
   report.add_to(outcome);
   draw_estimate(inputs.plots, inputs.report, counts, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);
