@@ -106,8 +106,7 @@ std::string runs_csv(const std::vector<StudyResult>& results) {
 
 std::string text_of(const StudyMean& mean) {
   if (mean.values == 0) return "-";
-  return decimals(mean.mean, 1) + " (" + decimals(mean.interval[0], 1) + " .. " +
-         decimals(mean.interval[1], 1) + ")";
+  return decimals(mean.mean, 1) + interval_text(mean);
 }
 
 std::string number_of(double value, int digits = 1) {
@@ -174,7 +173,14 @@ std::string line_of(const StudyResult& result) {
 
 ordered_json mean_json(const StudyMean& mean) {
   if (mean.values == 0) return nullptr;
-  return {{"mean", mean.mean}, {"interval_95", {mean.interval[0], mean.interval[1]}}};
+  ordered_json json = {{"mean", mean.mean}, {"interval_95", nullptr}};
+  if (mean.values > 1) json["interval_95"] = mean.interval;
+  return json;
+}
+
+std::string interval_text(const StudyMean& mean) {
+  if (mean.values < 2) return "";
+  return " (" + decimals(mean.interval[0], 1) + " .. " + decimals(mean.interval[1], 1) + ")";
 }
 
 void declare_study(Arguments& arguments, StudyInputs& inputs) {
