@@ -24,6 +24,9 @@ const About about = {
       "separate scans of the dig area and of the dump area"},
      {"estimate-density before.pcd after.pcd --dug-path 45deg,0.35m,1.5m --dug-start 6.05",
       "known path: corrects for soil that fell back into the cut"},
+     {"estimate-density before.pcd after.pcd --soil loam --dug-path 45deg,0.35m,1.5m --dug-start "
+      "6.05 --loads loads.csv",
+      "joins the density by the work of the joints; simulate-dig --history writes such a log"},
      {"estimate-density run.db3:/points@0s+2s run.db3:/points@95s+2s --tf-frame map",
       "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
