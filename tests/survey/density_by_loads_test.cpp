@@ -148,8 +148,8 @@ TEST_F(DensityByLoads, AWorkOfNoDensityGivesNone) {
   const WorkOverDensity curve{{{0.0, 9.0, 0.3, 0.0}, {100.0, 11.0, 0.5, 0.0}}};
   const RelativeDensity vague = by_scans(60.0, 200.0);  // with which nothing disagrees
   for (const auto& [log_work, reason] :
-       {std::pair(12.5, "3 standard deviations more than expected at any density"),
-        std::pair(8.1, "3 standard deviations less than expected at any density")}) {
+       {std::pair(12.5, "3.0 standard deviations more than expected at any density"),
+        std::pair(8.1, "3.0 standard deviations less than expected at any density")}) {
     const LoadsDensity out = density_by_loads(curve, {std::exp(log_work), 0.0}, vague);
     EXPECT_FALSE(out.density_percent);
     EXPECT_EQ(out.reason, reason);
