@@ -112,9 +112,8 @@ class Arguments {
   void output(const std::string& name, std::string& value, const std::string& help);
   void output(const std::string& name, std::optional<std::string>& value, const std::string& help,
               const Beside& beside = {});
-  /// A file or folder to write; whether it can be written is for the tool to check.
+  /// A file, or a folder and its files, to write; whether that can be done the tool checks.
   void place(const std::string& name, std::string& value, const std::string& help);
-  /// The same of a folder and the files that are written into it.
   void folder(const std::string& name, std::optional<std::string>& value, const std::string& help,
               const Beside& files = {});
   /// A text of its own syntax; a file to read too if the placeholder has FILE or FRAME in it.
