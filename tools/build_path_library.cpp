@@ -38,9 +38,9 @@ struct Inputs {
 void declare(Arguments& arguments, Inputs& inputs) {
   declare_library(arguments, inputs.library);
   arguments.threads(inputs.threads, "; same file for any");
-  arguments.place("cells", inputs.cells,
-                  "folder for the results of each density; kept, reused by later runs and shared "
-                  "by parallel ones (default: beside --out, removed at the end)");
+  arguments.folder("cells", inputs.cells,
+                   "for the results of each density; kept, reused by later runs and shared by "
+                   "parallel ones (default: beside --out, removed at the end)");
   arguments.flag("resume", inputs.resume, "reuse results of an interrupted run with this --out");
   arguments.place("out", inputs.out,
                   "library to write; with several machines or soils a folder for "

@@ -24,6 +24,9 @@ const About about = {
       "separate scans of the dig area and of the dump area"},
      {"estimate-density before.pcd after.pcd --dug-path 45deg,0.35m,1.5m --dug-start 6.05",
       "known path: corrects for soil that fell back into the cut"},
+     {"estimate-density before.pcd after.pcd --soil loam --dug-path 45deg,0.35m,1.5m --dug-start "
+      "6.05 --loads loads.csv",
+      "joins the density by the work of the joints; simulate-dig --history writes such a log"},
      {"estimate-density run.db3:/points@0s+2s run.db3:/points@95s+2s --tf-frame map",
       "scans out of a recording; inspect-cloud run.db3 lists what it holds"},
      {"estimate-density --plan-survey height=2.5,offset=1.2,target=5",
@@ -111,14 +114,14 @@ Outcome work_on_scans(const Inputs& inputs) {
   const Machine machine = machine_named(inputs.frames.view.machine);
   DensityOptions options = options_of(inputs, machine);
   const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
-  inputs.second.apply_to(options);
+  inputs.second.apply_to(law, options);
   const auto by_method = [&] { return estimate(inputs.method, scans, law, options); };
   const BothEstimates both =
       naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
   const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   Outcome outcome = estimate_outcome(counts, options.soil);
   add_machine_warnings(counts, law, machine, scans.before.unit, outcome);
-  inputs.second.add_warnings(counts, outcome);
+  inputs.second.check(counts, outcome);
   report.add_to(outcome);
   draw_estimate(inputs.plots, inputs.report, counts, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);

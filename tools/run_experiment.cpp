@@ -53,6 +53,17 @@ struct Inputs {
   bool is_simulation() const { return !is_study() && !is_field() && !experiment.sensitivity; }
 };
 
+void require_one_experiment(const Inputs& inputs) {
+  std::string given;
+  for (const auto& [is_chosen, name] : {std::pair(inputs.is_study(), "--study"),
+                                        std::pair(inputs.experiment.sensitivity, "--sensitivity"),
+                                        std::pair(inputs.is_field(), "--preset field")}) {
+    if (!is_chosen) continue;
+    if (!given.empty()) usage_error(given + " and " + name + " are two experiments: give one");
+    given = name;
+  }
+}
+
 /// Those of an experiment and that of a study.
 std::vector<FigureName> figures_for(const Inputs& inputs) {
   std::vector<FigureName> names = names_of(experiment_figures(
@@ -91,6 +102,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
+  require_one_experiment(inputs);
   check(inputs.experiment.method);
   const Machine machine = machine_named(inputs.machine);
   const ExperimentInputs& experiment = inputs.experiment;
@@ -98,9 +110,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   if (inputs.is_study()) {
     return study(machine, inputs.study, inputs.plots, experiment.seed, experiment.threads, console);
   }
-  if (inputs.is_field() && !experiment.sensitivity) {
-    return field_experiment(machine, inputs.field, experiment, console);
-  }
+  if (inputs.is_field()) return field_experiment(machine, inputs.field, experiment, console);
 #endif
   if (experiment.sensitivity) return sensitivity(machine, experiment, console);
   return simulation_experiment(machine, experiment, {inputs.plots, inputs.report}, console);

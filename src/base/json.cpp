@@ -166,9 +166,9 @@ JsonObject JsonObject::of_others(const std::string& name, const std::string& con
 JsonObject JsonObject::result_of(const std::string& tool, const std::string& path) {
   const std::string expected = "a result of " + tool + " --json";
   JsonObject result = top(path, parse_json(path, read_file(path)), expected.c_str());
-  const bool has_tool = result.has("tool");
-  if (has_tool ? result.text("tool") == tool : !result.has("format")) return result;
-  const char* key = has_tool ? "tool" : "format";
+  const bool is_of_other = result.has("tool") && result.text("tool") != tool;
+  if (!is_of_other && !result.has("format")) return result;
+  const char* key = is_of_other ? "tool" : "format";
   result.fail(key, "is " + shown(result.at(key)) + ", expected " + expected);
 }
 

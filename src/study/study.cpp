@@ -312,8 +312,8 @@ std::vector<StudyResult> run_study(const Machine& machine,
                                    const std::vector<StudyCondition>& conditions,
                                    const StudyOptions& options) {
   require_machine(machine);
-  require(options.runs > 0.0 && options.runs <= 1e4, "study: factor on the runs", options.runs,
-          "above 0 and at most 1e4");
+  require(options.runs > 0.0 && options.runs <= most_study_runs, "study: factor on the runs",
+          options.runs, "above 0 and at most 1e4");
   Shelf shelf(machine, options);
   std::vector<StudyResult> results;
   std::vector<std::pair<std::size_t, std::uint64_t>> tasks;

@@ -11,16 +11,18 @@
 #include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "base/text.hpp"
 #include "soil/sound_soil.hpp"
 #include "survey/joined_density.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double step = 10.0;         // of density [%]; ours
-constexpr std::size_t draws = 40;     // ours
-constexpr double within = 0.99;       // of the limits of friction; ours
-constexpr double least_slope = 1e-4;  // of the logarithm [1/%]: such loads have no weight; ours
+constexpr double step = 10.0;          // of density [%]; ours
+constexpr std::size_t draws = 40;      // ours
+constexpr double within = 0.99;        // of the limits of friction; ours
+constexpr double least_log_sd = 1e-6;  // of the work
+constexpr double least_slope = 1e-4;   // of the logarithm [1/%]: such loads have no weight; ours
 
 /// Work of the joints, that against the soil times a factor [J].
 double work_of(const LoadedDig& dig, const SoilKind& soil, double density, double factor) {
@@ -135,6 +137,17 @@ WorkOverDensity work_over_density(const LoadedDig& dig, const DensityForm& freed
 
 namespace {
 
+/// The work over that expected where both are nearest, in deviations.
+double least_deviation(const WorkOverDensity& expected, const Measured& work) {
+  double least = HUGE_VAL;
+  for (const auto& point : expected.points) {
+    const double off = (std::log(work.value) - point.log_work) /
+                       std::max(least_log_sd, std::hypot(point.sd, work.sd / work.value));
+    if (std::abs(off) < std::abs(least)) least = off;
+  }
+  return least;
+}
+
 /// Mean, deviation and interval of the density by the work alone.
 void set_posterior(const WorkOverDensity& expected, LoadsDensity& loads) {
   constexpr int cells = 1000;
@@ -145,13 +158,13 @@ void set_posterior(const WorkOverDensity& expected, LoadsDensity& loads) {
   const Eigen::ArrayXd middle = Eigen::ArrayXd::LinSpaced(cells, 0.5 * width, 100.0 - 0.5 * width);
   for (int i = 0; i < cells; ++i) {
     const auto point = expected.at(middle(i));
-    const double sd = std::max(1e-6, std::hypot(point.sd, meter));
+    const double sd = std::max(least_log_sd, std::hypot(point.sd, meter));
     logs(i) = -0.5 * std::pow((log_work - point.log_work) / sd, 2) - std::log(sd);
   }
   Eigen::ArrayXd shares = (logs - logs.maxCoeff()).exp();
   shares /= shares.sum();
   const double mean = (shares * middle).sum();
-  loads.density_percent = {mean, std::sqrt((shares * (middle - mean).square()).sum())};
+  loads.density_percent = Measured{mean, std::sqrt((shares * (middle - mean).square()).sum())};
   const auto quantile = [&](double share) {
     double sum = 0.0;
     int i = 0;
@@ -163,7 +176,9 @@ void set_posterior(const WorkOverDensity& expected, LoadsDensity& loads) {
 
 }  // namespace
 
-bool LoadsDensity::disagrees() const { return std::abs(disagreement) > largest_disagreement; }
+bool LoadsDensity::disagrees() const {
+  return !density_percent || std::abs(disagreement) > largest_disagreement;
+}
 
 LoadsDensity density_by_loads(const WorkOverDensity& expected, const Measured& work,
                               const RelativeDensity& by_scans) {
@@ -174,7 +189,13 @@ LoadsDensity density_by_loads(const WorkOverDensity& expected, const Measured& w
   LoadsDensity loads;
   loads.work = work;
   loads.by_scans = loads.density = by_scans;
-  set_posterior(expected, loads);
+  const double off = least_deviation(expected, work);
+  if (std::abs(off) > largest_disagreement) {
+    loads.reason = readable(std::abs(off), 2) + " standard deviations " +
+                   (off > 0.0 ? "more" : "less") + " than expected at any density";
+  } else {
+    set_posterior(expected, loads);
+  }
 
   const WorkOverDensity::Point here = expected.at(by_scans.raw_percent);
   const double low = std::max(0.0, here.density_percent - step);

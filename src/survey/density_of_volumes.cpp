@@ -160,13 +160,15 @@ void widen_by_readings(const RelativeDensity& scans, double share, DensityEstima
 // ---- Second densities -------------------------------------------------------------------------
 
 Warning disagreement_of(const LoadsDensity& loads) {
+  const std::string much =
+      loads.density_percent ? readable(std::abs(loads.disagreement), 2) + " standard deviations " +
+                                  (loads.disagreement > 0.0 ? "more" : "less") +
+                                  " than expected at the density of the scans, " +
+                                  readable(loads.by_scans.percent, loads.by_scans.sd_percent) + " %"
+                            : loads.reason;
   return {"loads_disagree",
-          "the joints did " + readable(loads.work.value / 1000.0, 3) + " kJ, which is " +
-              readable(std::abs(loads.disagreement), 2) + " standard deviations " +
-              (loads.disagreement > 0.0 ? "more" : "less") +
-              " than expected at the density of the scans, " +
-              readable(loads.by_scans.percent, loads.by_scans.sd_percent) +
-              " %: the log is not that of this dig, the dig was not along the path given, or the "
+          "the joints did " + readable(loads.work.value / 1000.0, 3) + " kJ, which is " + much +
+              ": the log is not that of this dig, the dig was not along the path given, or the "
               "soil is of another kind; the loads are not used",
           true};
 }

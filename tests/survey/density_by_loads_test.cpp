@@ -65,10 +65,12 @@ class DensityByLoads : public testing::Test {
         const RelativeDensity scans = by_scans(truth + scans_sds[i] * scans_error, scans_sds[i]);
         const LoadsDensity found = density_by_loads(curve, {measured, 0.02 * measured}, scans);
         RelativeDensity alone;
-        alone.percent = found.density_percent.value;
-        alone.sd_percent = found.density_percent.sd;
-        alone.interval_percent = found.interval_percent;
-        all[i].loads.add(alone, truth);
+        if (found.density_percent) {
+          alone.percent = found.density_percent->value;
+          alone.sd_percent = found.density_percent->sd;
+          alone.interval_percent = found.interval_percent;
+          all[i].loads.add(alone, truth);
+        }
         all[i].scans.add(scans, truth);
         all[i].both.add(found.density, truth);
         all[i].disagree += found.disagrees();
@@ -140,6 +142,25 @@ TEST_F(DensityByLoads, LoadsOfAnotherDigAreNotUsedAndEndTrust) {
   EXPECT_FALSE(far.density.trustworthy);
   EXPECT_EQ(far.density.percent, 40.0);
   EXPECT_EQ(far.weight, 0.0);
+}
+
+TEST_F(DensityByLoads, AWorkOfNoDensityGivesNone) {
+  const WorkOverDensity curve{{{0.0, 9.0, 0.3, 0.0}, {100.0, 11.0, 0.5, 0.0}}};
+  const RelativeDensity vague = by_scans(60.0, 200.0);  // with which nothing disagrees
+  for (const auto& [log_work, reason] :
+       {std::pair(12.5, "3.0 standard deviations more than expected at any density"),
+        std::pair(8.1, "3.0 standard deviations less than expected at any density")}) {
+    const LoadsDensity out = density_by_loads(curve, {std::exp(log_work), 0.0}, vague);
+    EXPECT_FALSE(out.density_percent);
+    EXPECT_EQ(out.reason, reason);
+    EXPECT_TRUE(out.disagrees());
+    EXPECT_FALSE(out.density.trustworthy);
+    EXPECT_EQ(out.weight, 0.0);
+  }
+  const LoadsDensity hard = density_by_loads(curve, {std::exp(11.5), 0.0}, vague);
+  ASSERT_TRUE(hard.density_percent);
+  EXPECT_GT(hard.density_percent->value, 80.0);
+  EXPECT_EQ(hard.reason, "");
 }
 
 TEST_F(DensityByLoads, ADrawnSoilIsASoil) {

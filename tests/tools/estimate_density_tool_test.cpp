@@ -199,8 +199,11 @@ TEST_F(BadInput, LoadsOfTheJointsGiveASecondDensity) {
 TEST_F(BadInput, ThePriorOfTheLastDigIsCombined) {
   const Words words = quickstart(folder) + Words{"--soil", "loam"};
   const std::string file = folder.file("prior.json");
-  const json alone = answer("estimate-density", words);
+  json alone = answer("estimate-density", words);
   folder.write("prior.json", alone.dump());
+  refused(3, file + ": volume: is that of this dig; must be the result of a dig before it",
+          "estimate-density", words + Words{"--prior", file});
+  alone["volume"]["excavated_m3"] = 1.001 * number(alone, "/volume/excavated_m3");
   const auto with = [&](const json& prior, const Words& more = {}, int code = 0) {
     folder.write("prior.json", prior.dump());
     return answer("estimate-density", words + Words{"--prior", file} + more, code);
@@ -213,8 +216,10 @@ TEST_F(BadInput, ThePriorOfTheLastDigIsCombined) {
               number(both, "/prior/shared_sd_percent"), 1e-6);
   EXPECT_EQ(number(both, "/prior/this_dig_density_sd_percent"),
             number(alone, "/density_sd_percent"));
-  EXPECT_LT(number(with(alone), "/prior/weight"), 0.2);   // the usual drift
-  const json third = with(both, {"--prior-drift", "0"});  // a chain
+  EXPECT_LT(number(with(alone), "/prior/weight"), 0.2);  // the usual drift
+  json second = both;
+  second["volume"] = alone["volume"];
+  const json third = with(second, {"--prior-drift", "0"});  // a chain
   EXPECT_NEAR(number(third, "/density_sd_given_law_percent"), own / std::sqrt(3.0), 1e-6);
 
   json other = alone;
@@ -237,7 +242,21 @@ TEST_F(BadInput, ThePriorOfTheLastDigIsCombined) {
     folder.write("prior.json", prior.dump());
     refused(3, reason, "estimate-density", words + Words{"--prior", file});
   };
-  refuses(alone, "soil", "sand", "must be the same soil");
+  json of_sand = alone;
+  of_sand["law_soil"] = "sand";
+  refuses(of_sand, "soil", "sand", "its density is of sand, this dig is in loam");
+  refuses(alone, "law_soil", "sand", "law_soil: is sand, soil is loam; must be the same");
+  refuses(alone, "law", "any soil", "its density is of any soil (--soil unknown), this dig");
+  refuses(alone, "format", "excavplan-law", "format: is \"excavplan-law\", expected a result of");
+  refuses(alone, "density_sd_percent", nullptr, "density_sd_percent: is null");
+  json exact = alone;
+  exact["density_sd_given_law_percent"] = 0.0;
+  refuses(exact, "density_sd_percent", 0.0, "density_sd_percent: is 0, must be above 0");
+  refused(3, "tool: is missing, expected a result of estimate-density --json", "estimate-density",
+          words + Words{"--prior", shipped("quickstart/truth.json")});
+  folder.write("prior.json", alone.dump());
+  refused(3, "its density is of loam, this dig is in any soil (--soil unknown)", "estimate-density",
+          quickstart(folder) + Words{"--soil", "unknown", "--prior", file});
   refuses(alone, "density_raw_percent", 500.0, "density_raw_percent");
   refuses(alone, "density_sd_given_law_percent", 50.0, "density_sd_given_law_percent");
   refuses(alone, "density_percent", nullptr, "density_percent");

@@ -486,6 +486,8 @@ TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
   }
   refused(3, "none.json: ", "plan-path", {"--density-from", folder.file("none.json")});
   refused(2, "give either --density or --density-from", "plan-path", {});
+  refused(2, "--goal priced: the price of time is -5, must be in 0 .. 1e+09 W", "plan-path",
+          {"--density", "40", "--goal", "priced:-5"});
   refused(2, "give either --density or --density-from", "plan-path",
           {"--density", "40", "--density-from", file});
 }

@@ -33,6 +33,14 @@ TEST_F(Tools, RunExperimentGivesTheKeysOfTheContract) {
   }
 }
 
+TEST_F(Tools, AConditionIsNamedOnce) {
+  const auto text = [](const std::string& density) {
+    return run_program("run-experiment", {"--densities", density}).out;
+  };
+  EXPECT_EQ(text("40").rfind("density 40.0 %, k ", 0), 0U);
+  EXPECT_EQ(text("paper").rfind("soft: density 10.0 %, k ", 0), 0U);
+}
+
 TEST_F(Tools, ExperimentPlansForThePapersGoalUnlessToldOtherwise) {
   const Words soft = {"--densities", "10"};
   const json energy = answer("run-experiment", soft);
@@ -201,10 +209,11 @@ TEST_F(Tools, FieldExperimentComparesVolumePerFuel) {
     EXPECT_NEAR(number(of, "/fuel_ml"), number(of, "/fuel_idle_ml") + number(of, "/fuel_work_ml"),
                 1e-12);
   }
+  EXPECT_TRUE(found["soils"][0]["gain_percent"]["interval_95"].is_null());
   EXPECT_TRUE(warns(found, "machine_held_down") && warns(found, "density_not_trustworthy"));
   const json other =
-      answer("run-experiment", words + Words{"--path", "45deg,0.35,1.5", "--densities", "20",
-                                             "--report", folder.file("page.html")});
+      answer("run-experiment",
+             words + Words{"--path", "45deg,0.35,1.5", "--densities", "20", "--method", "paper"});
   EXPECT_NEAR(number(other, "/soils/0/runs/0/fixed/path/drag_length_m"), 1.5, 1e-12);
   EXPECT_EQ(other["soils"][0]["name"], "20.0 %");
   EXPECT_TRUE(warns(other, "options_ignored"));
@@ -220,6 +229,40 @@ TEST_F(BadInput, SettingsOfExperimentsAreRefusedByTheNamesOfOptions) {
           paper + Words{"--crossover", "1.5"});
   refused(2, "--digs is 0, must be in 1 .. 10000", "run-experiment",
           {"--preset", "field", "--digs", "0"});
+}
+
+TEST_F(BadInput, ExperimentsThatExcludeEachOtherAreRefused) {
+  const std::string out = folder.file("study");
+  refused(2, "--study and --sensitivity are two experiments: give one", "run-experiment",
+          {"--sensitivity", "--study", out});
+  refused(2, "--study and --preset field are two experiments: give one", "run-experiment",
+          {"--preset", "field", "--study", out});
+  refused(2, "--sensitivity and --preset field are two experiments: give one", "run-experiment",
+          {"--preset", "field", "--sensitivity"});
+}
+
+TEST_F(BadInput, FilesThatAnExperimentDoesNotWriteAreRefused) {
+  for (const Words& of : {Words{"--sensitivity"}, Words{"--preset", "field"}}) {
+    refused(2, "--report would not be written: only the experiment of section 3 has a page",
+            "run-experiment", of + Words{"--report", folder.file("page.html")});
+    refused(2, "--plot: no figure 'efficiency': only the experiment of section 3 has it",
+            "run-experiment", of + Words{"--plot", "efficiency=" + plot});
+  }
+  refused(2, "--report would not be written: a study has its own conditions", "run-experiment",
+          {"--study", folder.file("study"), "--report", folder.file("page.html")});
+}
+
+TEST_F(BadInput, AStudyReplacesNoFileThatIsUsed) {
+  const std::string out = folder.file("study");
+  fs::create_directory(out);
+  const std::string machine = out + "/study.json";
+  fs::copy_file(shipped("machines/zx120.json"), machine);
+  refused(2, "--machine and --study name the same file, " + machine, "run-experiment",
+          {"--study", out, "--machine", machine});
+  refused(2, "--study and --plot name the same file, " + out + "/study.svg", "run-experiment",
+          {"--study", out, "--plot", "study=" + out + "/study.svg"});
+  refused(2, "--study-runs: 0 must be above 0 and at most 10000", "run-experiment",
+          {"--study", folder.file("none"), "--study-runs", "0"});
 }
 
 TEST_F(Tools, SensitivityTellsWhatEachAssumptionIsWorth) {

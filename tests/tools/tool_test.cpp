@@ -232,6 +232,8 @@ TEST(Tool, WrongUsageEndsWithTwoAndSaysWhy) {
        "--plot-size: 39mm must be 40mm .. 500mm"},
       {{"a", "--density", "4", "--plot", "x.svg", "--plot-size", "85mm,501mm"},
        "--plot-size: 501mm must be 40mm .. 500mm"},
+      {{"a", "--density", "4", "--plot", "x.svg", "--plot-size", "85"},
+       "--plot-size: 85 m must be 40mm .. 500mm; 85mm is in millimetres"},
       {{"a", "--density", "4", "--plot", "x.svg", "--plot-size", "1,1,1"},
        "--plot-size: '1,1,1' must be a width, or width,height"}};
   for (const auto& [words, message] : cases) {

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <functional>
 #include <ostream>
+#include <tuple>
 
 #include "support/depth_png.hpp"
 #include "support/svg_figure.hpp"
@@ -345,6 +346,24 @@ TEST_F(BadInput, OneFileForTwoThingsIsRefused) {
   refused(2, "--out: standard output is no file to write", "calibrate-density", {"--out", "-"});
   EXPECT_EQ(content_of(out), "old");
   EXPECT_EQ(content_of(copy), content_of(scan));
+}
+
+TEST_F(BadInput, AMissingFolderIsFoundBeforeTheWork) {
+  const std::string none = folder.file("none");
+  const Words no_machine = {"--machine", none + ".json"};
+  for (const auto& [tool, words, file] : std::vector<std::tuple<std::string, Words, std::string>>{
+           {"estimate-density", {none, none, "--plot"}, "/x.svg"},
+           {"estimate-density", {none, none, "--report"}, "/x.html"},
+           {"calibrate-density", no_machine + Words{"--out"}, "/x.json"},
+           {"simulate-dig", no_machine + Words{"--density", "40", "--history"}, "/x.csv"},
+           {"plan-path", no_machine + Words{"--density", "40", "--trajectory"}, "/x.csv"},
+           {"run-experiment", no_machine + Words{"--plot"}, "/x.svg"},
+           {"run-experiment", no_machine + Words{"--report"}, "/x.html"},
+           {"run-experiment", no_machine + Words{"--study", none, "--plot"}, "/x.svg"},
+           {"measure-efficiency", {none, "--volume", "1", "--plot"}, "/x.svg"},
+           {"inspect-cloud", {none, "--out"}, "/x.xyz"}}) {
+    refused(3, none + file + ": there is no folder " + none, tool, words + Words{none + file});
+  }
 }
 
 TEST_F(Tools, PipesAndDevicesMayBeSharedByOutputs) {

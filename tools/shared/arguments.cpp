@@ -206,11 +206,13 @@ void Arguments::place(const std::string& name, std::string& value, const std::st
   entries_.back().place = true;
 }
 
-void Arguments::place(const std::string& name, std::optional<std::string>& value,
-                      const std::string& help) {
+void Arguments::folder(const std::string& name, std::optional<std::string>& value,
+                       const std::string& help, const Beside& files) {
   file(name, value, help);
+  entries_.back().placeholder = "FOLDER";
   entries_.back().input = false;
   entries_.back().place = true;
+  entries_.back().beside = files;
 }
 
 void Arguments::text(const std::string& name, const std::string& placeholder, std::string& value,

@@ -112,9 +112,10 @@ class Arguments {
   void output(const std::string& name, std::string& value, const std::string& help);
   void output(const std::string& name, std::optional<std::string>& value, const std::string& help,
               const Beside& beside = {});
-  /// A file or folder to write; whether it can be written is for the tool to check.
+  /// A file, or a folder and its files, to write; whether that can be done the tool checks.
   void place(const std::string& name, std::string& value, const std::string& help);
-  void place(const std::string& name, std::optional<std::string>& value, const std::string& help);
+  void folder(const std::string& name, std::optional<std::string>& value, const std::string& help,
+              const Beside& files = {});
   /// A text of its own syntax; a file to read too if the placeholder has FILE or FRAME in it.
   void text(const std::string& name, const std::string& placeholder, std::string& value,
             const std::string& help);

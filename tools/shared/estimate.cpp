@@ -124,15 +124,24 @@ nlohmann::ordered_json payload_json(const PayloadDensity& payload) {
 }
 
 nlohmann::ordered_json loads_json(const LoadsDensity& loads) {
-  return {{"work_kj", loads.work.value / 1000.0},
-          {"work_sd_kj", loads.work.sd / 1000.0},
-          {"density_percent", loads.density_percent.value},
-          {"density_sd_percent", loads.density_percent.sd},
-          {"density_interval_percent", loads.interval_percent},
-          {"scans_density_percent", loads.by_scans.percent},
-          {"scans_density_sd_percent", loads.by_scans.sd_percent},
-          {"weight", loads.weight},
-          {"disagreement_sds", loads.disagreement}};
+  nlohmann::ordered_json json = {{"work_kj", loads.work.value / 1000.0},
+                                 {"work_sd_kj", loads.work.sd / 1000.0},
+                                 {"density_percent", nullptr},
+                                 {"density_sd_percent", nullptr},
+                                 {"density_interval_percent", nullptr},
+                                 {"reason", nullptr},
+                                 {"scans_density_percent", loads.by_scans.percent},
+                                 {"scans_density_sd_percent", loads.by_scans.sd_percent},
+                                 {"weight", loads.weight},
+                                 {"disagreement_sds", loads.disagreement}};
+  if (loads.density_percent) {
+    json["density_percent"] = loads.density_percent->value;
+    json["density_sd_percent"] = loads.density_percent->sd;
+    json["density_interval_percent"] = loads.interval_percent;
+  } else {
+    json["reason"] = loads.reason;
+  }
+  return json;
 }
 
 nlohmann::ordered_json prior_json(const SuccessiveDensity& successive) {
@@ -270,10 +279,11 @@ std::vector<std::string> estimate_lines(const DensityEstimate& estimate) {
         readable(payload->law_density_percent.value, payload->law_density_percent.sd) + " %");
   }
   if (const auto& loads = estimate.loads) {
+    const auto& density = loads->density_percent;
     lines.push_back(
-        "loads      " + readable(loads->work.value / 1000.0, 3) + " kJ of the joints, density " +
-        readable(loads->density_percent.value, loads->density_percent.sd) + " %; by the scans " +
-        readable(loads->by_scans.percent, loads->by_scans.sd_percent) + " %");
+        "loads      " + readable(loads->work.value / 1000.0, 3) + " kJ of the joints, " +
+        (density ? "density " + readable(density->value, density->sd) + " %" : loads->reason) +
+        "; by the scans " + readable(loads->by_scans.percent, loads->by_scans.sd_percent) + " %");
   }
   if (const auto& successive = estimate.successive) {
     const PriorDensity& prior = successive->prior;

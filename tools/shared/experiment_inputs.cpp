@@ -60,6 +60,11 @@ OptionNames experiment_option_names() {
   return names;
 }
 
+std::string condition_text(const ExperimentCondition& condition) {
+  const std::string density = readable(condition.density) + " %";
+  return (condition.name == density ? "" : condition.name + ": ") + "density " + density;
+}
+
 /// Ours: the densities of the paper's Table 1 are not published as text.
 std::vector<ExperimentCondition> conditions_of(const ExperimentInputs& inputs) {
   if (inputs.densities == "paper") return {{"soft", 10.0}, {"medium", 40.0}, {"hard", 80.0}};

@@ -44,6 +44,9 @@ struct ExperimentCondition {
   std::string name;
   double density = 0.0;  ///< [%]
 };
+/// "soft: density 10.0 %"; "density 10.0 %" where the name is no more.
+std::string condition_text(const ExperimentCondition& condition);
+
 std::vector<ExperimentCondition> conditions_of(const ExperimentInputs& inputs);
 
 ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& machine,

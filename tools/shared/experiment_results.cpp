@@ -12,6 +12,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/text.hpp"
+#include "shared/experiment_inputs.hpp"
 #include "shared/goal_inputs.hpp"
 #include "shared/results.hpp"
 #include "simulation/checked_dig.hpp"
@@ -126,7 +127,7 @@ nlohmann::ordered_json experiment_json(const std::string& condition,
 }
 
 std::string experiment_line(const std::string& condition, const ExperimentResult& result) {
-  return condition + ": density " + readable(result.density_percent) + " %, k " +
+  return condition_text({condition, result.density_percent}) + ", k " +
          readable(result.volumes.bulking_factor, 4) + ", estimated " +
          readable(result.estimate.percent) + " %; fixed " +
          worth_text(result.objective, result.objective.worth(result.fixed)) + ", planned " +

@@ -94,13 +94,13 @@ std::string digs_line(const std::string& name, const FieldResult& result,
 /// Empty where no run tells any.
 std::string gain_text(const StudyMean& gain, const StudyMean& energy_gain) {
   if (std::isnan(gain.mean)) return "";
-  return ", gain " + decimals(gain.mean, 1) + " % (" + decimals(gain.interval[0], 1) + " .. " +
-         decimals(gain.interval[1], 1) + "), by the goal " + decimals(energy_gain.mean, 1) + " %";
+  return ", gain " + decimals(gain.mean, 1) + " %" + interval_text(gain) + ", by the goal " +
+         decimals(energy_gain.mean, 1) + " %";
 }
 
 std::vector<std::string> result_lines(const std::string& name, const FieldResult& result) {
   std::vector<std::string> lines = {
-      name + ": " + readable(result.density_percent) + " %, k " +
+      condition_text({name, result.density_percent}) + ", k " +
       decimals(mean_of(result, [](const FieldRun& run) { return run.bulking_factor; }), 3) +
       ", density by the law " +
       decimals(mean_of(result, [](const FieldRun& run) { return run.density_raw; }), 1) +

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/goal_inputs.hpp"
 
+#include <algorithm>
+
 #include "shared/quantity.hpp"
 
 namespace excavplan::tools {
@@ -29,6 +31,20 @@ std::string usual_text(const DigObjectiveParameter& parameter) {
   });
 }
 
+/// As the library does, which does not know the option. @throws Error (bad_input)
+double in_range(const std::string& option, const DigObjectiveParameter& parameter, double value) {
+  if (value >= 0.0 && value <= parameter.highest) return value;
+  usage_error(option + ": the " + parameter.text + " is " + number_text(value) +
+              ", must be in 0 .. " + number_text(parameter.highest) +
+              (parameter.unit == std::string("-") ? "" : std::string(" ") + parameter.unit));
+}
+
+const DigObjectiveParameter& parameter_of(const DigGoalInfo& goal) {
+  const auto& all = objective_parameters();
+  return *std::find_if(all.begin(), all.end(),
+                       [&](const auto& each) { return each.field == goal.parameter; });
+}
+
 DigObjective goal_of(const std::string& text) {
   const std::size_t colon = text.find(':');
   const std::string word = text.substr(0, colon);
@@ -36,8 +52,10 @@ DigObjective goal_of(const std::string& text) {
     if (goal.word != word || (goal.parameter == nullptr) != (colon == std::string::npos)) continue;
     DigObjective objective(goal.goal);
     if (goal.parameter) {
+      const std::string option = "--goal " + word;
       objective.*goal.parameter =
-          parse_quantity("--goal " + word, text.substr(colon + 1), Quantity::ratio);
+          in_range(option, parameter_of(goal),
+                   parse_quantity(option, text.substr(colon + 1), Quantity::ratio));
     }
     return objective;
   }
@@ -65,11 +83,11 @@ DigObjective objective_of(const GoalInputs& inputs) {
   const auto& parameters = objective_parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (!inputs.numbers[i]) continue;
+    const std::string option = std::string("--") + parameters[i].option;
     if (!parameters[i].matters_to(goal)) {
-      usage_error(std::string("--") + parameters[i].option + " has no effect on the goal " +
-                  goal.word);
+      usage_error(option + " has no effect on the goal " + goal.word);
     }
-    objective.*parameters[i].field = *inputs.numbers[i];
+    objective.*parameters[i].field = in_range(option, parameters[i], *inputs.numbers[i]);
   }
   return objective;
 }

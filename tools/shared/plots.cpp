@@ -56,7 +56,9 @@ const FigureName& figure_of(const std::string& text, const std::vector<FigureNam
 double side(const std::string& text) {
   const double length = 1000.0 * parse_quantity("--plot-size", text, Quantity::length);
   if (length >= least_size * (1.0 - 1e-9) && length <= most_size * (1.0 + 1e-9)) return length;
-  usage_error("--plot-size: " + text + " must be 40mm .. 500mm");
+  const bool bare = text.find_first_not_of("+-.0123456789") == std::string::npos;
+  usage_error("--plot-size: " + text + (bare ? " m" : "") + " must be 40mm .. 500mm" +
+              (bare ? "; " + text + "mm is in millimetres" : ""));
 }
 
 SheetSize sheet_size(const std::string& text) {

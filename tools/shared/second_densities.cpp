@@ -64,19 +64,48 @@ Measured work_of(const SecondDensities& inputs, const DensityOptions& options) {
                         [&] { return joint_work(read_dig_log(source), inputs.log.meter_share()); });
 }
 
-PriorDensity prior_of(const SecondDensities& inputs, const SoilKnowledge& soil) {
+[[noreturn]] void refuse_prior(const SecondDensities& inputs, const std::string& why) {
+  throw Error(ErrorKind::bad_file, *inputs.prior + ": " + why);
+}
+
+/// Densities in different soils, or in one that was told and in any, have no common law.
+void require_same_soil(const SecondDensities& inputs, const StatedDensity& stated,
+                       const SoilKnowledge& soil, const DensityLaw& law) {
+  const auto name = [](bool is_any, const std::string& known) {
+    if (is_any) return std::string("any soil (--soil unknown)");
+    return known.empty() ? "a soil that it does not name" : known;
+  };
+  const std::string its = name(stated.of_any_soil, stated.density.soil);
+  const std::string here = name(soil.unknown, soil.kind ? soil.kind->name : law.soil);
+  const bool are_known = its != name(false, "") && here != name(false, "");
+  if (stated.of_any_soil == soil.unknown && (!are_known || its == here)) return;
+  refuse_prior(inputs,
+               "its density is of " + its + ", this dig is in " + here + "; must be the same soil");
+}
+
+PriorDensity prior_of(const SecondDensities& inputs, const SoilKnowledge& soil,
+                      const DensityLaw& law) {
   const StatedDensity stated = stated_density(*inputs.prior);
-  const std::string& its = stated.density.soil;
-  if (soil.kind && !soil.unknown && !its.empty() && its != soil.kind->name) {
-    throw Error(ErrorKind::bad_file, *inputs.prior + ": its density was measured in " + its +
-                                         ", this dig is in " + soil.kind->name +
-                                         "; must be the same soil");
+  if (!stated.is_whole) {
+    refuse_prior(inputs, "tool: is missing, expected a result of estimate-density --json");
   }
   const double sd = stated.density.sd_percent;
+  if (!(sd > 0.0)) refuse_prior(inputs, "density_sd_percent: is 0, must be above 0");
+  require_same_soil(inputs, stated, soil, law);
   const double excess = stated.raw_percent - stated.density.percent;
   const double shared = sd * sd - excess * excess - std::pow(stated.independent_sd, 2);
   return {stated.raw_percent, stated.independent_sd, std::sqrt(std::max(0.0, shared)),
           inputs.drift.value_or(usual_drift_percent), stated.density.trustworthy};
+}
+
+/// Scans are never so alike: their noise differs.
+bool is_same_dig(const StatedDensity& stated, const VolumeChange& change) {
+  constexpr double same = 1e-9;
+  const std::vector<double> here = {change.excavated.value, change.spilled.value,
+                                    change.dumped.value};
+  return std::equal(
+      here.begin(), here.end(), stated.volumes.begin(), stated.volumes.end(),
+      [](double a, double b) { return std::abs(a - b) <= same * (std::abs(a) + std::abs(b)); });
 }
 
 }  // namespace
@@ -108,7 +137,7 @@ void SecondDensities::declare(Arguments& arguments) {
   });
 }
 
-void SecondDensities::apply_to(DensityOptions& options) const {
+void SecondDensities::apply_to(const DensityLaw& law, DensityOptions& options) const {
   if (moisture && !payload_mass) usage_error("--moisture needs --payload-mass");
   if (payload_mass) options.payload_mass = mass_of(*payload_mass);
   if (moisture) options.soil.water_content = moisture_of(*moisture);
@@ -117,18 +146,20 @@ void SecondDensities::apply_to(DensityOptions& options) const {
                 number_text(most_density_sd));
   }
   if (loads) options.joint_work = work_of(*this, options);
-  if (prior) options.prior = prior_of(*this, options.soil);
+  if (prior) options.prior = prior_of(*this, options.soil, law);
 }
 
-void SecondDensities::add_warnings(const DensityEstimate& estimate, Outcome& outcome) const {
+void SecondDensities::check(const DensityEstimate& estimate, Outcome& outcome) const {
   if (!estimate.successive) return;
+  const StatedDensity stated = stated_density(*prior);
+  if (is_same_dig(stated, estimate.change)) {
+    refuse_prior(*this, "volume: is that of this dig; must be the result of a dig before it");
+  }
   const auto& zones = estimate.change.zones;
   const auto hole = std::find_if(zones.begin(), zones.end(),
                                  [](const ChangeZone& zone) { return zone.kind == ZoneKind::dig; });
   if (hole == zones.end()) return;
-  if (const auto far = elsewhere(stated_density(*prior), *prior, hole->extent)) {
-    outcome.warnings.push_back(*far);
-  }
+  if (const auto far = elsewhere(stated, *prior, hole->extent)) outcome.warnings.push_back(*far);
 }
 
 }  // namespace excavplan::tools

@@ -27,9 +27,10 @@ struct SecondDensities {
   void declare(Arguments& arguments);
   /// Into the options of an estimate that has its soil and its dug path.
   /// @throws Error (bad_input), (bad_file) naming option or file
-  void apply_to(DensityOptions& options) const;
-  /// density_from_elsewhere, for a prior that was used.
-  void add_warnings(const DensityEstimate& estimate, Outcome& outcome) const;
+  void apply_to(const DensityLaw& law, DensityOptions& options) const;
+  /// Of a prior that was used: adds the warning density_from_elsewhere.
+  /// @throws Error (bad_file) if it is the result of this very dig
+  void check(const DensityEstimate& estimate, Outcome& outcome) const;
 };
 
 }  // namespace excavplan::tools

@@ -18,13 +18,35 @@ constexpr double near_the_hole = 5.0;  // ours [m]
 
 /// What estimate-density always states: of a result that lost one of these, a density would be
 /// taken as exact, as trusted or as that of any soil.
-void require_whole_estimate(const JsonObject& result) {
+void require_whole_estimate(JsonObject& result) {
   if (!result.has("tool")) return;
   for (const char* key : {"density_sd_percent", "density_raw_percent",
                           "density_sd_given_law_percent", "trustworthy", "law_soil"}) {
     if (!result.has(key))
       result.fail(key, "is missing, expected a result of estimate-density --json");
   }
+  for (const char* key : {"density_sd_percent", "density_raw_percent"}) result.number(key);
+}
+
+/// The soil whose law gave the density; empty if it is not known.
+std::string soil_of(JsonObject& result) {
+  const std::string of_law = result.states("law_soil") ? result.text("law_soil") : "";
+  const std::string told = result.states("soil") ? result.text("soil") : "";
+  if (!of_law.empty() && !told.empty() && of_law != told) {
+    result.fail("law_soil", "is " + of_law + ", soil is " + told + "; must be the same");
+  }
+  return told.empty() ? of_law : told;
+}
+
+/// Of hole, spill and heap [m^3], where they are stated.
+std::vector<double> volumes_in(JsonObject& result) {
+  std::vector<double> volumes;
+  if (!result.states("volume")) return volumes;
+  JsonObject volume = result.object("volume");
+  for (const char* key : {"excavated_m3", "spilled_m3", "dumped_m3"}) {
+    if (volume.states(key)) volumes.push_back(volume.number(key));
+  }
+  return volumes;
 }
 
 std::vector<Rectangle> holes_in(JsonObject& result) {
@@ -78,11 +100,11 @@ StatedDensity stated_density(const std::string& file) {
     stated.independent_sd = result.number("density_sd_given_law_percent", 0.0, sd);
   }
   if (result.has("trustworthy")) density.trustworthy = result.flag("trustworthy");
-  for (const char* key : {"law_soil", "soil"}) {  // the one that was said decides
-    if (result.states(key)) density.soil = result.text(key);
-  }
+  density.soil = soil_of(result);
   stated.of_any_soil = result.text_or("law", "") == "any soil";
+  stated.is_whole = result.has("tool");
   stated.holes = holes_in(result);
+  stated.volumes = volumes_in(result);
   return stated;
 }
 

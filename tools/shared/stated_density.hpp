@@ -23,7 +23,9 @@ struct StatedDensity {
   double raw_percent = 0.0;        ///< also outside 0 .. 100
   double independent_sd = 0.0;     ///< part of its sd that is not of the law [points]
   bool of_any_soil = false;        ///< by --soil unknown
+  bool is_whole = false;           ///< it states the tool, and then all that the tool does
   std::vector<Rectangle> holes{};  ///< that it was measured in
+  std::vector<double> volumes{};   ///< of hole, spill and heap [m^3]
 };
 
 /// @throws Error (bad_file) naming file, key, value and rule

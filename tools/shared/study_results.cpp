@@ -15,6 +15,18 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// What a study writes into its folder.
+struct StudyFiles {
+  explicit StudyFiles(const std::string& folder)
+      : results(folder + "/study.json"),
+        runs(folder + "/runs.csv"),
+        tables(folder + "/study.md"),
+        figure(folder + "/study.svg") {}
+  std::vector<std::string> all() const { return {results, runs, tables, figure}; }
+
+  std::string results, runs, tables, figure;
+};
+
 ordered_json counted_json(const StudyMean& mean) {
   ordered_json json = mean_json(mean);
   if (!json.is_null()) json["runs"] = mean.values;
@@ -94,8 +106,7 @@ std::string runs_csv(const std::vector<StudyResult>& results) {
 
 std::string text_of(const StudyMean& mean) {
   if (mean.values == 0) return "-";
-  return decimals(mean.mean, 1) + " (" + decimals(mean.interval[0], 1) + " .. " +
-         decimals(mean.interval[1], 1) + ")";
+  return decimals(mean.mean, 1) + interval_text(mean);
 }
 
 std::string number_of(double value, int digits = 1) {
@@ -162,13 +173,21 @@ std::string line_of(const StudyResult& result) {
 
 ordered_json mean_json(const StudyMean& mean) {
   if (mean.values == 0) return nullptr;
-  return {{"mean", mean.mean}, {"interval_95", {mean.interval[0], mean.interval[1]}}};
+  ordered_json json = {{"mean", mean.mean}, {"interval_95", nullptr}};
+  if (mean.values > 1) json["interval_95"] = mean.interval;
+  return json;
+}
+
+std::string interval_text(const StudyMean& mean) {
+  if (mean.values < 2) return "";
+  return " (" + decimals(mean.interval[0], 1) + " .. " + decimals(mean.interval[1], 1) + ")";
 }
 
 void declare_study(Arguments& arguments, StudyInputs& inputs) {
-  arguments.place("study", inputs.folder,
-                  "run the experiment under many conditions, one factor at a time, 30 runs each, "
-                  "and write study.json, runs.csv, study.md and study.svg into this folder");
+  arguments.folder("study", inputs.folder,
+                   "run the experiment under many conditions, one factor at a time, 30 runs each, "
+                   "and write study.json, runs.csv, study.md and study.svg into this folder",
+                   [](const std::string& folder) { return StudyFiles(folder).all(); });
   arguments.only_if({[&inputs] { return inputs.folder.has_value(); }, "there is no --study"}, [&] {
     arguments.option("study-runs", inputs.runs, Quantity::ratio,
                      "factor on the number of runs of each condition");
@@ -177,10 +196,13 @@ void declare_study(Arguments& arguments, StudyInputs& inputs) {
 
 Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& plots,
               std::uint64_t seed, std::uint64_t threads, Console& console) {
-  make_folder(*inputs.folder);
-  for (const char* name : {"/study.json", "/runs.csv", "/study.md", "/study.svg"}) {
-    require_writable(*inputs.folder + name);
+  if (!(inputs.runs > 0.0 && inputs.runs <= most_study_runs)) {
+    usage_error("--study-runs: " + number_text(inputs.runs) + " must be above 0 and at most " +
+                number_text(most_study_runs));
   }
+  const StudyFiles files(*inputs.folder);
+  make_folder(*inputs.folder);
+  for (const std::string& file : files.all()) require_writable(file);
   StudyOptions options;
   options.seed = seed;
   options.threads = static_cast<unsigned>(threads);
@@ -199,11 +221,11 @@ Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& pl
     outcome.json["study"].push_back(condition_json(result));
     outcome.lines.push_back(line_of(result));
   }
-  write_file(*inputs.folder + "/study.json", outcome.json.dump(2) + "\n");
-  write_file(*inputs.folder + "/runs.csv", runs_csv(results));
-  write_file(*inputs.folder + "/study.md", tables(results));
+  write_file(files.results, outcome.json.dump(2) + "\n");
+  write_file(files.runs, runs_csv(results));
+  write_file(files.tables, tables(results));
   const Figure figure = study_figure(results);
-  write_file(*inputs.folder + "/study.svg", to_svg(lay_out(figure)));
+  write_file(files.figure, to_svg(lay_out(figure)));
   for (const Plots::File& plot : plots.files) write_plot(plots, plot.file, figure, outcome.lines);
   return outcome;
 }

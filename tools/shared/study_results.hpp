@@ -21,8 +21,10 @@ struct StudyInputs {
   double runs = 1.0;  ///< factor on their number
 };
 
-/// {mean, interval_95}; null without values.
+/// {mean, interval_95}; null without values. One value has no interval.
 nlohmann::ordered_json mean_json(const StudyMean& mean);
+/// " (41.2 .. 44.0)"; empty for one value.
+std::string interval_text(const StudyMean& mean);
 
 void declare_study(Arguments& arguments, StudyInputs& inputs);
 

@@ -266,6 +266,23 @@ void require_ending(const Arguments::Entry& entry, const std::string& file) {
   if (!rule.empty()) usage_error(shown_name(entry) + ": '" + file + "' must end in " + rule);
 }
 
+/// The first use of an option that does not hold; nothing if it has its effect.
+const Arguments::Use* broken_use(const Arguments::Entry& entry) {
+  const auto broken = std::find_if(entry.uses.begin(), entry.uses.end(),
+                                   [](const auto& use) { return !use.holds(); });
+  return broken == entry.uses.end() ? nullptr : &*broken;
+}
+
+/// A file that would be missed, unlike other options without effect.
+void refuse_unwritten(const std::vector<Arguments::Entry>& entries, const ParsedWords& words) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!entries[i].output || words.of_entry[i].texts.empty()) continue;
+    if (const Arguments::Use* broken = broken_use(entries[i])) {
+      usage_error(shown_name(entries[i]) + " would not be written: " + broken->otherwise);
+    }
+  }
+}
+
 void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& words,
             StandardInput& input) {
   for (std::size_t i = 0; i < entries.size(); ++i) assign(entries[i], words.of_entry[i], input);
@@ -278,6 +295,7 @@ void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& wor
     if (!entries[i].check) continue;
     for (const std::string& text : words.of_entry[i].texts) entries[i].check(text);
   }
+  refuse_unwritten(entries, words);
   refuse_shared_files(used_files(entries, words));
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (!entries[i].output) continue;
@@ -294,11 +312,9 @@ std::vector<Warning> ignored_options(const std::vector<Arguments::Entry>& entrie
                                      const ParsedWords& words) {
   std::vector<std::pair<std::string, std::string>> names_of_reason;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const auto& uses = entries[i].uses;
     if (words.of_entry[i].texts.empty()) continue;
-    const auto broken =
-        std::find_if(uses.begin(), uses.end(), [](const auto& use) { return !use.holds(); });
-    if (broken == uses.end()) continue;
+    const Arguments::Use* broken = broken_use(entries[i]);
+    if (!broken) continue;
     const auto same =
         std::find_if(names_of_reason.begin(), names_of_reason.end(),
                      [&](const auto& of_reason) { return of_reason.first == broken->otherwise; });

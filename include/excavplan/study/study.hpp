@@ -83,11 +83,13 @@ struct StudyResult {
   StudyGains cycle = {};                         ///< likewise
 };
 
+inline constexpr double most_study_runs = 1e4;  ///< of StudyOptions::runs
+
 /// Settings of run_study().
 struct StudyOptions {
   std::uint64_t seed = 1;  ///< of soils, grounds, scans and searches
   unsigned threads = 0;    ///< 0: one per core; the result is the same for any number
-  double runs = 1.0;       ///< factor on the number of runs of each condition
+  double runs = 1.0;       ///< factor on the number of runs of each condition, above 0
   int draws = 200;         ///< digs behind the scatter of each law, CalibrationOptions::draws
   /// Called from any thread after each run with the share that is done; true goes on.
   std::function<bool(double done, const std::string& condition)> progress = {};

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <excavplan/machine/dig_path.hpp>
@@ -77,14 +79,17 @@ WorkOverDensity work_over_density(const LoadedDig& dig, const DensityForm& freed
 
 /// The density by the joint loads. All densities in 0 .. 100 % are equally likely before.
 struct LoadsDensity {
-  Measured work;                                          ///< of the joints [J]
-  Measured density_percent;                               ///< mean and deviation of the posterior
+  Measured work;  ///< of the joints [J]
+  /// Mean and deviation of the posterior; none for a work more than 2.5 deviations above or below
+  /// that expected at every density.
+  std::optional<Measured> density_percent;
   std::array<double, 2> interval_percent = {0.0, 100.0};  ///< 95 % of it
-  RelativeDensity by_scans;                               ///< the density without the loads
+  std::string reason = {};    ///< why there is none; empty if there is one
+  RelativeDensity by_scans;   ///< the density without the loads
   RelativeDensity density;    ///< of both; that of the scans where they disagree
   double weight = 0.0;        ///< of the loads in it, 0 .. 1
   double disagreement = 0.0;  ///< work over that expected at the scans' density, in deviations
-  bool disagrees() const;     ///< by more than 2.5 of them
+  bool disagrees() const;     ///< by more than 2.5 of them, or out of range
 };
 
 /// The posterior of the density by work alone, and its mean of least variance with `by_scans`, for
