@@ -64,7 +64,8 @@ Outcome work(const Inputs& inputs) {
     compare_sets(inputs, outcome);
   } else {
     const std::vector<DigEfficiency> runs = compare_two(inputs, outcome);
-    write_plots(inputs.plots, run_figures({}), {runs, inputs.own_meters}, outcome.lines);
+    write_plots(inputs.plots, run_figures({}), {runs, inputs.own_meters}, outcome.lines,
+                outcome.warnings);
   }
   outcome.json["trustworthy"] = outcome.trustworthy;
   return outcome;

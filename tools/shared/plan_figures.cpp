@@ -192,7 +192,7 @@ void draw_plan(const Plots& plots, const std::optional<std::string>& report, Dra
                         boom_plane_profile(dig->after(site.ground)),
                         title};
     drawn.dug = &dug;
-    write_plots(plots, plan_figures({}, {}), drawn, outcome.lines);
+    write_plots(plots, plan_figures({}, {}), drawn, outcome.lines, outcome.warnings);
     section = to_svg(lay_out(section_figure(dug)));
   }
   if (!report) return;
