@@ -221,7 +221,8 @@ Panel dig_panel(const DugDig& dug) {
   for (const std::size_t pose : ends) {
     const double fill = fill_at(dug, pose);
     const Points soil = soil_in_bucket(dug.machine, dug.path.poses[pose].joints, fill);
-    if (!soil.empty()) panel.label(middle_of(soil), readable(fill, 2) + " m³");
+    const bool is_visible = fill > 1e-3 && !soil.empty();
+    if (is_visible) panel.label(middle_of(soil), readable(fill, 2) + " m³");
   }
   if (dug.dig.stall && !ends.empty()) {
     const BucketPose& end = dug.path.poses[ends.back()].bucket;
