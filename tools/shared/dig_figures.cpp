@@ -146,10 +146,11 @@ void draw_bucket(Panel& panel, const DugDig& dug, std::size_t pose, const Style&
   panel.line(shell, wall);
 }
 
-Eigen::Vector2d middle_of(const Points& points) {
-  Rectangle all{points[0].x(), points[0].y(), points[0].x(), points[0].y()};
-  grow(all, points);
-  return {0.5 * (all.x_min + all.x_max), 0.5 * (all.y_min + all.y_max)};
+/// Of its corners: inside a convex outline.
+Eigen::Vector2d middle_of(const Points& outline) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& corner : outline) sum += corner;
+  return sum / static_cast<double>(outline.size());
 }
 
 /// The pose at which the machine is drawn: as the dig ends, before the bucket is lifted.

@@ -106,7 +106,9 @@ std::string note_on(const Experiments& experiments) {
   }
   if (!note.empty()) note += ": the machine cannot dig along one of the paths. ";
   if (experiments.second == SecondGround::left) {
-    note += "Fixed path on fresh ground, planned path on the ground that this dig left.";
+    note +=
+        "Fixed path on fresh ground, planned path on the ground that this dig left: the gain is "
+        "that of path and ground.";
   }
   return note;
 }

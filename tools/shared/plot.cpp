@@ -590,7 +590,7 @@ class Sheet {
     add(Clip{});
     draw_box(box, thin("#444444"));
     for (const Panel::Shape& shape : panel.shapes()) draw_dots(shape, frame);
-    draw_labels(panel, frame);
+    draw_labels(panel, frame, Panel::Kind::label);
     draw_remarks(panel, frame);
     if (!hides_x(row)) draw_x(panel, frame, xs);
     if (!repeats_words(panel, row)) draw_y(panel, frame, ys, names_are_above());
@@ -760,18 +760,19 @@ class Sheet {
   }
 
   /// Labels beside lines and one another, each tied to its point where it could not stay there.
-  void draw_labels(const Panel& panel, const Frame& frame) {
+  void draw_labels(const Panel& panel, const Frame& frame, Panel::Kind kind) {
     Obstacles obstacles = obstacles_of(panel, frame);
     std::vector<DrawnText> texts;
     for (const Panel::Shape& shape : panel.shapes()) {
-      if (shape.kind != Panel::Kind::label) continue;
+      if (shape.kind != kind) continue;
       const double width = text_width(shape.text, number()) + 4.0 * scale_;
       if (width > frame.box.width || frame.box.height < line()) continue;
       const Eigen::Vector2d at = frame.at(shape.points[0]);
-      const Box box = free_box(at, width, frame.box, obstacles);
-      if (!box.contains(at, 0.0)) draw_tie(at, box, obstacles);
-      obstacles.texts.push_back(box);
-      texts.push_back({{box.left + 0.5 * width, box.top + 0.5 * box.height + 0.36 * number()},
+      const std::optional<Box> box = free_box(at, width, frame.box, obstacles);
+      if (!box) continue;
+      if (!box->contains(at, 0.0)) draw_tie(at, *box, obstacles);
+      obstacles.texts.push_back(*box);
+      texts.push_back({{box->left + 0.5 * width, box->top + 0.5 * line() + 0.36 * number()},
                        shape.text,
                        number(),
                        Anchor::middle});
@@ -808,8 +809,8 @@ class Sheet {
   }
 
   /// The box of a label that is nearest to a point and covers nothing; else only no other label.
-  Box free_box(const Eigen::Vector2d& at, double width, const Box& frame,
-               const Obstacles& obstacles) const {
+  std::optional<Box> free_box(const Eigen::Vector2d& at, double width, const Box& frame,
+                              const Obstacles& obstacles) const {
     constexpr int directions = 16;
     const double step = 0.4 * line();
     std::optional<Box> fallback;
@@ -823,7 +824,7 @@ class Sheet {
         if (!is_crossed(box, obstacles)) return box;
       }
     }
-    return fallback.value_or(Box{frame.left, frame.top, width, line()});
+    return fallback;
   }
 
   static bool is_free_of_texts(const Box& box, const Box& frame, const Obstacles& obstacles) {
@@ -850,7 +851,8 @@ class Sheet {
     obstacles.lines.emplace_back(at, end);
   }
 
-  /// Side by side where each has room, else upright, and as many of these as have room.
+  /// Side by side where each has room, else upright, and as many of these as have room; where the
+  /// axes are too low for that, as labels.
   void draw_remarks(const Panel& panel, const Frame& frame) {
     std::vector<const Panel::Shape*> remarks;
     double room = frame.box.width;
@@ -862,6 +864,9 @@ class Sheet {
       longest = std::max(longest, text_width(shape.text, number()));
     }
     const bool upright = longest + 2.0 * scale_ > room;
+    if (upright && longest > 0.8 * frame.box.height) {
+      return draw_labels(panel, frame, Panel::Kind::remark);
+    }
     const double extent = upright ? longest : number();
     const auto every = upright ? static_cast<std::size_t>(std::ceil(line() / room)) : 1;
     for (std::size_t i = 0; i < remarks.size(); i += every) {
