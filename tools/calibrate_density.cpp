@@ -121,7 +121,7 @@ Outcome work(const Inputs& inputs) {
     outcome.lines.push_back("Scans measure what height maps measure: the law for scans is " +
                             calibration.use + ".");
   }
-  write_plots(inputs.plots, calibration_figures(), calibration, outcome.lines);
+  write_plots(inputs.plots, calibration_figures(), calibration, outcome.lines, outcome.warnings);
   return outcome;
 }
 

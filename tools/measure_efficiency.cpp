@@ -68,10 +68,11 @@ Outcome work(const Inputs& inputs) {
   outcome.json["runs"] = nlohmann::ordered_json::array();
   if (inputs.runs || inputs.against) {
     const ComparedSets sets = compare_sets(inputs, outcome);
-    write_plots(inputs.plots, set_figures({}), sets, outcome.lines);
+    write_plots(inputs.plots, set_figures({}), sets, outcome.lines, outcome.warnings);
   } else {
     const std::vector<DigEfficiency> runs = compare_two(inputs, outcome);
-    write_plots(inputs.plots, run_figures({}), {runs, inputs.own_meters}, outcome.lines);
+    write_plots(inputs.plots, run_figures({}), {runs, inputs.own_meters}, outcome.lines,
+                outcome.warnings);
   }
   outcome.json["trustworthy"] = outcome.trustworthy;
   return outcome;

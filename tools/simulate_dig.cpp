@@ -113,7 +113,7 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
                       boom_plane_profile(scene.before),
                       boom_plane_profile(scene.after),
                       title};
-  write_plots(inputs.plots, dig_figures({}), dug, outcome.lines);
+  write_plots(inputs.plots, dig_figures({}), dug, outcome.lines, outcome.warnings);
   if (!inputs.report) return;
   outcome.report = titled(scene_report(machine, scene), *inputs.report, title,
                           to_svg(lay_out(section_figure(dug))));

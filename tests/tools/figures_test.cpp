@@ -46,7 +46,7 @@ const std::vector<Drawn> of_dig = {
     {"forces", {"force [kN]", "soil in bucket [kg]", "time since the dig began [s]"}},
     {"torques", {"boom [kN m]", "arm [kN m]", "bucket [kN m]", "limit"}},
     {"power", {"power [kW]", "energy [kJ]"}},
-    {"cylinders", {"boom [MPa]", "pressure", "limit"}}};
+    {"cylinders", {"boom [MPa]", "pressure", "penetrate"}}};
 
 std::vector<Job> jobs() {
   std::vector<Drawn> of_plan = of_dig;
@@ -59,7 +59,8 @@ std::vector<Job> jobs() {
           {"estimate-density",
            {shipped("quickstart/before.pcd"), shipped("quickstart/after.pcd")},
            {{"change", {"x [m]", "y [m]", "z [m]", "height after − before [cm]", "not seen"}},
-            {"density", {"relative density [%]", "probability [1/%]", "bulking factor k [-]"}}}},
+            {"density",
+             {"relative density [%]", "probability density [1/%]", "bulking factor k [-]"}}}},
           {"calibrate-density",
            {"--draws", "0"},
            {{"law", {"relative density [%]", "bulking factor k [-]", "(used)"}}}},
@@ -175,6 +176,60 @@ TEST_F(FigureValues, BarsAreAsHighAsTheEfficiencies) {
     const double ratio = number(conditions[i], "/planned/efficiency_kg_per_kj") /
                          number(conditions[i], "/fixed/efficiency_kg_per_kj");
     EXPECT_NEAR(planned[i] / fixed[i], ratio, 0.01 * ratio) << i;
+  }
+}
+
+TEST_F(FigureValues, ConditionsThatFailAndDugGroundAreNamed) {
+  const std::string file = folder.file("efficiency.svg");
+  const json found =
+      answer("run-experiment", {"--densities", "5,90,100", "--path", "60deg,0.5m,2m", "--second",
+                                "left", "--plot", "efficiency=" + file, "--plot-size", "85mm"});
+  ASSERT_TRUE(warns(found, "condition_failed"));
+  const std::string svg = content_of(file);
+  EXPECT_TRUE(contains(svg, ">no dig</text>"));
+  EXPECT_TRUE(contains(svg, "No dig in 100 %"));
+  EXPECT_TRUE(contains(svg, "planned path on the"));
+  EXPECT_TRUE(contains(svg, ">90</text>"));
+}
+
+TEST_F(FigureValues, ManyDensitiesCanBeReadOnAColumn) {
+  const Words digs = {"--densities", "5:10:95", "--plot-size"};
+  for (const char* size : {"40mm", "85mm", "170mm"}) {
+    const Words plots = {"--plot", "efficiency=" + folder.file("e.svg"), "--plot",
+                         "paths=" + folder.file("p.svg")};
+    answer("run-experiment", digs + Words{size} + plots);
+    expect_legible(content_of(folder.file("e.svg")), std::string("ten densities at ") + size);
+    EXPECT_TRUE(contains(content_of(folder.file("p.svg")), "6 of 10 conditions"));
+  }
+}
+
+TEST_F(FigureValues, ASearchInUncertainSoilSaysWhatItsAxisCounts) {
+  const std::string file = folder.file("search.svg");
+  answer("plan-path", {"--density", "40", "--density-sd", "8", "--search", "--evaluations", "30",
+                       "--plot", "search=" + file});
+  EXPECT_TRUE(contains(content_of(file), ">paths evaluated</text>"));
+  EXPECT_TRUE(contains(content_of(file), "digs were simulated"));
+}
+
+TEST_F(FigureValues, WhatALowSheetLeavesOutIsWarnedAbout) {
+  const std::string file = folder.file("torques.svg");
+  const Words dig = {"--density", "40", "--plot", "torques=" + file, "--plot-size"};
+  const json low = answer("simulate-dig", dig + Words{"85mm,60mm"});
+  EXPECT_TRUE(warns(low, "plot_left_out"));
+  EXPECT_TRUE(contains(low["warnings"].dump(), "the panel 'bucket [kN m]'"));
+  EXPECT_TRUE(contains(content_of(file), "time since the dig began [s]"));
+  EXPECT_FALSE(warns(answer("simulate-dig", dig + Words{"85mm,90mm"}), "plot_left_out"));
+}
+
+TEST_F(FigureValues, PhasesHaveColoursThatNoCurveHas) {
+  const std::string file = folder.file("forces.svg");
+  answer("simulate-dig", {"--density", "40", "--plot", "forces=" + file});
+  const std::string svg = content_of(file);
+  for (const char* curve : {"#0072b2", "#d55e00", "#009e73"}) {
+    EXPECT_FALSE(contains(svg, "fill=\"" + std::string(curve))) << curve;
+  }
+  for (const char* phase : {"penetrate", "drag", "scoop"}) {
+    EXPECT_TRUE(contains(svg, ">" + std::string(phase) + "</text>")) << phase;
   }
 }
 

@@ -13,6 +13,7 @@
 #include "shared/dig_figures.hpp"
 #include "shared/machine_outline.hpp"
 #include "shared/render.hpp"
+#include "support/svg_layout.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -117,6 +118,25 @@ TEST(LayOut, PanelsStackOnANarrowSheetAndAreLeftOutOnALowOne) {
   EXPECT_EQ(count(low, ">third</text>"), 0U);
 }
 
+TEST(LayOut, TheLowestPanelThatIsLeftHasTheAxisAndTheDrawingSaysWhatIsNot) {
+  Figure figure;
+  for (const char* name : {"boom", "arm", "bucket"}) {
+    Panel panel("", "time", name);
+    panel.line({{0.0, 0.0}, {1.0, 1.0}}, {}, name);
+    if (figure.rows.size() < 2) panel.hide_x();
+    figure.rows.push_back({panel});
+  }
+  const Drawing all = lay_out(figure, {85.0, 120.0});
+  EXPECT_TRUE(all.left_out.empty());
+  const Drawing low = lay_out(figure, {85.0, 45.0});
+  ASSERT_FALSE(low.left_out.empty());
+  EXPECT_EQ(low.left_out.front(), "the panel 'bucket'");
+  EXPECT_EQ(count(to_svg(low), ">time</text>"), 1U);
+  const double needed = low.needed_height / points_per_mm;
+  EXPECT_TRUE(lay_out(figure, {85.0, std::ceil(needed)}).left_out.empty());
+  EXPECT_FALSE(lay_out(figure, {85.0, std::floor(needed)}).left_out.empty());
+}
+
 TEST(LayOut, TheTableIsBelowAll) {
   Panel panel("", "x", "y");
   panel.line({{0.0, 0.0}, {1.0, 1.0}}, {});
@@ -173,19 +193,42 @@ TEST(Panel, TextIsEscapedAndLegendsAreGivenOnce) {
   EXPECT_EQ(count(svg, ">d &lt; 5 %</text>"), 1U);
 }
 
-TEST(Panel, LabelsDoNotCoverOneAnother) {
+TEST(Panel, LabelsCoverNeitherOneAnotherNorLines) {
   Panel panel("", "x", "y");
   panel.view({0.0, 0.0, 10.0, 5.0});
+  panel.line({{0.0, 2.5}, {10.0, 2.5}}, {"#123456"});
   for (int i = 0; i < 5; ++i) panel.label({5.0, 2.5}, "label " + std::to_string(i));
   const std::string svg = svg_of(panel);
-  std::set<double> rows;
-  for (auto at = svg.find(">label "); at != std::string::npos; at = svg.find(">label ", at + 1)) {
-    rows.insert(std::stod(svg.substr(svg.find("y=\"", svg.rfind("<text", at)) + 3)));
+  const auto start = svg.rfind("d=\"M", svg.find("stroke=\"#123456")) + 4;
+  const double line = std::stod(svg.substr(svg.find(' ', start)));
+  std::vector<test::PlacedText> labels;
+  for (const test::PlacedText& text : test::texts_of(svg)) {
+    if (text.text.rfind("label", 0) != 0) continue;
+    EXPECT_TRUE(text.box.bottom() < line || text.box.top > line) << text.text;
+    for (const auto& other : labels) EXPECT_FALSE(test::overlap(text.box, other.box)) << text.text;
+    labels.push_back(text);
   }
-  ASSERT_EQ(rows.size(), 5U);
-  for (auto row = rows.begin(), next = std::next(row); next != rows.end(); ++row, ++next) {
-    EXPECT_GE(*next - *row, 7.0);
+  EXPECT_EQ(labels.size(), 5U);
+  EXPECT_EQ(count(svg, "<circle"), 5U);  // each is tied to its point
+}
+
+TEST(Panel, RemarksAndWordsOfManyGroupsFindRoom) {
+  Panel panel("", "x", "y");
+  std::vector<Panel::Tick> names;
+  for (int i = 0; i < 12; ++i) {
+    names.emplace_back(i, "name " + std::to_string(i));
+    panel.remark({i - 0.0, 1.0}, 1.0, "+42 %");
   }
+  panel.x_ticks(names);
+  panel.skip_x_ticks();
+  panel.view({-0.5, 0.0, 11.5, 2.0});
+  for (const double width : {40.0, 60.0, 85.0, 170.0}) {
+    const std::string svg = svg_of(panel, {width, {}});
+    test::expect_legible(svg, "at " + std::to_string(width));
+    EXPECT_EQ(count(svg, "…"), 0U) << width;
+  }
+  EXPECT_EQ(count(svg_of(panel), ">name "), 12U);
+  EXPECT_LT(count(svg_of(panel, {60.0, {}}), ">name "), 12U);
 }
 
 Grid grid_of(const HeightMap& map) {
@@ -336,6 +379,16 @@ TEST(HeightChangeFigure, LabelOfSpillDoesNotLieOnTheHole) {
   EXPECT_GT((place_of(svg, "spill 0.0100 m³") - place_of(svg, "hole 0.180 m³")).norm(), 15.0);
 }
 
+TEST(HeightChangeFigure, OutlinesAreClosedLinesSoThatTheirDashesShow) {
+  const std::string svg = change_svg(Survey().sheet);
+  const auto end = svg.find("\" fill=\"none\" stroke=\"#009e73\"");
+  const auto start = svg.rfind("d=\"", end);
+  const std::string path = svg.substr(start, end - start);
+  EXPECT_EQ(count(path, "M"), 1U);
+  EXPECT_GT(count(path, "L"), 20U);  // around 10 x 2 cells
+  EXPECT_NE(svg.substr(end, 200).find("stroke-dasharray"), std::string::npos);
+}
+
 TEST(HeightChangeFigure, ShowsSectionsThroughHoleAndHeap) {
   const Survey survey;
   const std::string svg = change_svg(survey.sheet);
@@ -446,6 +499,37 @@ TEST_F(SectionFigure, ShowsTheWholeMachine) {
   for (const Points* part : {&outline.tracks, &outline.house, &outline.cab, &outline.boom}) {
     for (const Eigen::Vector2d& point : *part) EXPECT_TRUE(view.contains(point.x(), point.y()));
   }
+}
+
+TEST_F(SectionFigure, OfASteepPathShowsTheBottomOfThePit) {
+  const DigPath steep = std::get<DigPath>(make_dig_path_anywhere(machine, {1.2, 0.7, 0.3}, level));
+  const Figure drawn = section_figure({machine, steep, dig, level, level, "Dig"});
+  const Rectangle view = drawn.rows.front().back().shown();
+  for (const DigPose& pose : steep.poses) {
+    if (pose.phase == DigPhase::lift) break;
+    EXPECT_TRUE(view.contains(pose.bucket.x, pose.bucket.z)) << pose.bucket.z;
+  }
+}
+
+TEST_F(SectionFigure, SaysWhyADigEndedAndWhatWasNotDug) {
+  EXPECT_EQ(to_svg(lay_out(figure())).find("path not dug"), std::string::npos);
+  dig.history.resize(3);
+  dig.stall = Stall{};
+  dig.stall->cause = Stall::Cause::front_lifts;
+  const std::string svg = to_svg(lay_out(figure()));
+  EXPECT_NE(svg.find(">the front of the machine lifts<"), std::string::npos);
+  EXPECT_NE(svg.find(">path not dug<"), std::string::npos);
+  EXPECT_EQ(svg.find("tip, drag"), std::string::npos);
+  dig.stall->cause = Stall::Cause::torque;
+  dig.stall->joint = Joint::arm;
+  EXPECT_NE(to_svg(lay_out(figure())).find(">the arm stalls<"), std::string::npos);
+}
+
+TEST_F(SectionFigure, TheLinkEndsOnTheBucket) {
+  const MachineOutline outline = machine_outline(machine, path.poses.back().joints);
+  ASSERT_GE(outline.bracket.size(), 4U);
+  EXPECT_NEAR((outline.bracket[1] - outline.cylinders.back()[1]).norm(), 0.0, 1e-9);
+  EXPECT_EQ(outline.bracket.back(), outline.bucket.back());
 }
 
 double area_of(const Points& polygon) {

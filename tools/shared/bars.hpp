@@ -30,6 +30,6 @@ struct BarSeries {
 
 /// Groups of bars side by side from 0 on.
 Panel bar_panel(const std::string& y_label, const std::vector<BarSeries>& series,
-                const std::vector<BarGroup>& groups);
+                const std::vector<BarGroup>& groups, const std::string& x_label = "");
 
 }  // namespace excavplan::tools

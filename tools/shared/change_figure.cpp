@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include <excavplan/ground/bulking.hpp>
 
@@ -50,26 +52,47 @@ bool in_zone(const AreaChange& area, int zone, Eigen::Index row, Eigen::Index co
          area.zone(row, col) == zone;
 }
 
-/// Borders between the cells of one zone and all others, as strokes.
-Points outline(const AreaChange& area, int zone) {
-  const auto corner = [&](Eigen::Index row, Eigen::Index col) -> Eigen::Vector2d {
-    return area.difference.origin +
-           area.difference.cell_size *
-               Eigen::Vector2d(static_cast<double>(col), static_cast<double>(row));
-  };
-  Points strokes;
-  for (Eigen::Index row = 0; row <= area.zone.rows(); ++row) {
-    for (Eigen::Index col = 0; col <= area.zone.cols(); ++col) {
-      const bool here = in_zone(area, zone, row, col);
-      if (here != in_zone(area, zone, row - 1, col)) {
-        strokes.insert(strokes.end(), {corner(row, col), corner(row, col + 1)});
-      }
-      if (here != in_zone(area, zone, row, col - 1)) {
-        strokes.insert(strokes.end(), {corner(row, col), corner(row + 1, col)});
-      }
+/// A cell, or a corner between cells: its row and column.
+using Place = std::pair<Eigen::Index, Eigen::Index>;
+
+/// Borders between the cells of one zone and all others, from corner to corner with the zone on the
+/// left.
+std::multimap<Place, Place> borders(const AreaChange& area, int zone) {
+  std::multimap<Place, Place> found;
+  for (Eigen::Index row = 0; row < area.zone.rows(); ++row) {
+    for (Eigen::Index col = 0; col < area.zone.cols(); ++col) {
+      if (!in_zone(area, zone, row, col)) continue;
+      const Place a(row, col), b(row, col + 1), c(row + 1, col + 1), d(row + 1, col);
+      if (!in_zone(area, zone, row - 1, col)) found.emplace(a, b);
+      if (!in_zone(area, zone, row, col + 1)) found.emplace(b, c);
+      if (!in_zone(area, zone, row + 1, col)) found.emplace(c, d);
+      if (!in_zone(area, zone, row, col - 1)) found.emplace(d, a);
     }
   }
-  return strokes;
+  return found;
+}
+
+/// The borders of a zone as closed lines, so that dashes run along them.
+std::vector<Points> outlines(const AreaChange& area, int zone) {
+  const HeightMap& map = area.difference;
+  const auto point = [&](const Place& corner) -> Eigen::Vector2d {
+    return map.origin + map.cell_size * Eigen::Vector2d(static_cast<double>(corner.second),
+                                                        static_cast<double>(corner.first));
+  };
+  std::multimap<Place, Place> left = borders(area, zone);
+  std::vector<Points> lines;
+  while (!left.empty()) {
+    auto border = left.begin();
+    Points line = {point(border->first)};
+    while (border != left.end()) {
+      const Place end = border->second;
+      line.push_back(point(end));
+      left.erase(border);
+      border = left.find(end);
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
 }
 
 /// The middle of a zone: its mean weighted by the change, or the cell of it that is nearest to
@@ -98,16 +121,6 @@ bool is_largest_of_its_kind(const ChangeZone& zone, const VolumeChange& change) 
   return std::none_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& other) {
     return other.kind == zone.kind && std::abs(other.volume.value) > std::abs(zone.volume.value);
   });
-}
-
-/// Whether the middle of a zone lies beyond that of the hole, in y.
-bool is_beyond_hole(const Eigen::Vector2d& middle, const VolumeChange& change) {
-  const auto hole =
-      std::find_if(change.zones.begin(), change.zones.end(), [&](const ChangeZone& zone) {
-        return zone.kind == ZoneKind::dig && is_largest_of_its_kind(zone, change);
-      });
-  return hole == change.zones.end() ||
-         middle.y() >= 0.5 * (hole->extent.y_min + hole->extent.y_max);
 }
 
 /// How an area lies on the page: as x and y, or, if it is longer in y, turned to the left with x
@@ -139,19 +152,43 @@ struct Turn {
   }
 };
 
-/// Names the zone with its volume: hole and heap in their middle, spill outside of its zone on the
-/// side away from the hole.
+/// The cell that is deepest inside a zone; of several the one nearest to its middle.
+Eigen::Vector2d inside_of(const AreaChange& area, int zone) {
+  std::vector<Place> cells;
+  for (Eigen::Index row = 0; row < area.zone.rows(); ++row) {
+    for (Eigen::Index col = 0; col < area.zone.cols(); ++col) {
+      if (area.zone(row, col) == zone) cells.emplace_back(row, col);
+    }
+  }
+  for (std::set<Place> layer(cells.begin(), cells.end());;) {  // peeled until nothing is left
+    std::set<Place> inner;
+    for (const auto& [row, col] : layer) {
+      const bool is_inner = layer.count({row - 1, col}) && layer.count({row + 1, col}) &&
+                            layer.count({row, col - 1}) && layer.count({row, col + 1});
+      if (is_inner) inner.emplace(row, col);
+    }
+    if (inner.empty()) break;
+    cells.assign(inner.begin(), inner.end());
+    layer = std::move(inner);
+  }
+  const Eigen::Vector2d middle = middle_of(area, zone);
+  const auto distance = [&](const Place& cell) {
+    return (Eigen::Vector2d(area.difference.x(cell.second), area.difference.y(cell.first)) - middle)
+        .norm();
+  };
+  const auto [row, col] =
+      *std::min_element(cells.begin(), cells.end(),
+                        [&](const Place& a, const Place& b) { return distance(a) < distance(b); });
+  return {area.difference.x(col), area.difference.y(row)};
+}
+
+/// Names a zone with its volume; of several spills the largest.
 void label_zone(Panel& panel, const VolumeChange& change, const AreaChange& area, int index,
                 const Turn& turn) {
   const ChangeZone& zone = change.zones[static_cast<std::size_t>(index)];
-  Eigen::Vector2d at = middle_of(area, index);
-  if (zone.kind == ZoneKind::spill) {
-    if (!is_largest_of_its_kind(zone, change)) return;
-    const double room = 2.5 * area.difference.cell_size;
-    at.y() = is_beyond_hole(at, change) ? zone.extent.y_max + room : zone.extent.y_min - room;
-  }
-  panel.label(turn(at), std::string(style_of(zone.kind).name) + ' ' +
-                            readable(std::abs(zone.volume.value)) + " m³");
+  if (zone.kind == ZoneKind::spill && !is_largest_of_its_kind(zone, change)) return;
+  panel.label(turn(inside_of(area, index)), std::string(style_of(zone.kind).name) + ' ' +
+                                                readable(std::abs(zone.volume.value)) + " m³");
 }
 
 Rectangle joined(const Rectangle& a, const Rectangle& b) {
@@ -300,8 +337,8 @@ void draw_place(Panel& map, const Section& section, const HeightMap& on, const T
     return section.along_x ? Eigen::Vector2d(on.x(i), on.y(section.line))
                            : Eigen::Vector2d(on.x(section.line), on.y(i));
   };
-  map.line(turn(Points{end(section.first), end(section.last)}),
-           {"#222222", 0.8, "none", 1.0, {1.0, 2.0}}, "section");
+  map.strokes(turn(Points{end(section.first), end(section.last)}),
+              {"#222222", 0.8, "none", 1.0, {1.0, 2.0}}, "section");
 }
 
 // ---- The table --------------------------------------------------------------------------------
@@ -408,7 +445,9 @@ Figure height_change_figure(const ChangeSheet& sheet) {
       const int index = static_cast<int>(j);
       if (!(area.zone == index).any()) continue;
       const ZoneStyle style = style_of(zone.kind);
-      map.strokes(turn(outline(area, index)), style.outline, style.name);
+      for (const Points& line : outlines(area, index)) {
+        map.line(turn(line), style.outline, style.name);
+      }
       if (zone.kind != ZoneKind::other) label_zone(map, change, area, index, turn);
       const bool cut = zone.kind == ZoneKind::dig || zone.kind == ZoneKind::dump;
       if (!cut || i >= sheet.before.size() || !is_largest_of_its_kind(zone, change)) continue;

@@ -51,6 +51,21 @@ Style phase_style(DigPhase phase) {
   return {};
 }
 
+const char* phase_grey(DigPhase phase) {
+  switch (phase) {
+    case DigPhase::penetrate:
+      return "#4d4d4d";
+    case DigPhase::drag:
+      return "#999999";
+    case DigPhase::scoop:
+      return "#d0d0d0";
+    case DigPhase::approach:
+    case DigPhase::lift:
+      break;
+  }
+  return "#f0f0f0";
+}
+
 std::string diverging_colour(double value) {
   constexpr std::array<Rgb, 11> anchors = {{{0x67, 0x00, 0x1f},
                                             {0xb2, 0x18, 0x2b},

@@ -26,6 +26,9 @@ constexpr const char* grey = "#777777";
 /// Line of the tip in a phase: a colour and dashes of its own, for print without colour too.
 Style phase_style(DigPhase phase);
 
+/// Grey of a phase, for strips beside curves.
+const char* phase_grey(DigPhase phase);
+
 /// Colour of a value from -1 to 1: red, white, blue, distinct for colour-blind readers too
 /// (ColorBrewer's RdBu, C. Brewer).
 std::string diverging_colour(double value);

@@ -31,7 +31,7 @@ class CutNormal {
 };
 
 Panel probability_panel(const RelativeDensity& density) {
-  Panel panel("", density_label, "probability [1/%]");
+  Panel panel("", density_label, "probability density [1/%]");
   const CutNormal probability(density.percent, density.sd_percent);
   const auto [low, high] = density.interval_percent;
   Points curve;
@@ -88,7 +88,7 @@ Figure density_figure(const DensityEstimate& estimate) {
   Figure figure;
   figure.title = "Relative density of the ground";
   if (!estimate.density || !estimate.bulking) {
-    figure.rows = {{Panel("", density_label, "probability [1/%]")}};
+    figure.rows = {{Panel("", density_label, "probability density [1/%]")}};
     figure.note = "The density is not known: no dumped soil was measured.";
     return figure;
   }

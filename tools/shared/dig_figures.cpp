@@ -72,16 +72,44 @@ void draw_standing_place(Panel& panel, const DugDig& dug, double from, double to
   panel.line({{from, 0.0}, {known, 0.0}}, {ground_after.stroke, ground_after.width});
 }
 
-void draw_tip_path(Panel& panel, const DigPath& path) {
+/// The pose at which a dig ended early; else the last of the path.
+std::size_t last_pose(const DugDig& dug) {
+  const std::size_t last = dug.path.poses.size() - 1;
+  return dug.dig.stall ? std::min(last, dug.dig.history.size()) : last;
+}
+
+/// By phase as far as it was dug.
+void draw_tip_path(Panel& panel, const DugDig& dug) {
+  const std::vector<DigPose>& poses = dug.path.poses;
+  const std::size_t end = last_pose(dug);
   Points stretch;
-  for (std::size_t i = 0; i < path.poses.size(); ++i) {
-    const DigPose& pose = path.poses[i];
-    stretch.emplace_back(pose.bucket.x, pose.bucket.z);
-    const bool last = i + 1 == path.poses.size();
-    if (!last && path.poses[i + 1].phase == pose.phase) continue;
-    panel.line(stretch, phase_style(pose.phase), std::string("tip, ") + name(pose.phase));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    stretch.emplace_back(poses[i].bucket.x, poses[i].bucket.z);
+    const bool last = i + 1 == poses.size();
+    const bool goes_on = i != end && !last && (i > end || poses[i + 1].phase == poses[i].phase);
+    if (goes_on) continue;
+    if (i <= end) {
+      panel.line(stretch, phase_style(poses[i].phase), std::string("tip, ") + name(poses[i].phase));
+    } else {
+      panel.line(stretch, {"#9a9a9a", 0.9, "none", 1.0, {2.0, 2.0}}, "path not dug");
+    }
     stretch = {stretch.back()};
   }
+}
+
+/// "the front of the machine lifts"
+std::string end_text(const Stall& stall) {
+  switch (stall.cause) {
+    case Stall::Cause::torque:
+      return std::string("the ") + name(stall.joint) + " stalls";
+    case Stall::Cause::front_lifts:
+      return "the front of the machine lifts";
+    case Stall::Cause::rear_lifts:
+      return "the rear of the machine lifts";
+    case Stall::Cause::slides:
+      return "the machine slides";
+  }
+  return {};
 }
 
 /// Soil in the bucket at a pose; that of the payload once it is lifted.
@@ -113,17 +141,16 @@ std::vector<std::size_t> ends_of_phases(const DugDig& dug) {
 void draw_bucket(Panel& panel, const DugDig& dug, std::size_t pose, const Style& wall) {
   const JointAngles& joints = dug.path.poses[pose].joints;
   const Points shell = bucket_outline(dug.machine, joints);
-  panel.polygon(shell, {"none", 0.0, "#ffffff", 0.55});
   const Points soil = soil_in_bucket(dug.machine, joints, fill_at(dug, pose));
   if (!soil.empty()) panel.polygon(soil, soil_style, "soil in the bucket");
   panel.line(shell, wall);
 }
 
-/// Above the middle of an outline.
-Eigen::Vector2d above(const Points& points) {
-  Rectangle all{points[0].x(), points[0].y(), points[0].x(), points[0].y()};
-  grow(all, points);
-  return {0.5 * (all.x_min + all.x_max), all.y_max + 0.09};
+/// Of its corners: inside a convex outline.
+Eigen::Vector2d middle_of(const Points& outline) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& corner : outline) sum += corner;
+  return sum / static_cast<double>(outline.size());
 }
 
 /// The pose at which the machine is drawn: as the dig ends, before the bucket is lifted.
@@ -157,9 +184,10 @@ Panel machine_panel(const DugDig& dug) {
   for (const Points& cylinder : machine.cylinders) panel.line(cylinder, {"#5a5a5a", 2.0});
   panel.polygon(machine.arm, front);
   panel.polygon(machine.boom, front);
+  if (!machine.bracket.empty()) panel.polygon(machine.bracket, front);
   draw_bucket(panel, dug, pose, {"#222222", 1.3});
   panel.dots(machine.pins, 1.1, {"#4a4a4a", 0.5, steel.fill});
-  draw_tip_path(panel, dug.path);
+  draw_tip_path(panel, dug);
   return panel;
 }
 
@@ -170,6 +198,12 @@ Panel dig_panel(const DugDig& dug) {
   for (const std::size_t pose : ends) {
     grow(all, bucket_outline(dug.machine, dug.path.poses[pose].joints));
   }
+  Points dug_tip;
+  for (std::size_t i = 0; i <= last_pose(dug); ++i) {
+    const DigPose& pose = dug.path.poses[i];
+    if (pose.phase != DigPhase::lift) dug_tip.emplace_back(pose.bucket.x, pose.bucket.z);
+  }
+  grow(all, dug_tip);
   const double narrow = std::max(0.0, 1.4 * (all.y_max - all.y_min) - (all.x_max - all.x_min));
   all.x_min -= 0.5 * narrow;  // a dig that ends early is no wider than the bucket
   all.x_max += 0.5 * narrow;
@@ -182,21 +216,19 @@ Panel dig_panel(const DugDig& dug) {
     wall.dash.clear();
     draw_bucket(panel, dug, pose, wall);
   }
-  draw_tip_path(panel, dug.path);
+  draw_tip_path(panel, dug);
   panel.dots({{dug.path.start_x, dug.path.ground_z}}, 2.0, {"#ffffff", 0.6, colours::black},
              "start, x = " + readable(dug.path.start_x) + " m");
   for (const std::size_t pose : ends) {
     const double fill = fill_at(dug, pose);
-    if (!(fill > 0.0)) continue;
-    const JointAngles& joints = dug.path.poses[pose].joints;
-    Points shell = bucket_outline(dug.machine, joints);
-    const Points soil = soil_in_bucket(dug.machine, joints, fill);
-    shell.insert(shell.end(), soil.begin(), soil.end());
-    panel.label(above(shell), readable(fill, 2) + " m³");
+    const Points soil = soil_in_bucket(dug.machine, dug.path.poses[pose].joints, fill);
+    const bool is_visible = fill > 1e-3 && !soil.empty();
+    if (is_visible) panel.label(middle_of(soil), readable(fill, 2) + " m³");
   }
   if (dug.dig.stall && !ends.empty()) {
     const BucketPose& end = dug.path.poses[ends.back()].bucket;
-    panel.dots({{end.x, end.z}}, 2.4, {"#ffffff", 0.6, colours::vermilion}, "the machine stalls");
+    panel.dots({{end.x, end.z}}, 2.4, {"#ffffff", 0.6, colours::vermilion},
+               end_text(*dug.dig.stall));
   }
   return panel;
 }

@@ -79,6 +79,8 @@ struct Drawing {
   double height = 0.0;  ///< [pt]
   std::string title;    ///< of the file, not drawn
   std::vector<DrawnItem> items;
+  std::vector<std::string> left_out = {};  ///< what a given height had no room for
+  double needed_height = 0.0;              ///< that has room for all of it [pt]
 };
 
 constexpr double points_per_mm = 72.0 / 25.4;

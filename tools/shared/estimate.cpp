@@ -365,7 +365,7 @@ void draw_estimate(const Plots& plots, const std::optional<std::string>& report,
                    const DensityEstimate& estimate, Outcome& outcome) {
   const DrawnEstimate drawn = {estimate,
                                {estimate.change, estimate.before, outcome.lines, outcome.warnings}};
-  write_plots(plots, estimate_figures(), drawn, change_table(drawn.sheet));
+  write_plots(plots, estimate_figures(), drawn, change_table(drawn.sheet), outcome.warnings);
   if (!report) return;
   Report page;
   page.headline = {"density_percent", "bulking_factor", "volume.excavated_m3", "volume.spilled_m3",

@@ -25,10 +25,18 @@ Points tip_path(const DigPath& path) {
   return points;
 }
 
-/// "soft, 10 %"; a condition may be named by its density.
-std::string title_of(const NamedExperiment& experiment) {
-  if (experiment.condition.find('%') != std::string::npos) return experiment.condition;
-  return experiment.condition + ", " + short_number(experiment.result.density_percent, 1) + " %";
+/// A condition may be named by its density: "5.00 %".
+bool is_density(const std::string& condition) { return condition.find('%') != std::string::npos; }
+
+/// "soft, 10 %", "5 %"
+std::string title_of(const std::string& condition, double density_percent) {
+  const std::string density = short_number(density_percent, 1) + " %";
+  return is_density(condition) ? density : condition + ", " + density;
+}
+
+/// "soft", "5"
+std::string name_of(const std::string& condition, double density_percent) {
+  return is_density(condition) ? short_number(density_percent, 1) : condition;
 }
 
 std::string gain_text(double percent) {
@@ -43,17 +51,22 @@ std::string line_text(const std::string& name, const DensityLine& line) {
   return name + ": d = " + decimals(line.a, 1) + " k − " + decimals(-line.b, 1);
 }
 
-}  // namespace
-
-Figure paths_figure(const std::vector<NamedExperiment>& experiments) {
-  Figure figure;
-  figure.title = "Digs along the fixed and along the planned path";
-  figure.rows.emplace_back();
-  Rectangle all{1e9, 0.0, -1e9, 0.0};
+/// At most most_panels, evenly from the first to the last.
+std::vector<const NamedExperiment*> some_of(const std::vector<NamedExperiment>& experiments) {
   const std::size_t count = std::min(most_panels, experiments.size());
+  std::vector<const NamedExperiment*> some;
   for (std::size_t i = 0; i < count; ++i) {
-    for (const DigPath* path :
-         {&experiments[i].result.fixed_path, &experiments[i].result.planned_path}) {
+    const std::size_t place = count > 1 ? i * (experiments.size() - 1) / (count - 1) : 0;
+    some.push_back(&experiments[place]);
+  }
+  return some;
+}
+
+/// Of all paths, with room around them.
+Rectangle view_of(const std::vector<const NamedExperiment*>& experiments) {
+  Rectangle all{1e9, 0.0, -1e9, 0.0};
+  for (const NamedExperiment* experiment : experiments) {
+    for (const DigPath* path : {&experiment->result.fixed_path, &experiment->result.planned_path}) {
       for (const Eigen::Vector2d& point : tip_path(*path)) {
         all.x_min = std::min(all.x_min, point.x());
         all.x_max = std::max(all.x_max, point.x());
@@ -63,41 +76,86 @@ Figure paths_figure(const std::vector<NamedExperiment>& experiments) {
     }
   }
   const double room = 0.08 * (all.x_max - all.x_min);
-  const Rectangle view{all.x_min - room, all.y_min - room, all.x_max + room, all.y_max + room};
-  for (std::size_t i = 0; i < count; ++i) {
-    const ExperimentResult& result = experiments[i].result;
-    Panel panel(title_of(experiments[i]), "x from the swing axis [m]", "z [m]");
+  return {all.x_min - room, all.y_min - room, all.x_max + room, all.y_max + room};
+}
+
+/// Of each condition; one that failed has no bars.
+std::vector<BarGroup> bar_groups(const Experiments& experiments, double per_si) {
+  std::vector<BarGroup> groups;
+  for (const auto& [condition, result] : experiments.done) {
+    const auto worth = [&, &result = result](const PlannedDig& dig) {
+      return Bar{result.objective.worth(dig) * per_si};
+    };
+    groups.push_back({name_of(condition, result.density_percent),
+                      {worth(result.fixed), worth(result.planned)},
+                      gain_text(result.gain_percent())});
+  }
+  for (auto failed = experiments.failed.rbegin(); failed != experiments.failed.rend(); ++failed) {
+    const auto place = groups.begin() + static_cast<std::ptrdiff_t>(failed->place);
+    groups.insert(place, {name_of(failed->condition, failed->density_percent), {}, "no dig"});
+  }
+  return groups;
+}
+
+/// What bars and paths do not show.
+std::string note_on(const Experiments& experiments) {
+  std::string note;
+  for (const FailedExperiment& failed : experiments.failed) {
+    note +=
+        (note.empty() ? "No dig in " : ", ") + title_of(failed.condition, failed.density_percent);
+  }
+  if (!note.empty()) note += ": the machine cannot dig along one of the paths. ";
+  if (experiments.second == SecondGround::left) {
+    note +=
+        "Fixed path on fresh ground, planned path on the ground that this dig left: the gain is "
+        "that of path and ground.";
+  }
+  return note;
+}
+
+}  // namespace
+
+Figure paths_figure(const Experiments& experiments) {
+  Figure figure;
+  figure.title = "Digs along the fixed and along the planned path";
+  const std::vector<const NamedExperiment*> shown = some_of(experiments.done);
+  figure.rows.emplace_back();
+  const Rectangle view = view_of(shown);
+  for (const NamedExperiment* experiment : shown) {
+    Panel panel(title_of(experiment->condition, experiment->result.density_percent),
+                "x from the swing axis [m]", "z [m]");
     panel.equal_aspect();
     panel.view(view);
     panel.polygon({{-99.0, 0.0}, {99.0, 0.0}, {99.0, -99.0}, {-99.0, -99.0}},
                   {"#a08050", 0.7, "#f3ead9"}, "ground");
-    panel.line(tip_path(result.fixed_path), {colours::vermilion, 1.4}, "tip, fixed path");
-    panel.line(tip_path(result.planned_path), {colours::blue, 1.4, "none", 1.0, {4.0, 1.6}},
-               "tip, planned path");
+    panel.line(tip_path(experiment->result.fixed_path), {colours::vermilion, 1.4},
+               "tip, fixed path");
+    panel.line(tip_path(experiment->result.planned_path),
+               {colours::blue, 1.4, "none", 1.0, {4.0, 1.6}}, "tip, planned path");
     figure.rows.back().push_back(panel);
   }
+  const std::size_t count = experiments.done.size();
+  if (shown.size() < count) {
+    figure.note = std::to_string(shown.size()) + " of " + std::to_string(count) + " conditions. ";
+  }
+  figure.note += note_on(experiments);
   return figure;
 }
 
-Figure efficiency_figure(const std::vector<NamedExperiment>& experiments) {
+Figure efficiency_figure(const Experiments& experiments) {
   Figure figure;
   figure.title = "Efficiency of digs along the fixed and along the planned path";
-  if (experiments.empty()) return figure;
-  const DigGoalInfo& goal = info_of(experiments.front().result.objective.goal);
-  std::vector<BarGroup> groups;
-  for (const auto& [condition, result] : experiments) {
-    const auto worth = [&, &result = result](const PlannedDig& dig) {
-      return Bar{result.objective.worth(dig) * goal.per_si};
-    };
-    groups.push_back({condition,
-                      {worth(result.fixed), worth(result.planned)},
-                      gain_text(result.gain_percent())});
-  }
-  figure.rows = {
-      {bar_panel(goal.description.substr(0, goal.description.find(',')) + " [" + goal.unit + "]",
-                 {{"fixed path", {"#444444", 0.6, "#c9c9c9"}},
-                  {"planned path", {"#444444", 0.6, colours::blue}}},
-                 groups)}};
+  if (experiments.done.empty()) return figure;
+  const DigGoalInfo& goal = info_of(experiments.done.front().result.objective.goal);
+  const std::string x_label = is_density(experiments.done.front().condition) ? density_label : "";
+  Panel panel =
+      bar_panel(goal.description.substr(0, goal.description.find(',')) + " [" + goal.unit + "]",
+                {{"fixed path", {"#444444", 0.6, "#c9c9c9"}},
+                 {"planned path", {"#444444", 0.6, colours::blue}}},
+                bar_groups(experiments, goal.per_si), x_label);
+  panel.skip_x_ticks();
+  figure.rows = {{panel}};
+  figure.note = note_on(experiments);
   return figure;
 }
 

@@ -21,18 +21,32 @@ struct NamedExperiment {
   ExperimentResult result;
 };
 
+/// A condition that could not be dug along one of the paths.
+struct FailedExperiment {
+  std::string condition;
+  double density_percent = 0.0;
+  std::size_t place = 0;  ///< conditions before it that were done
+};
+
+struct Experiments {
+  std::vector<NamedExperiment> done;
+  std::vector<FailedExperiment> failed;
+  SecondGround second = SecondGround::fresh;
+};
+
 struct DrawnExperiments {
-  const std::vector<NamedExperiment>& experiments;
+  const Experiments& experiments;
   const nlohmann::ordered_json& regression;  ///< by regression_json()
   const SoilKind& soil;
 };
 
 /// Paths of the tip along the fixed and the planned path, without the lift; Fig. 9. At most six
-/// conditions.
-Figure paths_figure(const std::vector<NamedExperiment>& experiments);
+/// conditions, from the first to the last; a note says of how many.
+Figure paths_figure(const Experiments& experiments);
 
-/// What the digs along both paths are worth, with the gain; Fig. 8.
-Figure efficiency_figure(const std::vector<NamedExperiment>& experiments);
+/// What the digs along both paths are worth, with the gain; Fig. 8. Conditions that failed are in
+/// their places.
+Figure efficiency_figure(const Experiments& experiments);
 
 /// Density over bulking factor: digs and regression lines; Fig. 7.
 Figure regression_figure(const DrawnExperiments& drawn);

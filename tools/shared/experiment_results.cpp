@@ -155,14 +155,14 @@ void add_failure(const std::string& condition, double density, const std::string
 }
 
 Report experiment_report(const Machine& machine, const SoilKind& soil, const PlanOptions& options,
-                         const std::vector<NamedExperiment>& experiments) {
+                         const Experiments& experiments) {
   Report report;
   report.title = "Fixed path against planned path in " + soil.name;
   report.plot_always = true;
   report.scene.machine = machine;
   const Terrain ground = level_planning_ground(machine, options.cell_size);
   report.scene.areas = {{{{"before", ground.surface()}}}};
-  for (const auto& [condition, result] : experiments) {
+  for (const auto& [condition, result] : experiments.done) {
     Machine standing = machine;
     if (!result.held_because.empty()) standing.body.reset();
     const auto simulator =
@@ -171,7 +171,7 @@ Report experiment_report(const Machine& machine, const SoilKind& soil, const Pla
     add_dig(condition + ", planned path", in, result.planned_path, report.scene);
     add_dig(condition + ", fixed path", in, result.fixed_path, report.scene);
   }
-  for (std::size_t i = 0; i < experiments.size() && i < 6; ++i) {  // ours
+  for (std::size_t i = 0; i < experiments.done.size() && i < 6; ++i) {  // ours
     report.headline.push_back("conditions." + std::to_string(i) + ".gain_percent");
   }
   Figure plot = paths_figure(experiments);

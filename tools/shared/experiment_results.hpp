@@ -37,6 +37,6 @@ void add_failure(const std::string& condition, double density_percent, const std
 /// The page, without its file: both digs of each condition, dug once more on level ground, and bars
 /// of what they are worth.
 Report experiment_report(const Machine& machine, const SoilKind& soil, const PlanOptions& options,
-                         const std::vector<NamedExperiment>& experiments);
+                         const Experiments& experiments);
 
 }  // namespace excavplan::tools

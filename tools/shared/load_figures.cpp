@@ -3,7 +3,6 @@
 #include "shared/load_figures.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
@@ -35,13 +34,13 @@ struct Timed {
     return steps.empty() ? 1.0 : steps.back().time + 0.5 * steps.back().duration;
   }
 
-  /// Strips in the colours of the phases.
+  /// Strips in the greys of the phases.
   void add_phases(Panel& panel) const {
     double from = 0.0;
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (i + 1 < steps.size() && steps[i + 1].phase == steps[i].phase) continue;
       const double to = steps[i].time + 0.5 * steps[i].duration;
-      panel.span(from, to, phase_style(steps[i].phase).stroke, name(steps[i].phase));
+      panel.span(from, to, phase_grey(steps[i].phase), name(steps[i].phase));
       from = to;
     }
   }
@@ -83,37 +82,35 @@ Panel time_panel(const Timed& timed, const std::string& y_label, const std::vect
   return panel;
 }
 
-const std::array<Style, 3> joint_styles = {
-    {{colours::blue, 1.3}, {colours::blue, 1.3}, {colours::blue, 1.3}}};
-
-/// Three panels, of boom, arm and bucket, with limits where they are finite.
-/// @param limit  of joint, step, sign of the load and its peak of that sign
-template <typename Value, typename Limit>
-Figure joints_figure(const Timed& timed, const std::string& title, const std::string& unit,
-                     const std::string& legend, const Value& value, const Limit& limit) {
+/// Three panels, of boom, arm and bucket.
+/// @param value  of joint and step
+/// @param bounds  lines beside the curve of a joint
+template <typename Value, typename Bounds>
+Figure joints_figure(const Timed& timed, const std::string& unit, const std::string& legend,
+                     const Value& value, const Bounds& bounds) {
   Figure figure;
-  figure.title = title;
   for (int i = 0; i < 3; ++i) {
     const Points load = timed.over_time([&](std::size_t step) { return value(i, step); });
-    double high = 0.0;
-    double low = 0.0;
-    for (const Eigen::Vector2d& point : load) {
-      high = std::max(high, point.y());
-      low = std::min(low, point.y());
-    }
-    std::vector<Curve> curves = {{load, joint_styles[0], legend}};
-    for (const double sign : {1.0, -1.0}) {
-      const Points bound = timed.over_time(
-          [&](std::size_t step) { return limit(i, step, sign, sign > 0.0 ? high : -low); });
-      if (std::isfinite(bound.empty() ? std::nan("") : bound.front().y())) {
-        curves.push_back({bound, limit_style, "limit"});
-      }
-    }
+    std::vector<Curve> curves = bounds(i, load);
+    curves.insert(curves.begin(), {load, {colours::blue, 1.3}, legend});
     figure.rows.push_back(
         {time_panel(timed, std::string(name(static_cast<Joint>(i))) + " [" + unit + "]", curves,
                     i == 2, 0.24)});
   }
   return figure;
+}
+
+/// The limit of a torque, on the sides that carry a tenth of it.
+std::vector<Curve> limits_of(const Points& load, double limit) {
+  std::vector<Curve> limits;
+  for (const double sign : {1.0, -1.0}) {
+    const auto carries = [&](const Eigen::Vector2d& at) { return sign * at.y() > 0.1 * limit; };
+    if (std::none_of(load.begin(), load.end(), carries)) continue;
+    limits.push_back({{{load.front().x(), sign * limit}, {load.back().x(), sign * limit}},
+                      limit_style,
+                      "limit"});
+  }
+  return limits;
 }
 
 }  // namespace
@@ -150,13 +147,14 @@ Figure forces_figure(const DugDig& dug) {
 
 Figure torques_figure(const DugDig& dug) {
   const Timed timed(dug);
-  return joints_figure(
-      timed, "Torques of the joints: " + dug.title, "kN m", "torque",
+  Figure figure = joints_figure(
+      timed, "kN m", "torque",
       [&](int joint, std::size_t i) { return timed.sample(i).torque[joint] / 1000.0; },
-      [&](int joint, std::size_t, double sign, double peak) {
-        const double torque = dug.machine.limits[static_cast<std::size_t>(joint)].torque / 1000.0;
-        return peak > 0.1 * torque ? sign * torque : std::nan("");
+      [&](int joint, const Points& load) {
+        return limits_of(load, dug.machine.limits[static_cast<std::size_t>(joint)].torque / 1000.0);
       });
+  figure.title = "Torques of the joints: " + dug.title;
+  return figure;
 }
 
 Figure power_figure(const DugDig& dug) {
@@ -190,25 +188,18 @@ Figure cylinders_figure(const DugDig& dug) {
                       : 1.0;
   };
   const double unit = hydraulics ? 1e6 : 1e3;
-  const auto force = [&](int joint, std::size_t i, double torque) {
-    return cylinders[static_cast<std::size_t>(joint)].force(timed.sample(i).joints[joint], torque);
-  };
   const auto load = [&](int joint, std::size_t i) {
-    const double newtons = force(joint, i, timed.sample(i).torque[joint]);
+    const double newtons = cylinders[static_cast<std::size_t>(joint)].force(
+        timed.sample(i).joints[joint], timed.sample(i).torque[joint]);
     return newtons / area(joint, newtons) / unit;
   };
-  const auto limit = [&](int joint, std::size_t i, double sign, double) {
-    const double torque = dug.machine.limits[static_cast<std::size_t>(joint)].torque;
-    return sign > 0.0 ? std::abs(force(joint, i, torque)) / area(joint, sign) / unit : std::nan("");
-  };
-  Figure figure = joints_figure(
-      timed, (hydraulics ? "Pressures" : "Forces") + std::string(" of the cylinders: ") + dug.title,
-      hydraulics ? "MPa" : "kN", hydraulics ? "pressure" : "force", load, limit);
-  figure.note = hydraulics
-                    ? "Positive: the cylinder pushes, on the side of the piston; negative: "
-                      "it pulls, on the side of the rod. Limit: of the joint's torque, "
-                      "pushing."
-                    : "Positive: the cylinder pushes. Limit: of the joint's torque, pushing.";
+  Figure figure = joints_figure(timed, hydraulics ? "MPa" : "kN", hydraulics ? "pressure" : "force",
+                                load, [](int, const Points&) { return std::vector<Curve>(); });
+  figure.title = (hydraulics ? "Pressures" : "Forces") + std::string(" of the cylinders: ");
+  figure.title += dug.title;
+  figure.note = hydraulics ? "Positive: the cylinder pushes, on the side of the piston; negative: "
+                             "it pulls, on the side of the rod."
+                           : "Positive: the cylinder pushes.";
   return figure;
 }
 

@@ -122,6 +122,22 @@ std::vector<Points> cylinder_lines(const Machine& machine, const LinkPositions& 
   return lines;
 }
 
+/// From the bucket's pin over that of its link to the wall that is nearest to this, and along the
+/// wall to its top edge.
+Points bracket_outline(const Machine& machine, const LinkPositions& at, const Points& wall) {
+  if (!machine.cylinders || wall.empty()) return {};
+  const auto* bars = std::get_if<FourBar>(&(*machine.cylinders)[2].geometry().rod);
+  if (bars == nullptr) return {};
+  const Vector2d link = pin_at(at.bucket_pin, at.phi3, bars->link.pin);
+  Points bracket = {at.bucket_pin, link};
+  const auto nearest =
+      std::min_element(wall.begin(), wall.end(), [&](const auto& a, const auto& b) {
+        return (a - link).squaredNorm() < (b - link).squaredNorm();
+      });
+  bracket.insert(bracket.end(), nearest, wall.end());
+  return bracket;
+}
+
 /// Tracks on the ground, house and cab above them, by the height of the boom pin.
 void add_body(const Machine& machine, MachineOutline& outline) {
   const double front = machine.track_front;
@@ -236,7 +252,9 @@ MachineOutline machine_outline(const Machine& machine, const JointAngles& joints
   outline.arm = arm_outline(machine, at);
   outline.cylinders = cylinder_lines(machine, at, joints);
   outline.bucket = bucket_outline(machine, joints);
+  outline.bracket = bracket_outline(machine, at, outline.bucket);
   outline.pins = {machine.boom_pin, at.arm_pin, at.bucket_pin};
+  if (!outline.bracket.empty()) outline.pins.push_back(outline.bracket[1]);
   return outline;
 }
 

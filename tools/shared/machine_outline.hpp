@@ -18,7 +18,8 @@ struct MachineOutline {
   Points boom, arm;
   std::vector<Points> cylinders;  ///< from foot to rod; of the bucket with rocker and link
   Points bucket;                  ///< open, from tip to the top edge
-  Points pins;                    ///< of boom, arm and bucket
+  Points bracket;                 ///< between pins and bucket; empty without a link
+  Points pins;                    ///< of boom, arm, bucket and link
 };
 
 MachineOutline machine_outline(const Machine& machine, const JointAngles& joints);

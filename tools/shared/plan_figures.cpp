@@ -107,26 +107,54 @@ std::vector<double> worths(const DrawnPlan& drawn, const std::vector<Section>& s
   return found;
 }
 
+/// What the dots do not show.
+std::string search_note(const DrawnPlan& drawn, bool is_uncertain) {
+  std::string note;
+  if (is_uncertain) {
+    note =
+        "The worth is the mean over the possible densities, at each of which a path is dug. With "
+        "the searches at single densities, not shown, " +
+        std::to_string(drawn.plan.evaluations) + " digs were simulated. ";
+  }
+  if (drawn.search.objective.min_fill > 0.0) {
+    note += "Digs that fill the bucket less than asked count for less. ";
+  }
+  if (drawn.plan.search->refused > 0) {
+    note += std::to_string(drawn.plan.search->refused) +
+            " more cannot be driven and were not simulated.";
+  }
+  return note;
+}
+
 }  // namespace
 
 Figure search_figure(const DrawnPlan& drawn) {
   const DigGoalInfo& goal = info_of(drawn.search.objective.goal);
-  Panel panel("", "digs evaluated", worth_label(drawn.search.objective));
-  Points digs, best;
-  double highest = nan;
   const std::vector<double>& ranks = drawn.plan.search->ranks;
+  const bool is_uncertain = drawn.plan.evaluations > static_cast<int>(ranks.size());
+  Panel panel("", is_uncertain ? "paths evaluated" : "digs evaluated",
+              worth_label(drawn.search.objective));
+  Points digs, failed, best;
+  double highest = nan;
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     const auto number = static_cast<double>(i + 1);
     const double worth = ranks[i] * goal.per_si;
+    if (!std::isfinite(worth)) {
+      failed.emplace_back(number, 0.0);
+      continue;
+    }
     digs.emplace_back(number, worth);
-    if (!(worth <= highest) && std::isfinite(worth)) {
+    if (!(worth <= highest)) {
       if (std::isfinite(highest)) best.emplace_back(number, highest);
       highest = worth;
       best.emplace_back(number, highest);
     }
   }
   if (!best.empty()) best.emplace_back(static_cast<double>(ranks.size()), highest);
-  panel.dots(digs, 0.9, {"none", 0.0, colours::sky}, "a dig");
+  panel.dots(digs, 0.9, {"none", 0.0, colours::sky}, is_uncertain ? "a path" : "a dig");
+  if (!failed.empty()) {
+    panel.dots(failed, 0.9, {colours::grey, 0.5, "#ffffff"}, "the machine stalls");
+  }
   panel.line(best, {colours::vermilion, 1.3}, "best so far");
   panel.view({0.0, 0.0, static_cast<double>(ranks.size()) + 1.0,
               1.06 * (std::isfinite(highest) ? highest : 1.0)});
@@ -134,9 +162,7 @@ Figure search_figure(const DrawnPlan& drawn) {
   Figure figure;
   figure.title = "Search: " + drawn.dug->title;
   figure.rows = {{panel}};
-  if (drawn.search.objective.min_fill > 0.0) {
-    figure.note = "Digs that fill the bucket less than asked count for less.";
-  }
+  figure.note = search_note(drawn, is_uncertain);
   return figure;
 }
 
@@ -192,7 +218,7 @@ void draw_plan(const Plots& plots, const std::optional<std::string>& report, Dra
                         boom_plane_profile(dig->after(site.ground)),
                         title};
     drawn.dug = &dug;
-    write_plots(plots, plan_figures({}, {}), drawn, outcome.lines);
+    write_plots(plots, plan_figures({}, {}), drawn, outcome.lines, outcome.warnings);
     section = to_svg(lay_out(section_figure(dug)));
   }
   if (!report) return;

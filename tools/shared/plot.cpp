@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/angles.hpp"
 #include "base/text.hpp"
 
 namespace excavplan::tools {
@@ -40,6 +41,10 @@ void Panel::interval(const Eigen::Vector2d& low, const Eigen::Vector2d& high, co
 
 void Panel::label(const Eigen::Vector2d& at, const std::string& text) {
   shapes_.push_back({Kind::label, {at}, {}, text});
+}
+
+void Panel::remark(const Eigen::Vector2d& at, double width, const std::string& text) {
+  shapes_.push_back({Kind::remark, {at, {at.x() + width, at.y()}}, {}, text});
 }
 
 void Panel::map(const Grid& grid, const ColourScale& scale, const std::string& unknown) {
@@ -272,6 +277,26 @@ std::string fitted(std::string text, double width, double size, bool bold = fals
   return text.empty() ? text : text + "…";
 }
 
+/// Whether a stretch of a line runs through a box.
+bool crosses(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Box& box) {
+  double from = 0.0;
+  double to = 1.0;
+  const Eigen::Array2d low(box.left, box.top);
+  const Eigen::Array2d high(box.right(), box.bottom());
+  for (int axis = 0; axis < 2; ++axis) {
+    const double way = b[axis] - a[axis];
+    if (way == 0.0) {
+      if (a[axis] < low[axis] || a[axis] > high[axis]) return false;
+      continue;
+    }
+    const double at_low = (low[axis] - a[axis]) / way;
+    const double at_high = (high[axis] - a[axis]) / way;
+    from = std::max(from, std::min(at_low, at_high));
+    to = std::min(to, std::max(at_low, at_high));
+  }
+  return from <= to;
+}
+
 /// Lays out a figure from above to below and draws it.
 class Sheet {
  public:
@@ -283,11 +308,7 @@ class Sheet {
     stack_rows();
     collect_keys();
     if (!height_) return;
-    while (!fits() && rows_.size() > 1) {
-      rows_.pop_back();
-      collect_keys();
-    }
-    if (!fits()) keys_.clear();
+    leave_out();
     fit_height();
   }
 
@@ -318,13 +339,31 @@ class Sheet {
   double gap() const { return 5.0 * scale_; }
   double inner() const { return width_ - 2.0 * pad(); }
 
+  /// What a given height has no room for.
+  void leave_out() {
+    drawing_.needed_height = least_height();
+    while (!fits() && rows_.size() > 1) {
+      for (const Panel* panel : rows_.back().panels) {
+        const std::string& name = panel->title().empty() ? panel->y_label() : panel->title();
+        drawing_.left_out.push_back("the panel '" + name + "'");
+      }
+      rows_.pop_back();
+      collect_keys();
+    }
+    if (!fits() && !keys_.empty()) {
+      drawing_.left_out.push_back("the legend");
+      keys_.clear();
+    }
+    if (!fits()) drawing_.left_out.push_back("axes of a readable height");
+  }
+
   void collect_keys() {
     keys_.clear();
     for (const Row& row : rows_) {
       for (const Panel* panel : row.panels) {
         for (const Panel::Shape& shape : panel->shapes()) {
           const auto same = [&](const Panel::Shape* key) { return key->text == shape.text; };
-          if (shape.text.empty() || shape.kind == Panel::Kind::label) continue;
+          if (shape.text.empty() || is_text(shape)) continue;
           if (std::none_of(keys_.begin(), keys_.end(), same)) keys_.push_back(&shape);
         }
       }
@@ -407,12 +446,17 @@ class Sheet {
     return panel.has_equal_aspect() && !panel.has_map() ? grown_to(view, width, height) : view;
   }
 
+  static bool is_text(const Panel::Shape& shape) {
+    return shape.kind == Panel::Kind::label || shape.kind == Panel::Kind::remark;
+  }
+
   // Heights of what is not axes.
   bool has_title(const Row& row) const {
     return std::any_of(row.panels.begin(), row.panels.end(),
                        [](const Panel* panel) { return !panel->title().empty(); });
   }
   bool hides_x(const Row& row) const {
+    if (&row == &rows_.back()) return false;
     return std::all_of(row.panels.begin(), row.panels.end(),
                        [](const Panel* panel) { return panel->hides_x(); });
   }
@@ -479,9 +523,10 @@ class Sheet {
     return height;
   }
 
-  bool fits() const {
-    return *height_ - fixed_height() >= 32.0 * scale_ * static_cast<double>(rows_.size());
+  double least_height() const {
+    return fixed_height() + 32.0 * scale_ * static_cast<double>(rows_.size());
   }
+  bool fits() const { return *height_ >= least_height(); }
 
   /// Shares what is left of a given height among the rows.
   void fit_height() {
@@ -545,8 +590,9 @@ class Sheet {
     add(Clip{});
     draw_box(box, thin("#444444"));
     for (const Panel::Shape& shape : panel.shapes()) draw_dots(shape, frame);
-    draw_labels(panel, frame);
-    if (!panel.hides_x()) draw_x(panel, frame, xs);
+    draw_labels(panel, frame, Panel::Kind::label);
+    draw_remarks(panel, frame);
+    if (!hides_x(row)) draw_x(panel, frame, xs);
     if (!repeats_words(panel, row)) draw_y(panel, frame, ys, names_are_above());
     const double cell_right = box.left + axes_width(row) + right();
     if (!panel.title().empty()) {
@@ -581,14 +627,19 @@ class Sheet {
     const double room = words && !ticks.empty()
                             ? (box.width + right()) / static_cast<double>(ticks.size())
                             : box.width;
-    for (const Tick& tick : ticks) {
+    const double gap_of_words = words ? 0.5 * number() : 0.0;
+    const auto every = static_cast<std::size_t>(
+        panel.skips_x_ticks() ? std::ceil((widest(ticks, number()) + gap_of_words) / room) : 1.0);
+    for (std::size_t i = 0; i < ticks.size(); i += std::max<std::size_t>(1, every)) {
+      const Tick& tick = ticks[i];
       const double x = frame.x(tick.first);
       if (x < box.left - 0.1 || x > box.right() + 0.1) continue;
       if (!words) {
         add(DrawnPath{
             {{{x, box.bottom()}, {x, box.bottom() + 2.5 * scale_}}}, false, thin("#444444")});
       }
-      put(x, box.bottom() + line(), fitted(tick.second, room, number()), number(), Anchor::middle);
+      const double most = room * static_cast<double>(every) - gap_of_words;
+      put(x, box.bottom() + line(), fitted(tick.second, most, number()), number(), Anchor::middle);
     }
     const double cell = box.width + frame.margin + right();
     const std::string name = fitted(panel.x_label(), cell, text());
@@ -629,6 +680,7 @@ class Sheet {
       case Panel::Kind::map:
         return draw_map(shape, frame);
       case Panel::Kind::label:
+      case Panel::Kind::remark:
         return;
       case Panel::Kind::dots:
         return;
@@ -707,35 +759,129 @@ class Sheet {
     return {low.x(), high.y(), high.x() - low.x(), low.y() - high.y()};
   }
 
-  void draw_labels(const Panel& panel, const Frame& frame) {
-    std::vector<Box> taken;
+  /// Labels beside lines and one another, each tied to its point where it could not stay there.
+  void draw_labels(const Panel& panel, const Frame& frame, Panel::Kind kind) {
+    Obstacles obstacles = obstacles_of(panel, frame);
+    std::vector<DrawnText> texts;
     for (const Panel::Shape& shape : panel.shapes()) {
-      if (shape.kind != Panel::Kind::label) continue;
+      if (shape.kind != kind) continue;
       const double width = text_width(shape.text, number()) + 4.0 * scale_;
       if (width > frame.box.width || frame.box.height < line()) continue;
-      const double low = frame.box.left + 0.5 * width;
-      const double x =
-          std::clamp(frame.x(shape.points[0].x()), low, frame.box.right() - 0.5 * width);
-      const double wanted = frame.y(shape.points[0].y()) + 0.36 * number();
-      for (int step = 0; step < 60; ++step) {
-        const double y = wanted + (step % 2 == 0 ? -0.5 : 0.5) * ((step + 1) / 2) * 0.5 * line();
-        const Box box{x - 0.5 * width, y - number(), width, line()};
-        if (!is_free(box, frame.box, taken)) continue;
-        taken.push_back(box);
-        DrawnText drawn{{x, y}, shape.text, number(), Anchor::middle};
-        drawn.halo = true;
-        add(std::move(drawn));
-        break;
-      }
+      const Eigen::Vector2d at = frame.at(shape.points[0]);
+      const std::optional<Box> box = free_box(at, width, frame.box, obstacles);
+      if (!box) continue;
+      if (!box->contains(at, 0.0)) draw_tie(at, *box, obstacles);
+      obstacles.texts.push_back(*box);
+      texts.push_back({{box->left + 0.5 * width, box->top + 0.5 * line() + 0.36 * number()},
+                       shape.text,
+                       number(),
+                       Anchor::middle});
+    }
+    for (DrawnText& text : texts) {
+      text.halo = true;
+      add(std::move(text));
     }
   }
 
-  static bool is_free(const Box& box, const Box& frame, const std::vector<Box>& taken) {
+  /// What a label should not cover, on the page.
+  struct Obstacles {
+    std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> lines;
+    std::vector<Box> texts;
+  };
+
+  Obstacles obstacles_of(const Panel& panel, const Frame& frame) const {
+    Obstacles obstacles;
+    const auto add_line = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+      if (a.allFinite() && b.allFinite()) obstacles.lines.emplace_back(frame.at(a), frame.at(b));
+    };
+    for (const Panel::Shape& shape : panel.shapes()) {
+      const Points& points = shape.points;
+      const bool is_polygon = shape.kind == Panel::Kind::polygon;
+      const bool is_line = shape.kind == Panel::Kind::line || is_polygon;
+      if (shape.kind == Panel::Kind::dots) {
+        for (const Eigen::Vector2d& dot : points) add_line(dot, dot);
+      }
+      if (!is_line || shape.style.stroke == "none" || points.empty()) continue;
+      for (std::size_t i = 1; i < points.size(); ++i) add_line(points[i - 1], points[i]);
+      if (is_polygon) add_line(points.back(), points.front());
+    }
+    return obstacles;
+  }
+
+  /// The box of a label that is nearest to a point and covers nothing; else only no other label.
+  std::optional<Box> free_box(const Eigen::Vector2d& at, double width, const Box& frame,
+                              const Obstacles& obstacles) const {
+    constexpr int directions = 16;
+    const double step = 0.4 * line();
+    std::optional<Box> fallback;
+    for (double distance = 0.0; distance < frame.width + frame.height; distance += step) {
+      for (int i = 0; i < (distance > 0.0 ? directions : 1); ++i) {
+        const double angle = 0.5 * pi + 2.0 * pi * (i % 2 == 0 ? i : -i - 1) / (2 * directions);
+        const Box box{at.x() + distance * std::cos(angle) - 0.5 * width,
+                      at.y() - distance * std::sin(angle) - 0.5 * line(), width, line()};
+        if (!is_free_of_texts(box, frame, obstacles)) continue;
+        if (!fallback) fallback = box;
+        if (!is_crossed(box, obstacles)) return box;
+      }
+    }
+    return fallback;
+  }
+
+  static bool is_free_of_texts(const Box& box, const Box& frame, const Obstacles& obstacles) {
     if (box.top < frame.top || box.bottom() > frame.bottom() + 0.1) return false;
-    return std::none_of(taken.begin(), taken.end(), [&](const Box& other) {
+    if (box.left < frame.left || box.right() > frame.right()) return false;
+    return std::none_of(obstacles.texts.begin(), obstacles.texts.end(), [&](const Box& other) {
       return box.left < other.right() && other.left < box.right() && box.top < other.bottom() &&
              other.top < box.bottom();
     });
+  }
+
+  static bool is_crossed(const Box& box, const Obstacles& obstacles) {
+    return std::any_of(obstacles.lines.begin(), obstacles.lines.end(),
+                       [&](const auto& line) { return crosses(line.first, line.second, box); });
+  }
+
+  /// A thin line from a dot at the point to the nearest place of the box.
+  void draw_tie(const Eigen::Vector2d& at, const Box& box, Obstacles& obstacles) {
+    const Eigen::Vector2d end(std::clamp(at.x(), box.left, box.right()),
+                              std::clamp(at.y(), box.top, box.bottom()));
+    add(DrawnPath{{{at, end}}, false, {"#ffffff", 1.6 * scale_}});
+    add(DrawnPath{{{at, end}}, false, thin("#222222")});
+    add(DrawnCircle{at, 1.3 * scale_, {"#ffffff", 0.5 * scale_, "#222222"}});
+    obstacles.lines.emplace_back(at, end);
+  }
+
+  /// Side by side where each has room, else upright, and as many of these as have room; where the
+  /// axes are too low for that, as labels.
+  void draw_remarks(const Panel& panel, const Frame& frame) {
+    std::vector<const Panel::Shape*> remarks;
+    double room = frame.box.width;
+    double longest = 0.0;
+    for (const Panel::Shape& shape : panel.shapes()) {
+      if (shape.kind != Panel::Kind::remark) continue;
+      remarks.push_back(&shape);
+      room = std::min(room, frame.x(shape.points[1].x()) - frame.x(shape.points[0].x()));
+      longest = std::max(longest, text_width(shape.text, number()));
+    }
+    const bool upright = longest + 2.0 * scale_ > room;
+    if (upright && longest > 0.8 * frame.box.height) {
+      return draw_labels(panel, frame, Panel::Kind::remark);
+    }
+    const double extent = upright ? longest : number();
+    const auto every = upright ? static_cast<std::size_t>(std::ceil(line() / room)) : 1;
+    for (std::size_t i = 0; i < remarks.size(); i += every) {
+      const Eigen::Vector2d above = frame.at(remarks[i]->points[0]) - Eigen::Vector2d(0.0, 3.0);
+      const double half = 0.5 * (upright ? number() : longest);
+      const double x = std::clamp(above.x(), frame.box.left + half, frame.box.right() - half);
+      DrawnText drawn{{x + (upright ? 0.36 * number() : 0.0),
+                       std::max(above.y(), frame.box.top + extent + 2.0 * scale_)},
+                      remarks[i]->text,
+                      number(),
+                      upright ? Anchor::start : Anchor::middle,
+                      upright};
+      drawn.halo = true;
+      add(std::move(drawn));
+    }
   }
 
   // ---- Below the panels ----

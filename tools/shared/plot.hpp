@@ -32,7 +32,7 @@ class Panel {
  public:
   /// A number on an axis, or a word in its place.
   using Tick = std::pair<double, std::string>;
-  enum class Kind { line, polygon, strokes, dots, interval, label, map, span };
+  enum class Kind { line, polygon, strokes, dots, interval, label, remark, map, span };
   struct Shape {
     Kind kind;
     Points points;
@@ -54,8 +54,11 @@ class Panel {
   /// A line with a short bar at either end.
   void interval(const Eigen::Vector2d& low, const Eigen::Vector2d& high, const Style& style,
                 const std::string& legend = "");
-  /// Text centred at a point; moved up or down where it would cover another label.
+  /// Text centred at a point; where it would cover a line or another label beside it, tied to the
+  /// point by a thin line.
   void label(const Eigen::Vector2d& at, const std::string& text);
+  /// Text above a point; upright where it would be wider than this part of the x axis.
+  void remark(const Eigen::Vector2d& at, double width, const std::string& text);
   /// Coloured cells; unknown ones stay grey, `unknown` in the legend.
   void map(const Grid& grid, const ColourScale& scale, const std::string& unknown = "not seen");
   /// A strip along the upper border, from and to an x.
@@ -72,9 +75,11 @@ class Panel {
   /// These instead of numbers.
   void x_ticks(std::vector<Tick> ticks) { x_ticks_ = std::move(ticks); }
   void y_ticks(std::vector<Tick> ticks) { y_ticks_ = std::move(ticks); }
+  /// Words of x that find no room are left out, not cut.
+  void skip_x_ticks() { skips_x_ticks_ = true; }
   /// The numbers of x are those of -x: it grows to the left.
   void mirror_x() { mirrors_x_ = true; }
-  /// Without numbers and name of x, above a panel of the same x.
+  /// Without numbers and name of x unless it is the lowest, above a panel of the same x.
   void hide_x() { hides_x_ = true; }
 
   const std::string& title() const { return title_; }
@@ -86,6 +91,7 @@ class Panel {
   bool has_equal_aspect() const { return equal_aspect_; }
   bool has_map() const;
   bool hides_x() const { return hides_x_; }
+  bool skips_x_ticks() const { return skips_x_ticks_; }
   bool mirrors_x() const { return mirrors_x_; }
   double shape() const { return shape_; }
   double least_height() const { return least_height_; }
@@ -99,6 +105,7 @@ class Panel {
   std::optional<std::vector<Tick>> x_ticks_, y_ticks_;
   bool equal_aspect_ = false;
   bool hides_x_ = false;
+  bool skips_x_ticks_ = false;
   bool mirrors_x_ = false;
   double shape_ = 0.6;
   double least_height_ = 40.0;
@@ -127,7 +134,8 @@ struct SheetSize {
 };
 
 /// Texts have at least 6 pt; on sheets wider than 170 mm all grows with them. In a given height the
-/// panels become lower, and the last are left out where they do not fit.
+/// panels become lower, and the last, then the legend, are left out where they do not fit; the
+/// drawing says which.
 Drawing lay_out(const Figure& figure, const SheetSize& size = {});
 
 }  // namespace excavplan::tools

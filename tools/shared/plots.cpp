@@ -3,8 +3,10 @@
 #include "shared/plots.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/files.hpp"
+#include "base/text.hpp"
 #include "shared/render.hpp"
 
 namespace excavplan::tools {
@@ -80,6 +82,14 @@ std::string help_of(const std::vector<FigureName>& figures) {
   return help + ". May be given several times";
 }
 
+Warning left_out_warning(const std::string& file, const Drawing& drawing) {
+  std::string parts;
+  for (const std::string& part : drawing.left_out) parts += (parts.empty() ? "" : ", ") + part;
+  const auto mm = [](double points) { return decimals(std::ceil(points / points_per_mm), 0); };
+  return {"plot_left_out", file + ": --plot-size has no room for " + parts + "; a height of " +
+                               mm(drawing.needed_height) + " mm has"};
+}
+
 }  // namespace
 
 bool Plots::has(const std::string& figure) const {
@@ -116,9 +126,11 @@ void declare_plots(Arguments& arguments, Plots& plots, const std::vector<FigureN
 }
 
 void write_plot(const Plots& plots, const std::string& file, Figure figure,
-                const std::vector<std::string>& table) {
+                const std::vector<std::string>& table, std::vector<Warning>& warnings) {
   if (plots.table) figure.table = table;
-  write_file(file, image_of(lay_out(figure, plots.size), file));
+  const Drawing drawing = lay_out(figure, plots.size);
+  write_file(file, image_of(drawing, file));
+  if (!drawing.left_out.empty()) warnings.push_back(left_out_warning(file, drawing));
 }
 
 }  // namespace excavplan::tools

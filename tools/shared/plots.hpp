@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/error.hpp>
+
 #include "shared/arguments.hpp"
 #include "shared/plot.hpp"
 
@@ -37,9 +39,11 @@ struct Plots {
 
 void declare_plots(Arguments& arguments, Plots& plots, const std::vector<FigureName>& figures);
 
-/// Draws a figure into a file of its ending. @param table  for --plot-table
+/// Draws a figure into a file of its ending.
+/// @param table  for --plot-table
+/// @param warnings  get what --plot-size has no room for
 void write_plot(const Plots& plots, const std::string& file, Figure figure,
-                const std::vector<std::string>& table);
+                const std::vector<std::string>& table, std::vector<Warning>& warnings);
 
 /// How a figure with a name is drawn.
 template <typename Subject>
@@ -58,14 +62,14 @@ std::vector<FigureName> names_of(const FigureTable<Subject>& table) {
   return names;
 }
 
-/// Draws what the options ask for.
+/// Draws what the options ask for; as write_plot().
 template <typename Subject>
 void write_plots(const Plots& plots, const FigureTable<Subject>& figures, const Subject& subject,
-                 const std::vector<std::string>& table) {
+                 const std::vector<std::string>& table, std::vector<Warning>& warnings) {
   for (const Plots::File& each : plots.files) {
     for (const NamedFigure<Subject>& figure : figures) {
       if (figure.name.name != each.figure) continue;
-      write_plot(plots, each.file, figure.draw(subject), table);
+      write_plot(plots, each.file, figure.draw(subject), table, warnings);
     }
   }
 }

@@ -20,7 +20,9 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
   }
   const std::vector<ExperimentCondition> conditions = conditions_of(experiment);
   const OptionNames names = experiment_option_names();
-  std::vector<NamedExperiment> done;
+  Experiments experiments;
+  experiments.second = options.second;
+  std::vector<NamedExperiment>& done = experiments.done;
   std::string failure;
   Outcome outcome;
   outcome.warnings = unlike_law(law, machine.name, soil.name);
@@ -36,6 +38,7 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_input) throw;
       failure = error.what();
+      experiments.failed.push_back({condition.name, condition.density, done.size()});
       add_failure(condition.name, condition.density, failure, outcome);
     }
   }
@@ -49,10 +52,10 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
   }
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
-  write_plots(pages.plots, experiment_figures({}), {done, outcome.json["regression"], soil},
-              outcome.lines);
+  write_plots(pages.plots, experiment_figures({}), {experiments, outcome.json["regression"], soil},
+              outcome.lines, outcome.warnings);
   if (pages.report) {
-    Report report = experiment_report(machine, soil, options.plan, done);
+    Report report = experiment_report(machine, soil, options.plan, experiments);
     report.file = *pages.report;
     outcome.report = std::make_shared<Report>(std::move(report));
   }

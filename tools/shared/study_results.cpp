@@ -226,7 +226,9 @@ Outcome study(const Machine& machine, const StudyInputs& inputs, const Plots& pl
   write_file(files.tables, tables(results));
   const Figure figure = study_figure(results);
   write_file(files.figure, to_svg(lay_out(figure)));
-  for (const Plots::File& plot : plots.files) write_plot(plots, plot.file, figure, outcome.lines);
+  for (const Plots::File& plot : plots.files) {
+    write_plot(plots, plot.file, figure, outcome.lines, outcome.warnings);
+  }
   return outcome;
 }
 
