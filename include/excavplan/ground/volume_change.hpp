@@ -42,6 +42,9 @@ struct AreaChange {
   double noise_sd = 0.0;  ///< of one stable cell of `difference`, at least 0.1 mm [m]
   double datum =
       0.0;  ///< robust mean change of the stable ground, subtracted from `difference` [m]
+  /// Of each cell of `difference`, by the scatter of its points and the error that it shares with
+  /// its neighbours, without that of the datum [m]; NaN where unknown.
+  Eigen::ArrayXXd sd = {};
 };
 
 /// Settings of measure_change(). The defaults are ours, found by experiment

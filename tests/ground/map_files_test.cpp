@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/ground/map_files.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <excavplan/error.hpp>
+
+#include "support/errors.hpp"
+#include "support/run_program.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Three columns by two rows that no turn or mirror leaves as it is; the cell in the middle of the
+/// upper row is not known.
+LayeredMap unsymmetrical() {
+  LayeredMap map;
+  map.ground.origin = {10.0, -20.0};
+  map.ground.cell_size = 0.5;
+  map.ground.z.resize(2, 3);
+  map.ground.z << 1.0, 2.0, 3.0,  // the lower row, y from -20
+      4.0, nan, 6.1;
+  map.layers = {{"height_m", "height", map.ground.z}};
+  return map;
+}
+
+class MapFiles : public testing::Test {
+ protected:
+  test::TemporaryFolder folder;
+};
+
+TEST_F(MapFiles, AsciiGridBeginsWithTheLargestYAndHasItsCorner) {
+  const std::string file = folder.file("a.ASC");
+  write_map(file, unsymmetrical());
+  EXPECT_EQ(test::content_of(file),
+            "ncols 3\nnrows 2\nxllcorner 10\nyllcorner -20\ncellsize 0.5\nNODATA_value -9999\n"
+            "4 -9999 6.1\n1 2 3\n");
+}
+
+TEST_F(MapFiles, AsciiGridKeepsEveryDigit) {
+  LayeredMap map = unsymmetrical();
+  map.layers.front().values(0, 0) = 0.1 + 0.2;
+  const std::string file = folder.file("a.asc");
+  write_map(file, map);
+  std::istringstream lines(test::content_of(file));
+  std::string line;
+  while (std::getline(lines, line)) continue;
+  EXPECT_EQ(std::stod(line), 0.1 + 0.2);
+}
+
+template <typename Number>
+Number number_at(const std::string& bytes, std::size_t at) {
+  Number value{};
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+TEST_F(MapFiles, PlyHasThePointsThatAreKnownWithTheirLayers) {
+  LayeredMap map = unsymmetrical();
+  map.layers.push_back({"change_m", "change", 10.0 * map.ground.z});
+  map.layers.back().values(0, 1) = nan;
+  const std::string file = folder.file("a.ply");
+  write_map(file, map);
+  const std::string bytes = test::content_of(file);
+  const std::string head = bytes.substr(0, bytes.find("end_header\n") + 11);
+  EXPECT_EQ(head,
+            "ply\nformat binary_little_endian 1.0\ncomment excavplan, site frame, metres\n"
+            "element vertex 5\nproperty double x\nproperty double y\nproperty double z\n"
+            "property double scalar_height_m\nproperty double scalar_change_m\nend_header\n");
+  ASSERT_EQ(bytes.size(), head.size() + 5 * 5 * sizeof(double));
+  const auto value = [&](std::size_t point, std::size_t which) {
+    return number_at<double>(bytes, head.size() + (5 * point + which) * sizeof(double));
+  };
+  EXPECT_EQ(value(0, 0), 10.25);
+  EXPECT_EQ(value(0, 1), -19.75);
+  EXPECT_EQ(value(0, 2), 1.0);
+  EXPECT_TRUE(std::isnan(value(1, 4)));
+  EXPECT_EQ(value(4, 0), 11.25);
+  EXPECT_EQ(value(4, 1), -19.25);
+  EXPECT_EQ(value(4, 2), 6.1);
+  EXPECT_EQ(value(4, 4), 61.0);
+}
+
+TEST_F(MapFiles, LinesArePolylinesInDxfAndEdgesInPly) {
+  const std::vector<MapLine> lines = {{"tip_path", {{1.0, 0.0, 0.5}, {2.0, 0.0, -0.25}}},
+                                      {"footprint", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, true}};
+  write_lines(folder.file("a.dxf"), lines);
+  const std::string dxf = test::content_of(folder.file("a.dxf"));
+  EXPECT_NE(dxf.find("0\nPOLYLINE\n8\ntip_path\n66\n1\n10\n0\n20\n0\n30\n0\n70\n8\n"
+                     "0\nVERTEX\n8\ntip_path\n10\n1\n20\n0\n30\n0.5\n70\n32\n"
+                     "0\nVERTEX\n8\ntip_path\n10\n2\n20\n0\n30\n-0.25\n70\n32\n"
+                     "0\nSEQEND\n"),
+            std::string::npos);
+  EXPECT_NE(dxf.find("0\nPOLYLINE\n8\nfootprint\n66\n1\n10\n0\n20\n0\n30\n0\n70\n9\n"),
+            std::string::npos);
+  EXPECT_EQ(dxf.substr(dxf.size() - 15), "0\nENDSEC\n0\nEOF\n");
+  write_lines(folder.file("a.ply"), lines);
+  const std::string ply = test::content_of(folder.file("a.ply"));
+  EXPECT_NE(ply.find("element vertex 5\n"), std::string::npos);
+  EXPECT_NE(ply.find("element edge 4\nproperty int vertex1\nproperty int vertex2\n"),
+            std::string::npos);
+  const std::vector<int> joined = {0, 1, 2, 3, 3, 4, 4, 2};
+  for (std::size_t i = 0; i < joined.size(); ++i) {
+    EXPECT_EQ(number_at<std::int32_t>(ply, ply.size() - 32 + 4 * i), joined[i]) << i;
+  }
+}
+
+TEST_F(MapFiles, GeoTiffIsWrittenOrSaysWhatIsMissing) {
+  const std::string file = folder.file("a.tif");
+  try {
+    require_map_format(file, 1);
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("GDAL"), std::string::npos);
+    GTEST_SKIP() << error.what();
+  }
+  write_map(file, unsymmetrical());
+  const std::string bytes = test::content_of(file);
+  EXPECT_EQ(bytes.substr(0, 4), std::string("II*\0", 4));
+  write_map(file, unsymmetrical());
+  EXPECT_EQ(test::content_of(file), bytes);
+}
+
+TEST_F(MapFiles, RefusesWhatAFileCannotHold) {
+  using test::error_of;
+  LayeredMap map = unsymmetrical();
+  EXPECT_EQ(error_of([&] { write_map("a.png", map); }), "'a.png' must end in .tif or .ply or .asc");
+  EXPECT_EQ(error_of([] { require_line_format("a.tif"); }), "'a.tif' must end in .dxf or .ply");
+  EXPECT_EQ(error_of([] { require_map_format("a.asc", 4); }),
+            "'a.asc' would hold 4 layers, .asc holds one");
+  EXPECT_NE(error_of([&] { write_map(folder.file("no/a.asc"), map); }, ErrorKind::bad_file)
+                .find("there is no folder"),
+            std::string::npos);
+  map.layers.front().name = "height [m]";
+  EXPECT_EQ(error_of([&] { write_map(folder.file("a.asc"), map); }),
+            "map layer 'height [m]': a name has small letters, digits and _");
+  map = unsymmetrical();
+  map.layers.front().values.resize(3, 2);
+  EXPECT_EQ(error_of([&] { write_map(folder.file("a.asc"), map); }),
+            "map layer height_m has another size than the grid");
+  EXPECT_EQ(error_of([&] {
+              write_lines(folder.file("a.dxf"), {{"line", {{0, 0, 0}}}});
+            }),
+            "line line needs two points");
+  EXPECT_EQ(error_of([&] {
+              write_lines(folder.file("a.dxf"), {{"line", {{0, 0, 0}, {0, nan, 0}}}});
+            }),
+            "line line has a point that is not finite");
+}
+
+}  // namespace
+}  // namespace excavplan
