@@ -122,7 +122,8 @@ class TiffInMemory {
 
   void create(const HeightMap& grid, std::size_t bands) {
     char deflate[] = "COMPRESS=DEFLATE";
-    std::array<char*, 2> options = {deflate, nullptr};
+    char by_band[] = "INTERLEAVE=BAND";
+    std::array<char*, 3> options = {deflate, by_band, nullptr};
     data_ = gdal_.create(gdal_.driver("GTiff"), name_.c_str(), static_cast<int>(grid.z.cols()),
                          static_cast<int>(grid.z.rows()), static_cast<int>(bands), GDT_Float64,
                          options.data());

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -53,10 +52,7 @@ TEST_F(MapFiles, AsciiGridKeepsEveryDigit) {
   map.layers.front().values(0, 0) = 0.1 + 0.2;
   const std::string file = folder.file("a.asc");
   write_map(file, map);
-  std::istringstream lines(test::content_of(file));
-  std::string line;
-  while (std::getline(lines, line)) continue;
-  EXPECT_EQ(std::stod(line), 0.1 + 0.2);
+  EXPECT_NE(test::content_of(file).find("\n0.30000000000000004 2 3\n"), std::string::npos);
 }
 
 template <typename Number>
@@ -139,7 +135,7 @@ TEST_F(MapFiles, RefusesWhatAFileCannotHold) {
   EXPECT_EQ(error_of([] { require_map_format("a.asc", 4); }),
             "'a.asc' would hold 4 layers, .asc holds one");
   EXPECT_NE(error_of([&] { write_map(folder.file("no/a.asc"), map); }, ErrorKind::bad_file)
-                .find("there is no folder"),
+                .find("cannot be written"),
             std::string::npos);
   map.layers.front().name = "height [m]";
   EXPECT_EQ(error_of([&] { write_map(folder.file("a.asc"), map); }),

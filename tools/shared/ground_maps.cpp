@@ -147,8 +147,7 @@ std::vector<MapName> plan_map_names() {
 std::vector<NamedMap> plan_maps(const Machine& machine, const DigPlan& plan, const PlanSite& site) {
   const HeightMap before = site.ground.surface();
   if (!plan.dig) {
-    const Shown only = ground_layers(before.z, {}, {}).front();
-    return {{"before", {before, {only.layer}}}};
+    return maps_of("", before, before.z, {ground_layers(before.z, before.z, before.z).front()});
   }
   const Eigen::ArrayXXd after = rehearse(machine, plan, site).after(site.ground).surface().z;
   const Eigen::ArrayXXd change = after - before.z;
@@ -156,7 +155,10 @@ std::vector<NamedMap> plan_maps(const Machine& machine, const DigPlan& plan, con
   layers.push_back(
       {"footprint", {"footprint", "1 where the dig lowers the ground", footprint_of(change)}});
   std::vector<NamedMap> maps = maps_of("", before, after, layers);
-  maps.push_back({"path", {}, {tip_path(plan.path), cut_outline(machine, plan.path, before)}});
+  NamedMap path;
+  path.name = "path";
+  path.lines = {tip_path(plan.path), cut_outline(machine, plan.path, before)};
+  maps.push_back(std::move(path));
   return maps;
 }
 

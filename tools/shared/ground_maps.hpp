@@ -29,7 +29,7 @@ std::vector<NamedMap> scene_maps(const DigScene& scene);
 /// all, before, after, change, footprint and path.
 std::vector<MapName> plan_map_names();
 /// The dig is simulated once more for the ground that it leaves. Of a plan without one there is
-/// before alone.
+/// before alone, which is all then.
 std::vector<NamedMap> plan_maps(const Machine& machine, const DigPlan& plan, const PlanSite& site);
 
 }  // namespace excavplan::tools
