@@ -26,8 +26,7 @@ set(roomless ceilings error data_files)
 # Where a third-party header may be included: in no public header any of them, and in every benchmark,
 # which stands beside its peers.
 set(third_parties "pcl/" "opencv2/" "nlopt" "nlohmann/" "CLI/"
-  "zlib\\.h" "sqlite3\\.h" "lz4frame\\.h" "zstd\\.h" "bzlib\\.h"
-  "(gdal|cpl)[a-z_]*\\.h")
+  "zlib\\.h" "sqlite3\\.h" "lz4frame\\.h" "zstd\\.h" "bzlib\\.h")
 set(third_party_places
   "^(src/survey/paper_method|tests/survey/paper_method_test|tests/bad_files/bad_files_by_pcl)\\.cpp$"
   "^(src/survey/depth_image|tests/survey/depth_image_test)\\.cpp$"
@@ -37,8 +36,7 @@ set(third_party_places
   "^src/survey/depth_png\\.cpp$"
   "^(src/recording/sqlite_recording|tests/recording/containers_test)\\.cpp$"
   "^src/recording/compression\\.cpp$" "^src/recording/compression\\.cpp$"
-  "^src/recording/compression\\.cpp$"
-  "^src/ground/geotiff\\.cpp$")
+  "^src/recording/compression\\.cpp$")
 
 function(check_third_parties file line)
   foreach(header place IN ZIP_LISTS third_parties third_party_places)

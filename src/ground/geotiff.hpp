@@ -2,21 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
+#include <functional>
+#include <string_view>
 
 #include <excavplan/ground/map_files.hpp>
 
 /// @file
-/// GeoTIFF by GDAL, which is loaded when it is first needed: to start a program with it takes some
-/// 60 ms. Private to the project.
+/// GeoTIFF. Written without GDAL, which takes 60 ms to load and would have to be loaded at run
+/// time. Private to the project.
 
 namespace excavplan {
 
-/// Why no GeoTIFF can be written here; empty if it can.
-std::string lack_of_geotiff();
-
-/// The bytes of a map's file.
-/// @throws Error (bad_input) where there is a lack; (bad_file) with GDAL's reason
-std::string geotiff_of(const LayeredMap& map, const std::string& file);
+/// Hands on the file of a map part by part: TIFF 6.0 with the tags of OGC GeoTIFF 1.1 and those by
+/// which GDAL knows names, units and NODATA; bands one after another, not compressed.
+/// @throws Error (bad_input) if it would have 4 GiB or more, where TIFF ends
+void append_geotiff(const LayeredMap& map, const std::function<void(std::string_view)>& append);
 
 }  // namespace excavplan

@@ -13,6 +13,7 @@
 
 #include "base/check.hpp"
 #include "base/files.hpp"
+#include "base/little_endian.hpp"
 #include "base/text.hpp"
 #include "ground/geotiff.hpp"
 #include "ground/grid_cells.hpp"
@@ -79,12 +80,6 @@ void append_ascii_grid(const HeightMap& grid, const Eigen::ArrayXXd& values, con
 }
 
 // ---- PLY --------------------------------------------------------------------------------------
-
-template <typename Number>
-void put(Number value, std::string& bytes) {
-  static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 constexpr const char* ply_start =
     "ply\nformat binary_little_endian 1.0\ncomment excavplan, site frame, metres\n";
@@ -184,9 +179,6 @@ void require_map_format(const std::string& file, std::size_t layers) {
   require_ending(file, map_endings());
   require(layers == 1 || ending_of(file) != ".asc",
           "'" + file + "' would hold " + std::to_string(layers) + " layers, .asc holds one");
-  if (ending_of(file) != ".tif") return;
-  const std::string lack = lack_of_geotiff();
-  require(lack.empty(), "'" + file + "': " + lack + ", write .asc or .ply");
 }
 
 void require_line_format(const std::string& file) { require_ending(file, line_endings()); }
@@ -196,7 +188,7 @@ void write_map(const std::string& file, const LayeredMap& map) {
   require_layers(map);
   const std::string ending = ending_of(file);
   if (ending == ".tif") {
-    write_file(file, geotiff_of(map, file));
+    write_file(file, [&](const Append& append) { append_geotiff(map, append); });
   } else if (ending == ".ply") {
     write_file(file, [&](const Append& append) { append_ply(map, append); });
   } else {

@@ -43,8 +43,7 @@ const std::vector<std::string>& line_endings();
 
 /// For a check before long work.
 /// @throws Error (bad_input) if the ending is none of map_endings(), in letters of either size; if
-///         it is .asc, which holds one layer, and there are more; if it is .tif and GDAL, by which
-///         GeoTIFF is written, is missing in this build or on this system
+///         it is .asc, which holds one layer, and there are more
 void require_map_format(const std::string& file, std::size_t layers);
 /// The same of line_endings().
 void require_line_format(const std::string& file);
@@ -57,8 +56,10 @@ void require_line_format(const std::string& file);
 /// .ply: a point at the centre of each cell whose height is known, with a property scalar_NAME for
 /// each layer, NaN where that is not known; float64, little endian.
 ///
-/// @throws Error (bad_input) as require_map_format(), or if the grid is empty, a name is none, or a
-///         layer is not of its size; (bad_file) if it cannot be written: the old file then remains
+/// @throws Error (bad_input) as require_map_format(), or if the grid is empty, a name is none, a
+/// layer
+///         is not of its size, or a GeoTIFF would have 4 GiB or more; (bad_file) if it cannot be
+///         written: the old file then remains
 void write_map(const std::string& file, const LayeredMap& map);
 
 /// Writes lines in the format of the ending. .dxf: a 3D polyline each, in a layer with its name
