@@ -42,8 +42,9 @@ struct NamedMap {
   std::vector<MapLine> lines = {};  ///< instead of a map
 };
 
-/// Writes what the options ask for. Warns (map_not_written) where a map is not there and its file
-/// is of an earlier run.
-void write_maps(const Maps& maps, const std::vector<NamedMap>& contents, Outcome& outcome);
+/// Writes what the options ask for; `contents` makes the maps if any is. Warns (map_not_written)
+/// where a map is not there and its file is of an earlier run.
+void write_maps(const Maps& maps, const std::function<std::vector<NamedMap>()>& contents,
+                Outcome& outcome);
 
 }  // namespace excavplan::tools
