@@ -266,16 +266,16 @@ def values(map, band):
     return [value if known else None for value, known in at]
 grid = layer("change.asc")
 told["asc"] = values(grid, 1)
-told["extent"] = [grid.extent().xMinimum(), grid.extent().yMinimum(), grid.extent().xMaximum(), grid.extent().yMaximum()]
 map = layer("scans.tif")
 told["tif"] = values(map, 3)
 told["names"] = [map.bandName(band) for band in range(1, map.bandCount() + 1)]
 told["crs"] = map.crs().isValid(), map.crs().isGeographic()
-told["same_extent"] = map.extent() == grid.extent() or map.extent().toString(6) == grid.extent().toString(6)
+told["same_extent"] = map.extent().toString(6) == grid.extent().toString(6)
 lines = QgsVectorLayer(folder + "/plan.dxf", "plan", "ogr")
 assert lines.isValid()
 told["lines"] = sorted(each["Layer"] for each in lines.getFeatures())
-print(json.dumps(told))
+print(json.dumps(told), flush=True)
+del map, grid, lines  # before what they belong to
 app.exitQgis()
 """
 
