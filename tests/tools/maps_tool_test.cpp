@@ -19,21 +19,6 @@ TEST_F(Tools, MapWithoutNameHasAllLayers) {
   }
 }
 
-TEST_F(Tools, MapsOfADumpAreaAreThoseOfItsScans) {
-  const auto cells = [&](const std::string& name) {
-    return content_of(folder.file(name)).substr(0, 60);
-  };
-  answer("estimate-density",
-         quickstart(folder) + Words{"--dump-before", shipped("quickstart/before.pcd"),
-                                    "--dump-after", shipped("quickstart/after.pcd"), "--map",
-                                    "zones=" + folder.file("dig.asc"), "--map",
-                                    "dump-zones=" + folder.file("dump.asc"), "--map",
-                                    "dump=" + folder.file("dump.ply")});
-  EXPECT_EQ(cells("dig.asc"), cells("dump.asc"));
-  EXPECT_TRUE(contains(content_of(folder.file("dump.ply")).substr(0, 1000), "scalar_change_sd_m"));
-  EXPECT_NE(content_of(folder.file("dig.asc")), content_of(folder.file("dump.asc")));
-}
-
 TEST_F(Tools, WithoutADigThereIsTheGroundAlone) {
   const Words plan = {"--density", "40",
                       "--map",     "before=" + folder.file("before.asc"),
