@@ -19,6 +19,37 @@ foreach(file IN LISTS headers programs)
   endif()
 endforeach()
 
+# The version is that of project() wherever else it stands.
+file(STRINGS ${ROOT}/CMakeLists.txt line REGEX "^project\\(excavplan VERSION ")
+string(REGEX MATCH "[0-9]+[.][0-9]+[.][0-9]+" version "${line}")
+foreach(place "CITATION.cff|^version: " "pyproject.toml|^version = " "ros/excavplan_ros/package.xml|<version>")
+  string(REPLACE "|" ";" place ${place})
+  list(GET place 0 file)
+  list(GET place 1 mark)
+  if(EXISTS ${ROOT}/${file})
+    file(STRINGS ${ROOT}/${file} stated REGEX "${mark}")
+    if(NOT stated MATCHES "${mark}\"?${version}(\"|<|$)")
+      message(SEND_ERROR "${file}: '${stated}', but the version is ${version}")
+    endif()
+  endif()
+endforeach()
+
+# Every text file names its copyright and licence, or lies where one statement covers the folder.
+file(GLOB_RECURSE licensed RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/* ${ROOT}/tools/*
+  ${ROOT}/tests/*.cpp ${ROOT}/tests/*.hpp ${ROOT}/tests/*.py ${ROOT}/tests/*.cmake ${ROOT}/cmake/*
+  ${ROOT}/examples/*.cpp ${ROOT}/examples/*.py ${ROOT}/python/*.py ${ROOT}/python/*.cpp
+  ${ROOT}/ros/*.cpp ${ROOT}/ros/*.py ${ROOT}/benchmarks/*.cpp)
+file(GLOB scripts RELATIVE ${ROOT} ${ROOT}/scripts/* ${ROOT}/scripts/check.d/*)
+foreach(file IN LISTS licensed scripts)
+  if(IS_DIRECTORY ${ROOT}/${file} OR file MATCHES "[.](txt|html|js|css|json|pc.in|map|part.*)$")
+    continue()
+  endif()
+  file(READ ${ROOT}/${file} head LIMIT 400)
+  if(NOT head MATCHES "SPDX-License-Identifier: ")
+    message(SEND_ERROR "${file}: no SPDX-License-Identifier in its first lines")
+  endif()
+endforeach()
+
 # Code that was commented out: a comment that is a statement, a brace or a preprocessor line.
 string(CONCAT code
   "#(include|if|endif|define)|};?$|.*{$|.*\\);$|(if|for|while) \\(.*;$|[a-z_.]+ [-+*/]?= .*;$|"

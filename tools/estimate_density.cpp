@@ -3,6 +3,7 @@
 #include <excavplan/survey/density_estimate.hpp>
 
 #include "shared/estimate.hpp"
+#include "shared/ground_maps.hpp"
 #include "shared/method_inputs.hpp"
 #include "shared/recordings.hpp"
 #include "shared/results.hpp"
@@ -34,8 +35,7 @@ const About about = {
     true};
 
 struct Inputs {
-  std::optional<std::string> before;
-  std::optional<std::string> after;
+  std::optional<std::string> before, after;
   std::optional<std::string> dump_before;
   std::optional<std::string> dump_after;
   ScanFrames frames;
@@ -46,6 +46,7 @@ struct Inputs {
   SoilInputs soil;
   SecondDensities second;
   Plots plots;
+  Maps maps;
   std::optional<std::string> report;
 };
 
@@ -78,6 +79,7 @@ void declare_estimate(Arguments& arguments, Inputs& inputs) {
   declare_dug_path(arguments, inputs.method);
   declare_machine_in_view(arguments, inputs.frames.view);
   declare_plots(arguments, inputs.plots, names_of(estimate_figures()));
+  declare_maps(arguments, inputs.maps, survey_map_names(inputs.dump_before));
   arguments.report(inputs.report);
 }
 
@@ -124,6 +126,8 @@ Outcome work_on_scans(const Inputs& inputs) {
   inputs.second.check(counts, outcome);
   report.add_to(outcome);
   draw_estimate(inputs.plots, inputs.report, counts, outcome);
+  write_maps(
+      inputs.maps, [&] { return survey_maps(counts.change, counts.before); }, outcome);
   if (inputs.method.compare) add_comparison(both, counts, outcome);
   return outcome;
 }

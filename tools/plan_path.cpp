@@ -5,6 +5,7 @@
 #include <excavplan/plan/plan_dig.hpp>
 
 #include "base/text.hpp"
+#include "shared/ground_maps.hpp"
 #include "shared/plan_figures.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/results.hpp"
@@ -42,6 +43,7 @@ struct Inputs {
   SearchInputs dig_search;
   std::optional<std::string> trajectory;
   Plots plots;
+  Maps maps;
   std::optional<std::string> report;
 };
 
@@ -80,6 +82,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_plots(
       arguments, inputs.plots,
       names_of(plan_figures(searches, [&inputs] { return machine_named(inputs.machine); })));
+  declare_maps(arguments, inputs.maps, plan_map_names());
   arguments.report(inputs.report);
 }
 
@@ -123,6 +126,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
+  write_maps(
+      inputs.maps, [&] { return plan_maps(machine, plan, dug); }, outcome);
   if (plan.dig && inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);
   if (!plan.dig && !plan.stopped) withdraw(inputs.trajectory, inputs.plots, machine, outcome);
   return outcome;

@@ -7,9 +7,10 @@
 
 #include "base/files.hpp"
 #include "machine/dig_path_text.hpp"
+#include "shared/block_inputs.hpp"
 #include "shared/dig_figures.hpp"
-#include "shared/dig_report.hpp"
 #include "shared/fuel_log.hpp"
+#include "shared/ground_maps.hpp"
 #include "shared/joint_loads.hpp"
 #include "shared/results.hpp"
 #include "shared/scene_scans.hpp"
@@ -39,9 +40,9 @@ struct Inputs {
   std::uint64_t seed = 1;
   SceneScanInputs scans;
   FuelLogInputs fuel_log;
-  bool broken = false;
-  BlockSettings blocks;
+  BlockInputs blocks;
   Plots plots;
+  Maps maps;
   std::optional<std::string> history, report;
 };
 
@@ -62,25 +63,16 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
   declare_scans(arguments, inputs.scans);
-  arguments.flag(
-      "blocks", inputs.broken,
-      "ground of 80 % relative density and more falls as blocks with voids between them");
+  inputs.blocks.declare(arguments);
   arguments.only_if(
-      {[&inputs] { return inputs.broken; }, "there are no blocks without --blocks"}, [&] {
-        arguments.option("block-size", inputs.blocks.size, Quantity::length,
-                         "mean edge of the blocks");
-        arguments.option(
-            "block-swell", inputs.blocks.swell, Quantity::ratio,
-            "0: the blocks are undisturbed soil, 1: soil as loose as other dumped soil");
-      });
-  arguments.only_if(
-      {[&inputs] { return inputs.broken || inputs.scans.any() || inputs.fuel_log.file; },
+      {[&inputs] { return inputs.blocks.broken || inputs.scans.any() || inputs.fuel_log.file; },
        "there are neither scans (--before, --after) nor --blocks nor a --fuel-log"},
       [&] { arguments.option("seed", inputs.seed, "seed of noise and blocks"); });
   inputs.fuel_log.declare(arguments);
   arguments.output("history", inputs.history, "write the loads of each step, CSV");
   declare_plots(arguments, inputs.plots,
                 names_of(dig_figures([&inputs] { return machine_named(inputs.machine); })));
+  declare_maps(arguments, inputs.maps, scene_map_names());
   arguments.report(inputs.report);
 }
 
@@ -89,10 +81,7 @@ SceneOptions options_of(const Inputs& inputs) {
   options.path = inputs.path.value_or(options.path);
   options.simulator = simulator_of_word(inputs.simulator);
   options.history = true;
-  if (inputs.broken) {
-    options.blocks = inputs.blocks;
-    options.blocks->seed = inputs.seed;
-  }
+  options.blocks = inputs.blocks.with_seed(inputs.seed);
   if (!inputs.path_from) return options;
   if (inputs.path || options.start_x) usage_error("--path-from excludes --path and --start");
   std::tie(options.path, options.start_x) = read_planned_path(*inputs.path_from);
@@ -114,6 +103,8 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
                       boom_plane_profile(scene.after),
                       title};
   write_plots(inputs.plots, dig_figures({}), dug, outcome.lines, outcome.warnings);
+  write_maps(
+      inputs.maps, [&] { return scene_maps(scene); }, outcome);
   if (!inputs.report) return;
   outcome.report = titled(scene_report(machine, scene), *inputs.report, title,
                           to_svg(lay_out(section_figure(dug))));

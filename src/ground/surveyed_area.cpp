@@ -61,15 +61,22 @@ void sum_zones(Area& area, const Eigen::ArrayXXi& shadow) {
   }
 }
 
-/// Noise of the cells of each zone: that of stable ground, or more where their points scatter more.
-void sum_noise(Area& area, const Eigen::ArrayXXd& variance, double stable_variance) {
+/// Noise of each cell: that of stable ground, or more where its points scatter more.
+Eigen::ArrayXXd noise_of_cells(const Eigen::ArrayXXd& variance, const Area& area) {
+  const double stable = area.noise.white;
+  const auto& z = area.ground.difference;
+  if (variance.size() == 0) return Eigen::ArrayXXd::Constant(z.rows(), z.cols(), stable);
+  return (variance > stable).select(variance, stable);  // also where it is NaN
+}
+
+/// Noise of the cells of each zone.
+void sum_noise(Area& area, const Eigen::ArrayXXd& noise) {
   const double cell_area = area.grid.cell_size * area.grid.cell_size;
   for_each_cell(area.ground.zone, [&](Cell cell) {
     const int index = area.ground.zone(cell.row, cell.col);
     if (index < 0 || area.unknown(cell.row, cell.col) != 0) return;
-    const double own = variance.size() > 0 ? variance(cell.row, cell.col) : stable_variance;
     area.zones[static_cast<std::size_t>(index)].noise +=
-        cell_area * cell_area * (own > stable_variance ? own : stable_variance);
+        cell_area * cell_area * noise(cell.row, cell.col);
   });
 }
 
@@ -327,7 +334,9 @@ Eigen::VectorXd outlier_volumes(const SurfacePair& pair, const Area& area) {
 /// The errors that each zone has of its own.
 void sum_own_errors(Area& area, const SurfacePair& pair, const Scans& scans,
                     const Eigen::ArrayXXd& variance, const ChangeOptions& options) {
-  sum_noise(area, variance, area.noise.white);
+  const Eigen::ArrayXXd noise = noise_of_cells(variance, area);
+  area.variance = noise + area.noise.correlated;
+  sum_noise(area, noise);
   sum_beyond_edge(area);
   for (const Surface* surface : {&pair.before, &pair.after}) {
     sum_faces(area, *surface);

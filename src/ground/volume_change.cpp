@@ -443,6 +443,8 @@ void report(Area& area, VolumeChange& change) {
   result.difference = std::move(area.grid);
   result.difference.z =
       (area.unknown != 0).select(std::numeric_limits<double>::quiet_NaN(), area.ground.difference);
+  result.sd =
+      (area.unknown != 0).select(std::numeric_limits<double>::quiet_NaN(), area.variance.sqrt());
   result.zone = (area.ground.zone >= 0).select(area.ground.zone + first, -1);
   for (const bool low : {false, true}) report_objects(area, low, change, result);
   result.noise_sd = area.ground.noise_sd;

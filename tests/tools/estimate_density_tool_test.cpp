@@ -354,6 +354,23 @@ TEST_F(Tools, SeparateScansOfDigAndDumpGiveTheSameAsTheWholeScene) {
   expect_truth_found(separate, 50.0);
 }
 
+TEST_F(Tools, MapsOfADumpAreaAreThoseOfItsScans) {
+  const ScanPair scans = scan_pair(folder, 50, 3);
+  answer(
+      "estimate-density",
+      {part_of(folder, scans.before, -3.0, 2.0), part_of(folder, scans.after, -3.0, 2.0),
+       "--dump-before", part_of(folder, scans.before, 2.0, 9.0), "--dump-after",
+       part_of(folder, scans.after, 2.0, 9.0), "--map", "zones=" + folder.file("dig.asc"), "--map",
+       "dump-zones=" + folder.file("dump.asc"), "--map", "dump=" + folder.file("dump.ply")});
+  const std::string dig = content_of(folder.file("dig.asc"));
+  const std::string dump = content_of(folder.file("dump.asc"));
+  EXPECT_TRUE(contains(dig, " 1 1 1 "));
+  EXPECT_FALSE(contains(dig, " 3 3 3 "));
+  EXPECT_TRUE(contains(dump, " 3 3 3 "));
+  EXPECT_FALSE(contains(dump, " 1 1 1 "));
+  EXPECT_TRUE(contains(content_of(folder.file("dump.ply")).substr(0, 1000), "scalar_change_sd_m"));
+}
+
 TEST_F(Tools, PaperMethodGivesItsVolumesAndNoTrust) {
   const Words words = quickstart(folder) + Words{"--method", "paper"};
   const json truth = json::parse(content_of(shipped("quickstart/truth.json")));

@@ -7,6 +7,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "shared/named_file.hpp"
 #include "shared/render.hpp"
 
 namespace excavplan::tools {
@@ -15,26 +16,13 @@ namespace {
 constexpr double least_size = 40.0;  // [mm]
 constexpr double most_size = 500.0;  // [mm]
 
-/// "NAME=FILE": letters and dashes before the first '=' are a name.
-struct PlotWords {
-  std::string name;  ///< empty: the main figure
-  std::string file;
-};
-
-PlotWords words_of(const std::string& text) {
-  const std::size_t end =
-      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ-");
-  if (end == std::string::npos || end == 0 || text[end] != '=') return {"", text};
-  return {text.substr(0, end), text.substr(end + 1)};
-}
-
 bool is_possible(const FigureName& figure) {
   return !figure.possible.holds || figure.possible.holds();
 }
 
 /// Nothing for the main figure.
 const FigureName* named(const std::string& text, const std::vector<FigureName>& figures) {
-  const PlotWords words = words_of(text);
+  const NamedFile words = named_file(text);
   if (words.file.empty()) usage_error("--plot: " + text + " names no file");
   if (words.name.empty()) return nullptr;
   const auto same = [&](const FigureName& figure) { return figure.name == words.name; };
@@ -105,10 +93,10 @@ void declare_plots(Arguments& arguments, Plots& plots, const std::vector<FigureN
   plot.output = true;
   plot.repeated = true;
   plot.endings = image_endings();
-  plot.file_in = [](const std::string& text) { return words_of(text).file; };
+  plot.file_in = [](const std::string& text) { return named_file(text).file; };
   plot.assign = [figures](const std::string& text) { named(text, figures); };
   plot.check = [&plots, figures](const std::string& text) {
-    const std::string file = words_of(text).file;
+    const std::string file = named_file(text).file;
     plots.files.push_back({figure_of(text, figures).name, file});
     require_fonts(file);
   };

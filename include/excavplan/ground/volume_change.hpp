@@ -40,8 +40,8 @@ struct AreaChange {
   HeightMap difference;   ///< after - before [m] less datum, stripes and doming; NaN where unknown
   Eigen::ArrayXXi zone;   ///< index into VolumeChange::zones, -1 for stable ground
   double noise_sd = 0.0;  ///< of one stable cell of `difference`, at least 0.1 mm [m]
-  double datum =
-      0.0;  ///< robust mean change of the stable ground, subtracted from `difference` [m]
+  double datum = 0.0;     ///< robust mean change of stable ground, taken off `difference` [m]
+  Eigen::ArrayXXd sd;     ///< of `difference`, but for that of the datum [m]; NaN where unknown
 };
 
 /// Settings of measure_change(). The defaults are ours, found by experiment

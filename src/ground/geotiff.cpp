@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "ground/geotiff.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/check.hpp"
+#include "base/little_endian.hpp"
+
+namespace excavplan {
+namespace {
+
+// Types of fields, TIFF 6.0.
+constexpr std::uint16_t ascii = 2;
+constexpr std::uint16_t word = 3;       // 16 bits
+constexpr std::uint16_t long_word = 4;  // 32 bits
+constexpr std::uint16_t float64 = 12;
+
+struct Field {
+  std::uint16_t tag;
+  std::uint16_t type;
+  std::uint32_t count;
+  std::string bytes;
+};
+
+template <typename Number>
+Field field(std::uint16_t tag, std::uint16_t type, const std::vector<Number>& values) {
+  Field made = {tag, type, static_cast<std::uint32_t>(values.size()), {}};
+  for (const Number value : values) put(value, made.bytes);
+  return made;
+}
+
+Field words(std::uint16_t tag, const std::vector<std::uint16_t>& values) {
+  return field(tag, word, values);
+}
+Field long_words(std::uint16_t tag, const std::vector<std::uint32_t>& values) {
+  return field(tag, long_word, values);
+}
+Field float_numbers(std::uint16_t tag, const std::vector<double>& values) {
+  return field(tag, float64, values);
+}
+Field text(std::uint16_t tag, const std::string& value) {
+  return {tag, ascii, static_cast<std::uint32_t>(value.size() + 1), value + '\0'};
+}
+
+std::string escaped(const std::string& meaning) {
+  std::string xml;
+  for (const char c : meaning) {
+    if (c == '&') {
+      xml += "&amp;";
+    } else if (c == '<') {
+      xml += "&lt;";
+    } else {
+      xml += c;
+    }
+  }
+  return xml;
+}
+
+/// Names, units and meanings of the bands, as GDAL writes them.
+std::string metadata_of(const std::vector<MapLayer>& layers) {
+  std::string xml = "<GDALMetadata>\n";
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const std::string& name = layers[i].name;
+    const auto item = [&](const std::string& key, const std::string& role,
+                          const std::string& value) {
+      xml += "<Item name=\"" + key + "\" sample=\"" + std::to_string(i) + '"' + role + '>' +
+             escaped(value) + "</Item>\n";
+    };
+    item("DESCRIPTION", " role=\"description\"", name);
+    item("meaning", "", layers[i].meaning);
+    const bool is_length = name.size() > 2 && name.substr(name.size() - 2) == "_m";
+    if (is_length) item("UNITTYPE", " role=\"unittype\"", "m");
+  }
+  return xml + "</GDALMetadata>\n";
+}
+
+/// A strip is a row of a band; the strips follow one another.
+struct Strips {
+  std::uint32_t count;
+  std::uint32_t bytes;  ///< of each
+
+  std::vector<std::uint32_t> places(std::uint64_t first) const {
+    std::vector<std::uint32_t> at(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      at[i] = static_cast<std::uint32_t>(first + std::uint64_t{bytes} * i);
+    }
+    return at;
+  }
+};
+
+Strips strips_of(const LayeredMap& map) {
+  return {static_cast<std::uint32_t>(map.layers.size()) *
+              static_cast<std::uint32_t>(map.ground.z.rows()),
+          8 * static_cast<std::uint32_t>(map.ground.z.cols())};
+}
+
+/// All fields in the order of their tags.
+std::vector<Field> fields_of(const LayeredMap& map, std::uint64_t first_strip) {
+  using Words = std::vector<std::uint16_t>;
+  const HeightMap& grid = map.ground;
+  const Strips strips = strips_of(map);
+  const auto bands = static_cast<std::uint16_t>(map.layers.size());
+  const std::string frame = "excavplan site frame|";
+  // Version 1.1.0 with three keys: a pixel is an area, name of the frame, metres.
+  const Words keys = {
+      1, 1,    0, 3, 1025, 0, 1, 1, 1026, 34737, static_cast<std::uint16_t>(frame.size()),
+      0, 3076, 0, 1, 9001};
+  const Rectangle all = grid.extent();
+  std::vector<Field> fields;
+  fields.push_back(long_words(256, {static_cast<std::uint32_t>(grid.z.cols())}));
+  fields.push_back(long_words(257, {static_cast<std::uint32_t>(grid.z.rows())}));
+  fields.push_back(words(258, Words(bands, 64)));  // bits of a sample
+  fields.push_back(words(259, {1}));               // not compressed
+  fields.push_back(words(262, {1}));               // black is zero
+  fields.push_back(long_words(273, strips.places(first_strip)));
+  fields.push_back(words(277, {bands}));
+  fields.push_back(long_words(278, {1}));  // rows of a strip
+  fields.push_back(long_words(279, std::vector<std::uint32_t>(strips.count, strips.bytes)));
+  fields.push_back(words(284, {2}));                                  // bands one after another
+  if (bands > 1) fields.push_back(words(338, Words(bands - 1U, 0)));  // none is opacity
+  fields.push_back(words(339, Words(bands, 3)));                      // floating point
+  fields.push_back(float_numbers(33550, {grid.cell_size, grid.cell_size, 0.0}));
+  fields.push_back(float_numbers(33922, {0.0, 0.0, 0.0, all.x_min, all.y_max, 0.0}));
+  fields.push_back(words(34735, keys));
+  fields.push_back(text(34737, frame));
+  fields.push_back(text(42112, metadata_of(map.layers)));
+  fields.push_back(text(42113, "nan"));  // NODATA
+  for (Field& each : fields) {
+    each.bytes.resize(std::max<std::size_t>(4, each.bytes.size() + each.bytes.size() % 2), '\0');
+  }
+  return fields;
+}
+
+/// Bytes of header, directory and the values that do not fit into it.
+std::uint64_t size_of_head(const std::vector<Field>& fields) {
+  std::uint64_t size = 8 + 2 + 12 * fields.size() + 4;
+  for (const Field& each : fields) size += each.bytes.size() > 4 ? each.bytes.size() : 0;
+  return size;
+}
+
+std::string head_of(const LayeredMap& map) {
+  const std::uint64_t size = size_of_head(fields_of(map, 0));
+  const Strips strips = strips_of(map);
+  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+  require(size + std::uint64_t{strips.count} * strips.bytes <= most,
+          "a GeoTIFF of this map would have 4 GiB or more");
+  const std::vector<Field> fields = fields_of(map, size);
+  const std::size_t start = 8 + 2 + 12 * fields.size() + 4;
+  std::string head = "II";
+  std::string values;
+  put(std::uint16_t{42}, head);
+  put(std::uint32_t{8}, head);
+  put(static_cast<std::uint16_t>(fields.size()), head);
+  for (const Field& each : fields) {
+    put(each.tag, head);
+    put(each.type, head);
+    put(each.count, head);
+    if (each.bytes.size() == 4) {
+      head += each.bytes;
+    } else {
+      put(static_cast<std::uint32_t>(start + values.size()), head);
+      values += each.bytes;
+    }
+  }
+  put(std::uint32_t{0}, head);  // no further directory
+  return head + values;
+}
+
+}  // namespace
+
+void append_geotiff(const LayeredMap& map, const std::function<void(std::string_view)>& append) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  append(head_of(map));
+  for (const MapLayer& layer : map.layers) {
+    for (Eigen::Index row = layer.values.rows() - 1; row >= 0; --row) {
+      std::string bytes;
+      for (Eigen::Index col = 0; col < layer.values.cols(); ++col) {
+        const double value = layer.values(row, col);
+        put(std::isfinite(value) ? value : unknown, bytes);
+      }
+      append(bytes);
+    }
+  }
+}
+
+}  // namespace excavplan
