@@ -13,6 +13,8 @@ PYBIND11_MODULE(_core, module) {
   module.attr("__name__") = "excavplan";
   bind_arrays(module);
   bind_errors(module);
+  bind_ground(module);
+  bind_soil(module);
   module.attr("__name__") = own_name;
 
   py::list names;
