@@ -68,7 +68,7 @@ def cmake_arguments(settings):
 
 def staged(settings):
     """Builds the package and installs it. Gives the folder that holds it."""
-    build = ROOT / "build-python" / tag()
+    build = ROOT / f"build-python-{tag()}"
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
     run("cmake", "-S", ROOT, "-B", build, *generator,
         "-D", "CMAKE_BUILD_TYPE=Release", "-D", "BUILD_SHARED_LIBS=OFF",

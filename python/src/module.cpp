@@ -15,6 +15,7 @@ PYBIND11_MODULE(_core, module) {
   bind_errors(module);
   bind_ground(module);
   bind_soil(module);
+  bind_machine(module);
   module.attr("__name__") = own_name;
 
   py::list names;
