@@ -16,6 +16,7 @@ PYBIND11_MODULE(_core, module) {
   bind_ground(module);
   bind_soil(module);
   bind_machine(module);
+  bind_simulation(module);
   module.attr("__name__") = own_name;
 
   py::list names;
