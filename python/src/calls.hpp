@@ -6,6 +6,7 @@
 #include <chrono>
 #include <exception>
 #include <future>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -69,6 +70,28 @@ class Call {
   std::exception_ptr raised_;
   std::atomic<bool> failed_{false};
 };
+
+/// An object that any thread may drop, with or without the lock of the interpreter.
+inline std::shared_ptr<const py::object> shared(py::object object) {
+  return {new py::object(std::move(object)), [](const py::object* last) {
+            const py::gil_scoped_acquire acquire;
+            delete last;
+          }};
+}
+
+/// Tells a callback, if there is one, of the state of a call. @return false: it shall stop
+template <typename State>
+bool goes_on(Call& call, const py::object& callback, const State& state) {
+  const py::gil_scoped_acquire acquire;
+  if (callback.is_none()) return true;
+  try {
+    const py::object answer = callback(py::cast(state));
+    return answer.is_none() || py::bool_(answer);
+  } catch (const py::error_already_set&) {
+    call.fail(std::current_exception());
+    return false;
+  }
+}
 
 /// As Call::run() of what calls nothing back.
 template <typename Work>

@@ -17,6 +17,9 @@ PYBIND11_MODULE(_core, module) {
   bind_soil(module);
   bind_machine(module);
   bind_simulation(module);
+  bind_planning(module);
+  bind_library(module);
+  bind_plan_dig(module);
   module.attr("__name__") = own_name;
 
   py::list names;

@@ -47,6 +47,7 @@ void bind_terrain(py::module_& module) {
           "loose", [](const Terrain& t) { return array(t.loose); },
           "Thickness of the loose soil, shape (rows, columns) [m].")
       .def("surface", &Terrain::surface, "bank + loose.");
+  py::implicitly_convertible<HeightMap, Terrain>();
   py::class_<TerrainPatch>(module, "TerrainPatch", "A block of a terrain's cells in a new state.")
       .def(py::init<>(), "Of no cells.")
       .def(py::init(&made_patch), arg("row"), arg("col"), arg("bank"), arg("loose"),
@@ -186,7 +187,7 @@ void bind_dig(py::module_& module) {
              return result;
            }),
            py::kw_only(), arg("payload_mass") = 0.0, arg("payload_volume") = 0.0,
-           arg("energy") = EnergyLedger{})
+           py::arg_v("energy", EnergyLedger{}, "EnergyLedger()"))
       .def_readwrite("patch", &DigResult::patch, "All cells that changed, afterwards.")
       .def_readwrite("payload_mass", &DigResult::payload_mass, "Moist [kg].")
       .def_readwrite("payload_volume", &DigResult::payload_volume, "Loose [m^3].")
@@ -259,9 +260,10 @@ DigScene simulated(const Machine& machine, const SoilKind& soil, double density,
   });
 }
 
-py::tuple scans_of(const DigScene& scene, std::uint64_t seed, const std::string& sensor,
-                   int frames) {
-  DepthCamera camera = with_errors_of(sensor_of_word(sensor), DepthCamera{});
+py::tuple scans_of(const DigScene& scene, std::uint64_t seed,
+                   const std::optional<std::string>& sensor, int frames) {
+  DepthCamera camera;
+  if (sensor) camera = with_errors_of(sensor_of_word(*sensor), camera);
   camera.frames = frames;
   const SceneScans scans = call([&] { return scan_scene(scene, camera, seed); });
   const auto rows = [](const std::vector<Eigen::Vector3d>& points) {
@@ -300,10 +302,12 @@ void bind_scene(py::module_& module) {
       "DigParameters, else paper_fixed_path(); start_x: where the tip meets the ground [m];\n"
       "dump_at: centre of the heap (x, y) [m]; simulator: word or class; planned: path and\n"
       "start are those of a plan.");
-  module.def("scan_scene", &scans_of, arg("scene"), arg("seed") = 1, arg("sensor") = "d435i",
-             arg("frames") = 1,
-             "Points of simulated depth cameras before and after the dig, two arrays of shape\n"
-             "(N, 3) in the site frame [m]; frames: averaged.");
+  module.def(
+      "scan_scene", &scans_of, arg("scene"), arg("seed") = 1, arg("sensor") = py::none(),
+      arg("frames") = 1,
+      "Points of simulated depth cameras before and after the dig, two arrays of shape\n"
+      "(N, 3) in the site frame [m]; sensor: 'd435i', whose errors they have, else white noise\n"
+      "and dropouts; frames: averaged.");
 }
 
 DensityCalibration calibrated(const Machine& machine, const SoilKind& soil,

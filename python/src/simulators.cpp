@@ -24,14 +24,6 @@ auto asked(Call& call, const Ask& ask) -> decltype(ask()) {
   }
 }
 
-/// An object that any thread may drop, with or without the lock of the interpreter.
-std::shared_ptr<const py::object> shared(py::object object) {
-  return {new py::object(std::move(object)), [](const py::object* last) {
-            const py::gil_scoped_acquire acquire;
-            delete last;
-          }};
-}
-
 }  // namespace
 
 DigResult SimulatorInPython::dig(const Terrain& terrain, const DigPath& path,
@@ -95,6 +87,11 @@ SimulatorKind simulator_kind(const py::object& simulator, const std::shared_ptr<
     });
   };
   return {name, name, make};
+}
+
+bool is_in_python(const py::object& simulator) {
+  const auto* const own = simulator.cast<const SoilSimulator*>();
+  return dynamic_cast<const SimulatorInPython*>(own) != nullptr;
 }
 
 unsigned threads_with(const py::object& simulator, unsigned threads) {
