@@ -20,6 +20,7 @@ PYBIND11_MODULE(_core, module) {
   bind_planning(module);
   bind_library(module);
   bind_plan_dig(module);
+  bind_survey(module);
   module.attr("__name__") = own_name;
 
   py::list names;

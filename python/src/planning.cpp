@@ -299,8 +299,6 @@ DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensit
 void bind_planning(py::module_& module) {
   bind_search(module);
   bind_digs(module);
-  bind_cycle(module);
-  bind_plan(module);
   py::class_<PossibleDensity>(module, "PossibleDensity", "A density the ground may have.")
       .def_readonly("percent", &PossibleDensity::percent, "[%]")
       .def_readonly("probability", &PossibleDensity::probability, "All of them add up to 1.");
@@ -319,6 +317,8 @@ void bind_planning(py::module_& module) {
 }
 
 void bind_plan_dig(py::module_& module) {
+  bind_cycle(module);
+  bind_plan(module);
   module.def(
       "plan_dig", &planned, arg("machine"), arg("soil"), arg("density"),
       arg("terrain") = py::none(), py::kw_only(), arg("method") = "library",
