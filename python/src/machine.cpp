@@ -18,6 +18,18 @@ namespace {
 using py::arg;
 
 void bind_machine_itself(py::module_& module) {
+  py::class_<BucketPose>(module, "BucketPose", "Position of the tip and attitude of the bucket.")
+      .def(py::init([](double x, double z, double angle) {
+             return BucketPose{x, z, angle};
+           }),
+           arg("x"), arg("z"), arg("floor_angle"))
+      .def_readonly("x", &BucketPose::x, "[m]")
+      .def_readonly("z", &BucketPose::z, "[m]")
+      .def_readonly("floor_angle", &BucketPose::floor_angle, "[rad]")
+      .def("__repr__", [](const BucketPose& pose) {
+        return shown("BucketPose",
+                     {{"x", pose.x}, {"z", pose.z}, {"floor_angle", pose.floor_angle}});
+      });
   py::class_<JointLimits>(module, "JointLimits", "What a joint can do.")
       .def_readonly("lower", &JointLimits::lower, "[rad]")
       .def_readonly("upper", &JointLimits::upper, "[rad]")
@@ -70,18 +82,6 @@ void bind_machine_itself(py::module_& module) {
       "load_machine",
       [](const std::string& name) { return load_machine(shipped_or_file("machines", name)); },
       arg("name_or_file"), "'zx120' or a machine file.");
-  py::class_<BucketPose>(module, "BucketPose", "Position of the tip and attitude of the bucket.")
-      .def(py::init([](double x, double z, double angle) {
-             return BucketPose{x, z, angle};
-           }),
-           arg("x"), arg("z"), arg("floor_angle"))
-      .def_readonly("x", &BucketPose::x, "[m]")
-      .def_readonly("z", &BucketPose::z, "[m]")
-      .def_readonly("floor_angle", &BucketPose::floor_angle, "[rad]")
-      .def("__repr__", [](const BucketPose& pose) {
-        return shown("BucketPose",
-                     {{"x", pose.x}, {"z", pose.z}, {"floor_angle", pose.floor_angle}});
-      });
 }
 
 // ---- paths --------------------------------------------------------------------------------------

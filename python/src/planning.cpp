@@ -297,8 +297,8 @@ DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensit
 }  // namespace
 
 void bind_planning(py::module_& module) {
-  bind_search(module);
   bind_digs(module);
+  bind_search(module);
   py::class_<PossibleDensity>(module, "PossibleDensity", "A density the ground may have.")
       .def_readonly("percent", &PossibleDensity::percent, "[%]")
       .def_readonly("probability", &PossibleDensity::probability, "All of them add up to 1.");

@@ -17,6 +17,17 @@ namespace {
 using py::arg;
 
 void bind_soil_kind(py::module_& module) {
+  py::class_<SoilState>(module, "SoilState", "A soil at one relative density.")
+      .def_readonly("relative_density", &SoilState::relative_density, "0 .. 1 for the bank [-].")
+      .def_readonly("void_ratio", &SoilState::void_ratio, "[-]")
+      .def_readonly("dry_density", &SoilState::dry_density, "[kg/m^3]")
+      .def_readonly("bulk_density", &SoilState::bulk_density, "Moist [kg/m^3].")
+      .def_readonly("unit_weight", &SoilState::unit_weight, "[N/m^3]")
+      .def_readonly("saturation", &SoilState::saturation, "[-]")
+      .def_readonly("cohesion", &SoilState::cohesion, "[Pa]")
+      .def_readonly("adhesion", &SoilState::adhesion, "[Pa]")
+      .def_readonly("friction_angle", &SoilState::friction_angle, "[rad]")
+      .def_readonly("tool_friction_angle", &SoilState::tool_friction_angle, "[rad]");
   py::class_<SoilKind>(
       module, "SoilKind",
       "A kind of soil: its numbers that do not depend on its density. load_soil()\n"
@@ -53,17 +64,6 @@ void bind_soil_kind(py::module_& module) {
           [](const SoilKind& soil, double d) { return bulking_of_density(soil, d); },
           arg("density_percent"), "Bulking factor if all soil goes to the loose state [-].")
       .def("__repr__", [](const SoilKind& soil) { return "<SoilKind " + soil.name + ">"; });
-  py::class_<SoilState>(module, "SoilState", "A soil at one relative density.")
-      .def_readonly("relative_density", &SoilState::relative_density, "0 .. 1 for the bank [-].")
-      .def_readonly("void_ratio", &SoilState::void_ratio, "[-]")
-      .def_readonly("dry_density", &SoilState::dry_density, "[kg/m^3]")
-      .def_readonly("bulk_density", &SoilState::bulk_density, "Moist [kg/m^3].")
-      .def_readonly("unit_weight", &SoilState::unit_weight, "[N/m^3]")
-      .def_readonly("saturation", &SoilState::saturation, "[-]")
-      .def_readonly("cohesion", &SoilState::cohesion, "[Pa]")
-      .def_readonly("adhesion", &SoilState::adhesion, "[Pa]")
-      .def_readonly("friction_angle", &SoilState::friction_angle, "[rad]")
-      .def_readonly("tool_friction_angle", &SoilState::tool_friction_angle, "[rad]");
   module.def(
       "load_soil",
       [](const std::string& name) { return load_soil(shipped_or_file("soils", name)); },
