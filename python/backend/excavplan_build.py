@@ -8,6 +8,7 @@ network and no package of Python; the compiler and the libraries are those of th
 """
 
 import base64
+import gzip
 import hashlib
 import io
 import os
@@ -159,7 +160,8 @@ def build_sdist(sdist_directory, config_settings=None):
     base = f"{NAME}-{version()}"
     path = pathlib.Path(sdist_directory) / f"{base}.tar.gz"
     listed = [(name, (ROOT / name).read_bytes()) for name in sources() if name != "PKG-INFO"]
-    with tarfile.open(path, "w:gz", format=tarfile.PAX_FORMAT, compresslevel=6) as archive:
+    with open(path, "wb") as file, gzip.GzipFile("", "wb", 6, file, epoch()) as packed, \
+            tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as archive:
         for name, content in [*listed, ("PKG-INFO", metadata().encode())]:
             entry = tarfile.TarInfo(f"{base}/{name}")
             entry.size, entry.mtime = len(content), epoch()

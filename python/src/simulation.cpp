@@ -260,8 +260,8 @@ DigScene simulated(const Machine& machine, const SoilKind& soil, double density,
   });
 }
 
-py::tuple scans_of(const DigScene& scene, std::uint64_t seed,
-                   const std::optional<std::string>& sensor, int frames) {
+std::pair<Array, Array> scans_of(const DigScene& scene, std::uint64_t seed,
+                                 const std::optional<std::string>& sensor, int frames) {
   DepthCamera camera;
   if (sensor) camera = with_errors_of(sensor_of_word(*sensor), camera);
   camera.frames = frames;
@@ -269,7 +269,7 @@ py::tuple scans_of(const DigScene& scene, std::uint64_t seed,
   const auto rows = [](const std::vector<Eigen::Vector3d>& points) {
     return array_of_rows(points, [](const Eigen::Vector3d& point) { return point; });
   };
-  return py::make_tuple(rows(scans.before), rows(scans.after));
+  return {rows(scans.before), rows(scans.after)};
 }
 
 void bind_scene(py::module_& module) {

@@ -65,6 +65,8 @@ def argument_type(function, name, text):
     text = re.sub(r"\bVector[23]\b", "Sequence[float]", text)
     text = re.sub(r"\bList\[", "Sequence[", text)
     text = re.sub(r"\bGroundDensity\b", "Union[GroundDensity, float]", text)
+    if function == "dig":  # which simulators override
+        return text
     return re.sub(r"\bTerrain\b", "Union[Terrain, HeightMap]", text)
 
 
