@@ -11,7 +11,9 @@ import unittest
 import excavplan as ex
 
 PROGRAM = """
-import excavplan as ex, time
+import signal
+import excavplan as ex
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell ignores it
 machine, loam = ex.load_machine("zx120"), ex.load_soil("loam")
 print("begins", flush=True)
 try:
