@@ -102,6 +102,19 @@ void bind_ledgers(py::module_& module) {
       .def_readwrite("solids_before", &SoilLedger::solids_before, "Dry mass [kg].")
       .def_readwrite("solids_after", &SoilLedger::solids_after, "The same with the bucket [kg].");
   py::class_<Stall>(module, "Stall", "The machine could not continue. It is false.")
+      .def(py::init([](const std::string& phase, double travelled) {
+             Stall stall;
+             stall.phase = of_word<DigPhase>("the phase", phase,
+                                             {{"penetrate", DigPhase::penetrate},
+                                              {"drag", DigPhase::drag},
+                                              {"scoop", DigPhase::scoop},
+                                              {"lift", DigPhase::lift}});
+             stall.travelled = travelled;
+             return stall;
+           }),
+           arg("phase"), arg("travelled"),
+           "Of a simulator of your own: the phase in which the dig ended, and how far the tip had\n"
+           "come from its start [m].")
       .def_property_readonly(
           "cause", [](const Stall& stall) { return name(stall.cause); },
           "'torque', 'front_lifts', 'rear_lifts' or 'slides'.")
@@ -179,15 +192,17 @@ void bind_dig(py::module_& module) {
       .def_readonly("give_up_below", &DigOptions::give_up_below,
                     "A simulator may end a dig that cannot reach this efficiency [kg/J].");
   py::class_<DigResult>(module, "DigResult", "What a dig lifts, costs and leaves behind.")
-      .def(py::init([](double mass, double volume, const EnergyLedger& energy) {
+      .def(py::init([](double mass, double volume, const EnergyLedger& energy,
+                       const std::optional<Stall>& stall) {
              DigResult result;
              result.payload_mass = mass;
              result.payload_volume = volume;
              result.energy = energy;
+             result.stall = stall;
              return result;
            }),
            py::kw_only(), arg("payload_mass") = 0.0, arg("payload_volume") = 0.0,
-           py::arg_v("energy", EnergyLedger{}, "EnergyLedger()"))
+           py::arg_v("energy", EnergyLedger{}, "EnergyLedger()"), arg("stall") = py::none())
       .def_readwrite("patch", &DigResult::patch, "All cells that changed, afterwards.")
       .def_readwrite("payload_mass", &DigResult::payload_mass, "Moist [kg].")
       .def_readwrite("payload_volume", &DigResult::payload_volume, "Loose [m^3].")

@@ -86,6 +86,18 @@ class OwnSimulator(unittest.TestCase):
         scene = ex.simulate_dig(MACHINE, LOAM, 40, simulator=Own)
         self.assertEqual(scene.dig.payload_mass, ex.simulate_dig(MACHINE, LOAM, 40).dig.payload_mass)
 
+    def test_it_may_stall(self):
+        class Stalling(Own):
+            def dig(self, terrain, path, options):
+                return ex.DigResult(energy=ex.EnergyLedger(total=5000.0),
+                                    stall=ex.Stall("drag", 0.7))
+
+        stall = ex.evaluate_dig(MACHINE, Stalling(MACHINE, LOAM, 40), GROUND, ex.paper_fixed_path())
+        self.assertFalse(stall)
+        self.assertEqual((stall.phase, stall.travelled, stall.cause), ("drag", 0.7, "torque"))
+        self.assertIsNone(ex.plan_dig(MACHINE, LOAM, 40, method="search", simulator=Stalling,
+                                      search=FEW).dig)
+
     def test_its_exceptions_pass_through(self):
         for error in (KeyError("mine"), ZeroDivisionError("mine"), SystemExit(3)):
             simulator = failing(error, after=15)

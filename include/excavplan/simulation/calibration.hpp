@@ -9,6 +9,7 @@
 #include <excavplan/simulation/simulators.hpp>
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/soil.hpp>
+#include <excavplan/soil/soil_scatter.hpp>
 
 namespace excavplan {
 
