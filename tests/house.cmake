@@ -56,7 +56,7 @@ string(CONCAT code
   "(return|const|auto|double|int|bool|std::)[^.]*;$")
 file(GLOB_RECURSE sources RELATIVE ${ROOT}
   ${ROOT}/include/*.hpp ${ROOT}/src/*.[ch]pp ${ROOT}/tools/*.[ch]pp ${ROOT}/tests/*.[ch]pp
-  ${ROOT}/benchmarks/*.[ch]pp ${ROOT}/examples/*.cpp)
+  ${ROOT}/benchmarks/*.[ch]pp ${ROOT}/examples/*.cpp ${ROOT}/python/src/*.[ch]pp)
 list(LENGTH sources count)
 if(count LESS 150)
   message(SEND_ERROR "only ${count} source files under '${ROOT}': nothing was checked")

@@ -84,7 +84,8 @@ endfunction()
 
 file(GLOB_RECURSE sources RELATIVE ${ROOT}
   ${ROOT}/include/*.hpp ${ROOT}/src/*.hpp ${ROOT}/src/*.cpp ${ROOT}/tools/*.hpp ${ROOT}/tools/*.cpp
-  ${ROOT}/tests/*.hpp ${ROOT}/tests/*.cpp ${ROOT}/benchmarks/*.cpp ${ROOT}/examples/*.cpp)
+  ${ROOT}/tests/*.hpp ${ROOT}/tests/*.cpp ${ROOT}/benchmarks/*.cpp ${ROOT}/examples/*.cpp
+  ${ROOT}/python/src/*.cpp ${ROOT}/python/src/*.hpp)
 list(LENGTH sources count)
 if(count LESS 30)
   message(SEND_ERROR "only ${count} source files under '${ROOT}': nothing was checked")

@@ -100,13 +100,6 @@ DigScans scans_of(const Inputs& inputs, ScanReport& report) {
   return scans;
 }
 
-DensityOptions options_of(const Inputs& inputs, const Machine& machine) {
-  DensityOptions options = inputs.options;
-  options.registered = !inputs.still;
-  apply_method(inputs.method, machine, options);
-  return options;
-}
-
 Outcome work_on_scans(const Inputs& inputs) {
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
     usage_error("--dump-before and --dump-after must be given together");
@@ -114,7 +107,9 @@ Outcome work_on_scans(const Inputs& inputs) {
   ScanReport report;
   const DigScans scans = scans_of(inputs, report);
   const Machine machine = machine_named(inputs.frames.view.machine);
-  DensityOptions options = options_of(inputs, machine);
+  DensityOptions options = inputs.options;
+  options.registered = !inputs.still;
+  apply_method(inputs.method, machine, options);
   const DensityLaw law = law_of(inputs.soil, inputs.frames.view.machine, options);
   inputs.second.apply_to(law, options);
   const auto by_method = [&] { return estimate(inputs.method, scans, law, options); };

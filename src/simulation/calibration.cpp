@@ -182,6 +182,14 @@ DensityCalibration calibrate_density(const std::vector<BulkingSample>& samples) 
   return calibration;
 }
 
+DensityLaw usual_law(const Machine& machine, const SoilKind& soil,
+                     const std::vector<SoilLaw>& known) {
+  const auto same = std::find_if(known.begin(), known.end(), [&](const SoilLaw& each) {
+    return each.soil.name == soil.name && fingerprint(each.soil) == fingerprint(soil);
+  });
+  return same != known.end() ? same->law : law_of(calibrate_density(machine, soil));
+}
+
 std::optional<BulkingDifference> bulking_difference(const DensityCalibration& calibration) {
   using Sample = DensityCalibration::Sample;
   const auto& samples = calibration.samples;

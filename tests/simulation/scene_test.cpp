@@ -207,6 +207,16 @@ TEST_F(SceneTest, CalibrationDigsInTheSimulatorGiven) {
   }
 }
 
+TEST_F(SceneTest, TheUsualLawIsTheShippedOneOfTheVerySameSoil) {
+  const auto known = shipped_soil_laws();
+  SoilKind own = soil_;
+  EXPECT_EQ(usual_law(machine_, own, known).name, known.front().law.name);
+  own.void_ratio_loose *= 0.95;
+  const DensityLaw calibrated = usual_law(machine_, own, known);
+  EXPECT_LT(bulking_of_density(calibrated.form, 50.0),
+            bulking_of_density(known.front().law.form, 50.0));
+}
+
 TEST_F(SceneTest, CalibrationFitsMeasuredSamples) {
   std::vector<BulkingSample> samples;
   for (const double d : {10.0, 30.0, 50.0, 70.0, 90.0}) {

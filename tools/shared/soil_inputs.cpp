@@ -22,14 +22,6 @@ const SoilLaw* find(const std::vector<SoilLaw>& laws, const std::string& soil) {
   return found == laws.end() ? nullptr : &*found;
 }
 
-/// The law of a kind of soil: the shipped one, or one of digs in the simulator.
-DensityLaw default_law(const SoilKind& soil, const std::string& machine,
-                       const std::vector<SoilLaw>& shipped) {
-  const SoilLaw* known = find(shipped, soil.name);
-  if (known && fingerprint(known->soil) == fingerprint(soil)) return known->law;
-  return law_of(calibrate_density(machine_named(machine), soil));
-}
-
 }  // namespace
 
 void declare_soil(Arguments& arguments, SoilInputs& inputs) {
@@ -60,7 +52,7 @@ DensityLaw law_of(const SoilInputs& inputs, const std::string& machine, DensityO
   if (!own_law) {
     soil.assumed = !inputs.soil;
     if (!soil.kind) soil.kind = soil_named(usual_soil);
-    return default_law(*soil.kind, machine, soil.possible);
+    return usual_law(machine_named(machine), *soil.kind, soil.possible);
   }
   DensityLaw law = law_named(inputs.law);
   if (soil.kind && !law.soil.empty() && law.soil != soil.kind->name) {

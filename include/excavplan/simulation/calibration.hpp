@@ -9,6 +9,7 @@
 #include <excavplan/simulation/simulators.hpp>
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/soil.hpp>
+#include <excavplan/soil/soil_scatter.hpp>
 
 namespace excavplan {
 
@@ -48,6 +49,11 @@ DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soi
 /// @throws Error (bad_input) if the path cannot be driven
 DensityCalibration calibrate_path(const Machine& machine, const SoilKind& soil,
                                   const DigParameters& path, unsigned threads = 0);
+
+/// The law for digs in a kind of soil: of `known` that of the very same soil, else one that is
+/// calibrated for the machine. @throws Error (bad_input) as calibrate_density()
+DensityLaw usual_law(const Machine& machine, const SoilKind& soil,
+                     const std::vector<SoilLaw>& known);
 
 /// Fits the forms of a law to measured digs of known density; the closed form is the one to use.
 /// @throws Error (bad_input) as fit_density_forms()

@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/data_files.hpp>
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/trajectory.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "arrays.hpp"
+#include "calls.hpp"
+#include "rooms.hpp"
+#include "texts.hpp"
+#include "words.hpp"
+
+namespace excavplan::python {
+namespace {
+
+using py::arg;
+
+void bind_machine_itself(py::module_& module) {
+  py::class_<BucketPose>(module, "BucketPose", "Position of the tip and attitude of the bucket.")
+      .def(py::init([](double x, double z, double angle) {
+             return BucketPose{x, z, angle};
+           }),
+           arg("x"), arg("z"), arg("floor_angle"))
+      .def_readonly("x", &BucketPose::x, "[m]")
+      .def_readonly("z", &BucketPose::z, "[m]")
+      .def_readonly("floor_angle", &BucketPose::floor_angle, "[rad]")
+      .def("__repr__", [](const BucketPose& pose) {
+        return shown("BucketPose",
+                     {{"x", pose.x}, {"z", pose.z}, {"floor_angle", pose.floor_angle}});
+      });
+  py::class_<JointLimits>(module, "JointLimits", "What a joint can do.")
+      .def_readonly("lower", &JointLimits::lower, "[rad]")
+      .def_readonly("upper", &JointLimits::upper, "[rad]")
+      .def_readonly("speed", &JointLimits::speed, "[rad/s]")
+      .def_readonly("acceleration", &JointLimits::acceleration, "[rad/s^2]")
+      .def_readonly("torque", &JointLimits::torque, "[N m]");
+  py::class_<Machine>(
+      module, "Machine",
+      "An excavator in its boom plane. Joints are boom, arm, bucket; positive turns\n"
+      "down and curls in.")
+      .def_readonly("name", &Machine::name, "'zx120'")
+      .def_readonly("boom_pin", &Machine::boom_pin, "(x, z) [m]")
+      .def_readonly("boom_length", &Machine::boom_length, "Boom pin to arm pin [m].")
+      .def_readonly("arm_length", &Machine::arm_length, "Arm pin to bucket pin [m].")
+      .def_readonly("bucket_length", &Machine::bucket_length, "Bucket pin to tip [m].")
+      .def_readonly("track_front", &Machine::track_front, "x of the front of the tracks [m].")
+      .def_property_readonly(
+          "limits",
+          [](const Machine& m) {
+            return std::vector<JointLimits>(m.limits.begin(), m.limits.end());
+          },
+          "Of boom, arm, bucket.")
+      .def_property_readonly(
+          "bucket_width", [](const Machine& m) { return m.bucket.width_outside; },
+          "Outside, which it cuts [m].")
+      .def_property_readonly("full_length", &Machine::full_length, "The longest reach [m].")
+      .def(
+          "struck_capacity", [](const Machine& m) { return struck_capacity(m); }, "[m^3]")
+      .def(
+          "heaped_capacity",
+          [](const Machine& m, double slope) { return heaped_capacity(m, slope); },
+          arg("slope") = 0.7853981633974483, "With a heap that falls by `slope` [rad] [m^3].")
+      .def(
+          "fingerprint", [](const Machine& m) { return fingerprint(m); },
+          "16 digits that depend on every number that affects a dig.")
+      .def(
+          "forward_kinematics",
+          [](const Machine& m, const JointAngles& joints) { return forward_kinematics(m, joints); },
+          arg("joints"), "Tip and floor angle for joint angles (boom, arm, bucket) [rad].")
+      .def(
+          "inverse_kinematics",
+          [](const Machine& m, const BucketPose& pose) -> std::optional<JointAngles> {
+            const auto found = inverse_kinematics(m, pose);
+            if (const auto* joints = std::get_if<JointAngles>(&found)) return *joints;
+            return std::nullopt;
+          },
+          arg("pose"), "Joint angles (boom, arm, bucket) of a pose [rad]; None out of reach.")
+      .def("__repr__", [](const Machine& m) { return "<Machine " + m.name + ">"; });
+  module.def(
+      "load_machine",
+      [](const std::string& name) { return load_machine(shipped_or_file("machines", name)); },
+      arg("name_or_file"), "'zx120' or a machine file.");
+}
+
+// ---- paths --------------------------------------------------------------------------------------
+
+Array joints_of(const std::vector<DigPose>& poses) {
+  return array_of_rows(poses, [](const DigPose& pose) { return pose.joints; });
+}
+
+Eigen::Vector3d numbers_of_pose(const BucketPose& pose) {
+  return {pose.x, pose.z, pose.floor_angle};
+}
+
+GroundProfile profile_of(const std::optional<HeightMap>& ground) {
+  if (ground) return boom_plane_profile(*ground);
+  return [](double) { return 0.0; };
+}
+
+void bind_path(py::module_& module) {
+  py::class_<DigParameters>(module, "DigParameters", "The three numbers of a dig.")
+      .def(py::init([](double angle, double penetration, double drag) {
+             return DigParameters{angle, penetration, drag};
+           }),
+           arg("penetration_angle"), arg("penetration_length"), arg("drag_length"))
+      .def_readonly("penetration_angle", &DigParameters::penetration_angle,
+                    "Of the line of penetration below the horizontal [rad].")
+      .def_readonly("penetration_length", &DigParameters::penetration_length, "[m]")
+      .def_readonly("drag_length", &DigParameters::drag_length, "Towards the machine [m].")
+      .def("__repr__", [](const DigParameters& p) {
+        return shown("DigParameters", {{"penetration_angle", p.penetration_angle},
+                                       {"penetration_length", p.penetration_length},
+                                       {"drag_length", p.drag_length}});
+      });
+  py::class_<DigPath>(module, "DigPath",
+                      "A dig that the machine can drive: poses in the order of the visit.")
+      .def_readonly("parameters", &DigPath::parameters, "That it was made from.")
+      .def_readonly("start_x", &DigPath::start_x, "Where the tip meets the ground [m].")
+      .def_readonly("ground_z", &DigPath::ground_z, "Height of the ground there [m].")
+      .def_property_readonly(
+          "phase",
+          [](const DigPath& path) {
+            return texts(path.poses, [](const DigPose& pose) { return name(pose.phase); });
+          },
+          "Of each pose: 'penetrate', 'drag', 'scoop' or 'lift'.")
+      .def_property_readonly(
+          "joints", [](const DigPath& path) { return joints_of(path.poses); },
+          "Boom, arm, bucket, shape (N, 3) [rad].")
+      .def_property_readonly(
+          "bucket",
+          [](const DigPath& path) {
+            return array_of_rows(path.poses,
+                                 [](const DigPose& pose) { return numbers_of_pose(pose.bucket); });
+          },
+          "x, z of the tip [m] and floor angle [rad], shape (N, 3).")
+      .def_property_readonly(
+          "approach", [](const DigPath& path) { return joints_of(path.approach); },
+          "Joints on the way down, shape (M, 3) [rad]; M is 0 unless planned.")
+      .def_readonly("heel_clearance", &DigPath::heel_clearance,
+                    "Smallest floor angle during the drag [rad].")
+      .def_readonly("overcut", &DigPath::overcut, "Of the scoop below the drag line [m].")
+      .def("__len__", [](const DigPath& path) { return path.poses.size(); });
+  py::class_<Infeasible>(module, "Infeasible", "Why a dig cannot be driven. It is false.")
+      .def_property_readonly(
+          "phase", [](const Infeasible& i) { return name(i.phase); }, "In which the path fails.")
+      .def_readonly("distance", &Infeasible::distance, "Travelled in that phase [m], scoop [rad].")
+      .def_readonly("value", &Infeasible::value, "What was found.")
+      .def_readonly("limit", &Infeasible::limit, "What was allowed.")
+      .def_readonly("message", &Infeasible::message, "All of this in one sentence.")
+      .def("__bool__", [](const Infeasible&) { return false; })
+      .def("__repr__", [](const Infeasible& i) { return "<Infeasible: " + i.message + ">"; });
+  module.def("paper_fixed_path", &paper_fixed_path, "The paper's: pi/4, 0.35 m, 1.5 m.");
+  module.def(
+      "make_dig_path",
+      [](const Machine& machine, const DigParameters& parameters, std::optional<double> start_x,
+         const std::optional<HeightMap>& ground, bool planned) {
+        require_machine(machine);
+        const GroundProfile profile = profile_of(ground);
+        const DigPathOptions rules = planned ? rules_for_planned_path() : DigPathOptions{};
+        return call([&] {
+          return start_x ? make_dig_path(machine, parameters, *start_x, profile, rules)
+                         : make_dig_path_anywhere(machine, parameters, profile, rules);
+        });
+      },
+      arg("machine"), arg("parameters"), arg("start_x") = py::none(), arg("ground") = py::none(),
+      py::kw_only(), arg("planned") = false,
+      "Lays out penetration, drag, scoop and lift. start_x: where the tip meets the ground [m],\n"
+      "else where the margins are largest; ground: its surface, else level at 0; planned: the\n"
+      "limits are those for a path planned on another measurement of the ground.");
+}
+
+// ---- trajectory ---------------------------------------------------------------------------------
+
+template <typename Row>
+Array rows(const Trajectory& trajectory, const Row& row) {
+  return array_of_rows(trajectory.points, row);
+}
+
+void bind_trajectory(py::module_& module) {
+  using Point = TrajectoryPoint;
+  py::class_<Trajectory>(module, "Trajectory", "A timed dig path.")
+      .def_readonly("machine", &Trajectory::machine, "Its name.")
+      .def_property_readonly("duration", &Trajectory::duration, "Of all points [s].")
+      .def_property_readonly("dig_duration", &Trajectory::dig_duration,
+                             "Of penetrate, drag and scoop [s].")
+      .def_property_readonly(
+          "time",
+          [](const Trajectory& t) {
+            return array_of(t.points, [](const Point& p) { return p.time; });
+          },
+          "From 0, strictly increasing, shape (N,) [s].")
+      .def_property_readonly(
+          "phase",
+          [](const Trajectory& t) {
+            return texts(t.points, [](const Point& p) { return name(p.phase); });
+          },
+          "That leads to each point: 'approach', 'penetrate', 'drag', 'scoop' or 'lift'.")
+      .def_property_readonly(
+          "joints",
+          [](const Trajectory& t) { return rows(t, [](const Point& p) { return p.joints; }); },
+          "Boom, arm, bucket, shape (N, 3) [rad].")
+      .def_property_readonly(
+          "rates",
+          [](const Trajectory& t) { return rows(t, [](const Point& p) { return p.rates; }); },
+          "Likewise [rad/s].")
+      .def_property_readonly(
+          "bucket",
+          [](const Trajectory& t) {
+            return rows(t, [](const Point& p) { return numbers_of_pose(p.bucket); });
+          },
+          "x, z of the tip [m] and floor angle [rad], shape (N, 3).")
+      .def_property_readonly(
+          "cylinders",
+          [](const Trajectory& t) { return rows(t, [](const Point& p) { return p.cylinders; }); },
+          "Lengths, shape (N, 3) [m]; NaN if the machine does not state its cylinders.")
+      .def_property_readonly(
+          "cylinder_speeds",
+          [](const Trajectory& t) {
+            return rows(t, [](const Point& p) { return p.cylinder_speeds; });
+          },
+          "Likewise [m/s].")
+      .def(
+          "to_csv", [](const Trajectory& t) { return to_csv(t); }, "As plan-path writes it.")
+      .def(
+          "to_json", [](const Trajectory& t) { return to_json(t); },
+          "What load_trajectory() reads back exactly.")
+      .def("__len__", [](const Trajectory& t) { return t.points.size(); });
+  module.def(
+      "time_dig_path",
+      [](const Machine& machine, const DigPath& path, double speed_fraction,
+         double corner_tolerance, const std::vector<JointAngles>& torques) {
+        TrajectoryOptions options;
+        options.speed_fraction = speed_fraction;
+        options.corner_tolerance = corner_tolerance;
+        return call([&] { return time_dig_path(machine, path, options, torques); });
+      },
+      arg("machine"), arg("path"), py::kw_only(),
+      arg("speed_fraction") = TrajectoryOptions{}.speed_fraction,
+      arg("corner_tolerance") = TrajectoryOptions{}.corner_tolerance,
+      arg("torques") = std::vector<JointAngles>{},
+      "Times a path as fast as the machine allows. speed_fraction: of its limits, in (0, 1];\n"
+      "corner_tolerance: distance from the path at corners [m]; torques: DigResult.torques [N m].");
+  module.def("load_trajectory", &load_trajectory, arg("file"), "Reads what to_json() writes.");
+}
+
+}  // namespace
+
+void bind_machine(py::module_& module) {
+  bind_machine_itself(module);
+  bind_path(module);
+  bind_trajectory(module);
+}
+
+}  // namespace excavplan::python

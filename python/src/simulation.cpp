@@ -1,0 +1,363 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/scene.hpp>
+#include <excavplan/simulation/terrain.hpp>
+
+#include "arrays.hpp"
+#include "calls.hpp"
+#include "rooms.hpp"
+#include "simulators.hpp"
+#include "texts.hpp"
+#include "words.hpp"
+
+namespace excavplan::python {
+namespace {
+
+using py::arg;
+
+// ---- ground -------------------------------------------------------------------------------------
+
+Terrain made_terrain(const HeightMap& bank, const std::optional<ArrayLike>& loose) {
+  Terrain terrain = undisturbed(bank);
+  if (loose) terrain.loose = table_of("the loose soil", *loose);
+  terrain.surface();  // checks the sizes
+  return terrain;
+}
+
+TerrainPatch made_patch(Eigen::Index row, Eigen::Index col, const ArrayLike& bank,
+                        const ArrayLike& loose) {
+  return {row,
+          col,
+          table_of("the bank of a patch", bank),
+          table_of("the loose soil of a patch", loose),
+          {}};
+}
+
+void bind_terrain(py::module_& module) {
+  py::class_<Terrain>(module, "Terrain", "Ground in two layers on one grid.")
+      .def(py::init(&made_terrain), arg("bank"), arg("loose") = py::none(),
+           "bank: top of the undisturbed soil, NaN where unknown; loose: thickness of the loose\n"
+           "soil on it, shape (rows, columns) [m], else none.")
+      .def_readonly("bank", &Terrain::bank, "Top of the undisturbed soil.")
+      .def_property_readonly(
+          "loose", [](const Terrain& t) { return array(t.loose); },
+          "Thickness of the loose soil, shape (rows, columns) [m].")
+      .def("surface", &Terrain::surface, "bank + loose.");
+  py::implicitly_convertible<HeightMap, Terrain>();
+  py::class_<TerrainPatch>(module, "TerrainPatch", "A block of a terrain's cells in a new state.")
+      .def(py::init<>(), "Of no cells.")
+      .def(py::init(&made_patch), arg("row"), arg("col"), arg("bank"), arg("loose"),
+           "row, col: of its first cell on the whole terrain; bank, loose: as of a Terrain [m].")
+      .def_readonly("row", &TerrainPatch::row, "Of its first cell on the whole terrain.")
+      .def_readonly("col", &TerrainPatch::col, "Likewise.")
+      .def_property_readonly(
+          "bank", [](const TerrainPatch& p) { return array(p.bank); },
+          "Top of the undisturbed soil, shape (rows, columns) [m].")
+      .def_property_readonly(
+          "loose", [](const TerrainPatch& p) { return array(p.loose); },
+          "Thickness of the loose soil, likewise [m].");
+  module.def("planning_extent", &planning_extent, arg("machine"), "Ground that affects a dig.");
+  module.def("scene_extent", &scene_extent, arg("machine"), arg("dump_at") = default_dump_point(),
+             "Ground for the digs of a machine and a heap at (x, y) [m].");
+  module.def("level_planning_ground", &level_planning_ground, arg("machine"),
+             arg("cell_size") = 0.05, "planning_extent() as level ground; cell_size in [m].");
+  module.def("sloped_planning_ground", &sloped_planning_ground, arg("machine"), arg("slope"),
+             arg("cell_size") = 0.05,
+             "Level up to the tracks, then rising by `slope` [rad]; cell_size in [m].");
+}
+
+// ---- one dig ------------------------------------------------------------------------------------
+
+void bind_ledgers(py::module_& module) {
+  py::class_<EnergyLedger>(module, "EnergyLedger",
+                           "Energy of one dig [J]: positive work of the joints.")
+      .def(py::init([](double total, double lift) {
+             EnergyLedger energy;
+             energy.total = total;
+             energy.lift = lift;
+             return energy;
+           }),
+           arg("total") = 0.0, arg("lift") = 0.0)
+      .def_readwrite("total", &EnergyLedger::total, "Of the dig, without the lift [J].")
+      .def_readwrite("by_phase", &EnergyLedger::by_phase, "Penetrate, drag, scoop [J].")
+      .def_readwrite("by_joint", &EnergyLedger::by_joint, "Boom, arm, bucket [J].")
+      .def_readwrite("soil", &EnergyLedger::soil, "Part against the resistance of the soil [J].")
+      .def_readwrite("edge", &EnergyLedger::edge, "Of `soil`: against lip and teeth [J].")
+      .def_readwrite("payload", &EnergyLedger::payload, "Part against the weight carried [J].")
+      .def_readwrite("links", &EnergyLedger::links, "Part against the weight of the links [J].")
+      .def_readwrite("lift", &EnergyLedger::lift, "Of the lift, not part of the total [J].");
+  py::class_<SoilLedger>(module, "SoilLedger", "Where the soil went [m^3].")
+      .def(py::init<>())
+      .def_readwrite("bank_cut", &SoilLedger::bank_cut, "Undisturbed soil cut [m^3].")
+      .def_readwrite("loose_cut", &SoilLedger::loose_cut, "Loose soil cut again [m^3].")
+      .def_readwrite("payload", &SoilLedger::payload, "Loose, in the bucket [m^3].")
+      .def_readwrite("spilled", &SoilLedger::spilled, "Loose, left on uncut ground [m^3].")
+      .def_readwrite("fallen_back", &SoilLedger::fallen_back, "Loose, in the pit [m^3].")
+      .def_readwrite("fallback_fraction", &SoilLedger::fallback_fraction,
+                     "fallen_back over bank_cut [-].")
+      .def_readwrite("solids_before", &SoilLedger::solids_before, "Dry mass [kg].")
+      .def_readwrite("solids_after", &SoilLedger::solids_after, "The same with the bucket [kg].");
+  py::class_<Stall>(module, "Stall", "The machine could not continue. It is false.")
+      .def(py::init([](const std::string& phase, double travelled) {
+             Stall stall;
+             stall.phase = of_word<DigPhase>("the phase", phase,
+                                             {{"penetrate", DigPhase::penetrate},
+                                              {"drag", DigPhase::drag},
+                                              {"scoop", DigPhase::scoop},
+                                              {"lift", DigPhase::lift}});
+             stall.travelled = travelled;
+             return stall;
+           }),
+           arg("phase"), arg("travelled"),
+           "Of a simulator of your own: the phase in which the dig ended, and how far the tip had\n"
+           "come from its start [m].")
+      .def_property_readonly(
+          "cause", [](const Stall& stall) { return name(stall.cause); },
+          "'torque', 'front_lifts', 'rear_lifts' or 'slides'.")
+      .def_property_readonly(
+          "phase", [](const Stall& stall) { return name(stall.phase); }, "In which the dig ended.")
+      .def_property_readonly(
+          "joint", [](const Stall& stall) { return name(stall.joint); },
+          "That lacked torque; the boom for another cause.")
+      .def_readonly("travelled", &Stall::travelled, "By the tip from the start [m].")
+      .def_readonly("torque", &Stall::torque, "That the joint needed [N m]; 0 for another cause.")
+      .def_readonly("needed", &Stall::needed, "What the dig takes [N m] or [N].")
+      .def_readonly("held", &Stall::held, "What the machine holds, likewise.")
+      .def("__bool__", [](const Stall&) { return false; });
+}
+
+/// The samples of a dig, as columns.
+struct History {
+  std::vector<ForceSample> samples;
+};
+
+void bind_history(py::module_& module) {
+  py::class_<History>(module, "History", "Forces in the middle of each step of a dig.")
+      .def_property_readonly(
+          "phase",
+          [](const History& h) {
+            return texts(h.samples, [](const ForceSample& s) { return name(s.phase); });
+          },
+          "Of each step.")
+      .def_property_readonly(
+          "travelled",
+          [](const History& h) {
+            return array_of(h.samples, [](const ForceSample& s) { return s.travelled; });
+          },
+          "By the tip, shape (N,) [m].")
+      .def_property_readonly(
+          "joints",
+          [](const History& h) {
+            return array_of_rows(h.samples, [](const ForceSample& s) { return s.joints; });
+          },
+          "Boom, arm, bucket, shape (N, 3) [rad].")
+      .def_property_readonly(
+          "soil",
+          [](const History& h) {
+            return array_of_rows(h.samples, [](const ForceSample& s) { return s.soil; });
+          },
+          "Force of the soil on the bucket (x, z), shape (N, 2) [N].")
+      .def_property_readonly(
+          "torque",
+          [](const History& h) {
+            return array_of_rows(h.samples, [](const ForceSample& s) { return s.torque; });
+          },
+          "Of boom, arm, bucket, shape (N, 3) [N m].")
+      .def_property_readonly(
+          "bucket_fill",
+          [](const History& h) {
+            return array_of(h.samples, [](const ForceSample& s) { return s.bucket_fill; });
+          },
+          "Loose soil in the bucket, shape (N,) [m^3].")
+      .def("__len__", [](const History& h) { return h.samples.size(); });
+}
+
+void bind_dig(py::module_& module) {
+  py::class_<DigOptions>(module, "DigOptions", "Settings of SoilSimulator.dig().")
+      .def(py::init([](bool history, std::optional<Eigen::Vector2d> dump_at) {
+             DigOptions options;
+             options.history = history;
+             options.dump_at = dump_at;
+             return options;
+           }),
+           py::kw_only(), arg("history") = false, arg("dump_at") = py::none())
+      .def_readonly("history", &DigOptions::history, "Record the forces.")
+      .def_readonly("dump_at", &DigOptions::dump_at,
+                    "Heap the payload at (x, y) [m]; None: keep it.")
+      .def_readonly("settle", &DigOptions::settle, "Let the ground come to rest.")
+      .def_readonly("give_up_below", &DigOptions::give_up_below,
+                    "A simulator may end a dig that cannot reach this efficiency [kg/J].");
+  py::class_<DigResult>(module, "DigResult", "What a dig lifts, costs and leaves behind.")
+      .def(py::init([](double mass, double volume, const EnergyLedger& energy,
+                       const std::optional<Stall>& stall) {
+             DigResult result;
+             result.payload_mass = mass;
+             result.payload_volume = volume;
+             result.energy = energy;
+             result.stall = stall;
+             return result;
+           }),
+           py::kw_only(), arg("payload_mass") = 0.0, arg("payload_volume") = 0.0,
+           py::arg_v("energy", EnergyLedger{}, "EnergyLedger()"), arg("stall") = py::none())
+      .def_readwrite("patch", &DigResult::patch, "All cells that changed, afterwards.")
+      .def_readwrite("payload_mass", &DigResult::payload_mass, "Moist [kg].")
+      .def_readwrite("payload_volume", &DigResult::payload_volume, "Loose [m^3].")
+      .def_readwrite("energy", &DigResult::energy, "[J]")
+      .def_readwrite("soil", &DigResult::soil, "[m^3]")
+      .def_readwrite("peak_force", &DigResult::peak_force, "Of the soil on the bucket [N].")
+      .def_property_readonly(
+          "stall", [](const DigResult& r) { return r.stall; },
+          "None: the machine finished the path.")
+      .def_readonly("given_up", &DigResult::given_up, "Ended early: DigOptions.give_up_below.")
+      .def_property_readonly(
+          "history", [](const DigResult& r) { return History{r.history}; },
+          "Forces of each step; empty unless requested.")
+      .def_readwrite("torques", &DigResult::torques,
+                     "Of the joints, half-way from each pose of the path to the next [N m].")
+      .def("after", &DigResult::after, arg("before"), "The whole terrain afterwards.")
+      .def_property_readonly("efficiency", &DigResult::efficiency,
+                             "The paper's f, payload mass / energy [kg/J].");
+}
+
+void bind_simulators(py::module_& module) {
+  py::class_<SoilSimulator, SimulatorInPython>(
+      module, "SoilSimulator",
+      "A simulation of one dig. A simulator of your own is a subclass that defines\n"
+      "dig(self, terrain, path, options) -> DigResult and, where it is given as a class,\n"
+      "__init__(self, machine, soil, density_percent). It returns the same for the same\n"
+      "arguments, conserves solids and leaves unknown cells unknown.")
+      .def(py::init<>())
+      .def(
+          "dig",
+          [](const SoilSimulator& simulator, const Terrain& terrain, const DigPath& path,
+             const std::optional<DigOptions>& options) {
+            return call(
+                [&] { return simulator.dig(terrain, path, options.value_or(DigOptions{})); });
+          },
+          arg("terrain"), arg("path"), arg("options") = py::none(), "Digs along the path.")
+      .def("identity", &SoilSimulator::identity,
+           "All that determines a dig besides its arguments, as text.");
+  py::class_<HeightMapSimulator, SoilSimulator>(module, "HeightMapSimulator",
+                                                "The built-in simulator.")
+      .def(py::init<const Machine&, const SoilKind&, double>(), arg("machine"), arg("soil"),
+           arg("density_percent"))
+      .def_property_readonly("bank", &HeightMapSimulator::bank, "Of the undisturbed soil.")
+      .def_property_readonly("loose", &HeightMapSimulator::loose, "Of dug soil.");
+  module.def(
+      "simulators",
+      [] { return texts(simulator_kinds(), [](const SimulatorKind& k) { return k.word; }); },
+      "Words of the built-in simulators; the first is the default.");
+}
+
+// ---- scenes -------------------------------------------------------------------------------------
+
+DigScene simulated(const Machine& machine, const SoilKind& soil, double density,
+                   const std::optional<Terrain>& terrain, const std::optional<DigParameters>& path,
+                   std::optional<double> start_x, const Eigen::Vector2d& dump_at,
+                   const py::object& simulator, double cell_size, bool planned) {
+  const auto own = std::make_shared<Call>();
+  SceneOptions options;
+  options.path = path.value_or(options.path);
+  options.start_x = start_x;
+  options.dump_at = dump_at;
+  options.history = true;
+  options.simulator = simulator_kind(simulator, own);
+  if (planned) options.rules = rules_for_planned_path();
+  return own->run([&] {
+    if (terrain) return run_scene(machine, soil, density, *terrain, options);
+    require_simulated_cell(cell_size);
+    const Terrain level = undisturbed(flat_ground(scene_extent(machine, dump_at), cell_size));
+    return run_scene(machine, soil, density, level, options);
+  });
+}
+
+std::pair<Array, Array> scans_of(const DigScene& scene, std::uint64_t seed,
+                                 const std::optional<std::string>& sensor, int frames) {
+  DepthCamera camera;
+  if (sensor) camera = with_errors_of(sensor_of_word(*sensor), camera);
+  camera.frames = frames;
+  const SceneScans scans = call([&] { return scan_scene(scene, camera, seed); });
+  const auto rows = [](const std::vector<Eigen::Vector3d>& points) {
+    return array_of_rows(points, [](const Eigen::Vector3d& point) { return point; });
+  };
+  return {rows(scans.before), rows(scans.after)};
+}
+
+void bind_scene(py::module_& module) {
+  py::class_<HeightMapVolumes>(module, "HeightMapVolumes",
+                               "Volumes of a dig, cell by cell of its height maps [m^3].")
+      .def_readonly("excavated", &HeightMapVolumes::excavated, "Ground that fell [m^3].")
+      .def_readonly("spilled", &HeightMapVolumes::spilled, "That rose away from the heap [m^3].")
+      .def_readonly("dumped", &HeightMapVolumes::dumped, "That rose at the heap [m^3].")
+      .def_readonly("bulking_factor", &HeightMapVolumes::bulking_factor,
+                    "(spilled + dumped) / excavated [-].");
+  py::class_<DigScene>(module, "DigScene", "One dig with the ground before and after it.")
+      .def_readonly("soil", &DigScene::soil, "Its name.")
+      .def_readonly("density_percent", &DigScene::density_percent, "[%]")
+      .def_readonly("path", &DigScene::path, "That was dug.")
+      .def_readonly("before", &DigScene::before, "The ground before.")
+      .def_readonly("after", &DigScene::after, "The ground with the heap.")
+      .def_readonly("dig", &DigScene::dig, "With a stall, if there was one.")
+      .def_readonly("volumes", &DigScene::volumes, "Of the two grounds.")
+      .def_readonly("bulking_factor_true", &DigScene::bulking_factor_true,
+                    "By the balance of dry mass [-].")
+      .def_readonly("duration", &DigScene::duration, "Of penetrate, drag and scoop [s].")
+      .def_readonly("warnings", &DigScene::warnings);
+  module.def(
+      "simulate_dig", &simulated, arg("machine"), arg("soil"), arg("density_percent"),
+      arg("terrain") = py::none(), py::kw_only(), arg("path") = py::none(),
+      arg("start_x") = py::none(), arg("dump_at") = default_dump_point(),
+      arg("simulator") = py::none(), arg("cell_size") = 0.05, arg("planned") = false,
+      "Digs once and dumps the payload, as simulate-dig does.\n\n"
+      "terrain: must hold path and heap, else level on cells of cell_size [m]; path:\n"
+      "DigParameters, else paper_fixed_path(); start_x: where the tip meets the ground [m];\n"
+      "dump_at: centre of the heap (x, y) [m]; simulator: word or class; planned: path and\n"
+      "start are those of a plan.");
+  module.def(
+      "scan_scene", &scans_of, arg("scene"), arg("seed") = 1, arg("sensor") = py::none(),
+      arg("frames") = 1,
+      "Points of simulated depth cameras before and after the dig, two arrays of shape\n"
+      "(N, 3) in the site frame [m]; sensor: 'd435i', whose errors they have, else white noise\n"
+      "and dropouts; frames: averaged.");
+}
+
+DensityCalibration calibrated(const Machine& machine, const SoilKind& soil,
+                              const std::vector<double>& densities,
+                              const std::optional<DigParameters>& path, int draws, double cell_size,
+                              const py::object& simulator, unsigned threads) {
+  const auto own = std::make_shared<Call>();
+  CalibrationOptions options;
+  options.densities_percent = densities;
+  options.path = path.value_or(options.path);
+  options.any_path = !path;
+  options.draws = draws;
+  options.cell_size = cell_size;
+  options.simulator = simulator_kind(simulator, own);
+  options.threads = threads_with(simulator, threads);
+  return own->run([&] { return calibrate_density(machine, soil, options); });
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  bind_terrain(module);
+  bind_ledgers(module);
+  bind_history(module);
+  bind_dig(module);
+  bind_simulators(module);
+  bind_scene(module);
+  module.def("calibrate_density", &calibrated, arg("machine"), arg("soil"), py::kw_only(),
+             arg("densities_percent") = std::vector<double>{}, arg("path") = py::none(),
+             arg("draws") = CalibrationOptions{}.draws, arg("cell_size") = 0.05,
+             arg("simulator") = py::none(), arg("threads") = 0,
+             "A density law from simulated digs, as calibrate-density makes it.\n\n"
+             "densities_percent: of the digs, else 0, 5 .. 100; path: that the law is for, else\n"
+             "the paper's with the scatter of digs along others; draws: digs in drawn soils;\n"
+             "cell_size in [m]; threads: 0 is one per core.");
+}
+
+}  // namespace excavplan::python

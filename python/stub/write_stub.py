@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the type stub of the package from the signatures of the module.
+
+    PYTHONPATH=build/python python3 python/stub/write_stub.py > python/excavplan/__init__.pyi
+
+tests/python/stubs_test.py compares the two.
+"""
+
+import inspect
+import re
+
+import excavplan
+from excavplan import _core
+
+HEAD = '''# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+# Written by python/stub/write_stub.py from the module.
+import os
+from typing import Any, Callable, List, Optional, Sequence, Tuple, Union
+
+__version__: str
+__all__: List[str]
+
+Array = Any  # numpy.ndarray where NumPy is installed, else memoryview; read-only
+ArrayLike = Any  # whatever has the buffer protocol, or nested sequences of numbers
+Vector2 = Tuple[float, float]
+Vector3 = Tuple[float, float, float]
+File = Union[str, "os.PathLike[str]"]
+Start = Union[str, float, None]
+'''
+
+# Arguments that the module itself tells apart, by function and name.
+ARGUMENTS = {
+    "file": "File",
+    "source": "Union[File, Cloud, ArrayLike, Sequence[Union[File, Cloud]]]",
+    "before": "Union[Scan, File, Cloud, ArrayLike]",
+    "after": "Union[Scan, File, Cloud, ArrayLike]",
+    "scan": "Union[Scan, File, Cloud, ArrayLike]",
+    "soil": "Union[SoilKind, str, None]",
+    "dump": "Optional[Tuple[Any, Any]]",
+    "start": "Start",
+    "start_rule": "Start",
+}
+SIMULATOR_KIND = "Union[str, Callable[[Machine, SoilKind, float], SoilSimulator], None]"
+
+
+def type_of(text):
+    """A type as the stub has it."""
+    text = re.sub(r"\bexcavplan\.", "", text)
+    text = re.sub(r"([Ll])ist\[float\[(\d+)\]\]", lambda m: "List[float]", text)
+    return re.sub(r"\bobject\b", "Any", text)
+
+
+def argument_type(function, name, text):
+    """Of an argument, which takes more than a result gives."""
+    if text == "object" and name == "simulator":
+        return "SoilSimulator" if function in ("evaluate_dig", "search_dig") else SIMULATOR_KIND
+    if text == "object" and name == "progress":
+        told = "LibraryProgress" if function == "build_path_library" else "SearchProgress"
+        return f"Optional[Callable[[{told}], Optional[bool]]]"
+    if text == "object" and name in ARGUMENTS:
+        return ARGUMENTS[name]
+    text = type_of(text)
+    text = re.sub(r"\bVector[23]\b", "Sequence[float]", text)
+    text = re.sub(r"\bList\[", "Sequence[", text)
+    text = re.sub(r"\bGroundDensity\b", "Union[GroundDensity, float]", text)
+    if function == "dig":  # which simulators override
+        return text
+    return re.sub(r"\bTerrain\b", "Union[Terrain, HeightMap]", text)
+
+
+def split(text):
+    """Parts between commas that stand in no bracket."""
+    parts, depth, part = [], 0, ""
+    for letter in text:
+        depth += (letter in "[(<") - (letter in "])>")
+        if letter == "," and depth == 0:
+            parts.append(part.strip())
+            part = ""
+        else:
+            part += letter
+    return [*parts, part.strip()] if part.strip() else parts
+
+
+def argument(function, text):
+    match = re.fullmatch(r"(\w+)(?:: (.*?))?( = .*)?", text, re.DOTALL)
+    if text == "*" or match is None:
+        return text
+    name, kind, default = match.groups()
+    if name == "self" or kind is None:
+        return name
+    default = " = ..." if default else ""
+    return f"{name}: {argument_type(function, name, kind)}{default}"
+
+
+def signatures(function):
+    """(arguments, result) of each overload, from the docstring that pybind11 writes."""
+    name = function.__name__
+    found = re.findall(rf"^(?:\d+\. )?{re.escape(name)}\((.*)\) -> (.*)$", function.__doc__,
+                       re.MULTILINE)
+    return [([argument(name, part) for part in split(arguments)], type_of(result))
+            for arguments, result in found]
+
+
+def lines_of(name, function, indent=""):
+    # Of several constructors one takes all that the others do.
+    arguments, result = max(signatures(function), key=lambda overload: len(overload[0]))
+    if indent:
+        arguments[0] = "self"
+    return [f"{indent}def {name}({', '.join(arguments)}) -> {result}: ..."]
+
+
+def property_lines(name, member):
+    kind = type_of(re.search(r"-> (.*)$", member.fget.__doc__.strip().splitlines()[0]).group(1))
+    if member.fset is not None:
+        return [f"    {name}: {kind}"]
+    return ["    @property", f"    def {name}(self) -> {kind}: ..."]
+
+
+def class_lines(name, kind):
+    if issubclass(kind, Exception):
+        base = kind.__base__.__name__
+        return [f"class {name}({base}):", "    kind: str"]
+    base = kind.__base__.__name__
+    lines = [f"class {name}({base}):" if hasattr(excavplan, base) else f"class {name}:"]
+    for member_name, member in sorted(vars(kind).items()):
+        if isinstance(member, property):
+            lines += property_lines(member_name, member)
+        elif inspect.isroutine(member) and member.__doc__ and (
+                not member_name.startswith("_") or member_name in ("__init__", "__len__",
+                                                                   "__bool__")):
+            if signatures(member):
+                lines += lines_of(member_name, member, "    ")
+    return lines if len(lines) > 1 else [lines[0], "    ..."]
+
+
+def stub():
+    blocks = []
+    for name in sorted(_core.__all__):
+        member = getattr(excavplan, name)
+        blocks.append(class_lines(name, member) if inspect.isclass(member)
+                      else lines_of(name, member))
+    return HEAD + "".join("\n" + "\n".join(block) + "\n" for block in blocks)
+
+
+if __name__ == "__main__":
+    print(stub(), end="")

@@ -1,0 +1,48 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+"""The notebook runs from top to bottom, without Jupyter, and holds no outputs; so do the examples of
+docs/python.md, whose tables name what there is."""
+
+import contextlib
+import io
+import json
+import pathlib
+import re
+import unittest
+
+import excavplan
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+NOTEBOOK = ROOT / "python" / "examples" / "first_dig.ipynb"
+GUIDE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+
+
+class Notebook(unittest.TestCase):
+    def test_it_runs(self):
+        cells = [cell for cell in json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
+                 if cell["cell_type"] == "code"]
+        names = {}
+        shown = io.StringIO()
+        with contextlib.redirect_stdout(shown):
+            for cell in cells:
+                self.assertEqual(cell["outputs"], [])
+                exec("".join(cell["source"]), names)  # noqa: S102: our own
+        self.assertIn("density 41.5 +- 3.1 %", shown.getvalue())
+        self.assertGreater(names["plan"].dig.payload_mass, 400.0)
+
+    def test_the_examples_of_the_guide_run(self):
+        examples = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
+        names = {}
+        with contextlib.redirect_stdout(io.StringIO()):
+            exec(examples[0], names)  # noqa: S102: our own
+            exec(next(each for each in examples if "class Halved" in each), names)  # noqa: S102
+        self.assertGreater(names["plan"].dig.efficiency, 0.02)
+
+    def test_the_tables_of_the_guide_name_what_there_is(self):
+        table = GUIDE[GUIDE.index("| room |"):GUIDE.index("| in C++ |")]
+        for name in re.findall(r"`(\w+)`", table):
+            self.assertIn(name, excavplan.__all__)
+
+
+if __name__ == "__main__":
+    unittest.main()
