@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Debian packages by `cpack` in the build folder: excavplan (tools, data, shared libraries),
-# libexcavplan-dev (headers, libraries to link, CMake and pkg-config files) and excavplan-doc.
+# libexcavplan-dev (headers, libraries to link, CMake and pkg-config files), python3-excavplan and
+# excavplan-doc.
 # scripts/packages makes them in a way that gives the same bytes again.
 
 set(CPACK_GENERATOR DEB)
@@ -35,6 +36,22 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS  # excavplan::survey
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "${PROJECT_DESCRIPTION}
  Headers, libraries, CMake and pkg-config files.")
+
+if(TARGET excavplan_python)
+  list(APPEND CPACK_COMPONENTS_ALL Python)
+  set(next_minor ${Python_VERSION_MINOR})
+  math(EXPR next_minor "${next_minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-excavplan)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  string(CONCAT CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "excavplan (= ${PROJECT_VERSION}), "
+    "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), "
+    "python3 (<< ${Python_VERSION_MAJOR}.${next_minor})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-numpy)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"${PROJECT_DESCRIPTION}
+ The package of Python.")
+endif()
 
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME excavplan-doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)

@@ -81,7 +81,8 @@ def staged(settings):
     run("cmake", "--build", build, "--target", "excavplan_python", "--parallel", jobs)
     stage = build / "stage"
     shutil.rmtree(stage, ignore_errors=True)
-    run("cmake", "--install", build, "--component", "Python", "--prefix", stage, "--strip")
+    for component in ("Python", "PythonData"):
+        run("cmake", "--install", build, "--component", component, "--prefix", stage, "--strip")
     return stage
 
 
