@@ -44,6 +44,7 @@ BadFiles bad_las_files();
 BadFiles bad_json_files(const std::string& format);
 BadFiles bad_tables(const std::string& format);
 BadFiles bad_yaml_files(const std::string& format);
+BadFiles bad_settings_files();
 BadFiles bad_binary_files(const std::string& format);  ///< of recordings, messages and images
 /// Pipes, folders, loops of links, nothing at all.
 BadFiles things_that_are_no_files();

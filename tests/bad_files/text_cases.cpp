@@ -356,6 +356,74 @@ BadFiles bad_yaml_files(const string& format) {
   return files;
 }
 
+// ---- Settings -----------------------------------------------------------------------------------
+
+BadFiles bad_settings_files() {
+  const string valid = valid_files("settings").front();
+  BadFiles files;
+  const auto add = [&](const string& name, const string& text, Expected expected = refused) {
+    files.push_back({name, expected, text});
+  };
+  const auto of_tool = [&](const string& name, const string& line, Expected expected = refused) {
+    add(name, replaced(valid, "soil = 0.1", line), expected);
+  };
+  add("empty", "", either);
+  add("a NUL", string(1, '\0'));
+  add("NUL in the middle", valid.substr(0, 20) + '\0' + valid.substr(20));
+  add("UTF-8 byte order mark", "\xEF\xBB\xBF" + valid, same);
+  add("UTF-16 LE", "\xFF\xFEs\0o\0");
+  add("bytes of Latin-1", valid + "# \xFC\n");
+  add("CRLF", replaced(valid, "\n", "\r\n"), same);
+  add("CR", replaced(valid, "\n", "\r"));
+  add("gzip", "\x1F\x8B\x08" + valid);
+  add("HTML", "<!DOCTYPE html><html></html>\n");
+  add("JSON", "{\"soil\": \"sand\"}\n");
+  add("YAML", "soil: sand\n");
+  add("a shell script", "#!/bin/sh\nexit 0\n");
+  add("XML", "<?xml version=\"1.0\"?><x/>\n");
+  add("1 MB behind", valid + times(1000000, "z"));
+  add("2 MB of lines", times(200000, "# comment\n") + valid);
+  add("a comment of 2000 bytes", "#" + times(2000, "x") + "\n" + valid);
+  add("a comment of 900 bytes", "#" + times(900, "x") + "\n" + valid, same);
+  for (const std::size_t levels : {10U, 400U, 499U, 100000U}) {
+    const string name = std::to_string(levels) + " levels";
+    const Expected short_enough = levels < 500 ? either : refused;
+    add(name + " of keys", times(levels, "a.") + "b = 1\n", short_enough);
+    add(name + " of tables", "[" + times(levels, "a.") + "b]\n", short_enough);
+    add(name + " of lists", "soil = " + times(levels, "[") + times(levels, "]") + "\n");
+    add(name + " of tables in line",
+        "[plan-path]\nsoil = " + times(levels, "{a=") + "1" + times(levels, "}"));
+  }
+  of_tool("a key that is no option", "soyl = 1");
+  of_tool("a key twice", "soil = 1\nsoil = 2");
+  of_tool("a table twice", "soil = 1\n[plan-path]\nsearch = true");
+  of_tool("a list of tables", "[[plan-path]]\nsoil = 1");
+  of_tool("no value", "soil =");
+  of_tool("no key", "= 1");
+  of_tool("a word", "soil = sand");
+  of_tool("a flag as text", "search = \"yes\"");
+  of_tool("a value as flag", "soil = false");
+  of_tool("a date", "soil = 2026-02-28");
+  of_tool("a date that is none", "soil = 2026-02-30");
+  of_tool("a time", "soil = 07:32:00");
+  of_tool("a table", "soil = {a = 1}");
+  of_tool("a list in a list in a list", "camera = [[[1]]]");
+  of_tool("a text that does not end", "soil = \"sand");
+  of_tool("a text of several lines", "soil = \"\"\"a\nb\"\"\"");
+  of_tool("an escape that is none", "soil = \"\\q\"");
+  of_tool("a control character", "soil = \"\\u0007\"");
+  of_tool("half a surrogate pair", "soil = \"\\uD800\"");
+  of_tool("a number beyond 64 bits", "soil = 99999999999999999999");
+  of_tool("1e400", "soil = 1e400", either);
+  of_tool("nan", "soil = nan", either);
+  of_tool("a leading zero", "soil = 01");
+  of_tool("help", "help = true");
+  of_tool("config", "config = \"other.toml\"");
+  of_tool("a positional", "SCAN = \"x\"");
+  add("the tool as a value", "plan-path = 1\n");
+  return files;
+}
+
 // ---- All ----------------------------------------------------------------------------------------
 
 BadFiles bad_files(const string& format) {
@@ -375,6 +443,7 @@ BadFiles bad_files(const string& format) {
   if (json.count(format) != 0) add(bad_json_files(format));
   if (tables.count(format) != 0) add(bad_tables(format));
   if (yaml.count(format) != 0) add(bad_yaml_files(format));
+  if (format == "settings") add(bad_settings_files());
   if (files.empty()) add(bad_binary_files(format));
   add(things_that_are_no_files());
   for (BadFile& file : files) {

@@ -154,6 +154,11 @@ const std::map<std::string, Maker>& makers() {
       {"trajectory", valid_trajectory},
       {"path_from", [] { return path_from; }},
       {"density_from", [] { return density_from; }},
+      {"settings",
+       [] {
+         return "# of a site\nsoil = \"sand\"\nsearch = true\ncell = 5\n[plan-path]\nsoil = 0.1\n"
+                "camera = [[1, 2, 3, 4, 5, 6], \"0,0,2,5,0,0\"]\n[simulate-dig]\nnoise = 0x10\n";
+       }},
       {"option", [] { return "45deg,0.35m,1.5m"; }},
       {"mcap", [] { return recorded("scene_none.mcap"); }},
       {"bag", [] { return recorded("scene_none.bag"); }},

@@ -94,7 +94,7 @@ std::string read_settings(const std::string& path) {
     said.add("entry", static_cast<double>(option.entry));
     for (const std::string& text : option.texts) said.add("text", text);
   }
-  return said.add("others", static_cast<double>(stated.not_of_tool.size())).text();
+  return said.add("others", static_cast<double>(stated.left_out.size())).text();
 }
 
 }  // namespace

@@ -58,10 +58,10 @@ TEST_F(SettingsText, TheTableOfTheToolWins) {
   EXPECT_EQ(texts(both, "soil"), Texts{"clay"});
 }
 
-TEST_F(SettingsText, KeysOfOtherToolsAreNamedOnlyBeforeTheTables) {
+TEST_F(SettingsText, WhatIsOfOtherToolsIsLeftOut) {
   const auto stated = parse_settings("site.toml", "noise = 1\n[simulate-dig]\nnoise = 1",
                                      "plan-path", arguments.entries());
-  EXPECT_EQ(stated.not_of_tool, Texts{"noise"});
+  EXPECT_EQ(stated.left_out, (Texts{"noise", "[simulate-dig]"}));
   EXPECT_TRUE(stated.options.empty());
 }
 
@@ -103,10 +103,8 @@ TEST(Settings, FillWhatTheCommandLineDoesNotGive) {
   EXPECT_EQ(by_file, by_words);
   EXPECT_EQ(answer("plan-path", {"--config", file, "--density", "70"}).at("density_percent"), 70.0);
   const ProgramResult shown = run_program("plan-path", {"--config", file});
-  EXPECT_EQ(shown.err.rfind("settings from " + file +
-                                ": --soil, --density, --goal; no options of "
-                                "plan-path: noise\n",
-                            0),
+  EXPECT_EQ(shown.err.rfind(
+                "settings from " + file + ": --soil, --density, --goal; left out: noise\n", 0),
             0U)
       << shown.err;
 }

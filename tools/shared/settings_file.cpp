@@ -31,11 +31,16 @@ class Settings {
   StatedSettings read(const std::string& text) {
     const toml::table all = parsed(text);
     for (const auto& [key, value] : all) {
-      if (!value.is_table()) take(key, value, false);
+      const std::string name(key.str());
+      if (!value.is_table()) {
+        take(name, value, false);
+      } else if (name != tool_) {
+        stated_.left_out.push_back("[" + name + "]");
+      }
     }
     if (const toml::node* own = all.get(tool_)) {
       if (!own->is_table()) refuse(*own, "'" + tool_ + "' must be a table, [" + tool_ + "]");
-      for (const auto& [key, value] : *own->as_table()) take(key, value, true);
+      for (const auto& [key, value] : *own->as_table()) take(std::string(key.str()), value, true);
     }
     return std::move(stated_);
   }
@@ -77,8 +82,7 @@ class Settings {
   }
 
   /// `own`: from the table of this tool, so that the key must be one of its options.
-  void take(const toml::key& key, const toml::node& value, bool own) {
-    const std::string name(key.str());
+  void take(const std::string& name, const toml::node& value, bool own) {
     if (std::find(not_in_files.begin(), not_in_files.end(), name) != not_in_files.end()) {
       refuse(value, "--" + name + " is of the command line alone");
     }
@@ -87,7 +91,7 @@ class Settings {
     });
     if (entry == entries_.end()) {
       if (own) refuse_unknown(name, value);
-      stated_.not_of_tool.push_back(name);
+      stated_.left_out.push_back(name);
       return;
     }
     const auto index = static_cast<std::size_t>(entry - entries_.begin());

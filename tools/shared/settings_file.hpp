@@ -16,7 +16,8 @@ struct StatedSettings {
     std::vector<std::string> texts;  ///< as on the command line; empty: a flag that is off
   };
   std::vector<Option> options;
-  std::vector<std::string> not_of_tool;  ///< keys before all tables that this tool has no option of
+  /// Tables of other tools, and keys before all tables that this tool has no option of.
+  std::vector<std::string> left_out;
 };
 
 /// Reads a file of settings in TOML 1.0 (`docs/formats.md#settings`). Keys are options; those in

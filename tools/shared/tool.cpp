@@ -185,8 +185,8 @@ std::string add_settings(const std::vector<Arguments::Entry>& entries, const Abo
     taken += (taken.empty() ? " --" : ", --") + entries[option.entry].name;
   }
   std::string line = path + ":" + (taken.empty() ? " nothing" : "") + taken;
-  for (std::size_t i = 0; i < stated.not_of_tool.size(); ++i) {
-    line += (i == 0 ? "; no options of " + about.name + ": " : ", ") + stated.not_of_tool[i];
+  for (std::size_t i = 0; i < stated.left_out.size(); ++i) {
+    line += (i == 0 ? "; left out: " : ", ") + stated.left_out[i];
   }
   return line;
 }
