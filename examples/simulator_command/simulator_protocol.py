@@ -72,9 +72,13 @@ def answer(request, name, mass_tolerance, prepare, state):
 def serve(name, prepare, mass_tolerance=1e-9):
     """Answers until standard input ends, which is the sign to end."""
     state = {}
+    answers, sys.stdout = sys.stdout, sys.stderr  # print() of a simulator is a note
     for line in sys.stdin:
         try:
-            reply = answer(json.loads(line), name, mass_tolerance, prepare, state)
+            request = json.loads(line)
+            reply = answer(request, name, mass_tolerance, prepare, state)
+            text_of_reply = json.dumps(reply, allow_nan=False)
         except Exception as error:  # a dig that fails is an answer too
-            reply = {"type": "error", "message": f"{type(error).__name__}: {error}"}
-        print(json.dumps(reply), flush=True)
+            message = " ".join(f"{type(error).__name__}: {error}".split())
+            text_of_reply = json.dumps({"type": "error", "message": message})
+        print(text_of_reply, file=answers, flush=True)
