@@ -185,8 +185,9 @@ void ChildProcess::write_some(const std::string& line, std::size_t& written) {
   const ssize_t sent = ::write(pipes_[input], line.data() + written, line.size() - written);
   if (sent >= 0) {
     written += static_cast<std::size_t>(sent);
-  } else if (errno != EAGAIN && errno != EINTR) {
-    throw ChildFailure(how_it_ended());
+  } else if (errno != EAGAIN && errno != EINTR) {  // it reads no more; it may have answered
+    ::close(std::exchange(pipes_[input], -1));
+    written = line.size();
   }
 }
 
@@ -222,7 +223,7 @@ std::string ChildProcess::ask(const std::string& line, std::chrono::duration<dou
                               std::size_t longest) {
   const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
   const std::string request = line + '\n';
-  if (!read_some(output, read_)) throw ChildFailure(how_it_ended());
+  if (pipes_[input] < 0 || !read_some(output, read_)) throw ChildFailure(how_it_ended());
   if (!read_.empty()) {
     throw ChildFailure("it wrote to its standard output without being asked: " +
                        excavplan::quoted(read_));

@@ -114,7 +114,8 @@ TEST(CommandSimulator, CommandsThatAreNone) {
   EXPECT_TRUE(contains(said(" "), "it names no program"));
   EXPECT_TRUE(contains(said("python3 'x"), "a quotation lacks its end"));
   EXPECT_TRUE(contains(said("false"), "it ended, with exit code 1"));
-  EXPECT_TRUE(contains(said("echo hello"), "its answer: 'hello' is no JSON object"));
+  EXPECT_TRUE(
+      contains(said("sh -c 'read line; echo hello'"), "its answer: 'hello' is no JSON object"));
   EXPECT_TRUE(contains(said("cat"), "its answer: "));
   EXPECT_TRUE(contains(said(odd("protocol")), "protocol: is 2, this program speaks protocol 1"));
   EXPECT_TRUE(contains(said(odd("nameless")), "must have no comma"));
