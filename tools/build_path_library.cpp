@@ -50,7 +50,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
 
 LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
   LibraryBuildOptions options;
-  options.search = search_of(inputs.library);
+  options.search = search_of(inputs.library, console);
   options.threads = static_cast<unsigned>(inputs.threads);
   options.folder = inputs.cells.value_or(inputs.out + ".cells");
   options.note = [&console](const std::string& line) { console.note(line); };

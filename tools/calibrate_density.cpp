@@ -10,6 +10,7 @@
 #include "shared/calibration_results.hpp"
 #include "shared/law_figure.hpp"
 #include "shared/results.hpp"
+#include "shared/simulator_inputs.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -28,7 +29,7 @@ struct Inputs {
   std::optional<std::string> samples;
   std::string soil = "loam";
   std::string machine = "zx120";
-  std::string simulator = default_simulator().word;
+  SimulatorInputs simulator;
   std::string densities = "0:5:100";
   std::optional<DigParameters> path;
   int draws = CalibrationOptions{}.draws;
@@ -46,7 +47,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
       [&] {
         arguments.soil(inputs.soil);
         arguments.machine(inputs.machine);
-        arguments.simulator(inputs.simulator);
+        declare_simulator(arguments, inputs.simulator);
         arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
                        "relative densities of the simulated digs [%], or a list a,b,c");
         arguments.option(
@@ -75,14 +76,14 @@ DensityCalibration from_samples(const std::string& file) {
   }
 }
 
-DensityCalibration from_simulator(const Inputs& inputs) {
+DensityCalibration from_simulator(const Inputs& inputs, Console& console) {
   CalibrationOptions options;
   options.densities_percent = parse_densities("--densities", inputs.densities);
   options.cell_size = inputs.cell_size;
   options.path = inputs.path.value_or(options.path);
   options.any_path = !inputs.path;
   options.draws = inputs.draws;
-  options.simulator = simulator_of_word(inputs.simulator);
+  options.simulator = simulator_of(inputs.simulator, console);
   OptionNames names = cell_option;
   names.push_back({"the number of draws", "--draws"});
   return naming_options(names, [&] {
@@ -99,9 +100,9 @@ std::string text(const DensityFit& fit, const nlohmann::ordered_json& file) {
   return text;
 }
 
-Outcome work(const Inputs& inputs) {
+Outcome work(const Inputs& inputs, Console& console) {
   const DensityCalibration calibration =
-      inputs.samples ? from_samples(*inputs.samples) : from_simulator(inputs);
+      inputs.samples ? from_samples(*inputs.samples) : from_simulator(inputs, console);
   const std::string file = to_json(calibration);
   if (inputs.out) write_file(*inputs.out, file);
   Outcome outcome;

@@ -10,6 +10,7 @@
 #include "shared/plan_results.hpp"
 #include "shared/results.hpp"
 #include "shared/search_inputs.hpp"
+#include "shared/simulator_inputs.hpp"
 #include "shared/site.hpp"
 #include "shared/tool.hpp"
 
@@ -38,7 +39,7 @@ struct Inputs {
   TerrainInput terrain;
   std::string soil = "loam";
   std::string machine = "zx120";
-  std::string simulator = default_simulator().word;
+  SimulatorInputs simulator;
   double cell_size = PlanOptions{}.cell_size;
   SearchInputs dig_search;
   std::optional<std::string> trajectory;
@@ -55,8 +56,7 @@ SearchUse use_of(const Inputs& inputs) {
 /// Whether any dig is simulated; a density from a file mostly has an error.
 bool simulates(const Inputs& inputs) {
   const double sd = inputs.density.sd.value_or(inputs.density.file ? 1.0 : 0.0);
-  return use_of(inputs) != SearchUse::none || sd > 0.0 ||
-         inputs.simulator != default_simulator().word;
+  return use_of(inputs) != SearchUse::none || sd > 0.0 || !is_default(inputs.simulator);
 }
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -67,7 +67,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_terrain(arguments, inputs.terrain);
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
-  arguments.simulator(inputs.simulator);
+  declare_simulator(arguments, inputs.simulator);
   arguments.only_if({[&inputs] { return simulates(inputs); },
                      "nothing is simulated: a library has the digs of level ground"},
                     [&] {
@@ -93,7 +93,7 @@ PlanOptions options_of(const Inputs& inputs, Console& console) {
     options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
   }
   options.search = search_options(inputs.dig_search, use_of(inputs), console);
-  options.simulator = simulator_of_word(inputs.simulator);
+  options.simulator = simulator_of(inputs.simulator, console);
   options.cell_size = inputs.cell_size;
   return options;
 }
@@ -121,7 +121,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.json.update({{"trustworthy", outcome.trustworthy},
                        {"soil", soil.name},
                        {"machine", machine.name},
-                       {"simulator", inputs.simulator},
+                       {"simulator", options.simulator.word},
                        {"wall_time_s", watch.seconds()}});
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, density.percent, site.ground, options.simulator};

@@ -14,6 +14,7 @@
 #include "shared/joint_loads.hpp"
 #include "shared/results.hpp"
 #include "shared/scene_scans.hpp"
+#include "shared/simulator_inputs.hpp"
 #include "shared/site.hpp"
 #include "shared/tool.hpp"
 
@@ -30,20 +31,19 @@ const About about = {
      {"simulate-dig --density 40 --before b.pcd --after a.pcd --seed 7", "write a pair of scans"}}};
 
 struct Inputs {
-  double density = 0.0;
+  double density = 0.0, cell_size = 0.05;
   SceneOptions scene;
   std::optional<DigParameters> path;
-  std::optional<std::string> path_from;
   TerrainInput terrain;
-  std::string soil = "loam", machine = "zx120", simulator = default_simulator().word;
-  double cell_size = 0.05;
+  std::string soil = "loam", machine = "zx120";
+  SimulatorInputs simulator;
   std::uint64_t seed = 1;
   SceneScanInputs scans;
   FuelLogInputs fuel_log;
   BlockInputs blocks;
   Plots plots;
   Maps maps;
-  std::optional<std::string> history, report;
+  std::optional<std::string> path_from, history, report;
 };
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -58,7 +58,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                  "take path and start from this result of plan-path --json");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
-  arguments.simulator(inputs.simulator);
+  declare_simulator(arguments, inputs.simulator);
   declare_terrain(arguments, inputs.terrain);
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
@@ -76,10 +76,10 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.report(inputs.report);
 }
 
-SceneOptions options_of(const Inputs& inputs) {
+SceneOptions options_of(const Inputs& inputs, Console& console) {
   SceneOptions options = inputs.scene;
   options.path = inputs.path.value_or(options.path);
-  options.simulator = simulator_of_word(inputs.simulator);
+  options.simulator = simulator_of(inputs.simulator, console);
   options.history = true;
   options.blocks = inputs.blocks.with_seed(inputs.seed);
   if (!inputs.path_from) return options;
@@ -110,8 +110,8 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
                           to_svg(lay_out(section_figure(dug))));
 }
 
-Outcome work(const Inputs& inputs) {
-  const SceneOptions options = options_of(inputs);
+Outcome work(const Inputs& inputs, Console& console) {
+  const SceneOptions options = options_of(inputs, console);
   check_scans(inputs.scans);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);

@@ -123,6 +123,16 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/examples
 run(${CMAKE_COMMAND} --build ${WORK}/examples --target 04_own_simulator)
 alone(${WORK}/moved ${WORK}/examples/04_own_simulator)
 
+# ---- A simulator as a shared library, of the installed header alone.
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples/simulator_plugin -B ${WORK}/plugin
+  -D EXCAVPLAN_INCLUDE=${WORK}/moved/include)
+run(${CMAKE_COMMAND} --build ${WORK}/plugin)
+alone(${WORK}/moved ${WORK}/moved/bin/simulate-dig --density 40
+  --simulator ${WORK}/plugin/libcutting_resistance.so)
+if(NOT output MATCHES "payload +[0-9]+ kg")
+  message(FATAL_ERROR "simulate-dig with the plug-in: ${output}")
+endif()
+
 find_program(pkg_config NAMES pkg-config pkgconf)
 if(pkg_config)
   run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${WORK}/moved/${LIBDIR}/pkgconfig

@@ -63,7 +63,9 @@ void require_that(bool holds, const std::string& what) {
 }
 
 std::vector<FuzzTarget> fuzz_targets() {
-  std::vector<FuzzTarget> targets = {{"dig", fuzz_dig}, {"volume_change", fuzz_volume_change}};
+  std::vector<FuzzTarget> targets = {{"dig", fuzz_dig},
+                                     {"volume_change", fuzz_volume_change},
+                                     {"simulator_answer", fuzz_simulator_answer}};
   for (const FileReader& reader : file_readers()) {
     targets.push_back(
         {reader.name, [reader](std::string_view bytes) { fuzz_reader(reader, bytes); }});

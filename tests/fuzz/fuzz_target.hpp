@@ -29,6 +29,9 @@ struct FuzzTarget {
 void fuzz_dig(std::string_view bytes);
 /// Bytes to two height maps and options to volumes, which are finite.
 void fuzz_volume_change(std::string_view bytes);
+/// Bytes to a line of a simulator's program: refused by an Error whose text is short and printable,
+/// or a result that is finite.
+void fuzz_simulator_answer(std::string_view bytes);
 
 /// One for every FileReader, and those above. A reader reads or throws an Error that names the file
 /// in a line that is short and printable.

@@ -9,7 +9,6 @@
 
 #include <excavplan/ceilings.hpp>
 #include <excavplan/error.hpp>
-#include <excavplan/simulation/simulators.hpp>
 
 #include "base/text.hpp"
 
@@ -249,13 +248,6 @@ void Arguments::threads(std::uint64_t& count, const std::string& note) {
            usage_error("--threads: " + text + " must be at most " + std::to_string(most_threads));
          }
        }});
-}
-
-void Arguments::simulator(std::string& word) {
-  std::vector<std::string> words;
-  for (const SimulatorKind& kind : simulator_kinds()) words.push_back(kind.word);
-  choice("simulator", word, words,
-         "simulator; section: faster, only in the vertical plane of the boom");
 }
 
 void Arguments::machine(std::string& name) {

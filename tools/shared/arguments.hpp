@@ -122,10 +122,9 @@ class Arguments {
   void text(const std::string& name, const std::string& placeholder,
             std::optional<std::string>& value, const std::string& help);
 
-  /// These are the same in every tool; see soil_named(), machine_named(), simulator_of_word().
+  /// These are the same in every tool; see soil_named(), machine_named().
   void soil(std::string& name);
   void machine(std::string& name);
-  void simulator(std::string& word);
   void report(std::optional<std::string>& path);
   void threads(std::uint64_t& count, const std::string& note);
 

@@ -50,7 +50,7 @@ void declare_experiment(Arguments& arguments, ExperimentInputs& inputs) {
                     });
   declare_goal(arguments, inputs.goal);
   arguments.soil(inputs.soil);
-  arguments.simulator(inputs.simulator);
+  declare_simulator(arguments, inputs.simulator);
   arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
 }
 
@@ -76,7 +76,7 @@ std::vector<ExperimentCondition> conditions_of(const ExperimentInputs& inputs) {
 }
 
 ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& machine,
-                             const SoilKind& soil) {
+                             const SoilKind& soil, Console& console) {
   ExperimentOptions options;
   options.fixed_path = inputs.path.value_or(options.fixed_path);
   PlanOptions& plan = options.plan;
@@ -90,7 +90,7 @@ ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& mach
   if (inputs.search) apply(inputs.method, plan.search);
   plan.search.seed = inputs.seed;
   plan.search.threads = static_cast<unsigned>(inputs.threads);
-  plan.simulator = simulator_of_word(inputs.simulator);
+  plan.simulator = simulator_of(inputs.simulator, console);
   plan.cell_size = inputs.cell_size;
   if (inputs.second == "left") options.second = SecondGround::left;
   return options;

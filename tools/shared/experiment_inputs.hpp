@@ -11,6 +11,7 @@
 
 #include "shared/goal_inputs.hpp"
 #include "shared/search_method.hpp"
+#include "shared/simulator_inputs.hpp"
 #include "shared/tool.hpp"
 
 /// @file
@@ -22,7 +23,7 @@ struct ExperimentInputs {
   std::string densities = "paper";
   std::optional<DigParameters> path;  ///< none: that of the paper
   std::string soil = "loam";
-  std::string simulator = default_simulator().word;
+  SimulatorInputs simulator;
   std::optional<std::string> library;
   GoalInputs goal{info_of(DigObjective::Goal::energy).word};
   std::string law = "default";
@@ -50,7 +51,7 @@ std::string condition_text(const ExperimentCondition& condition);
 std::vector<ExperimentCondition> conditions_of(const ExperimentInputs& inputs);
 
 ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& machine,
-                             const SoilKind& soil);
+                             const SoilKind& soil, Console& console);
 
 /// The default is the shipped one on the paper's path, on another one of digs along that.
 DensityLaw law_of(const ExperimentInputs& inputs, const Machine& machine, const SoilKind& soil);

@@ -167,7 +167,7 @@ Outcome field_experiment(const Machine& machine, const FieldInputs& field,
   for (const ExperimentCondition& condition : conditions) densities.push_back(condition.density);
   FieldOptions options;
   const DigParameters path = inputs.path.value_or(options.experiment.fixed_path);
-  options.experiment = options_of(inputs, machine, soil);
+  options.experiment = options_of(inputs, machine, soil, console);
   options.experiment.fixed_path = path;
   options.fuel = load_fuel_model(shipped_or_file("engines", field.fuel));
   options.digs = field.digs;

@@ -16,7 +16,7 @@ void declare_library(Arguments& arguments, LibraryInputs& inputs) {
                  "[rad]");
   arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
   arguments.text("machine", "NAME,..", inputs.machines, "zx120 or machine files");
-  arguments.simulator(inputs.simulator);
+  declare_simulator(arguments, inputs.simulator);
   declare_goal(arguments, inputs.goal);
   arguments.choice("method", inputs.method, {"memetic", "paper"},
                    "memetic: three densities without a warm start, the others from neighbours; "
@@ -69,10 +69,10 @@ LibraryGrid grid_of(const LibraryInputs& inputs) {
   return grid;
 }
 
-LibrarySearch search_of(const LibraryInputs& inputs) {
+LibrarySearch search_of(const LibraryInputs& inputs, Console& console) {
   LibrarySearch search = inputs.search;
   search.objective = objective_of(inputs.goal);
-  search.simulator = simulator_of_word(inputs.simulator);
+  search.simulator = simulator_of(inputs.simulator, console);
   search.method = inputs.anchored;
   if (inputs.method == "paper") search.method = inputs.genetic;
   return search;

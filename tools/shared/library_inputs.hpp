@@ -8,6 +8,7 @@
 #include <excavplan/library/library_build.hpp>
 
 #include "shared/goal_inputs.hpp"
+#include "shared/simulator_inputs.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -18,7 +19,7 @@ struct LibraryInputs {
   std::string slopes = "0";
   std::string soils = "loam";
   std::string machines = "zx120";
-  std::string simulator = default_simulator().word;
+  SimulatorInputs simulator;
   GoalInputs goal;
   std::string method = "memetic";
   AnchoredSearch anchored;
@@ -33,6 +34,6 @@ extern const OptionNames library_option_names;
 
 /// @throws Error (bad_input) or (bad_file) naming option or file
 LibraryGrid grid_of(const LibraryInputs& inputs);
-LibrarySearch search_of(const LibraryInputs& inputs);
+LibrarySearch search_of(const LibraryInputs& inputs, Console& console);
 
 }  // namespace excavplan::tools

@@ -48,7 +48,7 @@ Outcome sensitivity(const Machine& machine, const ExperimentInputs& inputs, Cons
   DigModel reference;
   reference.machine = machine;
   reference.soil = soil_named(inputs.soil);
-  reference.simulator = simulator_of_word(inputs.simulator);
+  reference.simulator = simulator_of(inputs.simulator, console);
   reference.search.objective = objective_of(inputs.goal);
   reference.search.seed = inputs.seed;
   reference.cell_size = inputs.cell_size;

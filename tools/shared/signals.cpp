@@ -19,6 +19,8 @@
 #include <string>
 #include <system_error>
 
+#include <excavplan/simulation/foreign_simulators.hpp>
+
 #include "base/files.hpp"
 
 namespace excavplan::tools {
@@ -74,6 +76,7 @@ void remove_unfinished_files() {
 }
 
 [[noreturn]] void end_by(int signal) {
+  end_simulator_programs();
   remove_unfinished_files();
   std::signal(signal, SIG_DFL);
   ::kill(::getpid(), signal);
@@ -82,6 +85,7 @@ void remove_unfinished_files() {
 
 [[noreturn]] void end_without_memory() {
   try {
+    end_simulator_programs();
     remove_unfinished_files();
   } catch (const std::bad_alloc&) {
     // They remain.

@@ -8,11 +8,12 @@ namespace excavplan::tools {
 
 /// How a tool takes signals while this lives; one at a time.
 ///
-/// INT, TERM and HUP end the program as they do by default, but first remove the files that are
-/// not written to their end. A tool that can stop is first asked to, and given 1.5 s (ours) or
-/// until a second signal. A signal that was ignored when the program began remains so. A limit on
-/// the size of files (XFSZ) and a pipe that its reader closed (PIPE) become errors of the write.
-/// Where memory ends and std::terminate() would abort, the program ends with 1 and says so.
+/// INT, TERM and HUP end the program as they do by default, but first end the programs of
+/// simulators and remove the files that are not written to their end. A tool that can stop is
+/// first asked to, and given 1.5 s (ours) or until a second signal. A signal that was ignored when
+/// the program began remains so. A limit on the size of files (XFSZ) and a pipe that its reader
+/// closed (PIPE) become errors of the write. Where memory ends and std::terminate() would abort,
+/// the program ends with 1 and says so.
 class Signals {
  public:
   explicit Signals(bool can_stop);

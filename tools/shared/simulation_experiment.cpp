@@ -14,7 +14,7 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
                               const ExperimentPages& pages, Console& console) {
   const SoilKind soil = soil_named(experiment.soil);
   const DensityLaw law = law_of(experiment, machine, soil);
-  const ExperimentOptions options = options_of(experiment, machine, soil);
+  const ExperimentOptions options = options_of(experiment, machine, soil, console);
   if (pages.report && options.second == SecondGround::left) {
     usage_error("--report shows digs on fresh ground, not with --second left");
   }

@@ -498,6 +498,7 @@ int reported(const About& about, const StandardInput& input, const Run& run) {
 
 void Console::progress(double done, const std::string& what) {
   if (quiet_ || !terminal_) return;
+  const std::lock_guard lock(mutex_);
   std::cerr << "\r\033[K" << static_cast<int>(std::floor(100.0 * done)) << " %  " << what
             << std::flush;
   line_open_ = true;
@@ -505,11 +506,17 @@ void Console::progress(double done, const std::string& what) {
 
 void Console::note(const std::string& line) {
   if (quiet_) return;
-  clear();
+  const std::lock_guard lock(mutex_);
+  remove_line();
   std::cerr << safe_text(line, longest_line) << '\n';
 }
 
 void Console::clear() {
+  const std::lock_guard lock(mutex_);
+  remove_line();
+}
+
+void Console::remove_line() {
   if (line_open_) std::cerr << "\r\033[K" << std::flush;
   line_open_ = false;
 }

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
@@ -70,7 +71,7 @@ class Console {
 
   /// One line that is overwritten by the next; only on a terminal. `done` is in 0 .. 1.
   void progress(double done, const std::string& what);
-  /// One line of text. Warnings belong in the outcome.
+  /// One line of text, from any thread. Warnings belong in the outcome.
   void note(const std::string& line);
   /// True once the user or the system asked a tool that can stop early to stop.
   bool stop_requested() const { return signals_.stop_requested(); }
@@ -78,9 +79,12 @@ class Console {
   void clear();
 
  private:
+  void remove_line();
+
   bool quiet_;
   bool terminal_;
   const Signals& signals_;
+  std::mutex mutex_;  ///< of standard error and of
   bool line_open_ = false;
 };
 
