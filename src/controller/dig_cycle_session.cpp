@@ -241,7 +241,13 @@ void DigCycleSession::end_dig() {
 
 CycleStage DigCycleSession::stage() const { return state_->stage; }
 std::size_t DigCycleSession::scans() const { return state_->recent.size(); }
+std::size_t DigCycleSession::scans_wanted() const { return state_->settings.scans; }
 const GroundDensity& DigCycleSession::density() const { return state_->density; }
+
+std::string describe(const DigCycleSession& session) {
+  return std::string(name(session.stage())) + ' ' +
+         count_text(session.scans(), session.scans_wanted());
+}
 
 CycleEstimate DigCycleSession::estimate() {
   State& state = *state_;
@@ -251,6 +257,7 @@ CycleEstimate DigCycleSession::estimate() {
                     count_text(state.recent.size(), state.settings.scans) + " messages"
               : std::string("no dig has been scanned: it is the time ") + name(state.stage) +
                     (state.stage == CycleStage::before ? " the first dig" : ""));
+  state.last_refused = true;
   bool averaged = true;
   DigScans scans;
   scans.before = state.scan_of(state.before, "before", averaged);
@@ -289,6 +296,7 @@ CyclePlan DigCycleSession::plan() {
       plan_dig(settings.machine, settings.soil, state.density, ground.terrain, settings.plan);
   answer.density = state.density;
   answer.density_is_stated = state.density_is_stated;
+  answer.previous_density = state.last_refused;
   if (answer.plan.dig) answer.motion = joint_motion(answer.plan, settings.joint_names);
   answer.warnings = std::move(ground.warnings);
   if (state.last_refused) {

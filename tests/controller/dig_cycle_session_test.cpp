@@ -172,6 +172,7 @@ TEST(DigCycleSession, GoesThroughTheCycle) {
             "no dig has been scanned: it is the time digging");
   session.end_dig();
   send(session, cloud);
+  EXPECT_EQ(describe(session), "after 1 of 2");
   EXPECT_EQ(error_of([&] { session.estimate(); }), "the scan after the dig has 1 of 2 messages");
   send(session, cloud);
   EXPECT_STREQ(name(session.stage()), "done");

@@ -81,6 +81,7 @@ struct CyclePlan {
   DigPlan plan;                   ///< as plan_dig() gives it
   GroundDensity density{0.0};     ///< that it is for
   bool density_is_stated = true;  ///< that of the settings: no dig gave one to trust
+  bool previous_density = false;  ///< the last estimate was not to be trusted and is not used
   JointMotion motion;             ///< of the plan; without points if there is no dig
   bool trustworthy = true;        ///< false after a warning that ends trust
   /// Of the plan, of the ground, and previous_density (the last estimate was not trustworthy),
@@ -114,7 +115,8 @@ class DigCycleSession {
   void end_dig();
 
   CycleStage stage() const;              ///< where the session is
-  std::size_t scans() const;             ///< messages that wait as the next scan, of the settings'
+  std::size_t scans() const;             ///< messages that wait as the next scan
+  std::size_t scans_wanted() const;      ///< those of the settings
   const GroundDensity& density() const;  ///< that the next plan is for
 
   /// The density by the scans before and after the last dig. One to trust is adopted.
@@ -129,6 +131,9 @@ class DigCycleSession {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// "after 2 of 5": the stage and the messages that wait as the next scan.
+std::string describe(const DigCycleSession& session);
 
 /// As JSON with the keys that estimate-density prints, as far as it has them; plan-path
 /// \-\-density-from reads it (docs/ros.md#answers).
