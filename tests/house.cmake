@@ -39,7 +39,7 @@ endforeach()
 file(GLOB_RECURSE licensed RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/* ${ROOT}/tools/*
   ${ROOT}/tests/*.cpp ${ROOT}/tests/*.hpp ${ROOT}/tests/*.py ${ROOT}/tests/*.cmake ${ROOT}/cmake/*
   ${ROOT}/examples/*.cpp ${ROOT}/examples/*.py ${ROOT}/python/*.py ${ROOT}/python/*.cpp
-  ${ROOT}/ros/*.cpp ${ROOT}/ros/*.py ${ROOT}/benchmarks/*.cpp)
+  ${ROOT}/ros/*.cpp ${ROOT}/ros/*.hpp ${ROOT}/ros/*.py ${ROOT}/benchmarks/*.cpp)
 file(GLOB scripts RELATIVE ${ROOT} ${ROOT}/scripts/* ${ROOT}/scripts/check.d/*)
 foreach(file IN LISTS licensed scripts)
   if(IS_DIRECTORY ${ROOT}/${file} OR file MATCHES "[.](txt|html|js|css|json|pc.in|map|part.*)$")
@@ -57,7 +57,8 @@ string(CONCAT code
   "(return|const|auto|double|int|bool|std::)[^.]*;$")
 file(GLOB_RECURSE sources RELATIVE ${ROOT}
   ${ROOT}/include/*.hpp ${ROOT}/src/*.[ch]pp ${ROOT}/tools/*.[ch]pp ${ROOT}/tests/*.[ch]pp
-  ${ROOT}/benchmarks/*.[ch]pp ${ROOT}/examples/*.cpp ${ROOT}/python/src/*.[ch]pp)
+  ${ROOT}/benchmarks/*.[ch]pp ${ROOT}/examples/*.cpp ${ROOT}/python/src/*.[ch]pp
+  ${ROOT}/ros/*.[ch]pp)
 list(LENGTH sources count)
 if(count LESS 150)
   message(SEND_ERROR "only ${count} source files under '${ROOT}': nothing was checked")

@@ -40,6 +40,7 @@ import rosgraph  # noqa: E402
 import rospy  # noqa: E402
 from excavplan_ros.srv import DigAndPlan, Estimate, Plan  # noqa: E402
 from geometry_msgs.msg import TransformStamped  # noqa: E402
+from rosgraph_msgs.msg import Log  # noqa: E402
 from sensor_msgs.msg import JointState, PointCloud2, PointField  # noqa: E402
 from std_msgs.msg import Bool, String  # noqa: E402
 from tf2_msgs.msg import TFMessage  # noqa: E402
@@ -129,7 +130,7 @@ class Node:
     """The program with these private parameters."""
 
     def __init__(self, **parameters):
-        words = [f"_{key}:={json.dumps(value)}" for key, value in parameters.items()]
+        words = [f"_{key}:={value}" for key, value in parameters.items()]
         self.process = subprocess.Popen([NODE, "__name:=excavplan", *words],
                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.parameters = parameters
@@ -161,7 +162,12 @@ class Node:
         return rospy.ServiceProxy("/excavplan/" + name, kind)()
 
     def dig(self, before, after):
-        self.send_until("points", before, "before 1 of 1")
+        if self.state == "before 1 of 1":  # further points would not show in it
+            self.send_until("start", Bool(True), "digging 0 of 1")
+            self.send_until("end", Bool(True), "after 0 of 1")
+            self.send_until("points", before, "done 1 of 1")
+        else:
+            self.send_until("points", before, "before 1 of 1")
         self.send_until("start", Bool(True), "digging 0 of 1")
         self.send_until("end", Bool(True), "after 0 of 1")
         self.send_until("points", after, "done 1 of 1")
@@ -257,11 +263,11 @@ class Master(unittest.TestCase):
         transform.transform.translation.z = 3.0
         transform.transform.rotation.x = 1.0
         with Node(scans=1, site_frame="base_link") as node:
-            node.send("points", cloud(lifted[0], "camera"))
             node.send("tf", TFMessage([transform]))
-            time.sleep(0.5)
-            start = node.call("plan", Plan).trajectory.points[0].positions
-            node.send("joints", JointState(name=JOINTS, position=start))
+            plan = node.call("plan", Plan)
+            self.assertTrue(plan.success, plan.message)
+            node.send("joints", JointState(name=JOINTS,
+                                           position=plan.trajectory.points[0].positions))
             node.dig(cloud(lifted[0], "camera"), cloud(lifted[1], "camera"))
             answer = node.call("estimate", Estimate)
         self.assertTrue(answer.success, answer.message)
@@ -270,11 +276,14 @@ class Master(unittest.TestCase):
         self.assertAlmostEqual(answer.bulking_factor, expected["bulking_factor"], delta=0.02)
 
     def test_survives_garbage(self):
+        told = []
+        log = rospy.Subscriber("/rosout", Log, lambda message: told.append(message.msg))
+        self.addCleanup(log.unregister)
         with Node(scans=1) as node:
-            for name, kind in (("estimate", Estimate),):
-                answer = node.call(name, kind)
-                self.assertFalse(answer.success)
-                self.assertIn("before the first dig", answer.message)
+            wait_until(lambda: log.get_num_connections() > 0, "rosout")
+            answer = node.call("estimate", Estimate)
+            self.assertFalse(answer.success)
+            self.assertIn("before the first dig", answer.message)
             node.send("start", Bool(True))
             node.send("end", Bool(True))
             for message in garbage():
@@ -287,6 +296,8 @@ class Master(unittest.TestCase):
             time.sleep(0.5)
             self.assertTrue(node.alive())
             self.assertEqual(node.state, "before 0 of 1")
+            self.assertIn("field x 0 times", " ".join(told))
+            self.assertIn("2 positions", " ".join(told))
             self.assertTrue(node.call("plan", Plan).success)
             for message in unreadable_points():
                 node.send("points", message)
@@ -296,17 +307,19 @@ class Master(unittest.TestCase):
                 self.assertNotEqual(answer.message, "")
             self.assertTrue(node.alive())
             node.dig(cloud(points_of("before")), cloud(points_of("after")))
-            self.assertTrue(node.call("estimate", Estimate).success)
+            answer = node.call("estimate", Estimate)
+            self.assertTrue(answer.success, answer.message)
 
     def test_refuses_bad_parameters(self):
-        for word, told in (("_scans:=0", "scans is 0"), ("_scan:=3", "is not known"),
-                           ("_soil:=snow", "snow"), ("_joint_names:=[a]", "4: swing"),
-                           ("_scans:=many", "not of its type")):
-            done = subprocess.run([NODE, "__name:=bad", word], stdout=subprocess.PIPE,
+        for name, value, told in (("scans", 0, "scans is 0"), ("scan", 3, "is not known"),
+                                  ("soil", "snow", "snow"), ("joint_names", ["a"], "4: swing"),
+                                  ("scans", "many", "not of its type")):
+            rospy.set_param("/bad/" + name, value)
+            done = subprocess.run([NODE, "__name:=bad"], stdout=subprocess.PIPE,
                                   stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)
-            self.assertEqual(done.returncode, 1, word)
-            self.assertIn(told, done.stdout.decode(), word)
-            rospy.delete_param("/bad/" + word[1:].split(":=")[0])
+            self.assertEqual(done.returncode, 1, name)
+            self.assertIn(told, done.stdout.decode())
+            rospy.delete_param("/bad/" + name)
 
 
 def main():
@@ -315,7 +328,7 @@ def main():
     try:
         wait_until(rosgraph.is_master_online, "the master")
         rospy.init_node("client", anonymous=True, disable_signals=True)
-        result = unittest.main(argv=sys.argv[:1], exit=False, verbosity=2).result
+        result = unittest.main(argv=sys.argv[:1], exit=False, verbosity=2, warnings="ignore").result
         rospy.signal_shutdown("done")
     finally:
         core.send_signal(signal.SIGINT)

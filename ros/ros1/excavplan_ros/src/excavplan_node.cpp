@@ -5,6 +5,7 @@
 /// The dig cycle as a node of ROS 1 (docs/ros.md): topics to DigCycleSession, its answers to topics
 /// and services.
 
+#include <cstdio>
 #include <limits>
 
 #include <ros/ros.h>
@@ -201,7 +202,7 @@ int main(int argc, char** argv) {
     excavplan_ros::Node node(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::spin();
   } catch (const std::exception& error) {
-    ROS_FATAL("%s", error.what());
+    std::fprintf(stderr, "excavplan_node: error: %s\n", error.what());
     return 1;
   }
 }
