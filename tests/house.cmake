@@ -22,7 +22,7 @@ endforeach()
 # The version is that of project() wherever else it stands.
 file(STRINGS ${ROOT}/CMakeLists.txt line REGEX "^project\\(excavplan VERSION ")
 string(REGEX MATCH "[0-9]+[.][0-9]+[.][0-9]+" version "${line}")
-foreach(place "CITATION.cff|^version: " "pyproject.toml|^version = " "ros/ros1/excavplan_ros/package.xml|<version>"
+foreach(place "CITATION.cff|^version: " "ros/ros1/excavplan_ros/package.xml|<version>"
     "ros/ros2/excavplan_ros/package.xml|<version>")
   string(REPLACE "|" ";" place ${place})
   list(GET place 0 file)
