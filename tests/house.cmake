@@ -22,7 +22,8 @@ endforeach()
 # The version is that of project() wherever else it stands.
 file(STRINGS ${ROOT}/CMakeLists.txt line REGEX "^project\\(excavplan VERSION ")
 string(REGEX MATCH "[0-9]+[.][0-9]+[.][0-9]+" version "${line}")
-foreach(place "CITATION.cff|^version: " "ros/excavplan_ros/package.xml|<version>")
+foreach(place "CITATION.cff|^version: " "ros/ros1/excavplan_ros/package.xml|<version>"
+    "ros/ros2/excavplan_ros/package.xml|<version>")
   string(REPLACE "|" ";" place ${place})
   list(GET place 0 file)
   list(GET place 1 mark)
@@ -38,7 +39,7 @@ endforeach()
 file(GLOB_RECURSE licensed RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/* ${ROOT}/tools/*
   ${ROOT}/tests/*.cpp ${ROOT}/tests/*.hpp ${ROOT}/tests/*.py ${ROOT}/tests/*.cmake ${ROOT}/cmake/*
   ${ROOT}/examples/*.cpp ${ROOT}/examples/*.py ${ROOT}/python/*.py ${ROOT}/python/*.cpp
-  ${ROOT}/ros/*.cpp ${ROOT}/ros/*.py ${ROOT}/benchmarks/*.cpp)
+  ${ROOT}/ros/*.cpp ${ROOT}/ros/*.hpp ${ROOT}/ros/*.py ${ROOT}/benchmarks/*.cpp)
 file(GLOB scripts RELATIVE ${ROOT} ${ROOT}/scripts/* ${ROOT}/scripts/check.d/*)
 foreach(file IN LISTS licensed scripts)
   if(IS_DIRECTORY ${ROOT}/${file} OR file MATCHES "[.](txt|html|js|css|json|pc.in|map|part.*)$")
@@ -56,7 +57,8 @@ string(CONCAT code
   "(return|const|auto|double|int|bool|std::)[^.]*;$")
 file(GLOB_RECURSE sources RELATIVE ${ROOT}
   ${ROOT}/include/*.hpp ${ROOT}/src/*.[ch]pp ${ROOT}/tools/*.[ch]pp ${ROOT}/tests/*.[ch]pp
-  ${ROOT}/benchmarks/*.[ch]pp ${ROOT}/examples/*.cpp ${ROOT}/python/src/*.[ch]pp)
+  ${ROOT}/benchmarks/*.[ch]pp ${ROOT}/examples/*.cpp ${ROOT}/python/src/*.[ch]pp
+  ${ROOT}/ros/*.[ch]pp)
 list(LENGTH sources count)
 if(count LESS 150)
   message(SEND_ERROR "only ${count} source files under '${ROOT}': nothing was checked")

@@ -112,7 +112,7 @@ TEST_F(Tools, ReportOfAnExperimentShowsBothDigsOfEachCondition) {
   const std::string file = folder.file("report.html");
   const json result = answer("run-experiment", {"--densities", "10,40", "--report", file});
   const std::string page = content_of(file);
-  EXPECT_TRUE(contains(page, ">10.0 %</text>") && contains(page, "tip, planned path"));
+  EXPECT_TRUE(contains(page, ">10</text>") && contains(page, "tip, planned path"));
   EXPECT_TRUE(contains(page, "[kg/kJ]</text>"));
   const json scene = drawn_on(page);
   ASSERT_EQ(scene["digs"].size(), 4U);

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The dig cycle as a node of ROS 1 (docs/ros.md): topics to DigCycleSession, its answers to topics
+/// and services.
+
+#include <cstdio>
+#include <limits>
+
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <std_msgs/Bool.h>
+#include <std_msgs/String.h>
+#include <tf2_msgs/TFMessage.h>
+#include <trajectory_msgs/JointTrajectory.h>
+#include <excavplan/controller/dig_cycle_session.hpp>
+
+#include <excavplan_ros/DigAndPlan.h>
+#include <excavplan_ros/Estimate.h>
+#include <excavplan_ros/Plan.h>
+
+#include "parameters.hpp"
+#include "raw_message.hpp"
+
+namespace excavplan_ros {
+namespace {
+
+using excavplan::CycleEstimate;
+using excavplan::CyclePlan;
+using excavplan::Warning;
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+trajectory_msgs::JointTrajectory message_of(const excavplan::JointMotion& motion) {
+  trajectory_msgs::JointTrajectory message;
+  message.joint_names = motion.names;
+  for (const excavplan::JointPoint& point : motion.points) {
+    trajectory_msgs::JointTrajectoryPoint sent;
+    sent.positions = point.positions;
+    sent.velocities = point.velocities;
+    sent.time_from_start = ros::Duration(point.time);
+    message.points.push_back(sent);
+  }
+  return message;
+}
+
+std_msgs::String text_message(const std::string& text) {
+  std_msgs::String message;
+  message.data = text;
+  return message;
+}
+
+/// Shows warnings, and gives their texts.
+std::vector<std::string> told(const std::vector<Warning>& warnings) {
+  std::vector<std::string> texts;
+  for (const Warning& warning : warnings) {
+    texts.push_back(warning.code + ": " + warning.message);
+    ROS_WARN("%s", texts.back().c_str());
+  }
+  return texts;
+}
+
+class Node {
+ public:
+  Node(ros::NodeHandle topics, const ros::NodeHandle& own)
+      : session_(settings_of(own)), topics_(topics), own_(own) {
+    listen<sensor_msgs::PointCloud2>("points", "sensor_msgs/msg/PointCloud2", 10);
+    listen<tf2_msgs::TFMessage>("/tf", "tf2_msgs/msg/TFMessage", 1000);
+    listen<tf2_msgs::TFMessage>("/tf_static", "tf2_msgs/msg/TFMessage", 1000);
+    listen<sensor_msgs::JointState>("joint_states", "sensor_msgs/msg/JointState", 10);
+    mark("start_dig", [this] { session_.start_dig(); });
+    mark("end_dig", [this] { session_.end_dig(); });
+    state_ = own_.advertise<std_msgs::String>("state", 1, true);
+    estimate_ = own_.advertise<std_msgs::String>("estimate_result", 1, true);
+    plan_ = own_.advertise<std_msgs::String>("plan_result", 1, true);
+    trajectory_ = own_.advertise<trajectory_msgs::JointTrajectory>("trajectory", 1, true);
+    services_ = {own_.advertiseService("estimate", &Node::estimate, this),
+                 own_.advertiseService("plan", &Node::plan, this),
+                 own_.advertiseService("dig_and_plan", &Node::dig_and_plan, this)};
+    tell_state();
+  }
+
+ private:
+  /// Does the work; an error goes to rosout and is returned.
+  template <typename Work>
+  std::string error_of(const Work& work) {
+    try {
+      work();
+      return "";
+    } catch (const std::exception& error) {
+      ROS_ERROR("%s", error.what());
+      return error.what();
+    }
+  }
+
+  template <typename Message>
+  void listen(const std::string& topic, const std::string& type, unsigned queue) {
+    const std::string name = topics_.resolveName(topic);
+    const boost::function<void(const boost::shared_ptr<const Raw<Message>>&)> take =
+        [this, name, type](const boost::shared_ptr<const Raw<Message>>& message) {
+          error_of([&] { session_.take({name, type, false, message->bytes}); });
+          tell_state();
+        };
+    subscribers_.push_back(topics_.subscribe<Raw<Message>>(name, queue, take));
+  }
+
+  template <typename Work>
+  void mark(const std::string& topic, const Work& work) {
+    const boost::function<void(const std_msgs::Bool::ConstPtr&)> take =
+        [this, work](const std_msgs::Bool::ConstPtr& message) {
+          if (message->data) error_of(work);
+          tell_state();
+        };
+    subscribers_.push_back(topics_.subscribe<std_msgs::Bool>(topic, 10, take));
+  }
+
+  /// "after 2 of 5", when it changes.
+  void tell_state() {
+    const std::string state = excavplan::describe(session_);
+    if (state != told_state_) state_.publish(text_message(state));
+    told_state_ = state;
+  }
+
+  CycleEstimate make_estimate() {
+    CycleEstimate answer = session_.estimate();
+    estimate_.publish(text_message(to_json(answer)));
+    return answer;
+  }
+
+  CyclePlan make_plan() {
+    CyclePlan answer = session_.plan();
+    plan_.publish(text_message(to_json(answer)));
+    trajectory_.publish(message_of(answer.motion));
+    return answer;
+  }
+
+  /// What Plan and DigAndPlan have in common.
+  template <typename Response>
+  void answer_plan(Response& response) {
+    const std::string error = error_of([&] {
+      const CyclePlan answer = make_plan();
+      response.success = answer.plan.dig.has_value();
+      response.message = answer.plan.reason;
+      response.trustworthy = answer.trustworthy;
+      response.previous_density = answer.previous_density;
+      response.density_percent = answer.density.percent;
+      response.trajectory = message_of(answer.motion);
+      for (std::string& text : told(answer.warnings)) response.warnings.push_back(text);
+      response.json = to_json(answer);
+    });
+    if (!error.empty()) response.message = error;
+  }
+
+  bool estimate(Estimate::Request&, Estimate::Response& response) {
+    response.density_percent = response.density_sd_percent = response.bulking_factor = unknown;
+    response.message = error_of([&] {
+      const CycleEstimate answer = make_estimate();
+      response.success = true;
+      response.trustworthy = answer.adopted;
+      if (answer.estimate.density) {
+        response.density_percent = answer.estimate.density->percent;
+        response.density_sd_percent = answer.estimate.density->sd_percent;
+      }
+      if (answer.estimate.bulking) response.bulking_factor = answer.estimate.bulking->value;
+      response.warnings = told(answer.warnings);
+      response.json = to_json(answer);
+    });
+    return true;
+  }
+
+  bool plan(Plan::Request&, Plan::Response& response) {
+    answer_plan(response);
+    return true;
+  }
+
+  bool dig_and_plan(DigAndPlan::Request&, DigAndPlan::Response& response) {
+    response.estimate_message = error_of([&] {
+      const CycleEstimate answer = make_estimate();
+      response.estimate_json = to_json(answer);
+      response.warnings = told(answer.warnings);
+    });
+    answer_plan(response);
+    return true;
+  }
+
+  excavplan::DigCycleSession session_;
+  ros::NodeHandle topics_, own_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::string told_state_;
+  ros::Publisher state_, estimate_, plan_, trajectory_;
+  std::vector<ros::ServiceServer> services_;
+};
+
+}  // namespace
+}  // namespace excavplan_ros
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "excavplan");
+  try {
+    excavplan_ros::Node node(ros::NodeHandle(), ros::NodeHandle("~"));
+    ros::spin();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "excavplan_node: error: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,318 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/controller/dig_cycle_session.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/survey/scan_terrain.hpp>
+
+#include "base/check.hpp"
+#include "controller/live_scan.hpp"
+#include "controller/recent_transforms.hpp"
+
+namespace excavplan {
+namespace {
+
+using Frames = std::vector<LiveFrame>;
+
+constexpr std::array<const char*, 4> joint_roles = {"swing", "boom", "arm", "bucket"};
+
+std::string count_text(std::size_t found, std::size_t wanted) {
+  return std::to_string(found) + " of " + std::to_string(wanted);
+}
+
+void check(const DigCycleSettings& settings) {
+  require_in("scans", static_cast<double>(settings.scans), 1.0, DigCycleSession::most_scans);
+  require(settings.site_from_scan.allFinite(), "site_from_scan: a number is not finite");
+  require_in("density", settings.density.percent, 0.0, 100.0);
+  const bool named = std::none_of(settings.joint_names.begin() + 1, settings.joint_names.end(),
+                                  [](const std::string& name) { return name.empty(); });
+  require(named, "joint_names: boom, arm and bucket need a name");
+}
+
+}  // namespace
+
+DigCycleSettings shipped_settings(const std::string& machine, const std::string& soil,
+                                  const std::string& law) {
+  DigCycleSettings settings;
+  settings.machine = load_machine(shipped_or_file("machines", machine));
+  settings.soil = load_soil(shipped_or_file("soils", soil));
+  const std::string usual = settings.machine.name + "-" + settings.soil.name;
+  settings.law = load_density_law(shipped_or_file("laws", law.empty() ? usual : law));
+  return settings;
+}
+
+const char* name(CycleStage stage) {
+  constexpr std::array<const char*, 4> names = {"before", "digging", "after", "done"};
+  return names[static_cast<std::size_t>(stage)];
+}
+
+struct DigCycleSession::State {
+  explicit State(DigCycleSettings given) : settings(std::move(given)), density(settings.density) {}
+
+  void take_points(LiveFrame frame);
+  void take_joints(const std::vector<std::pair<std::string, double>>& positions);
+  std::optional<MachinePosture> posture() const;
+  void settle(Frames& frames, bool all);
+  Scan scan_of(Frames& frames, const char* which, bool& averaged);
+  DensityOptions estimate_options() const;
+  ScannedTerrain terrain();
+  void check_start(CyclePlan& answer) const;
+
+  DigCycleSettings settings;
+  CycleStage stage = CycleStage::before;
+  Frames recent, before, after;  ///< recent: since the last dig
+  RecentTransforms transforms;
+  std::map<std::string, double> joints;  ///< of the settings' names, where they stand
+  GroundDensity density;
+  bool density_is_stated = true;
+  bool last_refused = false;          ///< the last estimate was not to be trusted
+  std::optional<PlannedDig> planned;  ///< the last plan
+  std::optional<PlannedDig> driven;   ///< what was planned when the last dig began
+};
+
+void DigCycleSession::State::take_points(LiveFrame frame) {
+  frame.posture = posture();
+  if (settings.site_frame.empty()) frame.pose = Eigen::Isometry3d(settings.site_from_scan);
+  if (stage == CycleStage::digging) return;
+  settle(recent, false);
+  if (recent.size() == settings.scans) recent.erase(recent.begin());
+  recent.push_back(std::move(frame));
+  if (stage == CycleStage::after && recent.size() == settings.scans) {
+    after = recent;
+    stage = CycleStage::done;
+  }
+}
+
+void DigCycleSession::State::take_joints(
+    const std::vector<std::pair<std::string, double>>& positions) {
+  for (const auto& [name, position] : positions) {
+    if (name.empty() || !std::isfinite(position)) continue;
+    const auto& names = settings.joint_names;
+    if (std::find(names.begin(), names.end(), name) != names.end()) joints[name] = position;
+  }
+}
+
+std::optional<MachinePosture> DigCycleSession::State::posture() const {
+  Eigen::Vector4d angles = Eigen::Vector4d::Zero();
+  for (std::size_t i = 0; i < joint_roles.size(); ++i) {
+    const std::string& name = settings.joint_names[i];
+    if (name.empty()) continue;
+    const auto found = joints.find(name);
+    if (found == joints.end()) return {};
+    angles[static_cast<Eigen::Index>(i)] = found->second;
+  }
+  return MachinePosture{angles[0], angles.tail<3>()};
+}
+
+/// Finds poses that are not known yet; `all`: an error where one stays unknown.
+void DigCycleSession::State::settle(Frames& frames, bool all) {
+  const auto known = [](const LiveFrame& frame) { return frame.pose.has_value(); };
+  if (std::all_of(frames.begin(), frames.end(), known)) return;
+  const TransformTree tree = transforms.tree();
+  for (LiveFrame& frame : frames) {
+    if (frame.pose) continue;
+    try {
+      const MessageHeader& header = frame.header;
+      frame.pose = Eigen::Isometry3d(settings.site_from_scan) *
+                   tree.lookup(settings.site_frame, header.frame, header.stamp);
+      frame.from_sensor = tree.is_leaf(header.frame);
+    } catch (const Error&) {
+      if (all) throw;
+    }
+  }
+}
+
+Scan DigCycleSession::State::scan_of(Frames& frames, const char* which, bool& averaged) {
+  settle(frames, true);
+  LiveScan live = merged(frames);
+  averaged = averaged && (live.averaged || frames.size() == 1);
+  Scan scan;
+  scan.name = std::string("scan ") + which;
+  scan.clouds = {std::make_shared<const Cloud>(std::move(live.cloud))};
+  scan.z_is_up = !settings.site_frame.empty() || !settings.site_from_scan.isIdentity(0.0);
+  if (settings.machine_in_view) {
+    require(frames.front().posture.has_value(),
+            scan.name + ": the machine is in view, but no joint states came before it");
+    scan.machine = std::make_shared<const MachineFront>(settings.machine, *frames.front().posture);
+  }
+  return scan;
+}
+
+DensityOptions DigCycleSession::State::estimate_options() const {
+  DensityOptions options = settings.estimate;
+  if (!options.soil.kind) options.soil.kind = settings.soil;
+  if (settings.digs_as_planned && driven) {
+    options.dug_path = DugPath{settings.machine, driven->parameters, driven->start_x};
+  }
+  return options;
+}
+
+/// As the last scan shows it, level without one.
+ScannedTerrain DigCycleSession::State::terrain() {
+  Frames& seen = stage == CycleStage::digging || recent.empty() ? before : recent;
+  const double cell = settings.plan.cell_size;
+  if (seen.empty()) {
+    return {level_planning_ground(settings.machine, cell),
+            {{"level_ground", "no scan came yet: the ground is taken to be level"}}};
+  }
+  bool averaged = true;
+  return terrain_from_scan(scan_of(seen, "of the ground", averaged),
+                           planning_extent(settings.machine), cell);
+}
+
+void DigCycleSession::State::check_start(CyclePlan& answer) const {
+  constexpr double near = 0.05;  // ours [rad]
+  if (answer.motion.points.empty()) return;
+  std::string missing, far;
+  for (std::size_t i = 0; i < answer.motion.names.size(); ++i) {
+    const std::string& name = answer.motion.names[i];
+    const auto found = joints.find(name);
+    const double start = answer.motion.points.front().positions[i];
+    if (found == joints.end()) {
+      missing += (missing.empty() ? "" : ", ") + name;
+    } else if (std::abs(found->second - start) > near) {
+      far += (far.empty() ? "" : ", ") + name + " stands at " + plain_number(found->second) +
+             " rad, begins at " + plain_number(start);
+    }
+  }
+  if (!missing.empty()) {
+    answer.warnings.push_back({"posture_unknown", "no joint states of " + missing +
+                                                      " came: whether the machine stands where "
+                                                      "the motion begins is not known"});
+  }
+  if (!far.empty()) {
+    answer.warnings.push_back(
+        {"far_from_start", far + ": bring the machine to the first point before the motion"});
+  }
+}
+
+DigCycleSession::DigCycleSession(DigCycleSettings settings) {
+  check(settings);
+  state_ = std::make_unique<State>(std::move(settings));
+}
+DigCycleSession::~DigCycleSession() = default;
+DigCycleSession::DigCycleSession(DigCycleSession&&) noexcept = default;
+DigCycleSession& DigCycleSession::operator=(DigCycleSession&&) noexcept = default;
+
+void DigCycleSession::take(const RobotMessage& message) {
+  const RecordedTopic topic = {message.topic, message.type, 1, 0, 0};
+  const RecordedMessage raw = {topic, 0, message.is_cdr ? Serialization::cdr : Serialization::ros1,
+                               message.bytes, "message"};
+  const std::string& from = message.topic;
+  switch (use_of(message.type)) {
+    case MessageUse::points: {
+      LiveFrame frame;
+      frame.header = decode_header(from, raw);
+      frame.points = decode_points(from, raw);
+      return state_->take_points(std::move(frame));
+    }
+    case MessageUse::transforms:
+      return state_->transforms.add(decode_transforms(from, raw));
+    case MessageUse::joints:
+      return state_->take_joints(decode_joints(from, raw));
+    default:
+      throw Error(ErrorKind::bad_file, from + ": found a message of " + message.type +
+                                           ", expected points, transforms or joint states");
+  }
+}
+
+void DigCycleSession::start_dig() {
+  State& state = *state_;
+  require(state.stage == CycleStage::digging || !state.recent.empty(),
+          "the dig begins, but no scan came before it");
+  if (state.stage == CycleStage::digging) return;  // told twice
+  state.settle(state.recent, true);
+  state.before = std::move(state.recent);
+  state.recent.clear();
+  state.after.clear();
+  state.driven = std::exchange(state.planned, std::nullopt);
+  state.stage = CycleStage::digging;
+}
+
+void DigCycleSession::end_dig() {
+  require(state_->stage == CycleStage::digging, "the dig is over, but none had begun");
+  state_->stage = CycleStage::after;
+}
+
+CycleStage DigCycleSession::stage() const { return state_->stage; }
+std::size_t DigCycleSession::scans() const { return state_->recent.size(); }
+std::size_t DigCycleSession::scans_wanted() const { return state_->settings.scans; }
+const GroundDensity& DigCycleSession::density() const { return state_->density; }
+
+std::string describe(const DigCycleSession& session) {
+  return std::string(name(session.stage())) + ' ' +
+         count_text(session.scans(), session.scans_wanted());
+}
+
+CycleEstimate DigCycleSession::estimate() {
+  State& state = *state_;
+  require(state.stage == CycleStage::done,
+          state.stage == CycleStage::after
+              ? "the scan after the dig has " +
+                    count_text(state.recent.size(), state.settings.scans) + " messages"
+              : std::string("no dig has been scanned: it is the time ") + name(state.stage) +
+                    (state.stage == CycleStage::before ? " the first dig" : ""));
+  state.last_refused = true;
+  bool averaged = true;
+  DigScans scans;
+  scans.before = state.scan_of(state.before, "before", averaged);
+  scans.after = state.scan_of(state.after, "after", averaged);
+  CycleEstimate answer;
+  answer.estimate = estimate_density(scans, state.settings.law, state.estimate_options());
+  answer.before = state.before.size();
+  answer.after = state.after.size();
+  answer.warnings = answer.estimate.warnings;
+  if (answer.before < answer.after) {
+    answer.warnings.push_back({"fewer_scans", "the scan before the dig has " +
+                                                  count_text(answer.before, answer.after) +
+                                                  " messages: the dig began before more came"});
+  }
+  if (!averaged) {
+    answer.warnings.push_back({"not_averaged",
+                               "the messages of a scan are not of one organised size with one "
+                               "pose: their points were joined"});
+  }
+  const std::optional<GroundDensity> found = answer.estimate.ground_density();
+  answer.adopted = answer.estimate.trustworthy && found;
+  state.last_refused = !answer.adopted;
+  if (answer.adopted) {
+    state.density = *found;
+    state.density_is_stated = false;
+  }
+  return answer;
+}
+
+CyclePlan DigCycleSession::plan() {
+  State& state = *state_;
+  ScannedTerrain ground = state.terrain();
+  const DigCycleSettings& settings = state.settings;
+  CyclePlan answer;
+  answer.plan =
+      plan_dig(settings.machine, settings.soil, state.density, ground.terrain, settings.plan);
+  answer.density = state.density;
+  answer.density_is_stated = state.density_is_stated;
+  answer.previous_density = state.last_refused;
+  if (answer.plan.dig) answer.motion = joint_motion(answer.plan, settings.joint_names);
+  answer.warnings = std::move(ground.warnings);
+  if (state.last_refused) {
+    answer.warnings.push_back(
+        {"previous_density",
+         "the density by the last dig is not to be trusted: planned for the previous one, " +
+             plain_number(state.density.percent) + " %"});
+  }
+  answer.warnings.insert(answer.warnings.end(), answer.plan.warnings.begin(),
+                         answer.plan.warnings.end());
+  state.check_start(answer);
+  answer.trustworthy = answer.plan.trustworthy && answer.plan.dig &&
+                       std::none_of(answer.warnings.begin(), answer.warnings.end(),
+                                    [](const Warning& warning) { return warning.ends_trust; });
+  state.planned = answer.plan.dig;
+  return answer;
+}
+
+}  // namespace excavplan

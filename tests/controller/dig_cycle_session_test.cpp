@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/controller/dig_cycle_session.hpp>
+
+#include <gtest/gtest.h>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/survey/scan_terrain.hpp>
+
+#include "support/errors.hpp"
+#include "support/ros_bytes.hpp"
+
+namespace excavplan::test {
+namespace {
+
+const std::string points_type = "sensor_msgs/msg/PointCloud2";
+const std::string tf_type = "tf2_msgs/msg/TFMessage";
+const std::string joints_type = "sensor_msgs/msg/JointState";
+constexpr std::int64_t now = 1700000000000000000;  // [ns]
+
+DigCycleSettings settings_of(std::size_t scans = 1) {
+  DigCycleSettings settings = shipped_settings("zx120", "loam");
+  settings.scans = scans;
+  return settings;
+}
+
+void send(DigCycleSession& session, const std::string& bytes, const std::string& topic = "/points",
+          const std::string& type = points_type, bool is_cdr = true) {
+  session.take({topic, type, is_cdr, bytes});
+}
+
+Cloud quickstart(const std::string& name) {
+  return read_cloud(std::string(EXCAVPLAN_DATA_SOURCE) + "/quickstart/" + name + ".pcd");
+}
+
+void drive_quickstart(DigCycleSession& session, Encoding encoding = cdr_little) {
+  const bool is_cdr = encoding.serialization == Serialization::cdr;
+  const auto bytes = [&](const char* name) {
+    return cloud_bytes(now, "site", quickstart(name).points, 0, encoding);
+  };
+  send(session, bytes("before"), "/points", points_type, is_cdr);
+  session.start_dig();
+  session.end_dig();
+  send(session, bytes("after"), "/points", points_type, is_cdr);
+}
+
+constexpr std::size_t ground_width = 60;
+
+/// A square of ground with points every 0.1 m.
+Points ground() {
+  Points points;
+  for (std::size_t i = 0; i < ground_width * ground_width; ++i) {
+    const double row = static_cast<double>(i / ground_width);
+    const double column = static_cast<double>(i % ground_width);
+    points.emplace_back(3.0 + 0.1 * row, -3.0 + 0.1 * column, 0.0);
+  }
+  return points;
+}
+
+bool has(const std::vector<Warning>& warnings, const std::string& code) {
+  return std::any_of(warnings.begin(), warnings.end(),
+                     [&](const Warning& warning) { return warning.code == code; });
+}
+
+TEST(DigCycleSession, AnswersAsTheLibraryDoesForTheSameScans) {
+  const DigCycleSettings settings = settings_of();
+  DensityEstimate direct;
+  Scan after;
+  {
+    DigScans scans;
+    scans.before.clouds = {std::make_shared<Cloud>(quickstart("before"))};
+    after.clouds = {std::make_shared<Cloud>(quickstart("after"))};
+    scans.after = after;
+    DensityOptions options;
+    options.soil.kind = settings.soil;
+    direct = estimate_density(scans, settings.law, options);
+  }
+  for (const Encoding& encoding : {ros1, cdr_little}) {
+    DigCycleSession session(settings);
+    drive_quickstart(session, encoding);
+    const CycleEstimate answer = session.estimate();
+    ASSERT_TRUE(answer.adopted);
+    EXPECT_EQ(answer.estimate.density->percent, direct.density->percent);
+    EXPECT_EQ(answer.estimate.bulking->value, direct.bulking->value);
+    EXPECT_EQ(session.density().percent, direct.density->percent);
+    const auto json = nlohmann::json::parse(to_json(answer));
+    EXPECT_EQ(json["density_percent"], direct.density->percent);
+    EXPECT_EQ(json["volume"]["excavated_m3"], direct.change.excavated.value);
+  }
+}
+
+TEST(DigCycleSession, PlansOnTheGroundAsScanned) {
+  DigCycleSession session(settings_of());
+  drive_quickstart(session);
+  session.estimate();
+  const CyclePlan answer = session.plan();
+  ASSERT_TRUE(answer.plan.dig);
+  EXPECT_FALSE(answer.density_is_stated);
+  EXPECT_FALSE(has(answer.warnings, "level_ground"));
+  EXPECT_TRUE(has(answer.warnings, "posture_unknown"));
+  const Machine machine = settings_of().machine;
+  Scan after;
+  after.clouds = {std::make_shared<Cloud>(quickstart("after"))};
+  const Terrain terrain = terrain_from_scan(after, planning_extent(machine), 0.05).terrain;
+  const DigPlan direct = plan_dig(machine, settings_of().soil, session.density(), terrain);
+  EXPECT_EQ(answer.plan.dig->payload_mass, direct.dig->payload_mass);
+  const auto json = nlohmann::json::parse(to_json(answer));
+  EXPECT_EQ(json["path"]["start_x_m"], direct.dig->start_x);
+
+  ASSERT_EQ(answer.motion.names.size(), 4U);
+  ASSERT_EQ(answer.motion.points.size(), answer.plan.trajectory.points.size());
+  double last = -1.0;
+  for (const JointPoint& point : answer.motion.points) {
+    EXPECT_GT(point.time, last);
+    last = point.time;
+    ASSERT_EQ(point.positions.size(), 4U);
+    EXPECT_EQ(point.positions[0], 0.0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_LE(std::abs(point.velocities[i + 1]), machine.limits[i].speed);
+    }
+  }
+}
+
+TEST(DigCycleSession, TellsThatTheDigIsNotTheOneItPlanned) {
+  for (const bool as_planned : {true, false}) {
+    DigCycleSettings settings = settings_of();
+    settings.digs_as_planned = as_planned;
+    DigCycleSession session(settings);
+    session.plan();
+    drive_quickstart(session);
+    const CycleEstimate answer = session.estimate();  // the quickstart's dig is another one
+    EXPECT_EQ(has(answer.warnings, "dug_path_doubtful"), as_planned);
+    EXPECT_EQ(answer.adopted, !as_planned);
+  }
+}
+
+TEST(DigCycleSession, KeepsThePreviousDensityWhereTheEstimateIsNotTrusted) {
+  DigCycleSettings settings = settings_of();
+  settings.density = GroundDensity(33.0, 4.0);
+  DigCycleSession session(settings);
+  send(session, cloud_bytes(now, "site", quickstart("before").points));
+  session.start_dig();
+  session.end_dig();
+  send(session, cloud_bytes(now, "site", quickstart("before").points));  // nothing was dug
+  const CycleEstimate estimate = session.estimate();
+  EXPECT_FALSE(estimate.adopted);
+  EXPECT_EQ(session.density().percent, 33.0);
+  const CyclePlan plan = session.plan();
+  EXPECT_EQ(plan.density.percent, 33.0);
+  EXPECT_TRUE(plan.density_is_stated);
+  EXPECT_TRUE(has(plan.warnings, "previous_density"));
+  EXPECT_NE(to_json(plan).find("previous_density"), std::string::npos);
+}
+
+TEST(DigCycleSession, GoesThroughTheCycle) {
+  DigCycleSession session(settings_of(2));
+  EXPECT_EQ(error_of([&] { session.start_dig(); }), "the dig begins, but no scan came before it");
+  EXPECT_EQ(error_of([&] { session.end_dig(); }), "the dig is over, but none had begun");
+  EXPECT_EQ(error_of([&] { session.estimate(); }),
+            "no dig has been scanned: it is the time before the first dig");
+  const std::string cloud = cloud_bytes(now, "site", ground());
+  for (int i = 0; i < 3; ++i) send(session, cloud);
+  EXPECT_EQ(session.scans(), 2U);
+  session.start_dig();
+  session.start_dig();
+  EXPECT_STREQ(name(session.stage()), "digging");
+  send(session, cloud);
+  EXPECT_EQ(session.scans(), 0U);
+  EXPECT_EQ(error_of([&] { session.estimate(); }),
+            "no dig has been scanned: it is the time digging");
+  session.end_dig();
+  send(session, cloud);
+  EXPECT_EQ(describe(session), "after 1 of 2");
+  EXPECT_EQ(error_of([&] { session.estimate(); }), "the scan after the dig has 1 of 2 messages");
+  send(session, cloud);
+  EXPECT_STREQ(name(session.stage()), "done");
+  send(session, cloud);
+  EXPECT_EQ(session.scans(), 2U);
+  EXPECT_EQ(session.estimate().after, 2U);
+}
+
+TEST(DigCycleSession, PutsScansIntoTheSiteFrameByTransforms) {
+  DigCycleSettings settings = settings_of();
+  settings.site_frame = "base";
+  DigCycleSession session(settings);
+  send(session, cloud_bytes(now, "lidar", ground()));
+  EXPECT_EQ(error_of([&] { session.start_dig(); }, ErrorKind::bad_file),
+            "transforms: found no transforms on /tf and /tf_static, expected those of 'base'");
+  EXPECT_EQ(session.stage(), CycleStage::before);
+  const std::string turned =
+      transform_bytes({{now, "base", "lidar", {0.0, 0.0, 1.5}, {1.0, 0.0, 0.0, 0.0}}});
+  send(session, turned, "/tf_static", tf_type);
+  session.start_dig();
+  EXPECT_EQ(session.stage(), CycleStage::digging);
+}
+
+TEST(DigCycleSession, PosesAreFoundWhileTheirTransformsAreKept) {
+  DigCycleSettings settings = settings_of();
+  settings.site_frame = "base";
+  DigCycleSession session(settings);
+  const auto moved = [&](std::int64_t at) {
+    send(session, transform_bytes({{at, "base", "lidar", {0.0, 0.0, 1.5}}}), "/tf", tf_type);
+  };
+  moved(now);
+  send(session, cloud_bytes(now, "lidar", ground()));
+  moved(now + 60'000'000'000);
+  EXPECT_NE(error_of([&] { session.start_dig(); }, ErrorKind::bad_file).find("lidar"),
+            std::string::npos);
+  send(session, cloud_bytes(now + 60'000'000'000, "lidar", ground()));
+  session.start_dig();
+}
+
+TEST(DigCycleSession, AveragesOrganisedMessagesOfASensorThatStood) {
+  for (const std::size_t width : {ground_width, ground_width * ground_width}) {
+    DigCycleSession session(settings_of(3));
+    const std::string cloud = cloud_bytes(now, "site", ground(), width);
+    for (int i = 0; i < 3; ++i) send(session, cloud);
+    session.start_dig();
+    session.end_dig();
+    for (int i = 0; i < 3; ++i) send(session, cloud);
+    EXPECT_EQ(has(session.estimate().warnings, "not_averaged"), width != ground_width) << width;
+  }
+}
+
+TEST(DigCycleSession, SaysWhereTheMachineStandsOffTheStart) {
+  DigCycleSession session(settings_of());
+  const auto stand = [&](const std::vector<double>& joints) {
+    std::vector<std::pair<std::string, double>> named;
+    for (std::size_t i = 0; i < 4; ++i) named.emplace_back(opera_joint_names()[i], joints[i]);
+    send(session, joint_bytes(now, named), "/joint_states", joints_type);
+  };
+  const std::vector<double> start = session.plan().motion.points.front().positions;
+  stand(start);
+  CyclePlan plan = session.plan();
+  EXPECT_FALSE(has(plan.warnings, "far_from_start"));
+  EXPECT_FALSE(has(plan.warnings, "posture_unknown"));
+  EXPECT_TRUE(has(plan.warnings, "level_ground"));
+  stand({0.5, start[1], start[2], start[3]});
+  plan = session.plan();
+  ASSERT_TRUE(has(plan.warnings, "far_from_start"));
+}
+
+TEST(DigCycleSession, MachineInViewNeedsJointStates) {
+  DigCycleSettings settings = settings_of();
+  settings.machine_in_view = true;
+  DigCycleSession session(settings);
+  drive_quickstart(session);
+  EXPECT_NE(error_of([&] { session.estimate(); }).find("no joint states"), std::string::npos);
+}
+
+TEST(DigCycleSession, RefusesDamagedMessagesAndStaysAsItWas) {
+  DigCycleSession session(settings_of());
+  const std::string good = cloud_bytes(now, "site", ground());
+  send(session, good);
+  for (std::size_t length = 0; length < good.size(); length += 1 + length / 8) {
+    EXPECT_NE(error_of([&] { send(session, good.substr(0, length)); }, ErrorKind::bad_file),
+              "no error")
+        << length;
+  }
+  EXPECT_NE(error_of([&] { send(session, good, "/a", "std_msgs/msg/String"); }, ErrorKind::bad_file)
+                .find("/a"),
+            std::string::npos);
+  EXPECT_EQ(session.scans(), 1U);
+  session.start_dig();
+}
+
+TEST(DigCycleSession, ChecksItsSettings) {
+  EXPECT_EQ(error_of([] { DigCycleSession(settings_of(0)); }), "scans is 0, must be in 1 .. 100");
+  DigCycleSettings settings = settings_of();
+  settings.site_from_scan(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(error_of([&] { DigCycleSession session(settings); }), "no error");
+  EXPECT_NE(error_of([] { shipped_settings("zx120", "snow"); }).find("snow"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace excavplan::test

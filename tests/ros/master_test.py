@@ -1,0 +1,340 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+"""The node of ROS 1 under a running master.
+
+master_test.py NODE GENERATED BIN DATA: the program, the Python folder of its generated services,
+the folder of the tools and that of the data.
+"""
+
+import json
+import math
+import os
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+NODE, GENERATED, BIN, DATA = sys.argv[1:5]
+JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint"]
+PATIENCE = 60.0  # [s]
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+HOME = tempfile.TemporaryDirectory()
+PORT = free_port()
+os.environ.update(ROS_MASTER_URI=f"http://localhost:{PORT}", ROS_HOSTNAME="localhost",
+                  ROS_HOME=HOME.name, ROS_LOG_DIR=HOME.name, EXCAVPLAN_DATA=DATA)
+sys.path.insert(0, GENERATED)
+
+import rosgraph  # noqa: E402
+import rospy  # noqa: E402
+from excavplan_ros.srv import DigAndPlan, Estimate, Plan  # noqa: E402
+from geometry_msgs.msg import TransformStamped  # noqa: E402
+from rosgraph_msgs.msg import Log  # noqa: E402
+from sensor_msgs.msg import JointState, PointCloud2, PointField  # noqa: E402
+from std_msgs.msg import Bool, String  # noqa: E402
+from tf2_msgs.msg import TFMessage  # noqa: E402
+from trajectory_msgs.msg import JointTrajectory  # noqa: E402
+
+
+def wait_until(holds, what):
+    end = time.monotonic() + PATIENCE
+    while not holds():
+        if time.monotonic() > end:
+            raise AssertionError(f"waited in vain for {what}")
+        time.sleep(0.02)
+
+
+def tool(*words):
+    done = subprocess.run([os.path.join(BIN, words[0]), *words[1:], "--json", "--quiet"],
+                          stdout=subprocess.PIPE, check=True)
+    return json.loads(done.stdout)
+
+
+def shipped(name):
+    return os.path.join(DATA, "quickstart", name + ".pcd")
+
+
+def points_of(name):
+    with open(shipped(name), "rb") as file:
+        return file.read().split(b"DATA binary\n", 1)[1]
+
+
+def cloud(data, frame="site"):
+    """Points of three float32."""
+    message = PointCloud2()
+    message.header.stamp = rospy.Time.from_sec(time.time())
+    message.header.frame_id = frame
+    message.fields = [PointField(axis, 4 * i, PointField.FLOAT32, 1)
+                      for i, axis in enumerate("xyz")]
+    message.point_step = 12
+    message.width = len(data) // 12
+    message.height = 1
+    message.row_step = 12 * message.width
+    message.data = data
+    return message
+
+
+class Junk(PointCloud2):
+    """Bytes that are no message."""
+
+    def serialize(self, buff):
+        buff.write(self.data)
+
+
+def garbage():
+    good = cloud(points_of("before")[:12000])
+
+    def changed(**values):
+        message = cloud(good.data)
+        for name, value in values.items():
+            setattr(message, name, value)
+        return message
+
+    fields = good.fields
+    yield changed(fields=[])
+    yield changed(fields=fields[:2])
+    yield changed(fields=fields + fields)
+    yield changed(fields=[PointField(f.name, f.offset, 9, 1) for f in fields])
+    yield changed(fields=[PointField(f.name, 0xFFFFFFFF, 7, 1) for f in fields])
+    yield changed(height=2, row_step=1)
+    yield changed(width=1000000000)
+    yield changed(width=1000000000, height=1000000000, row_step=0xFFFFFFFF)
+    yield changed(point_step=0)
+    yield changed(data=b"")
+    yield Junk(data=b"")
+    yield Junk(data=b"\xff" * 40)
+    yield Junk(data=struct.pack("<IIII", 1, 2, 3, 0xFFFFFFFF) + b"x" * 100)
+
+
+def unreadable_points():
+    """What is a message, but shows no ground."""
+    yield cloud(struct.pack("<fff", math.nan, math.nan, math.nan) * 1000)
+    yield cloud(b"")
+    swapped = cloud(points_of("before")[:12000])
+    swapped.is_bigendian = True
+    yield swapped
+
+
+class Node:
+    """The program with these private parameters."""
+
+    def __init__(self, **parameters):
+        words = [f"_{key}:={value}" for key, value in parameters.items()]
+        self.process = subprocess.Popen([NODE, "__name:=excavplan", *words],
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        self.parameters = parameters
+        self.state = ""
+        self.told = rospy.Subscriber("/excavplan/state", String, self.take_state)
+        self.publishers = {
+            "points": rospy.Publisher("/points", PointCloud2, queue_size=10),
+            "start": rospy.Publisher("/start_dig", Bool, queue_size=10),
+            "end": rospy.Publisher("/end_dig", Bool, queue_size=10),
+            "joints": rospy.Publisher("/joint_states", JointState, queue_size=10),
+            "tf": rospy.Publisher("/tf_static", TFMessage, queue_size=10),
+        }
+        for topic, publisher in self.publishers.items():
+            wait_until(lambda p=publisher: p.get_num_connections() > 0, f"{topic} to be heard")
+        wait_until(lambda: self.state != "", "the first state")
+
+    def take_state(self, message):
+        self.state = message.data
+
+    def send(self, topic, message):
+        self.publishers[topic].publish(message)
+
+    def send_until(self, topic, message, state):
+        self.send(topic, message)
+        wait_until(lambda: self.state == state, f"'{state}' after '{self.state}'")
+
+    def call(self, name, kind):
+        rospy.wait_for_service("/excavplan/" + name, PATIENCE)
+        return rospy.ServiceProxy("/excavplan/" + name, kind)()
+
+    def dig(self, before, after):
+        if self.state == "before 1 of 1":  # further points would not show in it
+            self.send_until("start", Bool(True), "digging 0 of 1")
+            self.send_until("end", Bool(True), "after 0 of 1")
+            self.send_until("points", before, "done 1 of 1")
+        else:
+            self.send_until("points", before, "before 1 of 1")
+        self.send_until("start", Bool(True), "digging 0 of 1")
+        self.send_until("end", Bool(True), "after 0 of 1")
+        self.send_until("points", after, "done 1 of 1")
+
+    def alive(self):
+        return self.process.poll() is None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.told.unregister()
+        for publisher in self.publishers.values():
+            publisher.unregister()
+        self.process.send_signal(signal.SIGINT)
+        self.process.communicate(timeout=PATIENCE)
+        for key in self.parameters:
+            if rospy.has_param("/excavplan/" + key):
+                rospy.delete_param("/excavplan/" + key)
+
+
+class Master(unittest.TestCase):
+    def check_trajectory(self, trajectory, limits_of):
+        self.assertEqual(trajectory.joint_names, JOINTS)
+        self.assertGreater(len(trajectory.points), 10)
+        times = [point.time_from_start.to_nsec() for point in trajectory.points]
+        self.assertEqual(times[0], 0)
+        self.assertTrue(all(a < b for a, b in zip(times, times[1:])))
+        for point in trajectory.points:
+            self.assertEqual((point.positions[0], point.velocities[0]), (0.0, 0.0))
+            for name, at, rate in zip(JOINTS[1:], point.positions[1:], point.velocities[1:]):
+                limits = limits_of[name[:-len("_joint")]]
+                self.assertGreaterEqual(at, limits["lower_rad"] - 1e-9)
+                self.assertLessEqual(at, limits["upper_rad"] + 1e-9)
+                self.assertLessEqual(abs(rate), limits["speed_rad_per_s"])
+
+    def test_same_numbers_as_the_tools(self):
+        with open(os.path.join(DATA, "machines", "zx120.json"), encoding="utf-8") as file:
+            limits = json.load(file)["joints"]
+        with Node(scans=1) as node:
+            node.dig(cloud(points_of("before")), cloud(points_of("after")))
+            estimated = node.call("estimate", Estimate)
+            answer = node.call("dig_and_plan", DigAndPlan)
+            latched = rospy.wait_for_message("/excavplan/trajectory", JointTrajectory, PATIENCE)
+            results = [rospy.wait_for_message(f"/excavplan/{name}_result", String, PATIENCE).data
+                       for name in ("estimate", "plan")]
+        expected = tool("estimate-density", shipped("before"), shipped("after"), "--soil", "loam")
+        self.assertEqual(answer.estimate_message, "")
+        found = json.loads(answer.estimate_json)
+        for key in ("bulking_factor", "bulking_factor_sd", "density_percent", "law",
+                    "density_sd_percent", "density_interval_percent", "trustworthy"):
+            self.assertEqual(found[key], expected[key], key)
+        for key, value in found["volume"].items():
+            self.assertEqual(value, expected["volume"][key], key)
+        self.assertTrue(estimated.success and estimated.trustworthy, estimated.message)
+        self.assertEqual(estimated.density_percent, expected["density_percent"])
+        self.assertEqual(estimated.bulking_factor, expected["bulking_factor"])
+        self.assertEqual(results, [answer.estimate_json, answer.json])
+
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+            json.dump(found, file)
+            file.flush()
+            planned = tool("plan-path", "--density-from", file.name, "--terrain", shipped("after"))
+        self.assertTrue(answer.success, answer.message)
+        self.assertFalse(answer.previous_density)
+        self.assertEqual(answer.density_percent, expected["density_percent"])
+        given = json.loads(answer.json)
+        for key in ("path", "payload_mass_kg", "energy_kj", "efficiency_kg_per_kj", "source",
+                    "duration_s", "start_rule"):
+            self.assertEqual(given[key], planned[key], key)
+        self.check_trajectory(answer.trajectory, limits)
+        self.assertEqual(latched.points, answer.trajectory.points)
+        self.assertTrue(any(text.startswith("posture_unknown: ") for text in answer.warnings))
+
+    def test_an_estimate_not_to_be_trusted_keeps_the_previous_density(self):
+        with Node(scans=1, density_percent=33.0, density_sd_percent=4.0) as node:
+            node.dig(cloud(points_of("before")), cloud(points_of("before")))
+            answer = node.call("dig_and_plan", DigAndPlan)
+        self.assertTrue(answer.success, answer.message)
+        self.assertTrue(answer.previous_density)
+        self.assertEqual(answer.density_percent, 33.0)
+        self.assertIn("previous_density", " ".join(answer.warnings))
+
+    def test_transforms_and_joint_states(self):
+        raw = points_of("before"), points_of("after")
+        lifted = []
+        for data in raw:  # the sensor frame: x forward, z down, 3 m up
+            points = struct.iter_unpack("<fff", data)
+            lifted.append(b"".join(struct.pack("<fff", x, -y, 3.0 - z) for x, y, z in points))
+        transform = TransformStamped()
+        transform.header.frame_id = "base_link"
+        transform.child_frame_id = "camera"
+        transform.transform.translation.z = 3.0
+        transform.transform.rotation.x = 1.0
+        with Node(scans=1, site_frame="base_link") as node:
+            node.send("tf", TFMessage([transform]))
+            plan = node.call("plan", Plan)
+            self.assertTrue(plan.success, plan.message)
+            node.send("joints", JointState(name=JOINTS,
+                                           position=plan.trajectory.points[0].positions))
+            node.dig(cloud(lifted[0], "camera"), cloud(lifted[1], "camera"))
+            answer = node.call("estimate", Estimate)
+        self.assertTrue(answer.success, answer.message)
+        self.assertIn("dug_path_doubtful", " ".join(answer.warnings))  # it had planned another dig
+        expected = tool("estimate-density", shipped("before"), shipped("after"), "--soil", "loam")
+        self.assertAlmostEqual(answer.bulking_factor, expected["bulking_factor"], delta=0.02)
+
+    def test_survives_garbage(self):
+        told = []
+        log = rospy.Subscriber("/rosout", Log, lambda message: told.append(message.msg))
+        self.addCleanup(log.unregister)
+        with Node(scans=1) as node:
+            wait_until(lambda: log.get_num_connections() > 0, "rosout")
+            answer = node.call("estimate", Estimate)
+            self.assertFalse(answer.success)
+            self.assertIn("before the first dig", answer.message)
+            node.send("start", Bool(True))
+            node.send("end", Bool(True))
+            for message in garbage():
+                node.send("points", message)
+            junk = [JointState(name=["boom_joint"], position=[1.0, 2.0]),
+                    JointState(name=JOINTS, position=[math.nan] * 4)]
+            for message in junk:
+                node.send("joints", message)
+            node.send("tf", TFMessage([TransformStamped()] * 3))
+            time.sleep(0.5)
+            self.assertTrue(node.alive())
+            self.assertEqual(node.state, "before 0 of 1")
+            self.assertIn("field x 0 times", " ".join(told))
+            self.assertIn("2 positions", " ".join(told))
+            self.assertTrue(node.call("plan", Plan).success)
+            for message in unreadable_points():
+                node.send("points", message)
+                time.sleep(0.2)
+                answer = node.call("plan", Plan)
+                self.assertFalse(answer.success)
+                self.assertNotEqual(answer.message, "")
+            self.assertTrue(node.alive())
+            node.dig(cloud(points_of("before")), cloud(points_of("after")))
+            answer = node.call("estimate", Estimate)
+            self.assertTrue(answer.success, answer.message)
+
+    def test_refuses_bad_parameters(self):
+        for name, value, told in (("scans", 0, "scans is 0"), ("scan", 3, "is not known"),
+                                  ("soil", "snow", "snow"), ("joint_names", ["a"], "4: swing"),
+                                  ("scans", "many", "not of its type")):
+            rospy.set_param("/bad/" + name, value)
+            done = subprocess.run([NODE, "__name:=bad"], stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)
+            self.assertEqual(done.returncode, 1, name)
+            self.assertIn(told, done.stdout.decode())
+            rospy.delete_param("/bad/" + name)
+
+
+def main():
+    core = subprocess.Popen(["/usr/bin/roscore", "-p", str(PORT)], stdout=subprocess.DEVNULL,
+                            stderr=subprocess.DEVNULL, start_new_session=True)
+    try:
+        wait_until(rosgraph.is_master_online, "the master")
+        rospy.init_node("client", anonymous=True, disable_signals=True)
+        result = unittest.main(argv=sys.argv[:1], exit=False, verbosity=2, warnings="ignore").result
+        rospy.signal_shutdown("done")
+    finally:
+        core.send_signal(signal.SIGINT)
+        core.wait(PATIENCE)
+    sys.exit(not result.wasSuccessful())
+
+
+if __name__ == "__main__":
+    main()

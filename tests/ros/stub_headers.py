@@ -1,0 +1,152 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+"""stub_headers.py PACKAGE OUT: as much of the headers of ROS 2 (Humble) as the node of PACKAGE
+uses, to check its syntax without ROS 2. The messages have the fields of their definitions, rclcpp
+the signatures of its documentation, without any code."""
+
+import pathlib
+import re
+import sys
+
+MESSAGES = {
+    "builtin_interfaces/Duration": "int32 sec\nuint32 nanosec",
+    "sensor_msgs/JointState": "string[] name",
+    "sensor_msgs/PointCloud2": "uint32 height",
+    "std_msgs/Bool": "bool data",
+    "std_msgs/String": "string data",
+    "tf2_msgs/TFMessage": "",
+    "trajectory_msgs/JointTrajectoryPoint":
+        "float64[] positions\nfloat64[] velocities\nfloat64[] accelerations\nfloat64[] effort\n"
+        "builtin_interfaces/Duration time_from_start",
+    "trajectory_msgs/JointTrajectory":
+        "string[] joint_names\ntrajectory_msgs/JointTrajectoryPoint[] points",
+}
+
+PLAIN = {"bool": "bool", "string": "std::string", "float64": "double", "int32": "std::int32_t",
+         "uint32": "std::uint32_t"}
+
+RCLCPP = """#pragma once
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+struct rcl_serialized_message_t { std::uint8_t* buffer; std::size_t buffer_length; };
+namespace rclcpp {
+struct SerializedMessage { const rcl_serialized_message_t& get_rcl_serialized_message() const; };
+struct QoS {
+  explicit QoS(std::size_t depth);
+  QoS& transient_local();
+  QoS& reliable();
+  QoS& best_effort();
+};
+struct SensorDataQoS : QoS { SensorDataQoS(); };
+struct NodeOptions {};
+struct Logger {};
+struct SubscriptionBase { using SharedPtr = std::shared_ptr<SubscriptionBase>; };
+struct ServiceBase { using SharedPtr = std::shared_ptr<ServiceBase>; };
+template <typename M> struct Subscription : SubscriptionBase {
+  using SharedPtr = std::shared_ptr<Subscription>;
+  const char* get_topic_name() const;
+};
+template <typename M> struct Publisher {
+  using SharedPtr = std::shared_ptr<Publisher>;
+  void publish(const M& message);
+};
+template <typename S> struct Service : ServiceBase {
+  using SharedPtr = std::shared_ptr<Service>;
+};
+class Node {
+ public:
+  explicit Node(const std::string& name, const NodeOptions& options = NodeOptions());
+  Logger get_logger() const;
+  template <typename T> T declare_parameter(const std::string& name, const T& value);
+  template <typename M>
+  typename Publisher<M>::SharedPtr create_publisher(const std::string& topic, const QoS& qos);
+  template <typename M, typename Callback>
+  typename Subscription<M>::SharedPtr create_subscription(const std::string& topic, const QoS& qos,
+                                                          Callback&& callback) {
+    using ofSerialized = std::function<void(std::shared_ptr<const SerializedMessage>)>;
+    using ofMessage = std::function<void(const M&)>;
+    static_assert(std::is_constructible_v<ofSerialized, Callback> ||
+                  std::is_constructible_v<ofMessage, Callback>);
+    return {};
+  }
+  template <typename S, typename Callback>
+  typename Service<S>::SharedPtr create_service(const std::string& name, Callback&& callback) {
+    using Take = std::function<void(std::shared_ptr<typename S::Request>,
+                                    std::shared_ptr<typename S::Response>)>;
+    static_assert(std::is_constructible_v<Take, Callback>);
+    return {};
+  }
+};
+void init(int argc, const char* const* argv);
+void spin(std::shared_ptr<Node> node);
+bool shutdown();
+}  // namespace rclcpp
+[[gnu::format(printf, 2, 3)]] void stub_log(const rclcpp::Logger& logger, const char* form, ...);
+#define RCLCPP_ERROR(...) stub_log(__VA_ARGS__)
+#define RCLCPP_WARN(...) stub_log(__VA_ARGS__)
+#define RCLCPP_INFO(...) stub_log(__VA_ARGS__)
+"""
+
+
+def small(name):
+    """As rosidl names the header of a type: point_cloud2, tf_message."""
+    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
+
+
+def cpp_type(name):
+    element = name.removesuffix("[]")
+    if element not in PLAIN:
+        element = element.replace("/", "::msg::")
+    else:
+        element = PLAIN[element]
+    return f"std::vector<{element}>" if name.endswith("[]") else element
+
+
+def fields(text):
+    for line in text.splitlines():
+        words = line.split("#")[0].split()
+        if words:
+            yield words[0], words[1]
+
+
+def struct(name, text):
+    body = "".join(f"  {cpp_type(kind)} {field};\n" for kind, field in fields(text))
+    return f"struct {name} {{\n{body}}};\n"
+
+
+def includes(text):
+    names = {kind.removesuffix("[]") for kind, _ in fields(text)}
+    return "".join(f"#include <{package}/msg/{small(name)}.hpp>\n"
+                   for package, _, name in (n.partition("/") for n in sorted(names)) if name)
+
+
+def write(folder, package, kind, name, text, body):
+    path = folder / package / kind / (small(name) + ".hpp")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"#pragma once\n#include <cstdint>\n#include <string>\n#include <vector>\n"
+                    f"{includes(text)}namespace {package}::{kind} {{\n{body}}}\n",
+                    encoding="utf-8")
+
+
+def main():
+    package, out = map(pathlib.Path, sys.argv[1:3])
+    (out / "rclcpp").mkdir(parents=True, exist_ok=True)
+    (out / "rclcpp" / "rclcpp.hpp").write_text(RCLCPP, encoding="utf-8")
+    for full, text in MESSAGES.items():
+        owner, name = full.split("/")
+        write(out, owner, "msg", name, text, struct(name, text))
+    for file in sorted(package.glob("srv/*.srv")):
+        request, response = file.read_text(encoding="utf-8").split("---")
+        body = (f"struct {file.stem} {{\n{struct('Request', request)}"
+                f"{struct('Response', response)}}};\n")
+        write(out, "excavplan_ros", "srv", file.stem, request + response, body)
+
+
+main()

@@ -1,0 +1,38 @@
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+cmake_minimum_required(VERSION 3.24)
+
+# The node of ROS 2, which Debian does not have: its syntax against the headers of SOURCE and those
+# that stub_headers.py writes. With a field renamed it must not compile.
+
+set(node ${SOURCE}/ros/ros2/excavplan_ros/src/excavplan_node.cpp)
+function(compile file result)
+  execute_process(
+    COMMAND ${CXX} -std=c++17 -fsyntax-only -Wall -Wextra -Werror -isystem ${WORK}
+      -I ${SOURCE}/include -isystem ${EIGEN} ${file}
+    RESULT_VARIABLE code ERROR_VARIABLE errors)
+  set(${result} ${code} PARENT_SCOPE)
+  set(errors "${errors}" PARENT_SCOPE)
+endfunction()
+
+execute_process(COMMAND ${PYTHON} -B ${SOURCE}/tests/ros/stub_headers.py
+  ${SOURCE}/ros/ros2/excavplan_ros ${WORK} COMMAND_ERROR_IS_FATAL ANY)
+compile(${node} result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "${node}:\n${errors}")
+endif()
+file(READ ${node} text)
+string(REPLACE ".time_from_start" ".time_from_begin" text "${text}")
+file(WRITE ${WORK}/wrong.cpp "${text}")
+compile(${WORK}/wrong.cpp result)
+if(result EQUAL 0)
+  message(FATAL_ERROR "the stubs take a field that they do not have")
+endif()
+# Both packages offer the same services.
+foreach(service DigAndPlan Estimate Plan)
+  file(READ ${SOURCE}/ros/ros1/excavplan_ros/srv/${service}.srv one)
+  file(READ ${SOURCE}/ros/ros2/excavplan_ros/srv/${service}.srv two)
+  if(NOT one STREQUAL two)
+    message(SEND_ERROR "${service}.srv differs between ros1 and ros2")
+  endif()
+endforeach()
