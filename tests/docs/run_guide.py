@@ -76,7 +76,6 @@ class Reader:
         python.chmod(0o755)
         self.environment = {**os.environ, "PATH": f"{self.state}:/usr/bin:/bin", "LC_ALL": "C.UTF-8",
                             "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-        self.environment.pop("EXCAVPLAN_DATA", None)
         self.run(f'cd "{root}/excavplan"')
 
     def run(self, script):
