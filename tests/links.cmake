@@ -54,7 +54,8 @@ function(read_plain file result)
   set(${result} "${text}" PARENT_SCOPE)
 endfunction()
 
-file(GLOB pages RELATIVE ${ROOT} ${ROOT}/*.md ${ROOT}/docs/*.md ${ROOT}/data/*.md)
+file(GLOB pages RELATIVE ${ROOT} ${ROOT}/*.md ${ROOT}/docs/*.md ${ROOT}/docs/guide/*.md
+  ${ROOT}/data/*.md)
 file(GLOB_RECURSE sources RELATIVE ${ROOT}
   ${ROOT}/include/*.hpp ${ROOT}/src/*.[ch]pp ${ROOT}/tools/*.[ch]pp ${ROOT}/tests/*.[ch]pp
   ${ROOT}/benchmarks/*.cpp ${ROOT}/examples/*.cpp ${ROOT}/data/*.json ${ROOT}/scripts/*)

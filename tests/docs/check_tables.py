@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The excavplan authors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of the documents against their sources: check_tables.py SOURCE
+
+* docs/guide/warnings.md has each warning code of docs/formats.md once, and no other;
+* every test that docs/ecosystem.md names is in the tree, and every wish that is met names one.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+SOURCE = Path(sys.argv[1])
+failures = []
+
+
+def rows(text):
+    """The cells of each row of the tables, without heads and rules."""
+    for block in re.findall(r"(?:^\|.*\n)+", text, re.M):
+        for line in block.splitlines()[2:]:
+            yield [cell.strip() for cell in line.strip("|").split(" |")]
+
+
+def words(cell):
+    return re.findall(r"`([^`]+)`", cell)
+
+
+def check_codes():
+    reference = (SOURCE / "docs/formats.md").read_text().split("### Warning codes\n")[1]
+    stated = [code for row in rows(reference) for code in words(row[0])]
+    guide = [code for row in rows((SOURCE / "docs/guide/warnings.md").read_text()) for code in words(row[0])]
+    if len(stated) < 50:
+        failures.append(f"docs/formats.md: only {len(stated)} warning codes were found")
+    failures.extend(f"docs/guide/warnings.md: lacks {code}" for code in sorted(set(stated) - set(guide)))
+    failures.extend(f"docs/guide/warnings.md: {code} is not in formats.md" for code in sorted(set(guide) - set(stated)))
+    failures.extend(f"docs/guide/warnings.md: {code} is there twice" for code in sorted(set(guide)) if guide.count(code) > 1)
+
+
+def tests_of_the_tree():
+    sources = "\n".join(file.read_text() for file in (SOURCE / "tests").rglob("*.cpp"))
+    names = {".".join(match) for match in re.findall(r"\bTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", sources)}
+    lists = [SOURCE / "CMakeLists.txt", *(SOURCE / "tests").rglob("CMakeLists.txt"), *(SOURCE / "examples").rglob("CMakeLists.txt")]
+    for file in lists:
+        names.update(re.findall(r"add_test\(NAME (\w+)", file.read_text()))
+    python = (SOURCE / "tests/python").glob("*_test.py")
+    return names | {"python_" + file.name[: -len("_test.py")] for file in python}
+
+
+def check_ecosystem():
+    tests = tests_of_the_tree()
+    wishes = list(rows((SOURCE / "docs/ecosystem.md").read_text()))
+    if len(wishes) < 24:
+        failures.append(f"docs/ecosystem.md: only {len(wishes)} wishes were found")
+    for number, _, threads, answer, shown in wishes:
+        named = words(shown)
+        if not named and not answer.startswith("No"):
+            failures.append(f"docs/ecosystem.md: wish {number} names no test")
+        for name in named:
+            if name not in tests and not (SOURCE / name).is_file():
+                failures.append(f"docs/ecosystem.md: wish {number}: no test {name}")
+        if not re.search(r"[\w-]+/[\w.-]+#\d+", threads):
+            failures.append(f"docs/ecosystem.md: wish {number} cites no thread")
+
+
+check_codes()
+check_ecosystem()
+print(*failures, sep="\n")
+sys.exit(1 if failures else 0)
