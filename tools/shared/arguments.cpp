@@ -257,7 +257,9 @@ void Arguments::simulator(std::string& word) {
 }
 
 void Arguments::machine(std::string& name) {
-  text("machine", "NAME|FILE", name, "excavator: zx120, or a machine file");
+  text("machine", "NAME|FILE", name,
+       "excavator: zx120, zx200, generic-20t, generic-mini, a machine file, a URDF, or a folder of "
+       "machine-kit");
 }
 
 void Arguments::require_ending(const std::vector<std::string>& endings) {

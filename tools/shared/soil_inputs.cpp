@@ -8,6 +8,7 @@
 #include <excavplan/simulation/calibration.hpp>
 
 #include "base/text.hpp"
+#include "shared/kit_files.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -22,9 +23,13 @@ const SoilLaw* find(const std::vector<SoilLaw>& laws, const std::string& soil) {
   return found == laws.end() ? nullptr : &*found;
 }
 
-/// The law of a kind of soil: the shipped one, or one of digs in the simulator.
+/// The law of a kind of soil: that of machine-kit, the shipped one, or one of digs in the
+/// simulator.
 DensityLaw default_law(const SoilKind& soil, const std::string& machine,
                        const std::vector<SoilLaw>& shipped) {
+  if (const auto kit = kit_law(machine, machine_named(machine), soil.name)) {
+    return load_density_law(*kit);
+  }
   const SoilLaw* known = find(shipped, soil.name);
   if (known && fingerprint(known->soil) == fingerprint(soil)) return known->law;
   return law_of(calibrate_density(machine_named(machine), soil));
