@@ -7,12 +7,14 @@
 #include <excavplan/kit/workspace.hpp>
 
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "shared/dig_figures.hpp"
 
 namespace excavplan::tools {
 namespace {
 
-/// The largest force towards the machine at the tip [kN], on cells over all that it reaches.
+/// The largest force towards the machine that the joints give at the tip [kN], on cells over all
+/// that it reaches.
 Grid force_grid(const Machine& machine, const Rectangle& all) {
   constexpr double across = 70.0;  // cells
   const double cell = (all.x_max - all.x_min) / across;
@@ -24,7 +26,7 @@ Grid force_grid(const Machine& machine, const Rectangle& all) {
     for (Eigen::Index col = 0; col < cols; ++col) {
       const Eigen::Vector2d tip(all.x_min + (static_cast<double>(col) + 0.5) * cell,
                                 all.y_min + (static_cast<double>(row) + 0.5) * cell);
-      grid.z(row, col) = 1e-3 * digging_force(machine, tip).usable();
+      grid.z(row, col) = 1e-3 * digging_force(machine, tip).joints;
     }
   });
   return grid;
@@ -48,6 +50,15 @@ JointAngles shown_posture(const Machine& machine) {
     return limits[joint].lower + part * (limits[joint].upper - limits[joint].lower);
   };
   return {share(0, 0.35), share(1, 0.4), share(2, 0.35)};
+}
+
+/// On the ground, half as far as it reaches.
+std::string held_text(const Machine& machine) {
+  const double x = 0.5 * reach_of(machine).ground;
+  const double held = digging_force(machine, {x, 0.0}).held;
+  if (!std::isfinite(held)) return ".";
+  return "; at x = " + readable(x) + " m on the ground " + readable(1e-3 * held) +
+         " kN lift or drag the machine.";
 }
 
 Figure reach_figure(const Machine& machine) {
@@ -76,8 +87,9 @@ Figure reach_figure(const Machine& machine) {
   figure.rows = {{panel}};
   figure.colour_bar = ColourBar{scale, "digging force of the tip, level [kN]"};
   figure.note =
-      "The largest force towards the machine with the floor of the bucket at -10 to 60 "
-      "deg: what the joints can give, or what lifts or drags the machine if that is less.";
+      "The largest force towards the machine that the joints give with the floor of the bucket at "
+      "-10 to 60 deg" +
+      held_text(machine);
   return figure;
 }
 

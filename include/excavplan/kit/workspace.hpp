@@ -40,8 +40,8 @@ struct DiggingForce {
   double usable() const { return joints < held ? joints : held; }
 };
 
-/// With the tip at a place, at rest: each joint may give its limit in either sense. NaN where the tip
-/// cannot be in such a posture.
+/// With the tip at a place, at rest: each joint may give its limit in either sense. NaN where the
+/// tip cannot be in such a posture.
 DiggingForce digging_force(const Machine& machine, const Eigen::Vector2d& tip);
 
 /// The digging force of the bucket alone, at the tip, across the line from its pin [N]; and that of
