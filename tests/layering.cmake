@@ -5,7 +5,7 @@ cmake_minimum_required(VERSION 3.24)
 # The architecture as a test: run with cmake -D ROOT=<source directory> -P layering.cmake
 
 # What a room may include of the others; itself and base are always allowed.
-set(rooms base optimisation ground soil machine simulation planning library plan experiment recording survey study controller)
+set(rooms base optimisation ground soil machine simulation planning library kit plan experiment recording survey study controller)
 set(base_may_use "")
 set(optimisation_may_use "")
 set(ground_may_use "")
@@ -14,11 +14,12 @@ set(machine_may_use "")
 set(simulation_may_use ground soil machine)
 set(planning_may_use optimisation ground soil machine simulation)
 set(library_may_use optimisation ground soil machine simulation planning)
+set(kit_may_use ground soil machine simulation planning library)
 set(plan_may_use ground soil machine simulation planning library)
 set(experiment_may_use ground soil machine simulation planning library plan)
 set(recording_may_use "")
 set(survey_may_use ground soil machine simulation recording)
-set(study_may_use ground soil machine simulation planning library plan experiment survey)
+set(study_may_use ground soil machine simulation planning library kit plan experiment survey)
 set(controller_may_use ground soil machine simulation planning library plan recording survey)
 
 # Public headers that belong to no room; all may include them.

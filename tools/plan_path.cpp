@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "shared/ground_maps.hpp"
+#include "shared/kit_files.hpp"
 #include "shared/plan_figures.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/results.hpp"
@@ -61,8 +62,9 @@ bool simulates(const Inputs& inputs) {
 
 void declare(Arguments& arguments, Inputs& inputs) {
   declare_density(arguments, inputs.density);
-  arguments.file("library", inputs.library,
-                 "path library (default: the shipped one of machine, soil and goal)");
+  arguments.file(
+      "library", inputs.library,
+      "path library (default: that of machine-kit, or the shipped one, of machine, soil and goal)");
   arguments.flag("search", inputs.search, "search for the path instead of looking it up");
   declare_terrain(arguments, inputs.terrain);
   arguments.soil(inputs.soil);
@@ -86,13 +88,18 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.report(inputs.report);
 }
 
-PlanOptions options_of(const Inputs& inputs, Console& console) {
+PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
+                       Console& console) {
   PlanOptions options;
   options.method = inputs.search ? PlanMethod::search : PlanMethod::library;
   if (inputs.library) {
     options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
   }
   options.search = search_options(inputs.dig_search, use_of(inputs), console);
+  if (!inputs.library) {
+    options.library = kit_library(inputs.machine, machine, soil.name, inputs.dig_search.goal,
+                                  options.search.objective);
+  }
   options.simulator = simulator_of(inputs.simulator, console);
   options.cell_size = inputs.cell_size;
   return options;
@@ -106,7 +113,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
   const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
-  const PlanOptions options = options_of(inputs, console);
+  const PlanOptions options = options_of(inputs, machine, soil, console);
   const DigPlan plan = naming_options(search_option_names, [&] {
     return inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
                                 : plan_dig(machine, soil, density, options);

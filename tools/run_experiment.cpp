@@ -26,7 +26,6 @@ const About about = {
      {"run-experiment --json", "all results as JSON"}}};
 
 struct Inputs {
-  std::string machine = "zx120";
   ExperimentInputs experiment;
   Plots plots;
   std::optional<std::string> report;
@@ -85,7 +84,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                                          "only the experiment of section 3 has a page"},
                                         [&] { arguments.report(inputs.report); });
                     });
-  arguments.machine(inputs.machine);
+  arguments.machine(inputs.experiment.machine);
 #ifdef EXCAVPLAN_STUDY
   declare_study(arguments, inputs.study);
   arguments.only_if({[&inputs] { return !inputs.is_study() && !inputs.experiment.sensitivity; },
@@ -104,7 +103,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
 Outcome work(const Inputs& inputs, Console& console) {
   require_one_experiment(inputs);
   check(inputs.experiment.method);
-  const Machine machine = machine_named(inputs.machine);
+  const Machine machine = machine_named(inputs.experiment.machine);
   const ExperimentInputs& experiment = inputs.experiment;
 #ifdef EXCAVPLAN_STUDY
   if (inputs.is_study()) {

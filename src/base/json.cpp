@@ -137,7 +137,12 @@ JsonObject JsonObject::top(const std::string& name, json value, const char* expe
 }
 
 JsonObject JsonObject::open(const std::string& path, const std::string& format, int version) {
-  JsonObject file = top(path, parse_json(path, read_file(path)), "a JSON object");
+  return of_text(path, read_file(path), format, version);
+}
+
+JsonObject JsonObject::of_text(const std::string& name, const std::string& content,
+                               const std::string& format, int version) {
+  JsonObject file = top(name, parse_json(name, content), "a JSON object");
   file.require_format(format, version);
   return file;
 }

@@ -44,6 +44,9 @@ class JsonObject {
   /// Opens a file whose top object has "format": `format` and "version": `version`.
   /// @throws Error (bad_file)
   static JsonObject open(const std::string& path, const std::string& format, int version = 1);
+  /// The same of the text of a file. `name` is for messages.
+  static JsonObject of_text(const std::string& name, const std::string& content,
+                            const std::string& format, int version = 1);
   /// The same of a text that ends in its checksum, as sealed() writes it. `name` is for messages.
   static JsonObject open_sealed(const std::string& name, const std::string& content,
                                 const std::string& format, int version = 1,

@@ -12,6 +12,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "machine/machine_check.hpp"
+#include "machine/machine_reading.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -270,11 +271,10 @@ double Machine::beta() const {
   return std::atan2(floor.y(), -floor.x());
 }
 
-Machine load_machine(const std::string& path) {
-  JsonObject file = JsonObject::open(path, "excavplan-machine");
+Machine read_machine(JsonObject file) {
   Machine machine;
   machine.name = file.text("name");
-  file.ignore("description");
+  for (const char* key : {"description", "data_sheet"}) file.ignore(key);
   read_geometry(file.object("geometry"), machine);
   JsonObject joints = file.object("joints");
   JsonObject links = file.object("links");

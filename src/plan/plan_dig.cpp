@@ -543,9 +543,10 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
                           data_folder);
   } catch (const Error&) {
     if (!has_data_folder("libraries", data_folder)) throw;
-    throw Error(ErrorKind::bad_input,
-                "no library of " + machine.name + " in " + soil.name + " for the goal " + goal +
-                    " is shipped: use a search, or make one with build-path-library");
+    throw Error(
+        ErrorKind::bad_input,
+        "no library of " + machine.name + " in " + soil.name + " for the goal " + goal +
+            " is shipped: make one with machine-kit or build-path-library, or use a search");
   }
   PathLibrary library = load_path_library(file);
   require_fit(library, machine, soil, objective);

@@ -51,12 +51,13 @@ DensityCalibration::Sample measure(const Machine& machine, const SoilKind& soil,
 
 /// Paths that fill the box evenly whatever their number (the additive recurrence of Roberts 2018
 /// with the powers of 1 / 1.22074, the root of x^4 = x + 1).
-DigParameters drawn_path(std::size_t index) {
+DigParameters drawn_path(std::size_t index, double size) {
   const auto in = [&](double low, double high, double step) {
     const double turns = 0.5 + static_cast<double>(index) * step;
     return low + (high - low) * (turns - std::floor(turns));
   };
-  return {in(0.5, 1.1, 0.8191725134), in(0.2, 0.6, 0.6710436067), in(0.8, 2.5, 0.5497004779)};
+  return {in(0.5, 1.1, 0.8191725134), size * in(0.2, 0.6, 0.6710436067),
+          size * in(0.8, 2.5, 0.5497004779)};
 }
 
 /// A dig of a density even over the range, in drawn soil and along a drawn path.
@@ -66,7 +67,7 @@ DensityCalibration::Sample measure_draw(const Machine& machine, const SoilKind& 
   const auto draws = static_cast<std::size_t>(options.draws);
   const double density = 100.0 * (static_cast<double>(draw) + 0.5) / options.draws;
   const SoilKind drawn = drawn_soil(soil, options.scatter, Random(draw, 1).bits());
-  options.cell_size = CalibrationOptions{}.cell_size;
+  options.cell_size = options.size * CalibrationOptions{}.cell_size;
   const auto can_be_dug = [&] {
     const CalibrationDig dig(machine, options);
     try {
@@ -77,7 +78,7 @@ DensityCalibration::Sample measure_draw(const Machine& machine, const SoilKind& 
     return true;
   };
   for (std::size_t i = 0; options.any_path && i < most_paths; ++i) {
-    options.path = drawn_path(draw + i * draws);
+    options.path = drawn_path(draw + i * draws, options.size);
     if (can_be_dug()) break;
   }
   return measure(machine, drawn, density, options);
@@ -126,6 +127,7 @@ DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soi
   require(options.draws >= 0 && options.draws <= most_draws, "the number of draws", options.draws,
           "in 0 .. " + std::to_string(most_draws));
   require_simulated_cell(options.cell_size);
+  require_in("size of the machine to one of 12 t", options.size, 0.1, 10.0);
   std::vector<double> densities = options.densities_percent;
   if (densities.empty()) {
     for (int i = 0; i <= 20; ++i) densities.push_back(5.0 * i);

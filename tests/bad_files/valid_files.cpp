@@ -18,6 +18,7 @@
 #include "support/las_file.hpp"
 #include "support/png_bytes.hpp"
 #include "support/ros_bytes.hpp"
+#include "support/urdf_file.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -146,6 +147,7 @@ const std::map<std::string, Maker>& makers() {
          return png_of(4, {500, 1000, 0, 2000, 3000, 65535, 700, 800});
        }},
       {"machine", [] { return shipped("machines/zx120.json"); }},
+      {"urdf", [] { return urdf_of(zx120_joints()); }},
       {"soil", [] { return shipped("soils/loam.json"); }},
       {"law", [] { return shipped("laws/paper.json"); }},
       {"library", valid_library},

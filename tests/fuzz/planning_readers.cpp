@@ -4,6 +4,7 @@
 #include <excavplan/error.hpp>
 #include <excavplan/library/path_library.hpp>
 #include <excavplan/machine/machine.hpp>
+#include <excavplan/machine/machine_file.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
@@ -27,6 +28,15 @@ std::string read_machine(const std::string& path) {
       .add("numbers", fingerprint(machine))
       .add("capacity", heaped_capacity(machine))
       .text();
+}
+
+/// A machine as of a robot; also of a file of ours, by the same call.
+std::string read_urdf(const std::string& path) {
+  const MachineFile file = load_machine_file(path);
+  Said said;
+  said.add("name", file.machine.name).add("numbers", fingerprint(file.machine));
+  for (const Warning& warning : file.warnings) said.add("warning", warning.code);
+  return said.text();
 }
 
 std::string read_soil(const std::string& path) {
@@ -111,6 +121,7 @@ std::string read_table(const std::string& path) {
 
 std::vector<FileReader> planning_readers() {
   return {{"machine", read_machine},
+          {"urdf", read_urdf},
           {"soil", read_soil},
           {"law", read_law},
           {"library", read_library, true},

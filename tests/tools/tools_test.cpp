@@ -75,6 +75,16 @@ const std::vector<Contract>& contracts() {
        [](const TemporaryFolder& folder) {
          return Words{"--densities", "20", "--out", folder.file("library.json")} + small_library;
        }},
+      {"machine-kit",
+       {"--output", "--soil", "--goal", "--densities", "--slopes", "--draws", "--plot"},
+       "--outptu",
+       "--output",
+       [](const TemporaryFolder& folder) {
+         return Words{"zx120",    "--output", folder.file("kit"),
+                      "--soil",   "loam",     "--densities",
+                      "0,50,100", "--slopes", "0",
+                      "--draws",  "0"};
+       }},
       {"run-experiment",
        {"--path", "--soil", "--machine", "--simulator", "--seed", "--report"},
        "--densitis",

@@ -251,7 +251,9 @@ void Arguments::threads(std::uint64_t& count, const std::string& note) {
 }
 
 void Arguments::machine(std::string& name) {
-  text("machine", "NAME|FILE", name, "excavator: zx120, or a machine file");
+  text("machine", "NAME|FILE", name,
+       "excavator: zx120, zx200, generic-20t, generic-mini, a machine file, a URDF, or a folder of "
+       "machine-kit");
 }
 
 void Arguments::require_ending(const std::vector<std::string>& endings) {

@@ -175,18 +175,9 @@ Panel machine_panel(const DugDig& dug) {
   panel.equal_aspect();
   draw_standing_place(panel, dug, all.x_min - 20.0, dug.path.start_x);
   draw_grounds(panel, dug, all.x_min - 20.0, all.x_max + 20.0);
-  const Style steel = {"#4a4a4a", 0.7, "#f2f2f2"};
-  const Style front = {"#4a4a4a", 0.7, "#e6bd55"};
-  panel.polygon(machine.cab, {"#4a4a4a", 0.7, "#dbe7ee"});
-  panel.polygon(machine.turntable, steel);
-  panel.polygon(machine.house, front);
-  panel.polygon(machine.tracks, {"#4a4a4a", 0.7, "#9a9a9a"});
-  for (const Points& cylinder : machine.cylinders) panel.line(cylinder, {"#5a5a5a", 2.0});
-  panel.polygon(machine.arm, front);
-  panel.polygon(machine.boom, front);
-  if (!machine.bracket.empty()) panel.polygon(machine.bracket, front);
+  draw_machine(panel, machine);
   draw_bucket(panel, dug, pose, {"#222222", 1.3});
-  panel.dots(machine.pins, 1.1, {"#4a4a4a", 0.5, steel.fill});
+  panel.dots(machine.pins, 1.1, {"#4a4a4a", 0.5, "#f2f2f2"});
   draw_tip_path(panel, dug);
   return panel;
 }
@@ -234,6 +225,18 @@ Panel dig_panel(const DugDig& dug) {
 }
 
 }  // namespace
+
+void draw_machine(Panel& panel, const MachineOutline& machine) {
+  const Style front = {"#4a4a4a", 0.7, "#e6bd55"};
+  panel.polygon(machine.cab, {"#4a4a4a", 0.7, "#dbe7ee"});
+  panel.polygon(machine.turntable, {"#4a4a4a", 0.7, "#f2f2f2"});
+  panel.polygon(machine.house, front);
+  panel.polygon(machine.tracks, {"#4a4a4a", 0.7, "#9a9a9a"});
+  for (const Points& cylinder : machine.cylinders) panel.line(cylinder, {"#5a5a5a", 2.0});
+  panel.polygon(machine.arm, front);
+  panel.polygon(machine.boom, front);
+  if (!machine.bracket.empty()) panel.polygon(machine.bracket, front);
+}
 
 Figure section_figure(const DugDig& dug) {
   Figure figure;

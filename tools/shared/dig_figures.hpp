@@ -7,6 +7,7 @@
 
 #include <excavplan/simulation/soil_simulator.hpp>
 
+#include "shared/machine_outline.hpp"
 #include "shared/plots.hpp"
 
 /// @file
@@ -26,6 +27,9 @@ struct DugDig {
 /// The whole machine, and the dig: ground before and after, path of the tip by phase, the bucket
 /// with its soil at the ends of the phases.
 Figure section_figure(const DugDig& dug);
+
+/// Its body and front without the bucket.
+void draw_machine(Panel& panel, const MachineOutline& machine);
 
 /// section, forces, torques, power and, of a machine with cylinders, cylinders.
 /// @param machine  that digs, as the command line names it; asked where a figure depends on it

@@ -9,6 +9,7 @@
 #include <excavplan/simulation/calibration.hpp>
 
 #include "base/text.hpp"
+#include "shared/kit_files.hpp"
 #include "shared/results.hpp"
 
 namespace excavplan::tools {
@@ -17,8 +18,9 @@ namespace {
 
 /// What a search for the best paths alone has no use for.
 void declare_digs(Arguments& arguments, ExperimentInputs& inputs) {
-  arguments.file("library", inputs.library,
-                 "path library (default: the shipped one of machine, soil and goal)");
+  arguments.file(
+      "library", inputs.library,
+      "path library (default: that of machine-kit, or the shipped one, of machine, soil and goal)");
   arguments.text("law", "NAME|FILE", inputs.law,
                  "density law: default (that of machine and soil, or with --path one of digs along "
                  "that), paper, or a law file");
@@ -82,7 +84,11 @@ ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& mach
   PlanOptions& plan = options.plan;
   plan.method = inputs.search ? PlanMethod::search : PlanMethod::library;
   plan.search.objective = objective_of(inputs.goal);
-  if (inputs.library || !inputs.search) {
+  if (!inputs.library) {
+    plan.library =
+        kit_library(inputs.machine, machine, soil.name, inputs.goal, plan.search.objective);
+  }
+  if (inputs.library || (!inputs.search && !plan.library)) {
     plan.library = std::make_shared<PathLibrary>(
         inputs.library ? load_path_library(*inputs.library)
                        : shipped_library(machine, soil, plan.search.objective));
@@ -100,6 +106,9 @@ DensityLaw law_of(const ExperimentInputs& inputs, const Machine& machine, const 
   const bool own = inputs.law == "default";
   if (own && inputs.path && to_vector(*inputs.path) != to_vector(paper_fixed_path())) {
     return law_of(calibrate_path(machine, soil, *inputs.path));
+  }
+  if (own) {
+    if (const auto kit = kit_law(inputs.machine, machine, soil.name)) return load_density_law(*kit);
   }
   const std::string name = own ? machine.name + "-" + soil.name : inputs.law;
   return load_density_law(shipped_or_file("laws", name));

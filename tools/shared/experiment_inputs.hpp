@@ -20,6 +20,7 @@
 namespace excavplan::tools {
 
 struct ExperimentInputs {
+  std::string machine = "zx120";  ///< as --machine names it
   std::string densities = "paper";
   std::optional<DigParameters> path;  ///< none: that of the paper
   std::string soil = "loam";

@@ -8,6 +8,7 @@
 #include <excavplan/simulation/calibration.hpp>
 
 #include "base/text.hpp"
+#include "shared/kit_files.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -52,7 +53,9 @@ DensityLaw law_of(const SoilInputs& inputs, const std::string& machine, DensityO
   if (!own_law) {
     soil.assumed = !inputs.soil;
     if (!soil.kind) soil.kind = soil_named(usual_soil);
-    return usual_law(machine_named(machine), *soil.kind, soil.possible);
+    const Machine digs = machine_named(machine);
+    if (const auto kit = kit_law(machine, digs, soil.kind->name)) return load_density_law(*kit);
+    return usual_law(digs, *soil.kind, soil.possible);
   }
   DensityLaw law = law_named(inputs.law);
   if (soil.kind && !law.soil.empty() && law.soil != soil.kind->name) {

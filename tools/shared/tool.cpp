@@ -20,6 +20,7 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "shared/kit_files.hpp"
 #include "shared/report.hpp"
 #include "shared/settings_file.hpp"
 #include "shared/stack.hpp"
@@ -423,6 +424,17 @@ void print_outcome(const About& about, const Common& common, const Outcome& outc
   print(text);
 }
 
+/// What the files of machines are not sure of, in every tool that has --machine.
+void add_machine_warnings(const std::vector<Arguments::Entry>& entries, const ParsedWords& words,
+                          Outcome& outcome) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].name != "machine") continue;
+    for (const std::string& text : words.of_entry[i].texts) {
+      for (Warning& each : machine_warnings(text)) outcome.warnings.push_back(std::move(each));
+    }
+  }
+}
+
 int run(int argc, const char* const* argv, const About& about,
         const std::function<void(Arguments&)>& declare,
         const std::function<Outcome(Console&)>& work, StandardInput& input) {
@@ -457,6 +469,10 @@ int run(int argc, const char* const* argv, const About& about,
   for (Warning& each : ignored_options(arguments.entries(), words)) {
     outcome.warnings.push_back(std::move(each));
   }
+  const bool has_machine =
+      std::any_of(arguments.entries().begin(), arguments.entries().end(),
+                  [](const auto& entry) { return entry.name == "machine" && !entry.positional; });
+  if (has_machine && given("machine")) add_machine_warnings(arguments.entries(), words, outcome);
   console.clear();
   if (outcome.report) {
     write_report(about, outcome, input, settings_of(arguments.entries(), words, own));
@@ -545,7 +561,7 @@ SoilKind soil_named(const std::string& name_or_path) {
 }
 
 Machine machine_named(const std::string& name_or_path) {
-  return load_machine(shipped_or_file("machines", name_or_path));
+  return load_machine(machine_path(name_or_path));
 }
 
 }  // namespace excavplan::tools

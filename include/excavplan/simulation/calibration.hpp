@@ -25,6 +25,9 @@ struct CalibrationOptions {
   /// from 0.5 to 1.1 rad, penetration from 0.2 to 0.6 m, drag from 0.8 to 2.5 m, even; ours, digs
   /// of a third of a bucket to two buckets.
   bool any_path = true;
+  /// Of the machine to one of 12 t: lengths of drawn paths and cells of their ground are as many
+  /// times larger.
+  double size = 1.0;
   SoilScatter scatter = {};  ///< of the drawn soils
   unsigned threads = 0;      ///< 0: one per core; the result is the same for any number
 };

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <excavplan/error.hpp>
+#include <excavplan/machine/machine_file.hpp>
+
+/// @file
+/// Where a machine reaches, how hard it digs there, and whether its numbers fit one another
+/// (docs/machines.md#what-machine-kit-checks).
+
+namespace excavplan {
+
+/// Largest distances of the tip over the ranges of the joints [m].
+struct Reach {
+  double ground = 0.0;  ///< x of the furthest point on the ground; 0: it does not reach the ground
+  double depth = 0.0;   ///< below the ground; negative: its lowest point is above it
+  double height = 0.0;  ///< above the ground
+};
+
+/// @throws Error (bad_input) as require_machine()
+Reach reach_of(const Machine& machine);
+
+/// The curve of the tip with the bucket in line with the arm, or as near to it as it goes: boom
+/// down with the arm stretched, arm in, boom up, arm out. Closed; x, z [m].
+std::vector<Eigen::Vector2d> reach_outline(const Machine& machine);
+
+/// Forces of the tip on the soil, level, towards the machine [N].
+struct DiggingForce {
+  /// What the joints can give in the best posture with the floor of the bucket within -10 .. 60
+  /// deg.
+  double joints = 0.0;
+  /// What the machine can hold in that posture without lifting or sliding; infinite without a body.
+  double held = 0.0;
+  /// The smaller.
+  double usable() const { return joints < held ? joints : held; }
+};
+
+/// With the tip at a place, at rest: each joint may give its limit in either sense. NaN where the
+/// tip cannot be in such a posture.
+DiggingForce digging_force(const Machine& machine, const Eigen::Vector2d& tip);
+
+/// The digging force of the bucket alone, at the tip, across the line from its pin [N]; and that of
+/// the arm with bucket and arm in line.
+double bucket_force(const Machine& machine);
+double arm_force(const Machine& machine);
+
+/// What does not fit: ground_out_of_reach *, no_body, no_cycle, force_beyond_stability,
+/// data_sheet_differs. Those marked * end trust.
+std::vector<Warning> check_machine(const Machine& machine, const DataSheet& sheet = {});
+
+}  // namespace excavplan

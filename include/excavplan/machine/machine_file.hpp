@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/error.hpp>
+#include <excavplan/machine/machine.hpp>
+
+/// @file
+/// Files of machines: our own (docs/formats.md#machine) and the URDF of robots
+/// (docs/machines.md#urdf).
+
+namespace excavplan {
+
+/// What the maker says of a machine, for comparison; nothing here affects a dig.
+struct DataSheet {
+  std::optional<double> operating_mass;   ///< [kg]
+  std::optional<double> bucket_capacity;  ///< heaped 1:1 [m^3]
+  std::optional<double> bucket_force;     ///< digging force of the bucket [N]
+  std::optional<double> arm_force;        ///< digging force of the arm [N]
+  std::optional<double> ground_reach;     ///< largest reach on the ground [m]
+  std::optional<double> depth;            ///< largest digging depth [m]
+  std::optional<double> height;           ///< largest height of the tip [m]
+};
+
+/// How the angle of a joint follows from that of a URDF: sign * angle + zero.
+struct UrdfAngle {
+  std::string joint;  ///< its name in the URDF
+  double sign = 1.0;  ///< -1 or 1
+  double zero = 0.0;  ///< [rad]
+};
+
+/// A machine, and what its file says besides.
+struct MachineFile {
+  Machine machine;       ///< as load_machine() reads it
+  DataSheet data_sheet;  ///< what of it the file states
+  std::string text;      ///< of a machine file of ours that gives the same machine
+  /// Of boom, arm and bucket; nothing if the file is no URDF.
+  std::optional<std::array<UrdfAngle, 3>> urdf_angles = std::nullopt;
+  /// Of a URDF: urdf_scaled (numbers that neither it nor the JSON beside it states are those of the
+  /// zx120, scaled), urdf_placeholder (numbers of it that no machine of this size has, and that
+  /// were replaced), urdf_angles (its angles are not those of ours).
+  std::vector<Warning> warnings = {};
+};
+
+/// Reads a machine file of ours, or, if it begins with '<', a URDF with the JSON beside it:
+/// NAME.json beside NAME.urdf, if it is there.
+/// @throws Error (bad_file) as load_machine(); of a URDF naming its line
+MachineFile load_machine_file(const std::string& path);
+
+}  // namespace excavplan

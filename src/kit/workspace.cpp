@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/kit/workspace.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <excavplan/machine/kinematics.hpp>
+
+#include "base/angles.hpp"
+#include "base/text.hpp"
+#include "machine/plane.hpp"
+
+namespace excavplan {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double gravity = 9.80665;  // [m/s^2]
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int steps = 120;
+
+double at(const JointLimits& limits, int step) {
+  return limits.lower + (limits.upper - limits.lower) * step / steps;
+}
+
+/// The largest of sin over a range of directions.
+double highest_sine(double from, double to) {
+  const double up = 0.5 * pi + 2.0 * pi * std::ceil((from - 0.5 * pi) / (2.0 * pi));
+  return up <= to ? 1.0 : std::max(std::sin(from), std::sin(to));
+}
+
+/// Boom and tip as one arm: the tip turns about the boom pin.
+struct Turning {
+  double radius;
+  double from, to;  ///< directions of the tip [rad]
+};
+
+Turning turning(const Machine& machine, double arm, double bucket) {
+  const Vector2d tip = machine.boom_length * Vector2d::UnitX() +
+                       machine.arm_length * direction(-arm) +
+                       machine.bucket_length * direction(-arm - bucket);
+  const double ahead = std::atan2(tip.y(), tip.x());
+  return {tip.norm(), ahead - machine.limits[0].upper, ahead - machine.limits[0].lower};
+}
+
+void extend(Reach& reach, const Machine& machine, const Turning& tip) {
+  const double pin = machine.boom_pin.y();
+  reach.height = std::max(reach.height, pin + tip.radius * highest_sine(tip.from, tip.to));
+  reach.depth = std::max(reach.depth, tip.radius * highest_sine(-tip.to, -tip.from) - pin);
+  if (tip.radius < std::abs(pin)) return;
+  const double to_ground = -std::asin(pin / tip.radius);
+  const double turned = tip.from + std::fmod(to_ground - tip.from + 4.0 * pi, 2.0 * pi);
+  if (turned > tip.to) return;
+  reach.ground = std::max(reach.ground, machine.boom_pin.x() + tip.radius * std::cos(to_ground));
+}
+
+/// Weights of the links and the sum of their moments about x = 0.
+struct Weighed {
+  double force = 0.0;
+  double moment = 0.0;
+};
+
+Weighed links_of(const Machine& machine, const LinkPositions& links) {
+  Weighed all;
+  for (const LinkMass& link : machine.links) all.force += gravity * link.mass;
+  all.moment = all.force * machine.boom_pin.x() - torque_against_link_weight(machine, links)[0];
+  return all;
+}
+
+double held_in(const Machine& machine, const LinkPositions& links, const Vector2d& force) {
+  if (!machine.body) return infinity;
+  const Body& body = *machine.body;
+  const Weighed front = links_of(machine, links);
+  const double weight = gravity * body.mass + front.force;
+  const double moment = gravity * body.mass * body.centre.x() + front.moment;
+  double held = infinity;
+  // Of the force of the soil at 1 N, counter-clockwise about the edges.
+  const auto about = [&](double edge) { return cross(links.tip - Vector2d(edge, 0.0), force); };
+  if (const double up = about(body.rear_edge); up > 0.0) {
+    held = std::min(held, (moment - weight * body.rear_edge) / up);
+  }
+  if (const double down = -about(body.front_edge); down > 0.0) {
+    held = std::min(held, (weight * body.front_edge - moment) / down);
+  }
+  const double sliding = std::abs(force.x()) + body.track_friction * force.y();
+  if (sliding > 0.0) held = std::min(held, body.track_friction * weight / sliding);
+  return std::max(held, 0.0);
+}
+
+double given_by_joints(const Machine& machine, const LinkPositions& links, const Vector2d& force) {
+  const JointAngles per_newton = torque_against_force(machine, links, links.tip, force);
+  const JointAngles weight = torque_against_link_weight(machine, links);
+  double most = infinity;
+  for (int i = 0; i < 3; ++i) {
+    const double limit = machine.limits[static_cast<std::size_t>(i)].torque;
+    const double own = per_newton[i] > 0.0 ? weight[i] : -weight[i];
+    most = std::min(most, (limit - own) / std::abs(per_newton[i]));
+  }
+  return std::max(most, 0.0);
+}
+
+void add_reach(const Machine& machine, const Reach& reach, std::vector<Warning>& warnings) {
+  if (reach.depth > 0.0 && reach.ground > machine.track_front) return;
+  warnings.push_back({"ground_out_of_reach",
+                      reach.depth > 0.0
+                          ? "the tip reaches the ground up to x = " + readable(reach.ground) +
+                                " m only, the tracks end at " + readable(machine.track_front) + " m"
+                          : "the lowest point of the tip is " + readable(-reach.depth) +
+                                " m above the ground: do the ranges of the joints fit the lengths?",
+                      true});
+}
+
+/// A machine lifts its rear at about half the force of its bucket: ours, of the zx120.
+void add_stability(const Machine& machine, const Reach& reach, std::vector<Warning>& warnings) {
+  constexpr double least = 0.25;  // of the force of the bucket; ours
+  constexpr double place = 0.6;   // of the reach on the ground; ours
+  if (!machine.body) {
+    warnings.push_back({"no_body", "the file states no body: nothing lifts or drags the machine"});
+    return;
+  }
+  const double x = place * reach.ground;
+  for (int step = 0; step <= steps; ++step) {
+    const auto joints =
+        inverse_kinematics_fixed_bucket(machine, x, 0.0, at(machine.limits[2], step));
+    if (!std::holds_alternative<JointAngles>(joints)) continue;
+    const LinkPositions links = link_positions(machine, std::get<JointAngles>(joints));
+    const double held = held_in(machine, links, -Vector2d::UnitY());
+    if (held >= least * bucket_force(machine)) return;
+    warnings.push_back(
+        {"force_beyond_stability", "at x = " + readable(x) + " m the machine lifts its rear at " +
+                                       readable(1e-3 * held) + " kN, its bucket can pull up with " +
+                                       readable(1e-3 * bucket_force(machine)) +
+                                       " kN: do mass, edges and torques fit?"});
+    return;
+  }
+}
+
+void compare(const char* what, std::optional<double> stated, double computed, double most,
+             std::vector<Warning>& warnings) {
+  if (!stated || std::abs(computed / *stated - 1.0) <= most) return;
+  warnings.push_back({"data_sheet_differs", std::string("the ") + what + " is " +
+                                                readable(computed) +
+                                                " by the numbers of the file, " +
+                                                readable(*stated) + " by its data sheet"});
+}
+
+void add_sheet(const Machine& machine, const Reach& reach, const DataSheet& sheet,
+               std::vector<Warning>& warnings) {
+  constexpr double length = 0.05, force = 0.15, volume = 0.1, weight = 0.05;  // ours
+  double mass = machine.body ? machine.body->mass : std::nan("");
+  for (const LinkMass& link : machine.links) mass += link.mass;
+  if (machine.body) compare("mass [kg]", sheet.operating_mass, mass, weight, warnings);
+  compare("heaped capacity of the bucket [m3]", sheet.bucket_capacity, heaped_capacity(machine),
+          volume, warnings);
+  compare("digging force of the bucket [N]", sheet.bucket_force, bucket_force(machine), force,
+          warnings);
+  compare("digging force of the arm [N]", sheet.arm_force, arm_force(machine), force, warnings);
+  compare("reach on the ground [m]", sheet.ground_reach, reach.ground, length, warnings);
+  compare("digging depth [m]", sheet.depth, reach.depth, length, warnings);
+  compare("height of the tip [m]", sheet.height, reach.height, length, warnings);
+}
+
+}  // namespace
+
+Reach reach_of(const Machine& machine) {
+  require_machine(machine);
+  Reach reach{0.0, -infinity, -infinity};
+  for (int arm = 0; arm <= steps; ++arm) {
+    for (int bucket = 0; bucket <= steps; ++bucket) {
+      extend(reach, machine,
+             turning(machine, at(machine.limits[1], arm), at(machine.limits[2], bucket)));
+    }
+  }
+  return reach;
+}
+
+std::vector<Vector2d> reach_outline(const Machine& machine) {
+  const auto& limits = machine.limits;
+  const double straight = std::clamp(0.0, limits[2].lower, limits[2].upper);
+  std::vector<Vector2d> outline;
+  const auto add = [&](double boom, double arm) {
+    outline.push_back(link_positions(machine, {boom, arm, straight}).tip);
+  };
+  for (int i = 0; i <= steps; ++i) add(at(limits[0], i), limits[1].lower);
+  for (int i = 0; i <= steps; ++i) add(limits[0].upper, at(limits[1], i));
+  for (int i = steps; i >= 0; --i) add(at(limits[0], i), limits[1].upper);
+  for (int i = steps; i >= 0; --i) add(limits[0].lower, at(limits[1], i));
+  return outline;
+}
+
+DiggingForce digging_force(const Machine& machine, const Vector2d& tip) {
+  constexpr double flattest = -10.0 * pi / 180.0, steepest = 60.0 * pi / 180.0;
+  DiggingForce best{std::nan(""), std::nan("")};
+  for (int step = 0; step <= steps; step += 3) {
+    const auto joints =
+        inverse_kinematics_fixed_bucket(machine, tip.x(), tip.y(), at(machine.limits[2], step));
+    if (!std::holds_alternative<JointAngles>(joints)) continue;
+    const auto& angles = std::get<JointAngles>(joints);
+    const double floor = forward_kinematics(machine, angles).floor_angle;
+    if (floor < flattest || floor > steepest) continue;
+    const LinkPositions links = link_positions(machine, angles);
+    const DiggingForce here{given_by_joints(machine, links, Vector2d::UnitX()),
+                            held_in(machine, links, Vector2d::UnitX())};
+    if (!(here.joints <= best.joints)) best = here;
+  }
+  return best;
+}
+
+double bucket_force(const Machine& machine) {
+  return machine.limits[2].torque / machine.bucket_length;
+}
+
+double arm_force(const Machine& machine) {
+  return machine.limits[1].torque / (machine.arm_length + machine.bucket_length);
+}
+
+std::vector<Warning> check_machine(const Machine& machine, const DataSheet& sheet) {
+  const Reach reach = reach_of(machine);
+  std::vector<Warning> warnings;
+  add_reach(machine, reach, warnings);
+  add_stability(machine, reach, warnings);
+  if (!machine.swing || !machine.engine) {
+    warnings.push_back({"no_cycle",
+                        "the file states no swing or no engine: energy and time of the "
+                        "cycle are unknown, and only the goal energy can be planned"});
+  }
+  add_sheet(machine, reach, sheet, warnings);
+  return warnings;
+}
+
+}  // namespace excavplan

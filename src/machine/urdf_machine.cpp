@@ -1,0 +1,287 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "machine/urdf_machine.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include <excavplan/data_files.hpp>
+
+#include "base/files.hpp"
+#include "base/text.hpp"
+#include "machine/urdf_front.hpp"
+
+namespace excavplan {
+namespace {
+
+using nlohmann::json;
+using std::string;
+
+constexpr std::array<const char*, 3> words = {"boom", "arm", "bucket"};
+constexpr double most_apart = 4.0;  // of a number and that of a usual machine of the size; ours
+
+/// By which power of its length a number of a machine grows: ours, from data sheets of 1.7 to 20 t
+/// (docs/machines.md#what-a-urdf-does-not-hold).
+double power_of(const string& key) {
+  const auto ends = [&](const string& end) {
+    return key.size() >= end.size() && key.compare(key.size() - end.size(), end.size(), end) == 0;
+  };
+  if (ends("inertia_kg_m2")) return 4.3;
+  if (ends("torque_n_m")) return 3.0;
+  if (ends("mass_kg")) return 2.3;
+  if (ends("power_w")) return 2.0;
+  return ends("_m") ? 1.0 : 0.0;
+}
+
+void scale(json& value, double size, const string& key = {}) {
+  if (value.is_object()) {
+    value.erase("sources");
+    for (auto& [name, part] : value.items()) scale(part, size, name);
+  } else if (value.is_array()) {
+    for (json& part : value) scale(part, size, key);
+  } else if (value.is_number_float() || (value.is_number() && power_of(key) != 0.0)) {
+    value = value.get<double>() * std::pow(size, power_of(key));
+  }
+}
+
+/// The keys of all numbers, "joints.boom.lower_rad"; a list is one.
+void add_keys(const json& value, const string& where, std::set<string>& keys) {
+  if (!value.is_object()) {
+    keys.insert(where);
+    return;
+  }
+  for (const auto& [name, part] : value.items()) {
+    if (name == "sources") continue;
+    add_keys(part, where.empty() ? name : where + '.' + name, keys);
+  }
+}
+
+std::set<string> keys_of(const json& value) {
+  std::set<string> keys;
+  add_keys(value, "", keys);
+  return keys;
+}
+
+json& at(json& value, const string& key) {
+  return value[json::json_pointer("/" + [&] {
+    string path = key;
+    for (char& c : path) {
+      if (c == '.') c = '/';
+    }
+    return path;
+  }())];
+}
+
+/// The zx120 in another size. Its cylinders are left out: pins do not scale with a joint's range.
+json usual_machine(const UrdfFront& front) {
+  json machine =
+      parse_json("machines/zx120.json", read_file(find_data_file("machines/zx120.json")));
+  for (const char* key : {"format", "version", "name", "description", "cylinders", "data_sheet"}) {
+    machine.erase(key);
+  }
+  json bucket = machine["bucket"];
+  const json& usual = machine["geometry"];
+  const double size = (front.parts[0].length + front.parts[1].length) /
+                      (usual["boom_length_m"].get<double>() + usual["arm_length_m"].get<double>());
+  scale(bucket["profile"], front.parts[2].length / usual["bucket_length_m"].get<double>());
+  scale(machine, size);
+  machine["bucket"]["profile"] = bucket["profile"];
+  machine["bucket"]["profile"][0] = {{"along_m", front.parts[2].length}, {"across_m", 0.0}};
+  return machine;
+}
+
+/// What a URDF says, and of what it is not believed.
+struct Said {
+  json numbers;
+  string placeholders;
+};
+
+class FromUrdf {
+ public:
+  FromUrdf(const UrdfFront& front, json usual) : front_(front), usual_(std::move(usual)) {}
+
+  Said said() {
+    json& geometry = said_.numbers["geometry"];
+    geometry = {{"boom_pin_m", {front_.boom_pin.x(), front_.boom_pin.y()}},
+                {"boom_length_m", front_.parts[0].length},
+                {"arm_length_m", front_.parts[1].length},
+                {"bucket_length_m", front_.parts[2].length}};
+    for (std::size_t i = 0; i < 3; ++i) add_part(front_.parts[i], words[i]);
+    add("swing.speed_rad_per_s", front_.swing.velocity);
+    add("swing.torque_n_m", front_.swing.effort);
+    return std::move(said_);
+  }
+
+ private:
+  void add_part(const UrdfPart& part, const string& word) {
+    const string joint = "joints." + word + '.';
+    const string link = "links." + word + '.';
+    if (part.limits.lower) at(said_.numbers, joint + "lower_rad") = *part.limits.lower;
+    if (part.limits.upper) at(said_.numbers, joint + "upper_rad") = *part.limits.upper;
+    add(joint + "speed_rad_per_s", part.limits.velocity);
+    add(joint + "torque_n_m", part.limits.effort);
+    if (!(part.mass.mass > 0.0) || !add(link + "mass_kg", part.mass.mass)) return;
+    at(said_.numbers, link + "center_along_m") = part.mass.along;
+    at(said_.numbers, link + "center_across_m") = part.mass.across;
+  }
+
+  /// Unless it is a placeholder.
+  bool add(const string& key, std::optional<double> value) {
+    if (!value) return false;
+    const double ratio = *value / at(usual_, key).get<double>();
+    if (ratio > 1.0 / most_apart && ratio < most_apart) {
+      at(said_.numbers, key) = *value;
+      return true;
+    }
+    said_.placeholders +=
+        (said_.placeholders.empty() ? "" : ", ") + key + " " + number_text(*value);
+    return false;
+  }
+
+  const UrdfFront& front_;
+  json usual_;
+  Said said_;
+};
+
+// ---- the JSON beside it -------------------------------------------------------------------------
+
+struct Side {
+  string file;  ///< empty: there is none
+  json numbers = json::object();
+  UrdfNames names;
+};
+
+UrdfNames read_names(JsonObject file) {
+  UrdfNames names;
+  if (file.has("swing")) {
+    const bool none = !file.states("swing");
+    if (none) names.swing = std::nullopt;
+    if (!none) names.swing = file.text("swing");
+    file.ignore("swing");
+  }
+  for (std::size_t i = 0; i < 3; ++i) names.joints[i] = file.text_or(words[i], names.joints[i]);
+  names.tip = file.text_or("tip", names.tip);
+  names.ground = file.number_or("ground_z_m", 0.0, -100.0, 100.0);
+  file.done();
+  return names;
+}
+
+Side side_of(const string& urdf) {
+  Side side;
+  const std::filesystem::path path = std::filesystem::path(urdf).replace_extension(".json");
+  std::error_code none;
+  if (path == urdf || !std::filesystem::exists(path, none)) return side;
+  side.file = path.string();
+  JsonObject file = JsonObject::open(side.file, "excavplan-machine");
+  if (file.has("urdf")) side.names = read_names(file.object("urdf"));
+  side.numbers = parse_json(side.file, read_file(side.file));
+  for (const char* key : {"format", "version", "urdf"}) side.numbers.erase(key);
+  return side;
+}
+
+/// The URDF gives lengths and ranges; a file that gives others is of another machine.
+void refuse_doubles(const json& urdf, const Side& side) {
+  const std::set<string> stated = keys_of(side.numbers);
+  for (const string& key : keys_of(urdf)) {
+    const bool is_shape = key.rfind("geometry.", 0) == 0 || key.find("er_rad") != string::npos;
+    if (!is_shape || stated.count(key) == 0) continue;
+    throw Error(
+        ErrorKind::bad_file,
+        side.file + ": " + key + ": found it here and in the URDF, expected it in the URDF");
+  }
+}
+
+// ---- all ----------------------------------------------------------------------------------------
+
+string listed(const std::set<string>& keys) {
+  string text;
+  for (const string& key : keys) text += (text.empty() ? "" : ", ") + key;
+  return safe_text(text, 700);
+}
+
+/// Into the sections that may hold sources.
+void add_sources(const std::set<string>& keys, const string& source, json& machine) {
+  for (const string& key : keys) {
+    const std::size_t dot = key.find('.');
+    if (dot == string::npos || key.rfind("data_sheet.", 0) == 0) continue;
+    machine[key.substr(0, dot)]["sources"][key.substr(dot + 1)] = source;
+  }
+}
+
+std::set<string> without(std::set<string> keys, const std::set<string>& others) {
+  for (const string& key : others) keys.erase(key);
+  return keys;
+}
+
+void warn_of_angles(const UrdfFront& front, std::vector<Warning>& warnings) {
+  string text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const UrdfAngle& angle = front.parts[i].angle;
+    if (angle.sign > 0.0 && std::abs(angle.zero) < 1e-9) continue;
+    text += (text.empty() ? "" : ", ") + string(words[i]) + " = " + (angle.sign < 0.0 ? "-" : "") +
+            angle.joint + (angle.zero < 0.0 ? " - " : " + ") + readable(std::abs(angle.zero), 6);
+  }
+  if (text.empty()) return;
+  warnings.push_back({"urdf_angles", "the angles of excavplan are not those of the URDF: " + text +
+                                         " rad; trajectories and results are in the former"});
+}
+
+}  // namespace
+
+UrdfDraft draft_of_urdf(const string& path, const string& content) {
+  const UrdfTree tree = parse_urdf(path, content);
+  const Side side = side_of(path);
+  const UrdfFront front = front_of(tree, side.names);
+  json machine = usual_machine(front);
+  const Said said = FromUrdf(front, machine).said();
+  refuse_doubles(said.numbers, side);
+
+  const std::set<string> of_side = keys_of(side.numbers);
+  const std::set<string> of_urdf = without(keys_of(said.numbers), of_side);
+  std::set<string> scaled = without(without(keys_of(machine), of_urdf), of_side);
+  for (const string& key :
+       {string("body"), string("engine"), string("swing"), string("bucket.teeth")}) {
+    if (of_side.count(key) == 0) continue;  // null: the machine has none
+    for (auto each = scaled.begin(); each != scaled.end();) {
+      each = each->rfind(key + '.', 0) == 0 ? scaled.erase(each) : std::next(each);
+    }
+  }
+  for (const char* word : words) {
+    for (const char* end : {".lower_rad", ".upper_rad"}) {
+      const string key = string("joints.") + word + end;
+      if (scaled.count(key) == 0) continue;
+      throw Error(ErrorKind::bad_file, path + ": " + word + " has no range: state " + key +
+                                           " in the JSON beside it, in the angles of excavplan");
+    }
+  }
+
+  UrdfDraft draft;
+  for (std::size_t i = 0; i < 3; ++i) draft.angles[i] = front.parts[i].angle;
+  machine.merge_patch(said.numbers);
+  add_sources(of_urdf, "URDF " + excavplan::quoted(tree.name), machine);
+  add_sources(scaled, "ours: the zx120, scaled to the length of boom and arm", machine);
+  machine.merge_patch(side.numbers);
+  if (!machine.contains("name")) machine["name"] = tree.name;
+  machine["format"] = "excavplan-machine";
+  machine["version"] = 1;
+  if (!scaled.empty()) {
+    draft.warnings.push_back({"urdf_scaled", "these numbers are in neither " + path +
+                                                 " nor a JSON beside it; those of "
+                                                 "the zx120, scaled to this size, are taken: " +
+                                                 listed(scaled)});
+  }
+  if (!said.placeholders.empty()) {
+    draft.warnings.push_back(
+        {"urdf_placeholder", "these numbers of " + path +
+                                 " are taken for placeholders, as a usual "
+                                 "machine of this size differs by more than a factor of " +
+                                 number_text(most_apart) + ": " +
+                                 safe_text(said.placeholders, 400)});
+  }
+  warn_of_angles(front, draft.warnings);
+  draft.json = std::move(machine);
+  return draft;
+}
+
+}  // namespace excavplan

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <excavplan/machine/machine_file.hpp>
+
+#include "base/json.hpp"
+
+/// @file Private to the project.
+
+namespace excavplan {
+
+/// A URDF as a machine file.
+struct UrdfDraft {
+  nlohmann::json json;  ///< of a machine file, with the source of each number
+  std::array<UrdfAngle, 3> angles;
+  std::vector<Warning> warnings;
+};
+
+/// @param path  of the URDF, for messages and for the JSON beside it
+UrdfDraft draft_of_urdf(const std::string& path, const std::string& content);
+
+}  // namespace excavplan

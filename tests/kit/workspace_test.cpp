@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/kit/workspace.hpp>
+
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <excavplan/kit/machine_kit.hpp>
+
+#include "support/machine_file.hpp"
+
+namespace excavplan {
+namespace {
+
+using test::zx120;
+
+std::set<std::string> codes_of(const Machine& machine, const DataSheet& sheet = {}) {
+  std::set<std::string> codes;
+  for (const Warning& warning : check_machine(machine, sheet)) codes.insert(warning.code);
+  return codes;
+}
+
+// Those that a sweep of all joints finds: tests/machine/machine_test.cpp.
+TEST(Workspace, ReachIsThatOfTheSweep) {
+  const Reach reach = reach_of(zx120());
+  EXPECT_NEAR(reach.ground, 8.15, 0.01);
+  EXPECT_NEAR(reach.depth, 5.52, 0.005);
+  EXPECT_NEAR(reach.height, 8.54, 0.005);
+}
+
+TEST(Workspace, ForceIsThatOfTheCatalogueOrOfFriction) {
+  EXPECT_NEAR(bucket_force(zx120()), 99e3, 1.0);
+  EXPECT_NEAR(arm_force(zx120()), 63e3, 1.0);
+  const DiggingForce force = digging_force(zx120(), {5.0, 0.0});
+  EXPECT_NEAR(force.held, 0.6 * 9.80665 * 12700.0, 1.0) << "it slides before it tips";
+  EXPECT_GT(force.joints, 50e3);
+  EXPECT_TRUE(std::isinf(digging_force(test::zx120_held_down(), {5.0, 0.0}).held));
+  EXPECT_TRUE(std::isnan(digging_force(zx120(), {20.0, 0.0}).joints)) << "out of reach";
+}
+
+TEST(Workspace, TheOutlineIsWithinTheReach) {
+  const Reach reach = reach_of(zx120());
+  for (const Eigen::Vector2d& point : reach_outline(zx120())) {
+    EXPECT_LE(point.y(), reach.height + 1e-3);
+    EXPECT_GE(point.y(), -reach.depth - 1e-3);
+  }
+}
+
+TEST(Workspace, WarnsOfWhatDoesNotFit) {
+  EXPECT_TRUE(codes_of(zx120()).empty());
+  Machine machine = zx120();
+  machine.limits[0].upper = machine.limits[0].lower + 0.2;
+  EXPECT_EQ(codes_of(machine).count("ground_out_of_reach"), 1U);
+  machine = zx120();
+  machine.body->mass = 2500.0;
+  EXPECT_EQ(codes_of(machine), std::set<std::string>{"force_beyond_stability"});
+  machine.body.reset();
+  machine.engine.reset();
+  EXPECT_EQ(codes_of(machine), (std::set<std::string>{"no_body", "no_cycle"}));
+  DataSheet sheet;
+  sheet.bucket_capacity = 0.5;
+  EXPECT_EQ(codes_of(zx120(), sheet), std::set<std::string>{"data_sheet_differs"});
+  sheet.bucket_capacity = 0.42;
+  EXPECT_TRUE(codes_of(zx120(), sheet).empty());
+}
+
+TEST(Workspace, ShippedMachinesAreThoseOfTheirDataSheets) {
+  for (const char* name : {"generic-20t", "generic-mini"}) {
+    const MachineFile file =
+        load_machine_file(find_data_file("machines/" + std::string(name) + ".json"));
+    EXPECT_EQ(file.machine.name, name);
+    EXPECT_TRUE(check_machine(file.machine, file.data_sheet).empty()) << name;
+  }
+  const MachineFile file = load_machine_file(find_data_file("machines/zx200.json"));
+  ASSERT_EQ(check_machine(file.machine, file.data_sheet).size(), 1U)
+      << "its model lowers the boom further than its data sheet says";
+}
+
+// Its public model lifts 3 m with ease, a small one no higher than it can.
+TEST(Workspace, DumpsNoHigherThanItReaches) {
+  EXPECT_EQ(feasible_objective(zx120(), {}).dump_height, 3.0);
+  Machine low = zx120();
+  low.limits[0].lower = -0.35;
+  const double height = feasible_objective(low, {}).dump_height;
+  EXPECT_LT(height, 3.0);
+  EXPECT_GT(height, 1.0);
+}
+
+}  // namespace
+}  // namespace excavplan

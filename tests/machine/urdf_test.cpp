@@ -1,0 +1,337 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <Eigen/Geometry>
+
+#include <excavplan/machine/kinematics.hpp>
+#include <excavplan/machine/machine_file.hpp>
+
+#include "base/random.hpp"
+#include "base/text.hpp"
+#include "support/machine_file.hpp"
+#include "support/run_program.hpp"
+#include "support/urdf_file.hpp"
+
+#ifdef EXCAVPLAN_URDFDOM
+#include <urdf_parser/urdf_parser.h>
+#endif
+
+namespace excavplan {
+namespace {
+
+using Eigen::Vector2d;
+using nlohmann::json;
+using test::urdf_of;
+using test::WrittenJoint;
+using test::zx120_joints;
+
+class Urdf : public testing::Test {
+ protected:
+  MachineFile read(const std::string& text, const json& beside = nullptr) {
+    if (!beside.is_null()) folder.write("digger.json", beside.dump());
+    return load_machine_file(folder.write("digger.urdf", text));
+  }
+  std::string complaint(const std::string& text) {
+    const std::string path = folder.write("digger.urdf", text);
+    return test::error_about([&] { load_machine_file(path); }, path);
+  }
+  test::TemporaryFolder folder;
+};
+
+std::set<std::string> codes(const MachineFile& file) {
+  std::set<std::string> codes;
+  for (const Warning& warning : file.warnings) codes.insert(warning.code);
+  return codes;
+}
+
+TEST_F(Urdf, GivesTheGeometryOfThePublicModel) {
+  const MachineFile file = read(urdf_of(zx120_joints()));
+  const Machine& m = file.machine;
+  const Machine& own = test::zx120();
+  EXPECT_EQ(m.name, "digger");
+  EXPECT_NEAR((m.boom_pin - own.boom_pin).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(m.boom_length, own.boom_length, 1e-12);
+  EXPECT_NEAR(m.arm_length, own.arm_length, 1e-12);
+  EXPECT_NEAR(m.bucket_length, own.bucket_length, 1e-12);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(m.limits[i].lower, own.limits[i].lower, 1e-4);
+    EXPECT_NEAR(m.limits[i].upper, own.limits[i].upper, 1e-4);
+    EXPECT_EQ(m.limits[i].torque, own.limits[i].torque) << "a placeholder was believed";
+    EXPECT_EQ(m.links[i].mass, own.links[i].mass);
+    EXPECT_EQ((*file.urdf_angles)[i].sign, 1.0);
+    EXPECT_EQ((*file.urdf_angles)[i].zero, 0.0);
+  }
+  EXPECT_EQ(m.limits[0].speed, own.limits[0].speed) << "6.16 rad/s was believed";
+  EXPECT_EQ(m.limits[1].speed, 0.5);
+  EXPECT_EQ(codes(file), (std::set<std::string>{"urdf_scaled", "urdf_placeholder"}));
+  EXPECT_NEAR(heaped_capacity(m), heaped_capacity(own), 1e-12);
+}
+
+// Its text is a machine file that says of each number where it is from.
+TEST_F(Urdf, BecomesAMachineFileOfOurs) {
+  const MachineFile file = read(urdf_of(zx120_joints()));
+  const MachineFile again = load_machine_file(folder.write("again.json", file.text));
+  EXPECT_EQ(fingerprint(again.machine), fingerprint(file.machine));
+  EXPECT_TRUE(again.warnings.empty());
+  const json text = json::parse(file.text);
+  EXPECT_EQ(text["geometry"]["sources"]["boom_length_m"], "URDF 'digger'");
+  EXPECT_NE(text["links"]["sources"]["boom.mass_kg"].get<std::string>().find("scaled"),
+            std::string::npos);
+}
+
+// ---- conventions --------------------------------------------------------------------------------
+
+std::string triple(double x, double y, double z) {
+  return number_text(x) + " " + number_text(y) + " " + number_text(z);
+}
+
+/// A machine drawn at random whose frames stand in all ways and whose axes point to either side.
+std::vector<WrittenJoint> drawn_joints(Random& random) {
+  const auto lower_upper = [](double low, double high) {
+    return "lower=\"" + number_text(low) + "\" upper=\"" + number_text(high) +
+           "\" effort=\"1\" velocity=\"1\"";
+  };
+  std::vector<WrittenJoint> joints = {{"s", "revolute", "base_link", "l0",
+                                       triple(random.uniform(-1, 1), random.uniform(-1, 1), 0.8),
+                                       "0 0 " + number_text(random.uniform(-3, 3)),
+                                       random.uniform() < 0.5 ? "0 0 1" : "0 0 -1",
+                                       lower_upper(-1, 1)}};
+  double ours = 0.0;  // direction of the link before, down positive
+  const double turn = random.uniform() < 0.5 ? 0.0 : 3.14159265358979323846;  // of the front
+  const std::array<double, 4> middle = {-0.2, 1.4, 0.9, 0.0};
+  std::string parent = "l0";
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d plane;  // columns: forward, left, up
+  plane = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  for (std::size_t i = 0; i < 4; ++i) {
+    // The link before, in the plane, at the zero of the URDF.
+    const double length = i == 0 ? 0.0 : random.uniform(1.0, 4.0);
+    const Eigen::Vector3d offset =
+        i == 0 ? Eigen::Vector3d(plane * Eigen::Vector3d(0.2, random.uniform(-0.3, 0.3), 0.4))
+               : Eigen::Vector3d(plane * Eigen::Vector3d(length * std::cos(ours),
+                                                         random.uniform(-0.2, 0.2),
+                                                         -length * std::sin(ours)));
+    const Eigen::Vector3d rpy(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Eigen::Matrix3d next = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+                                     .toRotationMatrix();
+    const Eigen::Vector3d at = frame.transpose() * offset;
+    frame = frame * next;
+    const double side = random.uniform() < 0.5 ? 1.0 : -1.0;
+    const Eigen::Vector3d axis = frame.transpose() * plane * Eigen::Vector3d(0.0, 2.0 * side, 0.0);
+    const double zero = random.uniform(-0.5, 0.5);
+    const double centre = side * (middle[i] - zero);
+    const std::string name(1, "bakt"[i]);
+    joints.push_back({name, i < 3 ? "revolute" : "fixed", parent, "l" + name,
+                      triple(at.x(), at.y(), at.z()), triple(rpy.x(), rpy.y(), rpy.z()),
+                      triple(axis.x(), axis.y(), axis.z()),
+                      lower_upper(centre - 0.6, centre + 0.6)});
+    parent = "l" + name;
+    ours += zero;
+  }
+  return joints;
+}
+
+const json drawn_names = {
+    {"format", "excavplan-machine"},
+    {"version", 1},
+    {"urdf", {{"swing", "s"}, {"boom", "b"}, {"arm", "a"}, {"bucket", "k"}, {"tip", "t"}}}};
+
+#ifdef EXCAVPLAN_URDFDOM
+/// The tip in the frame of the root, by the poses and axes that urdfdom reads.
+Eigen::Vector3d tip_by_urdfdom(const urdf::ModelInterface& model,
+                               const std::map<std::string, double>& angles,
+                               const std::string& tip) {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  for (auto link = model.getLink(tip); link->parent_joint; link = link->getParent()) {
+    const urdf::Joint& joint = *link->parent_joint;
+    const auto& pose = joint.parent_to_joint_origin_transform;
+    const Eigen::Quaterniond turn(pose.rotation.w, pose.rotation.x, pose.rotation.y,
+                                  pose.rotation.z);
+    const auto angle = angles.find(joint.name);
+    if (angle != angles.end()) {
+      const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
+      point = Eigen::AngleAxisd(angle->second, axis.normalized()) * point;
+    }
+    point = turn * point + Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
+  }
+  return point;
+}
+
+TEST_F(Urdf, ReachesWhereUrdfdomDoesForDrawnMachinesAndJoints) {
+  Random random(7);
+  for (int each = 0; each < 40; ++each) {
+    const std::string text = urdf_of(drawn_joints(random));
+    const MachineFile file = read(text, drawn_names);
+    const auto model = urdf::parseURDF(text);
+    ASSERT_TRUE(model);
+    const auto& swing = model->getJoint("s")->parent_to_joint_origin_transform.position;
+    std::set<double> sides;
+    for (int posture = 0; posture < 20; ++posture) {
+      JointAngles joints;
+      std::map<std::string, double> angles;
+      for (int i = 0; i < 3; ++i) {
+        const UrdfAngle& angle = (*file.urdf_angles)[static_cast<std::size_t>(i)];
+        const JointLimits& limits = file.machine.limits[static_cast<std::size_t>(i)];
+        joints[i] = random.uniform(limits.lower, limits.upper);
+        angles[angle.joint] = angle.sign * (joints[i] - angle.zero);
+        const auto& own = *model->getJoint(angle.joint)->limits;
+        EXPECT_GE(angles[angle.joint], own.lower - 1e-9);
+        EXPECT_LE(angles[angle.joint], own.upper + 1e-9);
+      }
+      const Eigen::Vector3d tip = tip_by_urdfdom(*model, angles, "lt");
+      const Vector2d ours = link_positions(file.machine, joints).tip;
+      EXPECT_NEAR(ours.y(), tip.z(), 1e-9);
+      // Forward is either way of the boom plane: x is the distance from the swing axis, less the
+      // lateral offset, which does not change.
+      const Eigen::Vector2d flat(tip.x() - swing.x, tip.y() - swing.y);
+      sides.insert(flat.squaredNorm() - ours.x() * ours.x());
+    }
+    EXPECT_LE(*sides.rbegin() - *sides.begin(), 1e-8);
+  }
+}
+#endif
+
+/// The tip in the boom plane by the transforms of the joints, written down once more.
+TEST_F(Urdf, SignsAndZerosFollowTheAxes) {
+  auto joints = zx120_joints();
+  joints[1].axis = "0 -3 0";  // up positive
+  joints[1].limit = "lower=\"-0.7679\" upper=\"1.2217\"";
+  joints[2].xyz = "3.25 0 3.25";  // zero is 45 deg up
+  joints[2].limit = "lower=\"-0.26\" upper=\"1.86\"";
+  const MachineFile file = read(urdf_of(joints));
+  const auto& angles = *file.urdf_angles;
+  EXPECT_EQ(angles[0].sign, -1.0);
+  EXPECT_NEAR(angles[0].zero, -0.7853981633974483, 1e-12);
+  EXPECT_EQ(angles[1].sign, 1.0);
+  EXPECT_NEAR(angles[1].zero, 0.7853981633974483, 1e-12);
+  EXPECT_NEAR(file.machine.limits[0].lower, -1.2217 - 0.7853981633974483, 1e-12);
+  EXPECT_NEAR(file.machine.limits[0].upper, 0.7679 - 0.7853981633974483, 1e-12);
+  EXPECT_EQ(codes(file).count("urdf_angles"), 1U);
+}
+
+// ---- what it does not hold ----------------------------------------------------------------------
+
+TEST_F(Urdf, TakesTheRestFromTheJsonBesideIt) {
+  const json own = json::parse(std::ifstream(test::zx120_path()));
+  json beside = own;
+  beside.erase("name");
+  for (const char* key : {"boom_pin_m", "boom_length_m", "arm_length_m", "bucket_length_m"}) {
+    beside["geometry"].erase(key);
+  }
+  for (const char* joint : {"boom", "arm", "bucket"}) {
+    for (const char* key : {"lower_rad", "upper_rad"}) beside["joints"][joint].erase(key);
+  }
+  const MachineFile file = read(urdf_of(zx120_joints()), beside);
+  EXPECT_EQ(file.machine.limits[1].speed, test::zx120().limits[1].speed) << "it beats the URDF";
+  EXPECT_TRUE(file.machine.cylinders.has_value());
+  EXPECT_EQ(codes(file).count("urdf_scaled"), 0U);
+  beside["body"] = nullptr;
+  EXPECT_FALSE(read(urdf_of(zx120_joints()), beside).machine.body.has_value());
+  beside["geometry"]["boom_length_m"] = 4.6;
+  const std::string path = folder.file("digger.json");
+  EXPECT_EQ(test::error_about([&] { read(urdf_of(zx120_joints()), beside); }, path),
+            "geometry.boom_length_m: found it here and in the URDF, expected it in the URDF");
+}
+
+TEST_F(Urdf, BelievesMassesOfItsSize) {
+  auto joints = zx120_joints();
+  std::string text = urdf_of(joints);
+  const std::string boom = test::link_text("boom_link", "0.03");
+  text.replace(text.find(boom), boom.size(), test::link_text("boom_link", "900"));
+  const MachineFile file = read(text);
+  EXPECT_NEAR(file.machine.links[0].mass, 900.0, 1e-9);
+  EXPECT_NEAR(file.machine.links[0].along, 0.3, 1e-12);
+  EXPECT_NEAR(file.machine.links[0].across, 0.1, 1e-12);
+  EXPECT_EQ(file.machine.links[1].mass, test::zx120().links[1].mass);
+}
+
+// ---- bad files ----------------------------------------------------------------------------------
+
+TEST_F(Urdf, SaysWhatIsWrong) {
+  const auto with = [](std::size_t i, const auto& change) {
+    auto joints = zx120_joints();
+    change(joints[i]);
+    return urdf_of(joints);
+  };
+  const auto begins = [&](const std::string& text, const std::string& with_text) {
+    const std::string found =
+        std::regex_replace(complaint(text), std::regex("line [0-9]+"), "line #");
+    EXPECT_EQ(found.substr(0, with_text.size()), with_text) << found;
+  };
+  begins(with(2, [](auto& j) { j.name = "stick"; }),
+         "has no joint 'arm_joint' (arm); its moving joints: swing_joint, boom_joint, stick, "
+         "bucket_joint; say in the JSON beside it which is which");
+  begins(with(2, [](auto& j) { j.axis = "0 0 1"; }),
+         "line #: joint 'arm_joint' has an axis that is not level");
+  begins(with(2, [](auto& j) { j.axis = "1 1 0"; }),
+         "line #: joint 'arm_joint' has an axis that is not parallel to that of the boom");
+  begins(with(0, [](auto& j) { j.axis = "0 1 0"; }),
+         "line #: joint 'swing_joint' has an axis that is not upright");
+  begins(with(3, [](auto& j) { j.type = "prismatic"; }),
+         "line #: joint 'bucket_joint' is 'prismatic'");
+  begins(with(3, [](auto& j) { j.xyz = "nan 0 0"; }), "line #: xyz of 'origin' is 'nan 0 0'");
+  begins(with(3, [](auto& j) { j.xyz = "1e308 0 0"; }), "line #: xyz of 'origin' is '1e308 0 0'");
+  begins(with(3, [](auto& j) { j.xyz = "1 2"; }), "line #: xyz of 'origin' is not three numbers");
+  begins(with(3, [](auto& j) { j.xyz = "0 0 0"; }),
+         "line #: joint 'arm_joint' is 0 m from the next pin, expected at least 0.05");
+  begins(with(3, [](auto& j) { j.axis = "0 0 0"; }), "line #: joint 'bucket_joint' has an axis");
+  begins(with(3, [](auto& j) { j.limit = ""; }), "bucket has no range");
+  begins(with(3, [](auto& j) { j.parent = "boom_link"; }),
+         "line #: joint 'bucket_joint' moves too, between 'boom_joint' and 'arm_joint'");
+  begins(with(3, [](auto& j) { j.parent = "nothing"; }),
+         "line #: joint 'bucket_joint' joins link 'nothing', which the file lacks");
+  begins(with(1, [](auto& j) { j.parent = "bucket_end_link"; }),
+         "line #: joint 'boom_joint' is part");
+  begins(with(1, [](auto& j) { j.child = "base_link"; }), "link 'base_link' appears twice");
+  begins(urdf_of(zx120_joints(), test::link_text("loose")), "links 'base_link' and 'loose' hang");
+  begins(urdf_of(zx120_joints(), test::joint_text({"again", "fixed", "base_link", "arm_link"})),
+         "line #: joint 'again' is the second that leads to link 'arm_link'");
+  begins("<robot name=\"a\"/>", "it has no link");
+  begins("<sdf/>", "line #: is 'sdf', expected a URDF");
+}
+
+TEST_F(Urdf, ShowsHowToExpandAXacro) {
+  const std::string said =
+      "is a macro: this is a xacro, expand it first, with ROS: xacro FILE.urdf.xacro > "
+      "machine.urdf";
+  EXPECT_EQ(complaint("<robot name=\"a\">\n<xacro:include filename=\"b\"/></robot>"),
+            "line 2: 'xacro:include' " + said);
+  EXPECT_EQ(complaint("<robot name=\"a\"><link name=\"${prefix}_b\"/></robot>"),
+            "line 1: 'link' " + said);
+}
+
+TEST_F(Urdf, RefusesXmlThatIsNoneOrABomb) {
+  EXPECT_EQ(complaint("<robot name=\"a\""), "line 1: found the end of the file, expected a name");
+  EXPECT_EQ(complaint("<robot>\n</link>"),
+            "line 2: found the end of 'link', expected the end of 'robot'");
+  EXPECT_EQ(complaint("<robot name=\"&lol;\"/>"),
+            "line 1: found '&lol;', expected one of the entities of XML, such as '&amp;'");
+  EXPECT_EQ(complaint("<!DOCTYPE r [<!ENTITY a \"aaa\">]><robot name=\"&a;\"/>"),
+            "line 1: found '<!DOCTYPE r [<!ENTITY a \"aaa\">]><robot n...', expected no document "
+            "type and no entities of its own");
+  std::string deep;
+  for (int i = 0; i < 200000; ++i) deep += "<a>";
+  EXPECT_EQ(complaint(deep),
+            "line 1: found more than 64 levels of elements, expected at most that");
+  std::string wide = "<robot name=\"a\">";
+  for (int i = 0; i < 200000; ++i) wide += "<a/>";
+  EXPECT_EQ(complaint(wide + "</robot>"),
+            "line 1: found more than 100000 elements, expected at most that");
+  std::string many = "<robot name=\"a\">";
+  for (int i = 0; i < 2000; ++i) many += "<link name=\"l" + std::to_string(i) + "\"/>";
+  EXPECT_EQ(complaint(many + "</robot>"),
+            "found more than 1000 links or joints, expected at most that");
+}
+
+}  // namespace
+}  // namespace excavplan

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "support/tool_answers.hpp"
+#include "support/urdf_file.hpp"
+
+/// @file
+/// machine-kit, and the tools that find what it made.
+
+namespace excavplan::test {
+namespace {
+
+const Words small_kit = {"--soil",   "loam", "--densities", "0,50,100",
+                         "--slopes", "0",    "--draws",     "20"};
+
+TEST_F(Tools, FromAUrdfToAPlan) {
+  const std::string urdf = folder.write("digger.urdf", urdf_of(zx120_joints()));
+  const json kit = answer("machine-kit", Words{urdf} + small_kit);
+  EXPECT_TRUE(warns(kit, "urdf_scaled"));
+  EXPECT_TRUE(warns(kit, "urdf_placeholder"));
+  expect_keys(kit, "number",
+              {"reach_m/ground", "reach_m/depth", "reach_m/height", "digging_force_kn/bucket",
+               "digging_force_kn/arm", "capacity_m3/struck", "capacity_m3/heaped",
+               "urdf_angles/boom/sign", "urdf_angles/boom/zero_rad", "soils/0/entries",
+               "soils/0/evaluations", "soils/0/example/payload_mass_kg", "wall_time_s"});
+  for (const char* file :
+       {"machine.json", "reach.svg", "laws/digger-loam.json", "libraries/digger-loam-cycle.json"}) {
+    EXPECT_TRUE(fs::is_regular_file(folder.file("digger-kit") + "/" + file)) << file;
+  }
+  const json plan = answer("plan-path", {"--machine", urdf, "--density", "40"});
+  EXPECT_GT(number(plan, "/payload_mass_kg"), 300.0);
+  EXPECT_TRUE(warns(plan, "urdf_scaled")) << "every tool says what is not the machine's own";
+  const json by_folder =
+      answer("plan-path", {"--machine", folder.file("digger-kit"), "--density", "40"});
+  EXPECT_EQ(by_folder.at("path"), plan.at("path"));
+  EXPECT_FALSE(warns(by_folder, "urdf_scaled")) << "its sources say so";
+  const json by_file =
+      answer("plan-path", {"--machine", folder.file("digger-kit/machine.json"), "--density", "40"});
+  EXPECT_EQ(by_file.at("path"), plan.at("path"));
+  const json experiment = answer("run-experiment", {"--machine", folder.file("digger-kit"),
+                                                    "--goal", "cycle", "--densities", "40"});
+  EXPECT_EQ(experiment.at("conditions").size(), 1U);
+}
+
+TEST_F(Tools, AKitHoldsTheLawOfItsMachine) {
+  if (!fs::exists(std::string(EXCAVPLAN_BIN) + "/estimate-density")) GTEST_SKIP();
+  answer("machine-kit", Words{"zx200", "--output", folder.file("kit")} + small_kit);
+  const json estimate =
+      answer("estimate-density", quickstart(folder) + Words{"--machine", folder.file("kit")});
+  EXPECT_EQ(estimate.at("law"), "zx200-loam");
+}
+
+TEST_F(Tools, AKitOfAnotherMachineIsRefused) {
+  const std::string file = folder.write("digger.json", content_of(shipped("machines/zx200.json")));
+  answer("machine-kit", Words{file} + small_kit);
+  EXPECT_EQ(run_program("plan-path", {"--machine", file, "--density", "40"}).code, 0);
+  auto changed = json::parse(content_of(file));
+  changed["geometry"]["arm_length_m"] = 2.5;
+  folder.write("digger.json", changed.dump());
+  const ProgramResult result = run_program("plan-path", {"--machine", file, "--density", "40"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_TRUE(contains(result.err, "digger-kit/libraries/zx200-loam-cycle.json")) << result.err;
+}
+
+TEST_F(Tools, AMachineWithoutAKitIsToldOfIt) {
+  const ProgramResult result = run_program("plan-path", {"--machine", "zx200", "--density", "40"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_TRUE(contains(result.err, "make one with machine-kit")) << result.err;
+}
+
+// Each shipped machine fills its bucket in loam, with a mass of its class.
+TEST_F(Tools, ShippedMachinesDig) {
+  const std::vector<std::pair<std::string, double>> machines = {
+      {"zx200", 950.0}, {"generic-20t", 1200.0}, {"generic-mini", 46.0}};
+  for (const auto& [machine, mass] : machines) {
+    const json kit =
+        answer("machine-kit", Words{machine, "--output", folder.file(machine)} + small_kit);
+    const json& example = kit.at("soils").at(0).at("example");
+    EXPECT_NEAR(number(example, "/payload_mass_kg"), mass, 0.15 * mass) << machine;
+    EXPECT_GT(number(example, "/fill_fraction"), 0.8) << machine;
+  }
+}
+
+}  // namespace
+}  // namespace excavplan::test

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/kit/machine_kit.hpp>
+#include <excavplan/kit/workspace.hpp>
+
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "shared/kit_figures.hpp"
+#include "shared/kit_files.hpp"
+#include "shared/kit_results.hpp"
+#include "shared/results.hpp"
+#include "shared/tool.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+const About about = {
+    "machine-kit",
+    "makes all that your own machine needs before plan-path: checks its file, draws where it "
+    "reaches and how hard it digs, fits density laws and builds path libraries for the soils, in "
+    "about a minute. plan-path, estimate-density and run-experiment find them by --machine.",
+    {{"machine-kit digger.json", "into the folder digger-kit"},
+     {"plan-path --machine digger.json --density 40", "finds digger-kit beside it"},
+     {"machine-kit digger.urdf --soil loam", "from a URDF, with digger.json beside it if there"},
+     {"machine-kit zx200 --output kit", "of a shipped machine; then --machine kit"}},
+    true,
+    true};
+
+struct Inputs {
+  std::string machine;
+  std::optional<std::string> output;
+  std::string soils = "loam,sand,clay,gravel";
+  GoalInputs goal;
+  std::string densities = "0:10:100";
+  std::string slopes = "-15deg:7.5deg:15deg";
+  KitOptions kit;
+  std::uint64_t threads = 0;
+  Plots plots;
+
+  std::string folder() const { return output.value_or(default_kit(machine)); }
+};
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  arguments.positional("machine", inputs.machine, "machine file, URDF, or a shipped machine");
+  arguments.place(
+      "output", inputs.output,
+      "folder for machine.json, reach.svg, laws and libraries (default: NAME-kit beside "
+      "the machine)");
+  arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
+  declare_goal(arguments, inputs.goal);
+  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
+                 "relative densities of the libraries [%], or a list a,b,c");
+  arguments.text("slopes", "LIST", inputs.slopes,
+                 "slopes of the libraries, as of build-path-library "
+                 "[rad]");
+  arguments.option("draws", inputs.kit.draws, "digs in drawn soils, for the scatter of a law");
+  arguments.option("seed", inputs.kit.seed, "seed of the searches");
+  arguments.threads(inputs.threads, "; same files for any");
+  declare_plots(arguments, inputs.plots, names_of(kit_figures()));
+}
+
+KitOptions options_of(const Inputs& inputs, const Machine& machine, Console& console) {
+  KitOptions options = inputs.kit;
+  options.objective = kit_objective(inputs.goal, machine);
+  options.densities_percent = parse_densities("--densities", inputs.densities);
+  options.slopes = parse_series("--slopes", inputs.slopes, Quantity::angle);
+  options.threads = static_cast<unsigned>(inputs.threads);
+  options.progress = [&console](double done, const std::string& what) {
+    console.progress(done, what);
+    return !console.stop_requested();
+  };
+  return options;
+}
+
+/// What the file says of the machine, checked and drawn.
+Outcome examined(const Inputs& inputs, const MachineFile& file) {
+  const Machine& machine = file.machine;
+  const Reach reach = reach_of(machine);
+  Outcome outcome;
+  outcome.warnings = file.warnings;
+  for (Warning& each : check_machine(machine, file.data_sheet)) {
+    outcome.trustworthy = outcome.trustworthy && !each.ends_trust;
+    outcome.warnings.push_back(std::move(each));
+  }
+  outcome.json = {
+      {"machine", machine.name},
+      {"folder", inputs.folder()},
+      {"reach_m", {{"ground", reach.ground}, {"depth", reach.depth}, {"height", reach.height}}},
+      {"digging_force_kn",
+       {{"bucket", 1e-3 * bucket_force(machine)}, {"arm", 1e-3 * arm_force(machine)}}},
+      {"capacity_m3",
+       {{"struck", struck_capacity(machine)}, {"heaped", heaped_capacity(machine)}}}};
+  outcome.json["urdf_angles"] = nullptr;
+  if (file.urdf_angles) outcome.json["urdf_angles"] = angles_json(*file.urdf_angles);
+  outcome.lines = {machine.name + ": reaches " + readable(reach.ground) + " m on the ground, " +
+                       readable(reach.depth) + " m deep, " + readable(reach.height) + " m high",
+                   "digging force: bucket " + readable(1e-3 * bucket_force(machine)) + " kN, arm " +
+                       readable(1e-3 * arm_force(machine)) + " kN; bucket holds " +
+                       readable(heaped_capacity(machine)) + " m3 heaped"};
+  make_folder(inputs.folder());
+  write_file(inputs.folder() + "/" + kit_machine, file.text);
+  Plots plots = inputs.plots;
+  plots.files.push_back({"reach", inputs.folder() + "/reach.svg"});
+  write_plots(plots, kit_figures(), machine, outcome.lines);
+  return outcome;
+}
+
+Outcome work(const Inputs& inputs, Console& console) {
+  const Stopwatch watch;
+  const MachineFile file = load_machine_file(machine_path(inputs.machine));
+  const std::vector<SoilKind> soils = soils_named(inputs.soils);
+  const KitOptions options = options_of(inputs, file.machine, console);
+  Outcome outcome = examined(inputs, file);
+  outcome.json["soils"] = nlohmann::ordered_json::array();
+  for (const SoilKind& soil : soils) {
+    const KitSoil kit = make_kit(file.machine, soil, options);
+    outcome.stopped_early = kit.stopped;
+    if (kit.stopped) break;
+    add_kit(kit, file.machine, soil, inputs.folder(), outcome);
+  }
+  outcome.json["wall_time_s"] = watch.seconds();
+  if (!outcome.stopped_early) {
+    outcome.lines.push_back("next: plan-path --machine " +
+                            (inputs.output ? *inputs.output : inputs.machine) + " --density 40");
+  }
+  return outcome;
+}
+
+}  // namespace
+}  // namespace excavplan::tools
+
+int main(int argc, char** argv) {
+  using namespace excavplan::tools;
+  return tool_main(argc, argv, about, declare, work);
+}

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/kit_files.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include <excavplan/data_files.hpp>
+
+#include "base/files.hpp"
+#include "base/text.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_folder(const std::string& path) {
+  std::error_code none;
+  return fs::is_directory(path, none);
+}
+
+}  // namespace
+
+std::string machine_path(const std::string& machine) {
+  if (is_folder(machine)) return (fs::path(machine) / kit_machine).string();
+  return shipped_or_file("machines", machine);
+}
+
+std::string default_kit(const std::string& machine) {
+  const fs::path path(machine);
+  return (path.parent_path() / path.stem()).string() + "-kit";
+}
+
+std::optional<std::string> kit_file(const std::string& machine, const std::string& relative_path) {
+  const fs::path path(machine);
+  fs::path folder = default_kit(machine);
+  if (is_folder(machine)) folder = path;
+  if (path.filename() == kit_machine) folder = path.parent_path();
+  std::error_code none;
+  const fs::path file = folder / relative_path;
+  return fs::is_regular_file(file, none) ? std::optional(file.string()) : std::nullopt;
+}
+
+std::optional<std::string> kit_law(const std::string& machine_word, const Machine& machine,
+                                   const std::string& soil) {
+  return kit_file(machine_word,
+                  "laws/" + file_name_part(machine.name) + "-" + file_name_part(soil) + ".json");
+}
+
+std::shared_ptr<const PathLibrary> kit_library(const std::string& machine_word,
+                                               const Machine& machine, const std::string& soil,
+                                               const GoalInputs& given, DigObjective& objective) {
+  PathLibrary wanted;
+  wanted.machine = machine.name;
+  wanted.soil = soil;
+  wanted.objective = objective;
+  const auto file = kit_file(machine_word, "libraries/" + file_name(wanted));
+  if (!file) return nullptr;
+  auto library = std::make_shared<PathLibrary>(load_path_library(*file));
+  const auto& parameters = objective_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto field = parameters[i].field;
+    if (!given.numbers[i]) objective.*field = library->objective.*field;
+  }
+  return library;
+}
+
+std::vector<Warning> machine_warnings(const std::string& list) {
+  std::vector<Warning> warnings;
+  for (const std::string& machine : split(list, ',')) {
+    for (Warning& each : load_machine_file(machine_path(machine)).warnings) {
+      warnings.push_back(std::move(each));
+    }
+  }
+  return warnings;
+}
+
+}  // namespace excavplan::tools

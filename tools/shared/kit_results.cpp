@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/kit_results.hpp"
+
+#include <algorithm>
+
+#include "base/files.hpp"
+#include "base/text.hpp"
+#include "shared/results.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+/// The dig on level ground at the density nearest to a usual one.
+const PathLibraryEntry& shown_entry(const PathLibrary& library) {
+  constexpr double usual = 40.0;  // [%]
+  const auto distance = [](const PathLibraryEntry& entry) {
+    return std::abs(entry.slope) * 1e4 + std::abs(entry.density_percent - usual);
+  };
+  return *std::min_element(library.entries.begin(), library.entries.end(),
+                           [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+}
+
+}  // namespace
+
+DigObjective kit_objective(const GoalInputs& inputs, const Machine& machine) {
+  const DigObjective objective = objective_of(inputs);
+  const auto& parameters = objective_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].field == &DigObjective::dump_height && inputs.numbers[i]) return objective;
+  }
+  return feasible_objective(machine, objective);
+}
+
+nlohmann::ordered_json angles_json(const std::array<UrdfAngle, 3>& angles) {
+  nlohmann::ordered_json json;
+  for (const Joint joint : {Joint::boom, Joint::arm, Joint::bucket}) {
+    const UrdfAngle& angle = angles[static_cast<std::size_t>(joint)];
+    json[name(joint)] = {{"joint", angle.joint}, {"sign", angle.sign}, {"zero_rad", angle.zero}};
+  }
+  return json;
+}
+
+std::vector<SoilKind> soils_named(const std::string& list) {
+  std::vector<SoilKind> soils;
+  for (const std::string& name : split(list, ',')) soils.push_back(soil_named(name));
+  return soils;
+}
+
+void add_kit(const KitSoil& kit, const Machine& machine, const SoilKind& soil,
+             const std::string& folder, Outcome& outcome) {
+  const std::string law =
+      "laws/" + file_name_part(machine.name) + "-" + file_name_part(soil.name) + ".json";
+  make_folder(folder + "/laws");
+  write_file(folder + "/" + law, to_json(kit.law));
+  nlohmann::ordered_json json = {{"soil", soil.name}, {"law", law}, {"library", nullptr}};
+  if (kit.library.entries.empty()) {
+    outcome.trustworthy = false;
+    outcome.warnings.push_back(
+        {"no_library", soil.name + ": there is no library: " + kit.reason, true});
+    outcome.json["soils"].push_back(std::move(json));
+    return;
+  }
+  const std::string library = "libraries/" + file_name(kit.library);
+  make_folder(folder + "/libraries");
+  write_file(folder + "/" + library, to_json(kit.library));
+  const PathLibraryEntry& entry = shown_entry(kit.library);
+  json["library"] = library;
+  json["entries"] = kit.library.entries.size();
+  json["evaluations"] = kit.library.evaluations();
+  json["example"] = {{"density_percent", entry.density_percent}, {"slope_rad", entry.slope}};
+  json["example"].update(dig_json(entry.dig));
+  outcome.json["soils"].push_back(std::move(json));
+  outcome.lines.push_back(soil.name + ": " + std::to_string(kit.library.entries.size()) +
+                          " digs; at " + readable(entry.density_percent) +
+                          " %: " + path_text(entry.dig) + ", " + readable(entry.dig.payload_mass) +
+                          " kg, " + readable(100.0 * entry.dig.fill, 2) + " % full, " +
+                          readable(1e-3 * entry.dig.energy) + " kJ, " +
+                          readable(entry.dig.duration, 2) + " s");
+}
+
+}  // namespace excavplan::tools

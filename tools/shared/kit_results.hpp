@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <excavplan/kit/machine_kit.hpp>
+#include <excavplan/machine/machine_file.hpp>
+
+#include "base/json.hpp"
+#include "shared/goal_inputs.hpp"
+#include "shared/tool.hpp"
+
+/// @file
+/// What machine-kit writes and prints.
+
+namespace excavplan::tools {
+
+/// The goal of the command line; a dump height that was not given is one that the machine reaches.
+DigObjective kit_objective(const GoalInputs& inputs, const Machine& machine);
+
+nlohmann::ordered_json angles_json(const std::array<UrdfAngle, 3>& angles);
+
+/// Names and files between commas. @throws Error (bad_input) or (bad_file)
+std::vector<SoilKind> soils_named(const std::string& list);
+
+/// Writes law and library of a soil to the folder.
+void add_kit(const KitSoil& kit, const Machine& machine, const SoilKind& soil,
+             const std::string& folder, Outcome& outcome);
+
+}  // namespace excavplan::tools
