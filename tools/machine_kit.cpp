@@ -43,7 +43,7 @@ struct Inputs {
 
 void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("machine", inputs.machine, "machine file, URDF, or a shipped machine");
-  arguments.place(
+  arguments.folder(
       "output", inputs.output,
       "folder for machine.json, reach.svg, laws and libraries (default: NAME-kit beside "
       "the machine)");
@@ -102,7 +102,7 @@ Outcome examined(const Inputs& inputs, const MachineFile& file) {
   write_file(inputs.folder() + "/" + kit_machine, file.text);
   Plots plots = inputs.plots;
   plots.files.push_back({"reach", inputs.folder() + "/reach.svg"});
-  write_plots(plots, kit_figures(), machine, outcome.lines);
+  write_plots(plots, kit_figures(), machine, outcome.lines, outcome.warnings);
   return outcome;
 }
 
