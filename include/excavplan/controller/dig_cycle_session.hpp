@@ -99,8 +99,8 @@ class DigCycleSession {
   /// further settings are checked when they are used
   explicit DigCycleSession(DigCycleSettings settings);
   ~DigCycleSession();
-  DigCycleSession(DigCycleSession&&) noexcept;
-  DigCycleSession& operator=(DigCycleSession&&) noexcept;
+  DigCycleSession(DigCycleSession&&) noexcept;             ///< the other may only be destroyed then
+  DigCycleSession& operator=(DigCycleSession&&) noexcept;  ///< the same
 
   /// Takes points (PointCloud2, Livox), transforms or joint states.
   /// @throws Error (bad_file) if the message is damaged, or of a type that is not read here; the

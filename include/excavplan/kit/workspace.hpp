@@ -44,9 +44,9 @@ struct DiggingForce {
 /// tip cannot be in such a posture.
 DiggingForce digging_force(const Machine& machine, const Eigen::Vector2d& tip);
 
-/// The digging force of the bucket alone, at the tip, across the line from its pin [N]; and that of
-/// the arm with bucket and arm in line.
+/// The digging force of the bucket alone, at the tip, across the line from its pin [N].
 double bucket_force(const Machine& machine);
+/// The digging force of the arm, at the tip, with bucket and arm in line [N].
 double arm_force(const Machine& machine);
 
 /// What does not fit: ground_out_of_reach *, no_body, no_cycle, force_beyond_stability,
