@@ -5,6 +5,7 @@
 #include <excavplan/plan/plan_dig.hpp>
 
 #include "base/text.hpp"
+#include "shared/motion_inputs.hpp"
 #include "shared/plan_figures.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/results.hpp"
@@ -23,6 +24,8 @@ const About about = {
     {{"plan-path --density 40", "look up the path in the shipped library"},
      {"plan-path --density-from result.json --trajectory dig.csv",
       "use a result of estimate-density --json, write the joint trajectory"},
+     {"plan-path --density 40 --joints -20deg,70deg,40deg --whole-cycle --trajectory dig.yaml",
+      "from these joints over the dig, swing, dump and back, as a ROS 2 JointTrajectory"},
      {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
      {"plan-path --density 40 --goal energy", "most mass per energy of the dig, as in the paper"},
      {"plan-path --density 40 --density-sd 8 --search",
@@ -40,7 +43,7 @@ struct Inputs {
   std::string simulator = default_simulator().word;
   double cell_size = PlanOptions{}.cell_size;
   SearchInputs dig_search;
-  std::optional<std::string> trajectory;
+  MotionInputs motion;
   Plots plots;
   std::optional<std::string> report;
 };
@@ -73,9 +76,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                                        "cell size of the simulated ground");
                     });
   declare_search(arguments, inputs.dig_search, [&inputs] { return use_of(inputs); });
-  arguments.output("trajectory", inputs.trajectory,
-                   "write the joint trajectory, CSV, or JSON as .json");
-  arguments.require_ending({".csv", ".json", ""});
+  declare_motion(arguments, inputs.motion);
   const Arguments::Use searches = {[&inputs] { return inputs.search; }, "nothing is searched"};
   declare_plots(
       arguments, inputs.plots,
@@ -123,8 +124,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
-  if (plan.dig && inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);
-  if (!plan.dig && !plan.stopped) withdraw(inputs.trajectory, inputs.plots, machine, outcome);
+  if (!plan.dig && !plan.stopped) withdraw(inputs.plots, outcome);
+  write_motion(inputs.motion, {machine, site.ground, plan, options.search.objective}, outcome);
   return outcome;
 }
 

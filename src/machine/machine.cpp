@@ -249,6 +249,24 @@ Engine read_engine(JsonObject file) {
   return engine;
 }
 
+/// Names that a message of a robot can tell apart.
+std::array<std::string, 4> read_joint_names(JsonObject file) {
+  constexpr std::array<const char*, 4> keys = {"boom", "arm", "bucket", "swing"};
+  std::array<std::string, 4> names;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    names[i] = file.text(keys[i]);
+    if (names[i].empty()) file.fail(keys[i], "is empty");
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i)) {
+      file.fail(keys[i],
+                "is " + excavplan::quoted(names[i]) + ", which another joint is called too");
+    }
+  }
+  file.ignore("sources");
+  file.done();
+  return names;
+}
+
 }  // namespace
 
 const char* name(Joint joint) {
@@ -288,6 +306,7 @@ Machine load_machine(const std::string& path) {
   if (file.has("body")) machine.body = read_body(file.object("body"), machine.track_front);
   if (file.has("swing")) machine.swing = read_swing(file.object("swing"));
   if (file.has("engine")) machine.engine = read_engine(file.object("engine"));
+  if (file.has("joint_names")) machine.joint_names = read_joint_names(file.object("joint_names"));
   for (JsonObject* object : {&joints, &links, &file}) {
     object->ignore("sources");
     object->done();

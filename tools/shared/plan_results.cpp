@@ -194,20 +194,13 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
   return json;
 }
 
-void withdraw(const std::optional<std::string>& trajectory, const Plots& plots,
-              const Machine& machine, Outcome& outcome) {
-  if (trajectory) write_trajectory(*trajectory, {machine.name, {}});
+void withdraw(const Plots& plots, Outcome& outcome) {
   for (const Plots::File& plot : plots.files) {
     std::error_code unknown;
     if (!std::filesystem::exists(plot.file, unknown)) continue;
     outcome.warnings.push_back(
         {"plot_not_written", plot.file + ": is of an earlier run, as there is no dig to draw"});
   }
-}
-
-void write_trajectory(const std::string& file, const Trajectory& trajectory) {
-  const bool json = small_letters(std::filesystem::path(file).extension().string()) == ".json";
-  write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
 }
 
 std::vector<std::string> plan_lines(const DigPlan& plan, const GroundDensity& density,

@@ -112,6 +112,8 @@ struct Machine {
   std::optional<Body> body;              ///< nothing: the machine stands as if bolted down
   std::optional<Swing> swing;            ///< nothing if the file does not state it
   std::optional<Engine> engine;          ///< nothing: its power sets no limit
+  /// Of boom, arm, bucket and swing, as the machine's controller calls them.
+  std::array<std::string, 4> joint_names = {"boom", "arm", "bucket", "swing"};
 
   /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }
@@ -120,7 +122,6 @@ struct Machine {
 };
 
 /// Reads a machine file (docs/formats.md); every number in it names its source.
-///
 /// @throws Error (bad_file) naming file, key, value and rule; among the rules: lengths and masses
 ///         positive, limits in order, arm limits in 0 .. pi (the elbow stays above), profile
 ///         convex, counter-clockwise, tip at (bucket_length, 0), length of every cylinder strictly

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -9,6 +10,13 @@
 #include <excavplan/machine/dig_path.hpp>
 
 namespace excavplan {
+
+/// Of the upper structure, about z, positive to the left; 0 where the boom plane is y = 0.
+struct SwingState {
+  double angle = 0.0;         ///< [rad]
+  double rate = 0.0;          ///< [rad/s]
+  double acceleration = 0.0;  ///< [rad/s^2]
+};
 
 /// The machine at one time.
 struct TrajectoryPoint {
@@ -21,12 +29,17 @@ struct TrajectoryPoint {
   /// state its cylinders.
   Eigen::Vector3d cylinders = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Vector3d cylinder_speeds = cylinders;  ///< [m/s]; NaN likewise
+  /// [rad/s^2]; NaN in a trajectory of time_dig_path(), which jump at its points.
+  JointAngles accelerations = JointAngles::Constant(std::numeric_limits<double>::quiet_NaN());
+  SwingState swing;  ///< at rest at 0 in a trajectory of time_dig_path()
 };
 
-/// A timed dig path.
+/// A dig path or a way (motion.hpp) with its times.
 struct Trajectory {
   std::string machine;                  ///< its name
   std::vector<TrajectoryPoint> points;  ///< in the order of time
+  /// Machine::joint_names: boom, arm, bucket, swing; time_way() leaves one that is not there empty.
+  std::array<std::string, 4> joint_names = Machine{}.joint_names;
   /// Of all points [s].
   double duration() const { return points.empty() ? 0.0 : points.back().time; }
   double dig_duration() const;  ///< of penetrate, drag and scoop [s]
@@ -64,13 +77,23 @@ Trajectory time_dig_path(const Machine& machine, const DigPath& path,
                          const TrajectoryOptions& options = {},
                          const std::vector<JointAngles>& torques = {});
 
-/// CSV (`docs/formats.md#trajectory`): time, phase, joints, tip, floor angle, rates, and the
-/// cylinders if the machine states them. Numbers do not depend on the locale.
+/// CSV (`docs/formats.md#trajectory`): time, phase, joints, tip, floor angle, rates, the cylinders
+/// if the machine states them, and of time_way() accelerations and swing. Numbers do not depend on
+/// the locale.
 std::string to_csv(const Trajectory& trajectory);
 
 /// The same as JSON, which load_trajectory() reads back exactly (`docs/formats.md#trajectory`).
 /// @throws Error (bad_input) naming a number that is not finite or a text that is not UTF-8
 std::string to_json(const Trajectory& trajectory);
+
+/// As YAML of a ROS 2 message trajectory_msgs/JointTrajectory (`docs/formats.md#trajectory`). A
+/// joint without a name is left out.
+/// @throws Error (bad_input) naming a number that is not finite or a name that is not UTF-8
+std::string to_joint_trajectory(const Trajectory& trajectory);
+
+/// As YAML documents, each a message com3_msgs/JointCmd of OPERA's position control, one for each
+/// point (`docs/formats.md#trajectory`). @throws Error (bad_input) likewise
+std::string to_joint_commands(const Trajectory& trajectory);
 
 /// Reads what to_json() writes. @throws Error (bad_file) naming file, key, value and rule
 Trajectory load_trajectory(const std::string& path);
