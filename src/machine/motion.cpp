@@ -24,6 +24,7 @@ constexpr double most_swing = 4.0 * pi;                      // [rad]
 constexpr double largest_tolerance = 0.01;                   // of a corner [m]
 constexpr double drift = 0.002;        // of the tip by one joint, from the smoothing in time [m]
 constexpr double checked_step = 1e-3;  // of cylinders, flow and power [s]
+constexpr double spare_drive = 1e-3;   // of their limits, for the time between the checks
 constexpr double rounding = 1e-9;      // of a joint beyond its limit [rad]
 
 void check(const MotionOptions& options) {
@@ -164,44 +165,55 @@ class Profile {
   std::vector<double> squared_;
 };
 
-/// Ceilings of the squared speed from all limits but the accelerations.
-class Ceilings {
- public:
-  Ceilings(const Machine& machine, const SmoothPath& path, const FrontLimits& limits,
-           const DriveLimits& drive)
-      : machine_(machine), drive_(drive) {
-    for (const PathCell& cell : path.cells) {
-      const FrontJoints last = cell.last_slope();
-      const FrontJoints steepest = cell.slope.cwiseAbs().cwiseMax(last.cwiseAbs());
-      const double load = std::max({steepest.cwiseProduct(limits.per_speed).maxCoeff(),
-                                    drive_load(cell.begin, cell.slope, cell.torque),
-                                    drive_load(cell.at(cell.length), last, cell.torque)});
-      values.push_back(1.0 / (load * load));
+/// Boom, arm and bucket at one place, as far as their drive is concerned.
+struct DriveState {
+  JointAngles rates;       ///< [rad/s], or of dq/ds
+  Eigen::Vector3d levers;  ///< of the cylinders; 0 of a joint that rests [m/rad]
+  JointAngles torque;      ///< [N m]
+
+  DriveState(const Machine& machine, const FrontJoints& joints, const FrontJoints& all_rates,
+             JointAngles against)
+      : rates(all_rates.head<3>()), levers(Eigen::Vector3d::Zero()), torque(std::move(against)) {
+    if (!machine.hydraulics) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto joint = static_cast<Eigen::Index>(i);
+      if (rates[joint] != 0.0) levers[joint] = (*machine.cylinders)[i].at(joints[joint]).lever;
     }
   }
-
-  /// Largest ratio of cylinder speeds, flow and power to their limits.
-  double drive_load(const FrontJoints& joints, const FrontJoints& rates,
-                    const JointAngles& torque) const {
-    const JointAngles front = rates.head<3>();
-    Eigen::Vector3d levers = Eigen::Vector3d::Zero();
-    if (machine_.hydraulics) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto joint = static_cast<Eigen::Index>(i);
-        if (front[joint] != 0.0) levers[joint] = (*machine_.cylinders)[i].at(joints[joint]).lever;
-      }
-    }
-    const double pressure = drive_.pressure(torque, front, levers);
-    return std::max(drive_.cylinder_load(levers.cwiseProduct(front), pressure),
-                    drive_.power_load(torque, front));
-  }
-
-  std::vector<double> values;  ///< of each cell [rad²/s²]
-
- private:
-  const Machine& machine_;
-  const DriveLimits& drive_;
 };
+
+/// Largest ratio of cylinder speeds, flow and power to their limits between two states: a joint may
+/// turn round, or its torque jump, anywhere between them.
+double drive_load(const DriveLimits& drive, const DriveState& a, const DriveState& b) {
+  double pressure = 0.0, load = 0.0;
+  for (const DriveState* state : {&a, &b}) {
+    for (const DriveState* other : {&a, &b}) {
+      pressure = std::max(pressure, drive.pressure(other->torque, state->rates, state->levers));
+      load = std::max(load, drive.power_load(other->torque, state->rates));
+    }
+  }
+  for (const DriveState* state : {&a, &b}) {
+    const Eigen::Vector3d growth = state->levers.cwiseProduct(state->rates);
+    load = std::max(load, drive.cylinder_load(growth, pressure));
+  }
+  return load;
+}
+
+/// Ceilings of the squared speed in each cell from all limits but the accelerations [rad²/s²].
+std::vector<double> ceilings_of(const Machine& machine, const SmoothPath& path,
+                                const FrontLimits& limits, const DriveLimits& drive) {
+  std::vector<double> ceilings;
+  for (const PathCell& cell : path.cells) {
+    const FrontJoints last = cell.last_slope();
+    const FrontJoints steepest = cell.slope.cwiseAbs().cwiseMax(last.cwiseAbs());
+    const DriveState begin(machine, cell.begin, cell.slope, cell.torque);
+    const DriveState end(machine, cell.at(cell.length), last, cell.torque);
+    const double load =
+        std::max(steepest.cwiseProduct(limits.per_speed).maxCoeff(), drive_load(drive, begin, end));
+    ceilings.push_back(1.0 / (load * load));
+  }
+  return ceilings;
+}
 
 /// The way over time, as fast as a profile.
 class TimedPath {
@@ -220,6 +232,11 @@ class TimedPath {
   std::size_t cell_at(double time) const {
     const auto end = std::lower_bound(times_.begin() + 1, times_.end() - 1, time);
     return static_cast<std::size_t>(end - times_.begin()) - 1;
+  }
+
+  /// Speed in a cell [rad²/s²].
+  double largest_squared(std::size_t cell) const {
+    return std::max(squared_[cell], squared_[cell + 1]);
   }
 
   FrontJoints joints_at(double time) const {
@@ -287,6 +304,9 @@ class SmoothMotion {
   }
 
   std::size_t points() const { return control_.size() - 2; }
+  double step() const { return step_; }
+  /// How far the path counts to either side of a time [s].
+  double reach() const { return (2.5 + delay_) * step_; }
   double time(std::size_t point) const { return static_cast<double>(point) * step_; }
   /// Of the path, `share` of a step after a point.
   double path_time(std::size_t point, double share = 0.0) const {
@@ -321,28 +341,34 @@ class SmoothMotion {
 
 /// Lowers the ceilings where the motion breaks a limit of the drive: in the cells that its place
 /// was smoothed over. @return whether it does anywhere
-bool lower_ceilings(const SmoothPath& path, const TimedPath& timed, const SmoothMotion& motion,
-                    const Smoothing& smoothing, Ceilings& ceilings) {
-  constexpr double allowed = 1.0 + 1e-9;
-  const int parts = static_cast<int>(std::ceil(smoothing.step / checked_step));
-  const double reach = (2.0 + 0.5 * static_cast<double>(smoothing.window)) * smoothing.step;
+bool lower_ceilings(const Machine& machine, const DriveLimits& drive, const SmoothPath& path,
+                    const TimedPath& timed, const SmoothMotion& motion,
+                    std::vector<double>& ceilings) {
   std::vector<double> loads(path.cells.size(), 1.0);
   bool any = false;
+  const auto state_at = [&](std::size_t point, double share) {
+    const PathCell& cell = path.cells[timed.cell_at(motion.path_time(point, share))];
+    return DriveState(machine, motion.joints(point, share), motion.rates(point, share),
+                      cell.torque);
+  };
+  const int parts = static_cast<int>(std::ceil(motion.step() / checked_step));
+  DriveState before = state_at(0, 0.0);
   for (std::size_t i = 0; i + 1 < motion.points(); ++i) {
-    for (int part = 0; part < parts; ++part) {
+    for (int part = 1; part <= parts; ++part) {
       const double share = static_cast<double>(part) / parts;
-      const double at = motion.path_time(i, share);
-      const double load = ceilings.drive_load(motion.joints(i, share), motion.rates(i, share),
-                                              path.cells[timed.cell_at(at)].torque);
-      if (load <= allowed) continue;
+      const DriveState now = state_at(i, share);
+      const double load = drive_load(drive, std::exchange(before, now), now);
+      if (load <= 1.0 + 0.5 * spare_drive) continue;
       any = true;
-      for (std::size_t k = timed.cell_at(at - reach); k <= timed.cell_at(at + reach); ++k) {
+      const double at = motion.path_time(i, share);
+      for (std::size_t k = timed.cell_at(at - motion.reach());
+           k <= timed.cell_at(at + motion.reach()); ++k) {
         loads[k] = std::max(loads[k], load);
       }
     }
   }
   for (std::size_t k = 0; k < loads.size(); ++k) {
-    if (loads[k] > 1.0) ceilings.values[k] /= loads[k] * loads[k] * (1.0 + 1e-6);
+    if (loads[k] > 1.0) ceilings[k] = timed.largest_squared(k) / (loads[k] * loads[k]);
   }
   return any;
 }
@@ -400,18 +426,18 @@ Trajectory time_way(const Machine& machine, const Way& way, const MotionOptions&
   check(machine, way);
   const SmoothPath path = smooth_path(machine, way, options.corner_tolerance);
   const FrontLimits limits(machine, way, options.speed_fraction);
-  const DriveLimits drive(machine, options.speed_fraction);
+  const DriveLimits drive(machine, options.speed_fraction * (1.0 - spare_drive));
   const Smoothing smoothing(machine, options, limits.acceleration);
-  Ceilings ceilings(machine, path, limits, drive);
+  std::vector<double> ceilings = ceilings_of(machine, path, limits, drive);
   Profile profile(path, smoothing.acceleration);
   for (int round = 0; round < most_rounds; ++round) {
-    profile.run(ceilings.values);
+    profile.run(ceilings);
     const TimedPath timed(path, profile.squared());
     constexpr double longest = 3600.0;  // ours [s]
     require(timed.duration() <= longest, "duration of the motion [s]", timed.duration(),
             "at most " + number_text(longest));
     const SmoothMotion motion(timed, smoothing);
-    if (lower_ceilings(path, timed, motion, smoothing, ceilings)) continue;
+    if (lower_ceilings(machine, drive, path, timed, motion, ceilings)) continue;
     Trajectory trajectory;
     trajectory.machine = machine.name;
     trajectory.joint_names = machine.joint_names;

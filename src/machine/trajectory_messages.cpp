@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -84,6 +85,7 @@ std::string to_joint_commands(const Trajectory& trajectory) {
   const std::string names = joints.names(), none = joints.numbers(JointAngles::Zero(), 0.0);
   std::string yaml;
   for (const TrajectoryPoint& point : trajectory.points) {
+    yaml += (yaml.empty() ? "" : "---\n");
     yaml += "joint_name: " + names +
             "\ncontrol_type: 0\nposition: " + joints.numbers(point.joints, point.swing.angle) +
             "\nvelocity: " + joints.numbers(point.rates, point.swing.rate) + "\neffort: " + none +

@@ -82,13 +82,15 @@ struct FrontState {
   FrontJoints angles, rates;
 };
 
+constexpr double at_rest = 1e-9;  ///< a slower joint moves by rounding [rad/s]
+
 inline void use_drive(const MotionCase& made, const FrontState& at, bool digs, UsedLimits& used) {
   if (!made.machine.hydraulics) return;
   const Hydraulics& oil = *made.machine.hydraulics;
   double flow = 0.0, pressure = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
-    if (at.rates[joint] == 0.0) continue;
+    if (std::abs(at.rates[joint]) < at_rest) continue;
     const Cylinder& cylinder = (*made.machine.cylinders)[i];
     const double speed = cylinder.at(at.angles[joint]).lever * at.rates[joint];
     const Piston& piston = oil.pistons[i];
@@ -163,6 +165,9 @@ inline std::optional<MotionCase> any_motion(const Machine& machine, const Terrai
   }
   times(made.machine.hydraulics->pump_flow);
   times(made.machine.engine->power);
+  for (Piston& piston : made.machine.hydraulics->pistons) {
+    if (random.uniform() < 0.5) piston.speed = random.uniform(0.1, 0.6);
+  }
   const double rates[] = {20.0, 50.0, 100.0, 100.0, 125.0, 250.0};
   made.options.rate = rates[random.index(6)];
   made.options.speed_fraction = random.uniform(0.2, 1.0);
