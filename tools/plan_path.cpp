@@ -24,7 +24,7 @@ const About about = {
     {{"plan-path --density 40", "look up the path in the shipped library"},
      {"plan-path --density-from result.json --trajectory dig.csv",
       "use a result of estimate-density --json, write the joint trajectory"},
-     {"plan-path --density 40 --joints -20deg,70deg,40deg --whole-cycle --trajectory dig.yaml",
+     {"plan-path --density 40 --joints -40deg,90deg,40deg --whole-cycle --trajectory dig.yaml",
       "from these joints over the dig, swing, dump and back, as a ROS 2 JointTrajectory"},
      {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
      {"plan-path --density 40 --goal energy", "most mass per energy of the dig, as in the paper"},
@@ -105,6 +105,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const SoilKind soil = soil_named(inputs.soil);
   const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
   const PlanOptions options = options_of(inputs, console);
+  check(inputs.motion, machine, options.search.objective);
   const DigPlan plan = naming_options(search_option_names, [&] {
     return inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
                                 : plan_dig(machine, soil, density, options);

@@ -27,17 +27,6 @@ constexpr double checked_step = 1e-3;  // of cylinders, flow and power [s]
 constexpr double spare_drive = 1e-3;   // of their limits, for the time between the checks
 constexpr double rounding = 1e-9;      // of a joint beyond its limit [rad]
 
-void check(const MotionOptions& options) {
-  require_in("MotionOptions::rate [1/s]", options.rate, slowest_rate, fastest_rate);
-  require(options.speed_fraction > 0.0 && options.speed_fraction <= 1.0,
-          "MotionOptions::speed_fraction", options.speed_fraction, "above 0 and at most 1");
-  require(options.corner_tolerance >= 0.0 && options.corner_tolerance <= largest_tolerance,
-          "MotionOptions::corner_tolerance", options.corner_tolerance,
-          "in 0 .. " + number_text(largest_tolerance) + " m");
-  require(options.max_jerk >= least_jerk, "MotionOptions::max_jerk", options.max_jerk,
-          "at least " + number_text(least_jerk) + " rad/s^3");
-}
-
 void check_joints(const Machine& machine, const FrontJoints& joints, const std::string& pose) {
   for (std::size_t i = 0; i < 3; ++i) {
     const JointLimits& limits = machine.limits[i];
@@ -396,6 +385,17 @@ TrajectoryPoint point_of(const Machine& machine, const SmoothMotion& motion, std
 }
 
 }  // namespace
+
+void check(const MotionOptions& options) {
+  require_in("MotionOptions::rate [1/s]", options.rate, slowest_rate, fastest_rate);
+  require(options.speed_fraction > 0.0 && options.speed_fraction <= 1.0,
+          "MotionOptions::speed_fraction", options.speed_fraction, "above 0 and at most 1");
+  require(options.corner_tolerance >= 0.0 && options.corner_tolerance <= largest_tolerance,
+          "MotionOptions::corner_tolerance", options.corner_tolerance,
+          "in 0 .. " + number_text(largest_tolerance) + " m");
+  require(options.max_jerk >= least_jerk, "MotionOptions::max_jerk", options.max_jerk,
+          "at least " + number_text(least_jerk) + " rad/s^3");
+}
 
 Way way_of(const DigPath& path, const std::vector<JointAngles>& torques) {
   require(path.poses.size() >= 2,

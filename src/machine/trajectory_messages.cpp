@@ -89,7 +89,7 @@ std::string to_joint_commands(const Trajectory& trajectory) {
     yaml += "joint_name: " + names +
             "\ncontrol_type: 0\nposition: " + joints.numbers(point.joints, point.swing.angle) +
             "\nvelocity: " + joints.numbers(point.rates, point.swing.rate) + "\neffort: " + none +
-            "\n---\n";
+            '\n';
   }
   return yaml;
 }

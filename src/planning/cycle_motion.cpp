@@ -191,25 +191,13 @@ class CycleWay {
   Way way_;
 };
 
-void check(const Machine& machine, const FrontJoints& start) {
+void check_start(const Machine& machine, const FrontJoints& start) {
   for (std::size_t i = 0; i < 3; ++i) {
     const JointLimits& limits = machine.limits[i];
     require_in(std::string("joints at the start: ") + name(static_cast<Joint>(i)) + " [rad]",
                start[static_cast<Eigen::Index>(i)], limits.lower, limits.upper);
   }
   require_in("joints at the start: swing [rad]", start[3], -most_swing, most_swing);
-}
-
-void check(const Machine& machine, const DigLoad& load, const CycleWayOptions& options) {
-  require_in("payload_mass of the dig [kg]", load.payload_mass, 0.0, 1e9);
-  if (options.start) check(machine, *options.start);
-  if (options.whole_cycle) {
-    require_in("cycle: swing [rad]", options.cycle.swing, 0.0, most_swing);
-    require_in("cycle: dump_height [m]", options.cycle.dump_height, 0.0, 1e9);
-  }
-  const bool swings = options.whole_cycle || (options.start && (*options.start)[3] != 0.0);
-  require(!swings || machine.swing.has_value(),
-          "the file of machine " + machine.name + " has no swing, which the way needs");
 }
 
 FrontJoints with_swing(const JointAngles& joints, double swing) {
@@ -220,12 +208,24 @@ FrontJoints with_swing(const JointAngles& joints, double swing) {
 
 }  // namespace
 
+void check(const Machine& machine, const CycleWayOptions& options) {
+  if (options.start) check_start(machine, *options.start);
+  if (options.whole_cycle) {
+    require_in("cycle: swing [rad]", options.cycle.swing, 0.0, most_swing);
+    require_in("cycle: dump_height [m]", options.cycle.dump_height, 0.0, 1e9);
+  }
+  const bool swings = options.whole_cycle || (options.start && (*options.start)[3] != 0.0);
+  require(!swings || machine.swing.has_value(),
+          "the file of machine " + machine.name + " has no swing, which the way needs");
+}
+
 std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain& ground,
                                            const DigPath& path, const DigLoad& load,
                                            const CycleWayOptions& options) {
   require_machine(machine);
   require_terrain(ground, "ground of the motion");
-  check(machine, load, options);
+  check(machine, options);
+  require_in("payload_mass of the dig [kg]", load.payload_mass, 0.0, 1e9);
   const Way dig = way_of(path, load.torques);
   CycleWay way(machine, ground, load.payload_mass);
   if (options.start) {

@@ -60,7 +60,7 @@ FrontJoints parse_joints(const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
   if (parts.size() < 3 || parts.size() > 4) {
     usage_error(what + ": '" + text +
-                "' is not BOOM,ARM,BUCKET or BOOM,ARM,BUCKET,SWING such as -20deg,70deg,40deg");
+                "' is not BOOM,ARM,BUCKET or BOOM,ARM,BUCKET,SWING such as -40deg,90deg,40deg");
   }
   FrontJoints joints = FrontJoints::Zero();
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -85,10 +85,7 @@ Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   if (!planned.plan.dig) {
     return {planned.machine.name, {}, planned.machine.joint_names};
   }
-  CycleWayOptions options;
-  options.start = inputs.joints;
-  options.whole_cycle = inputs.whole_cycle;
-  options.cycle = planned.objective;
+  const CycleWayOptions options = {inputs.joints, inputs.whole_cycle, planned.objective};
   const auto way = way_of_cycle(planned.machine, planned.ground, planned.plan.path,
                                 {planned.plan.torques, planned.plan.dig->payload_mass}, options);
   if (const auto* stop = std::get_if<BlockedWay>(&way)) {
@@ -130,6 +127,14 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs) {
         };
         arguments.add(jerk);
       });
+}
+
+void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle) {
+  if (!inputs.file) return;
+  naming_options(option_names, [&] {
+    excavplan::check(inputs.options);
+    excavplan::check(machine, CycleWayOptions{inputs.joints, inputs.whole_cycle, cycle});
+  });
 }
 
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {

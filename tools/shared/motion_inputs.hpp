@@ -26,6 +26,9 @@ struct MotionInputs {
 
 void declare_motion(Arguments& arguments, MotionInputs& inputs);
 
+/// Checks made before the work. @throws Error (bad_input) naming the option
+void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle);
+
 /// A plan with the ground that it was made for and the objective that has its swing and dump
 /// height.
 struct PlannedMotion {

@@ -50,6 +50,9 @@ struct MotionOptions {
   double max_jerk = std::numeric_limits<double>::infinity();  ///< of each joint [rad/s^3], >= 0.1
 };
 
+/// @throws Error (bad_input) if an option is out of range, as time_way()
+void check(const MotionOptions& options);
+
 /// Times a way as fast as the limits allow, from rest to rest. At every time, between the points
 /// too, the joints are within the range of the way's poses, and their rates and accelerations
 /// within the limits times the speed fraction, but for rounding; so are cylinder speeds, pump flow

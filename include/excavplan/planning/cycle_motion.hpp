@@ -39,6 +39,9 @@ struct BlockedWay {
   std::string message;                              ///< all of this in one sentence
 };
 
+/// @throws Error (bad_input) if an option is out of range for the machine, as way_of_cycle()
+void check(const Machine& machine, const CycleWayOptions& options);
+
 /// Lays out the way of a cycle. Off the path of the dig the joints go straight to where they have
 /// to be; where that leads within 0.1 m of the ground, the boom rises first and comes down last.
 /// Ground that is unknown or off the map counts as the plane of the tracks.
