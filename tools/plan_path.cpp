@@ -106,7 +106,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
   const PlanOptions options = options_of(inputs, console);
   check(inputs.motion, machine, options.search.objective);
-  const DigPlan plan = naming_options(search_option_names, [&] {
+  DigPlan plan = naming_options(search_option_names, [&] {
     return inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
                                 : plan_dig(machine, soil, density, options);
   });
@@ -124,6 +124,7 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"wall_time_s", watch.seconds()}});
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
+  if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
   if (!plan.dig && !plan.stopped) withdraw(inputs.plots, outcome);
   write_motion(inputs.motion, {machine, site.ground, plan, options.search.objective}, outcome);

@@ -137,6 +137,10 @@ void check(const MotionInputs& inputs, const Machine& machine, const CycleOption
   });
 }
 
+Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan) {
+  return time_way(machine, way_of(plan.path, plan.torques), inputs.options);
+}
+
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {
   if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;
   const Trajectory motion =

@@ -38,6 +38,9 @@ struct PlannedMotion {
   const DigObjective& objective;
 };
 
+/// That of the dig alone, for pages: the points of a file without present joints or whole cycle.
+Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan);
+
 /// Writes the motion, if it is asked for; one without poses if there is no dig, so that none of an
 /// earlier plan is driven. Sets key "trajectory" of the outcome.
 /// @throws Error (bad_input) naming the option, also where the ground blocks the way
