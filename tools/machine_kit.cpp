@@ -91,8 +91,7 @@ Outcome examined(const Inputs& inputs, const MachineFile& file) {
        {{"bucket", 1e-3 * bucket_force(machine)}, {"arm", 1e-3 * arm_force(machine)}}},
       {"capacity_m3",
        {{"struck", struck_capacity(machine)}, {"heaped", heaped_capacity(machine)}}}};
-  outcome.json["urdf_angles"] = nullptr;
-  if (file.urdf_angles) outcome.json["urdf_angles"] = angles_json(*file.urdf_angles);
+  outcome.json["robot_joints"] = joints_json(machine.robot_joints);
   outcome.lines = {machine.name + ": reaches " + readable(reach.ground) + " m on the ground, " +
                        readable(reach.depth) + " m deep, " + readable(reach.height) + " m high",
                    "digging force: bucket " + readable(1e-3 * bucket_force(machine)) + " kN, arm " +

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "shared/ground_maps.hpp"
 #include "shared/kit_files.hpp"
+#include "shared/motion_inputs.hpp"
 #include "shared/plan_figures.hpp"
 #include "shared/plan_results.hpp"
 #include "shared/results.hpp"
@@ -26,6 +27,8 @@ const About about = {
     {{"plan-path --density 40", "look up the path in the shipped library"},
      {"plan-path --density-from result.json --trajectory dig.csv",
       "use a result of estimate-density --json, write the joint trajectory"},
+     {"plan-path --density 40 --joints -40deg,90deg,40deg --whole-cycle --trajectory dig.yaml",
+      "from these joints over the dig, swing, dump and back, as a ROS 2 JointTrajectory"},
      {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
      {"plan-path --density 40 --goal energy", "most mass per energy of the dig, as in the paper"},
      {"plan-path --density 40 --density-sd 8 --search",
@@ -43,7 +46,7 @@ struct Inputs {
   SimulatorInputs simulator;
   double cell_size = PlanOptions{}.cell_size;
   SearchInputs dig_search;
-  std::optional<std::string> trajectory;
+  MotionInputs motion;
   Plots plots;
   Maps maps;
   std::optional<std::string> report;
@@ -77,9 +80,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                                        "cell size of the simulated ground");
                     });
   declare_search(arguments, inputs.dig_search, [&inputs] { return use_of(inputs); });
-  arguments.output("trajectory", inputs.trajectory,
-                   "write the joint trajectory, CSV, or JSON as .json");
-  arguments.require_ending({".csv", ".json", ""});
+  declare_motion(arguments, inputs.motion);
   const Arguments::Use searches = {[&inputs] { return inputs.search; }, "nothing is searched"};
   declare_plots(
       arguments, inputs.plots,
@@ -92,11 +93,10 @@ PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilK
                        Console& console) {
   PlanOptions options;
   options.method = inputs.search ? PlanMethod::search : PlanMethod::library;
+  options.search = search_options(inputs.dig_search, use_of(inputs), console);
   if (inputs.library) {
     options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
-  }
-  options.search = search_options(inputs.dig_search, use_of(inputs), console);
-  if (!inputs.library) {
+  } else {
     options.library = kit_library(inputs.machine, machine, soil.name, inputs.dig_search.goal,
                                   options.search.objective);
   }
@@ -114,7 +114,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   const SoilKind soil = soil_named(inputs.soil);
   const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
   const PlanOptions options = options_of(inputs, machine, soil, console);
-  const DigPlan plan = naming_options(search_option_names, [&] {
+  check(inputs.motion, machine, options.search.objective);
+  DigPlan plan = naming_options(search_option_names, [&] {
     return inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
                                 : plan_dig(machine, soil, density, options);
   });
@@ -132,11 +133,11 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"wall_time_s", watch.seconds()}});
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
+  if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
   write_maps(
       inputs.maps, [&] { return plan_maps(machine, plan, dug); }, outcome);
-  if (plan.dig && inputs.trajectory) write_trajectory(*inputs.trajectory, plan.trajectory);
-  if (!plan.dig && !plan.stopped) withdraw(inputs.trajectory, inputs.plots, machine, outcome);
+  write_motion(inputs.motion, {machine, site.ground, plan, options.search.objective}, outcome);
   return outcome;
 }
 

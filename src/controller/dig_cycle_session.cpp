@@ -19,8 +19,6 @@ namespace {
 
 using Frames = std::vector<LiveFrame>;
 
-constexpr std::array<const char*, 4> joint_roles = {"swing", "boom", "arm", "bucket"};
-
 std::string count_text(std::size_t found, std::size_t wanted) {
   return std::to_string(found) + " of " + std::to_string(wanted);
 }
@@ -29,9 +27,10 @@ void check(const DigCycleSettings& settings) {
   require_in("scans", static_cast<double>(settings.scans), 1.0, DigCycleSession::most_scans);
   require(settings.site_from_scan.allFinite(), "site_from_scan: a number is not finite");
   require_in("density", settings.density.percent, 0.0, 100.0);
-  const bool named = std::none_of(settings.joint_names.begin() + 1, settings.joint_names.end(),
-                                  [](const std::string& name) { return name.empty(); });
-  require(named, "joint_names: boom, arm and bucket need a name");
+  const RobotJoints& joints = settings.machine.robot_joints;
+  const bool named = std::none_of(joints.begin(), joints.begin() + 3,
+                                  [](const RobotJoint& joint) { return joint.name.empty(); });
+  require(named, "robot_joints: boom, arm and bucket need a name");
 }
 
 }  // namespace
@@ -61,7 +60,8 @@ struct DigCycleSession::State {
   Scan scan_of(Frames& frames, const char* which, bool& averaged);
   DensityOptions estimate_options() const;
   ScannedTerrain terrain();
-  void check_start(CyclePlan& answer) const;
+  std::optional<FrontJoints> start() const;
+  void add_motion(const Terrain& ground, CyclePlan& answer) const;
 
   DigCycleSettings settings;
   CycleStage stage = CycleStage::before;
@@ -92,21 +92,38 @@ void DigCycleSession::State::take_joints(
     const std::vector<std::pair<std::string, double>>& positions) {
   for (const auto& [name, position] : positions) {
     if (name.empty() || !std::isfinite(position)) continue;
-    const auto& names = settings.joint_names;
-    if (std::find(names.begin(), names.end(), name) != names.end()) joints[name] = position;
+    for (const RobotJoint& joint : settings.machine.robot_joints) {
+      if (joint.name == name) joints[name] = position;
+    }
   }
 }
 
 std::optional<MachinePosture> DigCycleSession::State::posture() const {
-  Eigen::Vector4d angles = Eigen::Vector4d::Zero();
-  for (std::size_t i = 0; i < joint_roles.size(); ++i) {
-    const std::string& name = settings.joint_names[i];
-    if (name.empty()) continue;
-    const auto found = joints.find(name);
+  FrontJoints angles = FrontJoints::Zero();
+  for (std::size_t i = 0; i < settings.machine.robot_joints.size(); ++i) {
+    const RobotJoint& joint = settings.machine.robot_joints[i];
+    if (joint.name.empty()) continue;
+    const auto found = joints.find(joint.name);
     if (found == joints.end()) return {};
-    angles[static_cast<Eigen::Index>(i)] = found->second;
+    angles[static_cast<Eigen::Index>(i)] = joint.to_ours(found->second);
   }
-  return MachinePosture{angles[0], angles.tail<3>()};
+  return MachinePosture{angles[3], angles.head<3>()};
+}
+
+/// Where the motion begins: sensors of joints that stand at a limit read a little beyond it.
+std::optional<FrontJoints> DigCycleSession::State::start() const {
+  constexpr double most_beyond = 0.02;  // ours [rad]
+  const std::optional<MachinePosture> now = posture();
+  if (!now) return {};
+  FrontJoints start;
+  start << now->joints, now->swing;
+  for (std::size_t i = 0; i < settings.machine.limits.size(); ++i) {
+    const JointLimits& limits = settings.machine.limits[i];
+    double& angle = start[static_cast<Eigen::Index>(i)];
+    const double inside = std::clamp(angle, limits.lower, limits.upper);
+    if (std::abs(angle - inside) < most_beyond) angle = inside;
+  }
+  return start;
 }
 
 /// Finds poses that are not known yet; `all`: an error where one stays unknown.
@@ -165,29 +182,25 @@ ScannedTerrain DigCycleSession::State::terrain() {
                            planning_extent(settings.machine), cell);
 }
 
-void DigCycleSession::State::check_start(CyclePlan& answer) const {
-  constexpr double near = 0.05;  // ours [rad]
-  if (answer.motion.points.empty()) return;
-  std::string missing, far;
-  for (std::size_t i = 0; i < answer.motion.names.size(); ++i) {
-    const std::string& name = answer.motion.names[i];
-    const auto found = joints.find(name);
-    const double start = answer.motion.points.front().positions[i];
-    if (found == joints.end()) {
-      missing += (missing.empty() ? "" : ", ") + name;
-    } else if (std::abs(found->second - start) > near) {
-      far += (far.empty() ? "" : ", ") + name + " stands at " + plain_number(found->second) +
-             " rad, begins at " + plain_number(start);
+void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
+  const CycleWayOptions way = {start(), settings.whole_cycle, settings.plan.search.objective};
+  if (!way.start) {
+    answer.warnings.push_back({"posture_unknown",
+                               "no joint states came: the motion begins above the dig, wherever "
+                               "the machine stands"});
+  }
+  const auto refuse = [&](const std::string& why) {
+    answer.warnings.push_back({"no_motion", "the plan has no motion: " + why, true});
+  };
+  try {
+    const auto motion = plan_motion(settings.machine, ground, answer.plan, way, settings.motion);
+    if (const auto* blocked = std::get_if<BlockedWay>(&motion)) {
+      refuse("the ground is in the way: " + blocked->message);
+    } else {
+      answer.motion = joint_motion(std::get<Trajectory>(motion));
     }
-  }
-  if (!missing.empty()) {
-    answer.warnings.push_back({"posture_unknown", "no joint states of " + missing +
-                                                      " came: whether the machine stands where "
-                                                      "the motion begins is not known"});
-  }
-  if (!far.empty()) {
-    answer.warnings.push_back(
-        {"far_from_start", far + ": bring the machine to the first point before the motion"});
+  } catch (const Error& error) {
+    refuse(error.what());
   }
 }
 
@@ -297,7 +310,6 @@ CyclePlan DigCycleSession::plan() {
   answer.density = state.density;
   answer.density_is_stated = state.density_is_stated;
   answer.previous_density = state.last_refused;
-  if (answer.plan.dig) answer.motion = joint_motion(answer.plan, settings.joint_names);
   answer.warnings = std::move(ground.warnings);
   if (state.last_refused) {
     answer.warnings.push_back(
@@ -307,7 +319,7 @@ CyclePlan DigCycleSession::plan() {
   }
   answer.warnings.insert(answer.warnings.end(), answer.plan.warnings.begin(),
                          answer.plan.warnings.end());
-  state.check_start(answer);
+  if (answer.plan.dig) state.add_motion(ground.terrain, answer);
   answer.trustworthy = answer.plan.trustworthy && answer.plan.dig &&
                        std::none_of(answer.warnings.begin(), answer.warnings.end(),
                                     [](const Warning& warning) { return warning.ends_trust; });

@@ -504,6 +504,12 @@ const char* name(DigPhase phase) {
       return "scoop";
     case DigPhase::lift:
       return "lift";
+    case DigPhase::swing:
+      return "swing";
+    case DigPhase::dump:
+      return "dump";
+    case DigPhase::back:
+      return "back";
   }
   return "unknown phase";
 }

@@ -288,6 +288,8 @@ Machine read_machine(JsonObject file) {
   if (file.has("body")) machine.body = read_body(file.object("body"), machine.track_front);
   if (file.has("swing")) machine.swing = read_swing(file.object("swing"));
   if (file.has("engine")) machine.engine = read_engine(file.object("engine"));
+  if (file.has("robot_joints"))
+    machine.robot_joints = read_robot_joints(file.object("robot_joints"));
   for (JsonObject* object : {&joints, &links, &file}) {
     object->ignore("sources");
     object->done();

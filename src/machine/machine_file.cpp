@@ -49,7 +49,6 @@ MachineFile load_machine_file(const std::string& path) {
   if (!is_xml(content)) return file_of(path, std::move(content));
   UrdfDraft draft = draft_of_urdf(path, content);
   MachineFile read = file_of(path, draft.json.dump(2) + "\n");
-  read.urdf_angles = draft.angles;
   read.warnings = std::move(draft.warnings);
   return read;
 }

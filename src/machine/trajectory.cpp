@@ -11,6 +11,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "machine/drive_limits.hpp"
 
 namespace excavplan {
 namespace {
@@ -23,7 +24,6 @@ constexpr double longest_reach = 0.02;
 constexpr int steps_a_side = 4;
 constexpr double room_share = 0.4;      // of a phase that the rounding of one corner may take
 constexpr double sharpest_turn = -0.5;  // cosine of the turn beyond which the machine stops
-constexpr double at_rest = 1e-9;  // a joint with a smaller share of the motion moves by rounding
 
 /// Larger angles and torques are not those of a machine and could overflow; ours.
 constexpr double largest_angle = 100.0;  // [rad]
@@ -286,76 +286,6 @@ void Route::add_torque(double along) {
 
 // ---- how fast -----------------------------------------------------------------------------------
 
-/// The limits of the machine times the speed fraction.
-class Limits {
- public:
-  Limits(const Machine& machine, double fraction) : states_oil_(machine.hydraulics.has_value()) {
-    if (machine.engine) per_power_ = 1.0 / (fraction * machine.engine->power);
-    for (int i = 0; i < 3; ++i) {
-      const auto joint = static_cast<std::size_t>(i);
-      acceleration_[i] = fraction * machine.limits[joint].acceleration;
-      per_rate_[i] = 1.0 / (fraction * machine.limits[joint].speed);
-      if (!states_oil_) continue;
-      const Piston& piston = machine.hydraulics->pistons[joint];
-      const double share =
-          (*machine.cylinders)[joint].count() / (fraction * machine.hydraulics->pump_flow);
-      per_piston_speed_[i] = 1.0 / (fraction * piston.speed);
-      per_growth_[i] = share * piston.area_filled(1.0);
-      per_shrinking_[i] = share * piston.area_filled(-1.0);
-    }
-  }
-
-  const JointAngles& acceleration() const { return acceleration_; }
-
-  /// Largest ratio of these joint rates to their limits of speed.
-  double load(const JointAngles& rates) const {
-    return rates.cwiseAbs().cwiseProduct(per_rate_).maxCoeff();
-  }
-
-  /// The same of the power for joints that turn this fast under these torques, if the pressures
-  /// are not known.
-  double power_load(const JointAngles& torque, const JointAngles& rates) const {
-    if (states_oil_) return 0.0;
-    return per_power_ * torque.cwiseProduct(rates).cwiseMax(0.0).sum();
-  }
-
-  /// The highest pressure in the cylinders that drive, over the one at which the power is enough
-  /// for the whole flow; 0 if either is not known.
-  double pressure(const JointAngles& torque, const JointAngles& slope,
-                  const Eigen::Vector3d& levers) const {
-    if (!states_oil_) return 0.0;
-    double highest = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      if (!(torque[i] * slope[i] > 0.0) || std::abs(slope[i]) < at_rest) continue;
-      const double flow = levers[i] * slope[i] < 0.0 ? per_shrinking_[i] : per_growth_[i];
-      highest = std::max(highest, std::abs(torque[i] / levers[i]) / flow);
-    }
-    return highest * per_power_;
-  }
-
-  /// The same of cylinder speed and pump flow for cylinders that grow this fast at this pressure();
-  /// 0 if neither is known.
-  double cylinder_load(const Eigen::Vector3d& growth, double pressure) const {
-    if (!states_oil_) return 0.0;
-    double flow = 0.0, fastest = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      const double speed = std::abs(growth[i]);
-      fastest = std::max(fastest, speed * per_piston_speed_[i]);
-      flow += speed * (growth[i] < 0.0 ? per_shrinking_[i] : per_growth_[i]);
-    }
-    return std::max(fastest, flow * std::max(1.0, pressure));
-  }
-
- private:
-  bool states_oil_;
-  double per_power_ = 0.0;
-  JointAngles acceleration_;
-  JointAngles per_rate_;
-  Eigen::Vector3d per_piston_speed_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d per_growth_ = Eigen::Vector3d::Zero();  // of the flow
-  Eigen::Vector3d per_shrinking_ = Eigen::Vector3d::Zero();
-};
-
 /// Time-optimal speed along the joint path q(s) between two stops, s being its length in joint
 /// space [rad]. The squared speed x is bounded at each point by the speeds of joints and cylinders,
 /// by the flow and by the curvature q''; then |q'' x| + |q' dx/(2 ds)| <= acceleration limits how
@@ -368,7 +298,7 @@ class Limits {
 class Pass {
  public:
   Pass(std::vector<TrajectoryPoint>& points, const std::vector<JointAngles>& torques,
-       const std::optional<Cylinders>& cylinders, const Limits& limits)
+       const std::optional<Cylinders>& cylinders, const DriveLimits& limits)
       : points_(points),
         torques_(torques),
         limits_(limits),
@@ -496,7 +426,7 @@ class Pass {
 
   std::vector<TrajectoryPoint>& points_;
   const std::vector<JointAngles>& torques_;  // on the way to each point
-  const Limits& limits_;
+  const DriveLimits& limits_;
   std::vector<Segment> segments_;
   std::vector<Node> nodes_;
 };
@@ -520,8 +450,9 @@ Trajectory time_dig_path(const Machine& machine, const DigPath& path,
   Route route(machine, path, torques, options.corner_tolerance);
   Trajectory trajectory;
   trajectory.machine = machine.name;
+  trajectory.robot_joints = machine.robot_joints;
   trajectory.points = route.take_points();
-  const Limits limits(machine, options.speed_fraction);
+  const DriveLimits limits(machine, options.speed_fraction);
   Pass pass(trajectory.points, route.torques(), machine.cylinders, limits);
   const std::vector<std::size_t>& stops = route.stops();
   for (std::size_t i = 1; i < stops.size(); ++i) pass.run(stops[i - 1], stops[i]);

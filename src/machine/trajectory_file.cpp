@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <initializer_list>
 #include <utility>
 
@@ -7,6 +8,7 @@
 
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "machine/machine_reading.hpp"
 
 namespace excavplan {
 namespace {
@@ -15,6 +17,11 @@ constexpr const char* format = "excavplan-trajectory";
 
 bool states_cylinders(const Trajectory& trajectory) {
   return !trajectory.points.empty() && trajectory.points.front().cylinders.allFinite();
+}
+
+/// As time_way() does.
+bool states_accelerations(const Trajectory& trajectory) {
+  return !trajectory.points.empty() && trajectory.points.front().accelerations.allFinite();
 }
 
 void append(std::string& csv, const Eigen::Vector3d& values) {
@@ -33,14 +40,21 @@ Eigen::Vector3d read_vector(JsonObject& object, const std::string& key) {
 DigPhase read_phase(JsonObject& object) {
   const std::string text = object.text("phase");
   for (const DigPhase phase :
-       {DigPhase::approach, DigPhase::penetrate, DigPhase::drag, DigPhase::scoop, DigPhase::lift}) {
+       {DigPhase::approach, DigPhase::penetrate, DigPhase::drag, DigPhase::scoop, DigPhase::lift,
+        DigPhase::swing, DigPhase::dump, DigPhase::back}) {
     if (text == name(phase)) return phase;
   }
   object.fail("phase", "is " + excavplan::quoted(text) +
-                           ", must be approach, penetrate, drag, scoop or lift");
+                           ", must be approach, penetrate, drag, scoop, lift, swing, dump or back");
 }
 
-TrajectoryPoint read_point(JsonObject object, bool with_cylinders) {
+/// What the points of a file state.
+struct Stated {
+  bool cylinders = false;
+  bool accelerations = false;
+};
+
+TrajectoryPoint read_point(JsonObject object, const Stated& stated) {
   TrajectoryPoint point;
   point.time = object.number("time_s", 0.0);
   point.phase = read_phase(object);
@@ -48,9 +62,14 @@ TrajectoryPoint read_point(JsonObject object, bool with_cylinders) {
   point.rates = read_vector(object, "rates_rad_per_s");
   const std::vector<double> tip = object.numbers("tip_m", 2);
   point.bucket = {tip[0], tip[1], object.number("bucket_angle_rad")};
-  if (with_cylinders) {
+  if (stated.cylinders) {
     point.cylinders = read_vector(object, "cylinders_m");
     point.cylinder_speeds = read_vector(object, "cylinder_speeds_m_per_s");
+  }
+  if (stated.accelerations) {
+    point.accelerations = read_vector(object, "accelerations_rad_per_s2");
+    point.swing = {object.number("swing_rad"), object.number("swing_rad_per_s"),
+                   object.number("swing_rad_per_s2")};
   }
   object.done();
   return point;
@@ -78,6 +97,7 @@ void check_order(const JsonObject& file, const std::vector<TrajectoryPoint>& poi
 
 std::string to_csv(const Trajectory& trajectory) {
   const bool with_cylinders = states_cylinders(trajectory);
+  const bool with_accelerations = states_accelerations(trajectory);
   std::string csv =
       "time_s,phase,boom_rad,arm_rad,bucket_rad,tip_x_m,tip_z_m,bucket_angle_rad,"
       "boom_rad_per_s,arm_rad_per_s,bucket_rad_per_s";
@@ -85,6 +105,11 @@ std::string to_csv(const Trajectory& trajectory) {
     csv +=
         ",boom_cylinder_m,arm_cylinder_m,bucket_cylinder_m,"
         "boom_cylinder_m_per_s,arm_cylinder_m_per_s,bucket_cylinder_m_per_s";
+  }
+  if (with_accelerations) {
+    csv +=
+        ",boom_rad_per_s2,arm_rad_per_s2,bucket_rad_per_s2,"
+        "swing_rad,swing_rad_per_s,swing_rad_per_s2";
   }
   csv += '\n';
   for (const TrajectoryPoint& point : trajectory.points) {
@@ -96,6 +121,10 @@ std::string to_csv(const Trajectory& trajectory) {
       append(csv, point.cylinders);
       append(csv, point.cylinder_speeds);
     }
+    if (with_accelerations) {
+      append(csv, point.accelerations);
+      append(csv, {point.swing.angle, point.swing.rate, point.swing.acceleration});
+    }
     csv += '\n';
   }
   return csv;
@@ -103,10 +132,12 @@ std::string to_csv(const Trajectory& trajectory) {
 
 std::string to_json(const Trajectory& trajectory) {
   const bool with_cylinders = states_cylinders(trajectory);
-  require_storable({{"machine", trajectory.machine}}, "trajectory");
+  const bool with_accelerations = states_accelerations(trajectory);
+  const nlohmann::ordered_json joints = robot_joints_json(trajectory.robot_joints);
+  require_storable({{"machine", trajectory.machine}, {"robot_joints", joints}}, "trajectory");
   std::string json = "{\n \"format\": \"" + std::string(format) +
                      "\",\n \"version\": 1,\n \"machine\": " + json_text(trajectory.machine) +
-                     ",\n \"points\": [";
+                     ",\n \"robot_joints\": " + json_text(joints) + ",\n \"points\": [";
   const char* separator = "\n  ";
   for (const TrajectoryPoint& point : trajectory.points) {
     nlohmann::ordered_json object = {{"time_s", point.time},
@@ -119,6 +150,12 @@ std::string to_json(const Trajectory& trajectory) {
       object["cylinders_m"] = list(point.cylinders);
       object["cylinder_speeds_m_per_s"] = list(point.cylinder_speeds);
     }
+    if (with_accelerations) {
+      object["accelerations_rad_per_s2"] = list(point.accelerations);
+      object["swing_rad"] = point.swing.angle;
+      object["swing_rad_per_s"] = point.swing.rate;
+      object["swing_rad_per_s2"] = point.swing.acceleration;
+    }
     require_storable(object, "trajectory");
     json += std::exchange(separator, ",\n  ") + json_text(object);
   }
@@ -129,11 +166,18 @@ Trajectory load_trajectory(const std::string& path) {
   JsonObject file = JsonObject::open(path, format);
   Trajectory trajectory;
   trajectory.machine = file.text("machine");
+  if (file.has("robot_joints")) {
+    trajectory.robot_joints = read_robot_joints(file.object("robot_joints"));
+  }
   std::vector<JsonObject> points = file.objects("points");
-  const bool with_cylinders = !points.empty() && points.front().has("cylinders_m");
+  Stated stated;
+  if (!points.empty()) {
+    stated.cylinders = points.front().has("cylinders_m");
+    stated.accelerations = points.front().has("accelerations_rad_per_s2");
+  }
   trajectory.points.reserve(points.size());
   for (JsonObject& point : points) {
-    trajectory.points.push_back(read_point(std::move(point), with_cylinders));
+    trajectory.points.push_back(read_point(std::move(point), stated));
   }
   check_order(file, trajectory.points);
   file.done();

@@ -40,7 +40,10 @@ class Front {
     UrdfFront front;
     front.boom_pin = {(parts_[0].pin - swing_.pin).dot(forward_),
                       parts_[0].pin.z() - names_.ground};
-    if (swing_.joint) front.swing = swing_.joint->limits;
+    if (swing_.joint) {
+      front.swing = swing_.joint->limits;
+      front.swing_angle = {swing_.joint->name, swing_.axis.z() > 0.0 ? 1.0 : -1.0};
+    }
     for (std::size_t i = 0; i < 3; ++i) front.parts[i] = part(i);
     add_masses(front);
     return front;

@@ -24,7 +24,7 @@ struct UrdfNames {
 
 /// A joint and the links that it moves but the next does not, in the conventions of a Machine.
 struct UrdfPart {
-  UrdfAngle angle;
+  RobotJoint angle;
   UrdfLimits limits;    ///< its range in the angles of a Machine
   double length = 0.0;  ///< to the next pin or the tip [m]
   LinkMass mass;        ///< mass 0: the URDF states none
@@ -34,6 +34,7 @@ struct UrdfFront {
   Eigen::Vector2d boom_pin;       ///< x from the swing axis, z above the ground [m]
   std::array<UrdfPart, 3> parts;  ///< boom, arm, bucket
   UrdfLimits swing;
+  RobotJoint swing_angle;
 };
 
 /// @throws Error (bad_file) if a joint is missing or of a wrong kind, the order differs, or the

@@ -10,6 +10,7 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
+#include "machine/machine_reading.hpp"
 #include "machine/urdf_front.hpp"
 
 namespace excavplan {
@@ -77,7 +78,8 @@ json& at(json& value, const string& key) {
 json usual_machine(const UrdfFront& front) {
   json machine =
       parse_json("machines/zx120.json", read_file(find_data_file("machines/zx120.json")));
-  for (const char* key : {"format", "version", "name", "description", "cylinders", "data_sheet"}) {
+  for (const char* key :
+       {"format", "version", "name", "description", "cylinders", "data_sheet", "robot_joints"}) {
     machine.erase(key);
   }
   json bucket = machine["bucket"];
@@ -110,6 +112,8 @@ class FromUrdf {
     for (std::size_t i = 0; i < 3; ++i) add_part(front_.parts[i], words[i]);
     add("swing.speed_rad_per_s", front_.swing.velocity);
     add("swing.torque_n_m", front_.swing.effort);
+    said_.numbers["robot_joints"] = robot_joints_json(RobotJoints{
+        front_.parts[0].angle, front_.parts[1].angle, front_.parts[2].angle, front_.swing_angle});
     return std::move(said_);
   }
 
@@ -217,14 +221,16 @@ std::set<string> without(std::set<string> keys, const std::set<string>& others) 
 void warn_of_angles(const UrdfFront& front, std::vector<Warning>& warnings) {
   string text;
   for (std::size_t i = 0; i < 3; ++i) {
-    const UrdfAngle& angle = front.parts[i].angle;
+    const RobotJoint& angle = front.parts[i].angle;
     if (angle.sign > 0.0 && std::abs(angle.zero) < 1e-9) continue;
     text += (text.empty() ? "" : ", ") + string(words[i]) + " = " + (angle.sign < 0.0 ? "-" : "") +
-            angle.joint + (angle.zero < 0.0 ? " - " : " + ") + readable(std::abs(angle.zero), 6);
+            angle.name + (angle.zero < 0.0 ? " - " : " + ") + readable(std::abs(angle.zero), 6);
   }
   if (text.empty()) return;
-  warnings.push_back({"urdf_angles", "the angles of excavplan are not those of the URDF: " + text +
-                                         " rad; trajectories and results are in the former"});
+  warnings.push_back(
+      {"urdf_angles",
+       "the angles of excavplan are not those of the URDF: " + text +
+           " rad; of trajectories .yaml and .com3 are in the latter, all else in the former"});
 }
 
 }  // namespace
@@ -257,7 +263,6 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
   }
 
   UrdfDraft draft;
-  for (std::size_t i = 0; i < 3; ++i) draft.angles[i] = front.parts[i].angle;
   machine.merge_patch(said.numbers);
   add_sources(of_urdf, "URDF " + excavplan::quoted(tree.name), machine);
   add_sources(scaled, "ours: the zx120, scaled to the length of boom and arm", machine);

@@ -17,7 +17,6 @@ namespace excavplan {
 /// A URDF as a machine file.
 struct UrdfDraft {
   nlohmann::json json;  ///< of a machine file, with the source of each number
-  std::array<UrdfAngle, 3> angles;
   std::vector<Warning> warnings;
 };
 

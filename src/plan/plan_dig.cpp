@@ -477,7 +477,8 @@ void add_trajectory(const Task& task, DigPlan& plan) {
   const auto simulator =
       make_simulator(task.options.simulator, task.machine, task.soil, task.density.percent);
   const DigResult dig = checked_dig(*simulator, task.machine, task.ground, plan.path, unsettled);
-  plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, dig.torques);
+  plan.torques = dig.torques;
+  plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, plan.torques);
 }
 
 /// Takes back a dig that lifts next to nothing.

@@ -110,15 +110,18 @@ TEST(DigCycleSession, PlansOnTheGroundAsScanned) {
   EXPECT_EQ(json["path"]["start_x_m"], direct.dig->start_x);
 
   ASSERT_EQ(answer.motion.names.size(), 4U);
-  ASSERT_EQ(answer.motion.points.size(), answer.plan.trajectory.points.size());
+  const TrajectoryPoint& end = answer.plan.trajectory.points.back();
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(answer.motion.points.back().positions[i], end.joints[static_cast<int>(i)], 1e-9);
+  }
   double last = -1.0;
   for (const JointPoint& point : answer.motion.points) {
     EXPECT_GT(point.time, last);
     last = point.time;
     ASSERT_EQ(point.positions.size(), 4U);
-    EXPECT_EQ(point.positions[0], 0.0);
+    EXPECT_EQ(point.positions[3], 0.0);
     for (std::size_t i = 0; i < 3; ++i) {
-      EXPECT_LE(std::abs(point.velocities[i + 1]), machine.limits[i].speed);
+      EXPECT_LE(std::abs(point.velocities[i]), machine.limits[i].speed);
     }
   }
 }
@@ -224,22 +227,54 @@ TEST(DigCycleSession, AveragesOrganisedMessagesOfASensorThatStood) {
   }
 }
 
-TEST(DigCycleSession, SaysWhereTheMachineStandsOffTheStart) {
-  DigCycleSession session(settings_of());
+TEST(DigCycleSession, MotionBeginsWhereTheJointsStand) {
+  DigCycleSettings settings = settings_of();
+  RobotJoints& robot = settings.machine.robot_joints;
+  robot[1] = {"stick", -1.0, 0.4};
+  DigCycleSession session(settings);
   const auto stand = [&](const std::vector<double>& joints) {
     std::vector<std::pair<std::string, double>> named;
-    for (std::size_t i = 0; i < 4; ++i) named.emplace_back(opera_joint_names()[i], joints[i]);
+    for (std::size_t i = 0; i < 4; ++i) named.emplace_back(robot[i].name, joints[i]);
     send(session, joint_bytes(now, named), "/joint_states", joints_type);
   };
-  const std::vector<double> start = session.plan().motion.points.front().positions;
-  stand(start);
   CyclePlan plan = session.plan();
-  EXPECT_FALSE(has(plan.warnings, "far_from_start"));
+  EXPECT_TRUE(has(plan.warnings, "posture_unknown"));
+  const JointMotion above = plan.motion;
+  const std::vector<double> present = {-0.6, 0.4 - 1.6, 0.5, 0.7};
+  stand(present);
+  plan = session.plan();
   EXPECT_FALSE(has(plan.warnings, "posture_unknown"));
   EXPECT_TRUE(has(plan.warnings, "level_ground"));
-  stand({0.5, start[1], start[2], start[3]});
-  plan = session.plan();
-  ASSERT_TRUE(has(plan.warnings, "far_from_start"));
+  EXPECT_FALSE(has(plan.warnings, "no_motion"));
+  EXPECT_EQ(plan.motion.names[1], "stick");
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(plan.motion.points.front().positions[i], present[i], 1e-12) << i;
+    EXPECT_NEAR(plan.motion.points.back().positions[i], above.points.back().positions[i], 1e-9);
+  }
+  EXPECT_EQ(plan.motion.points.front().accelerations.size(), 4U);
+}
+
+TEST(DigCycleSession, SaysWhyThereIsNoMotion) {
+  DigCycleSettings settings = settings_of();
+  const JointLimits& boom = settings.machine.limits[0];
+  DigCycleSession session(settings);
+  const auto motion_from = [&](double boom_angle) {
+    std::vector<std::pair<std::string, double>> named;
+    const std::vector<double> joints = {boom_angle, 1.6, 0.5, 0.0};
+    for (std::size_t i = 0; i < 4; ++i) {
+      named.emplace_back(settings.machine.robot_joints[i].name, joints[i]);
+    }
+    send(session, joint_bytes(now, named), "/joint_states", joints_type);
+    return session.plan();
+  };
+  const CyclePlan at_limit = motion_from(boom.lower - 0.01);
+  EXPECT_FALSE(has(at_limit.warnings, "no_motion"));
+  EXPECT_EQ(at_limit.motion.points.front().positions[0], boom.lower);
+  const CyclePlan beyond = motion_from(boom.lower - 0.3);
+  ASSERT_TRUE(has(beyond.warnings, "no_motion"));
+  EXPECT_TRUE(beyond.plan.dig);
+  EXPECT_FALSE(beyond.trustworthy);
+  EXPECT_TRUE(beyond.motion.points.empty());
 }
 
 TEST(DigCycleSession, MachineInViewNeedsJointStates) {

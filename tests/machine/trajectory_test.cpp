@@ -899,9 +899,9 @@ TEST(Trajectory, JsonNamesKeyValueAndRuleOfWhatItRefuses) {
             "points: time_s must rise, point 5 does not");
   EXPECT_EQ(complaint([](json& t) { t["points"][60]["phase"] = "approach"; }),
             "points: phases must be in order, point 61 goes back to approach");
-  EXPECT_NE(complaint([](json& t) {
-              t["points"][2]["phase"] = "swing";
-            }).find("phase: is 'swing', must be approach, penetrate, drag, scoop or lift"),
+  EXPECT_NE(complaint([](json& t) { t["points"][2]["phase"] = "turn"; })
+                .find("phase: is 'turn', must be approach, penetrate, drag, scoop, lift, swing, "
+                      "dump or back"),
             std::string::npos);
   EXPECT_NE(complaint([](json& t) {
               t["points"][2].erase("cylinders_m");

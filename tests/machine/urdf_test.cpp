@@ -66,8 +66,9 @@ TEST_F(Urdf, GivesTheGeometryOfThePublicModel) {
     EXPECT_NEAR(m.limits[i].upper, own.limits[i].upper, 1e-4);
     EXPECT_EQ(m.limits[i].torque, own.limits[i].torque) << "a placeholder was believed";
     EXPECT_EQ(m.links[i].mass, own.links[i].mass);
-    EXPECT_EQ((*file.urdf_angles)[i].sign, 1.0);
-    EXPECT_EQ((*file.urdf_angles)[i].zero, 0.0);
+    EXPECT_EQ(m.robot_joints[i].name, own.robot_joints[i].name);
+    EXPECT_EQ(m.robot_joints[i].sign, 1.0);
+    EXPECT_EQ(m.robot_joints[i].zero, 0.0);
   }
   EXPECT_EQ(m.limits[0].speed, own.limits[0].speed) << "6.16 rad/s was believed";
   EXPECT_EQ(m.limits[1].speed, 0.5);
@@ -180,13 +181,13 @@ TEST_F(Urdf, ReachesWhereUrdfdomDoesForDrawnMachinesAndJoints) {
       JointAngles joints;
       std::map<std::string, double> angles;
       for (int i = 0; i < 3; ++i) {
-        const UrdfAngle& angle = (*file.urdf_angles)[static_cast<std::size_t>(i)];
+        const RobotJoint& angle = file.machine.robot_joints[static_cast<std::size_t>(i)];
         const JointLimits& limits = file.machine.limits[static_cast<std::size_t>(i)];
         joints[i] = random.uniform(limits.lower, limits.upper);
-        angles[angle.joint] = angle.sign * (joints[i] - angle.zero);
-        const auto& own = *model->getJoint(angle.joint)->limits;
-        EXPECT_GE(angles[angle.joint], own.lower - 1e-9);
-        EXPECT_LE(angles[angle.joint], own.upper + 1e-9);
+        angles[angle.name] = angle.from_ours(joints[i]);
+        const auto& own = *model->getJoint(angle.name)->limits;
+        EXPECT_GE(angles[angle.name], own.lower - 1e-9);
+        EXPECT_LE(angles[angle.name], own.upper + 1e-9);
       }
       const Eigen::Vector3d tip = tip_by_urdfdom(*model, angles, "lt");
       const Vector2d ours = link_positions(file.machine, joints).tip;
@@ -209,7 +210,7 @@ TEST_F(Urdf, SignsAndZerosFollowTheAxes) {
   joints[2].xyz = "3.25 0 3.25";  // zero is 45 deg up
   joints[2].limit = "lower=\"-0.26\" upper=\"1.86\"";
   const MachineFile file = read(urdf_of(joints));
-  const auto& angles = *file.urdf_angles;
+  const RobotJoints& angles = file.machine.robot_joints;
   EXPECT_EQ(angles[0].sign, -1.0);
   EXPECT_NEAR(angles[0].zero, -0.7853981633974483, 1e-12);
   EXPECT_EQ(angles[1].sign, 1.0);

@@ -20,7 +20,7 @@ import time
 import unittest
 
 NODE, GENERATED, BIN, DATA = sys.argv[1:5]
-JOINTS = ["swing_joint", "boom_joint", "arm_joint", "bucket_joint"]
+JOINTS = ["boom_joint", "arm_joint", "bucket_joint", "swing_joint"]
 PATIENCE = 60.0  # [s]
 
 
@@ -197,8 +197,8 @@ class Master(unittest.TestCase):
         self.assertEqual(times[0], 0)
         self.assertTrue(all(a < b for a, b in zip(times, times[1:])))
         for point in trajectory.points:
-            self.assertEqual((point.positions[0], point.velocities[0]), (0.0, 0.0))
-            for name, at, rate in zip(JOINTS[1:], point.positions[1:], point.velocities[1:]):
+            self.assertEqual((point.positions[3], point.velocities[3]), (0.0, 0.0))
+            for name, at, rate in zip(JOINTS[:3], point.positions, point.velocities):
                 limits = limits_of[name[:-len("_joint")]]
                 self.assertGreaterEqual(at, limits["lower_rad"] - 1e-9)
                 self.assertLessEqual(at, limits["upper_rad"] + 1e-9)
@@ -312,7 +312,7 @@ class Master(unittest.TestCase):
 
     def test_refuses_bad_parameters(self):
         for name, value, told in (("scans", 0, "scans is 0"), ("scan", 3, "is not known"),
-                                  ("soil", "snow", "snow"), ("joint_names", ["a"], "4: swing"),
+                                  ("soil", "snow", "snow"), ("joint_names", ["a"], "4: boom"),
                                   ("scans", "many", "not of its type")):
             rospy.set_param("/bad/" + name, value)
             done = subprocess.run([NODE, "__name:=bad"], stdout=subprocess.PIPE,

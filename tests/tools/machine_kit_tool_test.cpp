@@ -22,7 +22,7 @@ TEST_F(Tools, FromAUrdfToAPlan) {
   expect_keys(kit, "number",
               {"reach_m/ground", "reach_m/depth", "reach_m/height", "digging_force_kn/bucket",
                "digging_force_kn/arm", "capacity_m3/struck", "capacity_m3/heaped",
-               "urdf_angles/boom/sign", "urdf_angles/boom/zero_rad", "soils/0/entries",
+               "robot_joints/boom/sign", "robot_joints/boom/zero_rad", "soils/0/entries",
                "soils/0/evaluations", "soils/0/example/payload_mass_kg", "wall_time_s"});
   for (const char* file :
        {"machine.json", "reach.svg", "laws/digger-loam.json", "libraries/digger-loam-cycle.json"}) {

@@ -70,6 +70,74 @@ TEST_F(Tools, TrajectoryIsJsonIfItsFileEndsInJson) {
   EXPECT_EQ(content_of(capital), content_of(file));
 }
 
+TEST_F(Tools, TrajectoryBeginsAtThePresentJointsAndGoesOverTheCycle) {
+  const std::string file = folder.file("cycle.json");
+  const json result =
+      answer("plan-path", {"--density", "40", "--joints", "-40deg,90deg,40deg,0.5", "--whole-cycle",
+                           "--rate", "50Hz", "--trajectory", file});
+  const Trajectory motion = load_trajectory(file);
+  EXPECT_NEAR(motion.points.front().joints[1], 1.5707963267948966, 1e-15);
+  EXPECT_EQ(motion.points.front().swing.angle, 0.5);
+  EXPECT_EQ(motion.points.back().phase, DigPhase::back);
+  EXPECT_NEAR(motion.points[1].time, 0.02, 1e-15);
+  EXPECT_EQ(result["trajectory"]["points"], motion.points.size());
+  EXPECT_EQ(result["trajectory"]["duration_s"], motion.duration());
+}
+
+TEST_F(Tools, TrajectoryIsAMessageByItsEndingOrItsFormat) {
+  const std::string yaml = folder.file("dig.YML"), other = folder.file("dig.csv");
+  answer("plan-path", {"--density", "40", "--trajectory", yaml});
+  EXPECT_EQ(content_of(yaml).rfind("header: ", 0), 0U);
+  answer("plan-path", {"--density", "40", "--trajectory", other, "--trajectory-format", "yaml"});
+  EXPECT_EQ(content_of(other), content_of(yaml));
+  const std::string com3 = folder.file("dig.com3");
+  answer("plan-path", {"--density", "40", "--trajectory", com3});
+  EXPECT_EQ(content_of(com3).rfind("joint_name: [\"boom_joint\"", 0), 0U);
+}
+
+TEST_F(Tools, TrajectoryOnStandardOutputStandsAlone) {
+  const std::string file = folder.file("dig.csv");
+  answer("plan-path", {"--density", "40", "--trajectory", file});
+  const ProgramResult run = run_program("plan-path", {"--density", "40", "--trajectory", "-"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out, content_of(file));
+  EXPECT_NE(run.err.find("payload"), std::string::npos);
+  const ProgramResult both =
+      run_program("plan-path", {"--density", "40", "--trajectory", "-", "--json"});
+  EXPECT_EQ(both.code, 2);
+  EXPECT_NE(both.err.find("--json and --trajectory - are both for standard output"),
+            std::string::npos);
+}
+
+TEST_F(Tools, TrajectoryThatCannotBeRunIsRefusedBeforeTheWork) {
+  const std::string file = folder.file("dig.csv");
+  const auto complaint = [&](const Words& words) {
+    const ProgramResult run =
+        run_program("plan-path", Words{"--density", "40", "--search"} + words);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_FALSE(fs::exists(file));
+    return run.err;
+  };
+  const std::vector<std::pair<Words, std::string>> cases = {
+      {{"--trajectory", folder.file("dig.xml")}, ".csv or .json or .yaml or .yml or .com3"},
+      {{"--trajectory", file, "--rate", "0"}, "--rate [1/s] is 0, must be in 10 .. 500"},
+      {{"--trajectory", file, "--rate", "1e9"}, "--rate [1/s] is 1000000000, must be in 10 .. 500"},
+      {{"--trajectory", file, "--max-jerk", "0"}, "--max-jerk is 0, must be at least 0.1 rad/s^3"},
+      {{"--trajectory", file, "--joints", "1,2"}, "--joints: '1,2' is not BOOM,ARM,BUCKET"},
+      {{"--trajectory", file, "--joints", "1,2,nan"}, "--joints: 'nan' is not a number"},
+      {{"--trajectory", file, "--joints", "80deg,1,0"}, "--joints: boom [rad] is 1.396"}};
+  for (const auto& [words, text] : cases) {
+    EXPECT_NE(complaint(words).find(text), std::string::npos) << text;
+  }
+  const ProgramResult ground = run_program(
+      "plan-path", {"--density", "40", "--trajectory", file, "--joints", "40deg,30deg,0"});
+  EXPECT_EQ(ground.code, 2);
+  EXPECT_NE(ground.err.find("the ground is in the way: approach: the machine would be 5.1 m in the "
+                            "ground at x = "),
+            std::string::npos)
+      << ground.err;
+}
+
 TEST_F(Tools, ALinkIsWrittenThrough) {
   const std::string target = folder.write("target.csv", "old");
   const std::string link = folder.file("link.csv");

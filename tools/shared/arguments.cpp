@@ -260,6 +260,8 @@ void Arguments::require_ending(const std::vector<std::string>& endings) {
   entries_.back().endings = endings;
 }
 
+void Arguments::allow_standard_output() { entries_.back().standard_output = true; }
+
 void Arguments::only_if(const Use& use, const std::function<void()>& declare) {
   const std::size_t first = entries_.size();
   declare();

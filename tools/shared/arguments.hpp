@@ -61,10 +61,11 @@ class Arguments {
     bool positional = false;
     bool required = false;
     Assign assign;
-    bool output = false;    ///< a file to write
-    bool input = false;     ///< a file to read, or "-" for standard input
-    bool place = false;     ///< a file or folder to write, which the tool checks
-    bool repeated = false;  ///< may be given several times, `assign` is called for each
+    bool output = false;           ///< a file to write
+    bool standard_output = false;  ///< "-" is standard output, of a file to write
+    bool input = false;            ///< a file to read, or "-" for standard input
+    bool place = false;            ///< a file or folder to write, which the tool checks
+    bool repeated = false;         ///< may be given several times, `assign` is called for each
     Beside beside = {};
     std::vector<Use> uses = {};             ///< all must hold
     std::vector<std::string> endings = {};  ///< of the name of a file to write; empty: any
@@ -128,11 +129,10 @@ class Arguments {
   void report(std::optional<std::string>& path);
   void threads(std::uint64_t& count, const std::string& note);
 
-  /// The option must be given.
-  void require(const std::string& name);
-
+  void require(const std::string& name);  ///< the option must be given
   /// The file of the last option must end so, in letters of either size; "" is no ending.
   void require_ending(const std::vector<std::string>& endings);
+  void allow_standard_output();  ///< "-" as the file of the last option, without --json
 
   /// Those that `declare` declares have an effect only if this holds. May be nested.
   void only_if(const Use& use, const std::function<void()>& declare);

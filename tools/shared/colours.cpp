@@ -45,6 +45,10 @@ Style phase_style(DigPhase phase) {
       return {colours::blue, 1.6, "none", 1.0, {5.0, 1.5}};
     case DigPhase::scoop:
       return {colours::green, 1.6, "none", 1.0, {1.6, 1.4}};
+    case DigPhase::swing:
+    case DigPhase::dump:
+    case DigPhase::back:
+      return {colours::grey, 1.2};
     case DigPhase::lift:
       return {colours::purple, 1.2, "none", 1.0, {5.0, 1.5, 1.2, 1.5}};
   }
@@ -61,6 +65,9 @@ const char* phase_grey(DigPhase phase) {
       return "#d0d0d0";
     case DigPhase::approach:
     case DigPhase::lift:
+    case DigPhase::swing:
+    case DigPhase::dump:
+    case DigPhase::back:
       break;
   }
   return "#f0f0f0";

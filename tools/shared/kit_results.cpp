@@ -32,11 +32,12 @@ DigObjective kit_objective(const GoalInputs& inputs, const Machine& machine) {
   return feasible_objective(machine, objective);
 }
 
-nlohmann::ordered_json angles_json(const std::array<UrdfAngle, 3>& angles) {
+nlohmann::ordered_json joints_json(const RobotJoints& joints) {
+  constexpr std::array<const char*, 4> words = {"boom", "arm", "bucket", "swing"};
   nlohmann::ordered_json json;
-  for (const Joint joint : {Joint::boom, Joint::arm, Joint::bucket}) {
-    const UrdfAngle& angle = angles[static_cast<std::size_t>(joint)];
-    json[name(joint)] = {{"joint", angle.joint}, {"sign", angle.sign}, {"zero_rad", angle.zero}};
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const RobotJoint& joint = joints[i];
+    json[words[i]] = {{"name", joint.name}, {"sign", joint.sign}, {"zero_rad", joint.zero}};
   }
   return json;
 }

@@ -21,7 +21,7 @@ namespace excavplan::tools {
 /// The goal of the command line; a dump height that was not given is one that the machine reaches.
 DigObjective kit_objective(const GoalInputs& inputs, const Machine& machine);
 
-nlohmann::ordered_json angles_json(const std::array<UrdfAngle, 3>& angles);
+nlohmann::ordered_json joints_json(const RobotJoints& joints);
 
 /// Names and files between commas. @throws Error (bad_input) or (bad_file)
 std::vector<SoilKind> soils_named(const std::string& list);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -126,6 +127,17 @@ std::string search_note(const DrawnPlan& drawn, bool is_uncertain) {
   return note;
 }
 
+/// Warns of pictures of an earlier plan, which must not be taken for that of this ground, which has
+/// none.
+void warn_of_old(const Plots& plots, Outcome& outcome) {
+  for (const Plots::File& plot : plots.files) {
+    std::error_code unknown;
+    if (!std::filesystem::exists(plot.file, unknown)) continue;
+    outcome.warnings.push_back(
+        {"plot_not_written", plot.file + ": is of an earlier run, as there is no dig to draw"});
+  }
+}
+
 }  // namespace
 
 Figure search_figure(const DrawnPlan& drawn) {
@@ -220,6 +232,8 @@ void draw_plan(const Plots& plots, const std::optional<std::string>& report, Dra
     drawn.dug = &dug;
     write_plots(plots, plan_figures({}, {}), drawn, outcome.lines, outcome.warnings);
     section = to_svg(lay_out(section_figure(dug)));
+  } else if (!plan.stopped) {
+    warn_of_old(plots, outcome);
   }
   if (!report) return;
   outcome.report = titled(plan_report(drawn.machine, plan, site, dig), *report, title, section);

@@ -3,7 +3,6 @@
 #include "shared/plan_results.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include <excavplan/error.hpp>
@@ -192,22 +191,6 @@ nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& densi
   if (plan.look_up) json.update(look_up_json(*plan.look_up));
   if (uncertain) json.update(spread_json(plan.spread, density.sd_percent));
   return json;
-}
-
-void withdraw(const std::optional<std::string>& trajectory, const Plots& plots,
-              const Machine& machine, Outcome& outcome) {
-  if (trajectory) write_trajectory(*trajectory, {machine.name, {}});
-  for (const Plots::File& plot : plots.files) {
-    std::error_code unknown;
-    if (!std::filesystem::exists(plot.file, unknown)) continue;
-    outcome.warnings.push_back(
-        {"plot_not_written", plot.file + ": is of an earlier run, as there is no dig to draw"});
-  }
-}
-
-void write_trajectory(const std::string& file, const Trajectory& trajectory) {
-  const bool json = small_letters(std::filesystem::path(file).extension().string()) == ".json";
-  write_file(file, json ? to_json(trajectory) : to_csv(trajectory));
 }
 
 std::vector<std::string> plan_lines(const DigPlan& plan, const GroundDensity& density,

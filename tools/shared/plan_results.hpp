@@ -43,14 +43,6 @@ std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& inpu
 nlohmann::ordered_json plan_json(const DigPlan& plan, const GroundDensity& density,
                                  const DigObjective& objective);
 
-/// What an earlier plan left in these files must not be taken for that of this ground, which has
-/// none.
-void withdraw(const std::optional<std::string>& trajectory, const Plots& plots,
-              const Machine& machine, Outcome& outcome);
-
-/// CSV, or JSON if the file's name ends so.
-void write_trajectory(const std::string& file, const Trajectory& trajectory);
-
 std::vector<std::string> plan_lines(const DigPlan& plan, const GroundDensity& density,
                                     const std::string& soil, const DigObjective& objective);
 

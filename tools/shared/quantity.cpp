@@ -22,13 +22,14 @@ struct QuantityInfo {
   const char* kind;
   const char* examples;
 };
-constexpr std::array<QuantityInfo, 10> quantities = {{
+constexpr std::array<QuantityInfo, 11> quantities = {{
     {Quantity::length, "LENGTH", "m", "a length", "0.05, 5cm or 50mm"},
     {Quantity::angle, "ANGLE", "rad", "an angle", "0.785 or 45deg"},
     {Quantity::area, "AREA", "m^2", "an area", "0.03 or 300cm2"},
     {Quantity::volume, "VOLUME", "m^3", "a volume", "0.4 or 400L"},
     {Quantity::mass, "MASS", "kg", "a mass", "800 or 0.8t"},
     {Quantity::time, "TIME", "s", "a time", "90, 90s or 1.5min"},
+    {Quantity::frequency, "FREQUENCY", "Hz", "a frequency", "100 or 100Hz"},
     {Quantity::energy, "ENERGY", "J", "an energy", "80000 or 80kJ"},
     {Quantity::density, "DENSITY", "kg/m^3", "a density", "1500 or 1.5t/m3"},
     {Quantity::percent, "PERCENT", "%", "a percentage", "40 or 40%"},
@@ -40,7 +41,7 @@ struct Unit {
   Quantity quantity;
   double factor;
 };
-constexpr std::array<Unit, 27> units = {{
+constexpr std::array<Unit, 28> units = {{
     {"m", Quantity::length, 1.0},         {"cm", Quantity::length, 0.01},
     {"mm", Quantity::length, 0.001},      {"rad", Quantity::angle, 1.0},
     {"deg", Quantity::angle, pi / 180.0}, {"m2", Quantity::area, 1.0},
@@ -54,7 +55,7 @@ constexpr std::array<Unit, 27> units = {{
     {"MJ", Quantity::energy, 1e6},        {"kg/m3", Quantity::density, 1.0},
     {"kg/m^3", Quantity::density, 1.0},   {"t/m3", Quantity::density, 1e3},
     {"t/m^3", Quantity::density, 1e3},    {"g/cm3", Quantity::density, 1e3},
-    {"%", Quantity::percent, 1.0},
+    {"%", Quantity::percent, 1.0},        {"Hz", Quantity::frequency, 1.0},
 }};
 
 const QuantityInfo& info(Quantity quantity) {

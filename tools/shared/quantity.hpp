@@ -19,7 +19,19 @@
 namespace excavplan::tools {
 
 /// What a number on the command line measures. A bare number is in the SI unit.
-enum class Quantity { length, angle, area, volume, mass, time, energy, density, percent, ratio };
+enum class Quantity {
+  length,
+  angle,
+  area,
+  volume,
+  mass,
+  time,
+  frequency,
+  energy,
+  density,
+  percent,
+  ratio
+};
 
 const char* placeholder(Quantity quantity);  ///< "LENGTH"
 const char* unit(Quantity quantity);         ///< "m"

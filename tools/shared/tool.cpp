@@ -232,7 +232,7 @@ void assign(const Arguments::Entry& entry, const ParsedWords::Given& given, Stan
     if (!entry.positional && text.rfind("--", 0) == 0) {
       usage_error(name + " needs a value, got " + text);
     }
-    if ((entry.output || entry.place) && file_in(entry, text) == "-") {
+    if ((entry.output || entry.place) && !entry.standard_output && file_in(entry, text) == "-") {
       usage_error(name + ": standard output is no file to write, ./- is one of that name");
     }
     entry.assign(entry.input && text == "-" ? input.path() : text);
@@ -247,6 +247,7 @@ std::vector<UsedFile> used_files(const std::vector<Arguments::Entry>& entries,
     const bool writes = entry.output || entry.place;
     if (!writes && !entry.input) continue;
     for (const std::string& text : words.of_entry[i].texts) {
+      if (entry.standard_output && text == "-") continue;
       files.push_back({shown_name(entry), file_in(entry, text), writes});
       if (!entry.beside) continue;
       for (const std::string& name : entry.beside(text)) {
@@ -301,10 +302,21 @@ void assign(const std::vector<Arguments::Entry>& entries, const ParsedWords& wor
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (!entries[i].output) continue;
     for (const std::string& text : words.of_entry[i].texts) {
+      if (entries[i].standard_output && text == "-") continue;
       const std::string file = file_in(entries[i], text);
       require_ending(entries[i], file);
       require_writable(file);
     }
+  }
+}
+
+/// Standard output holds one thing.
+void refuse_beside_json(const std::vector<Arguments::Entry>& entries, const ParsedWords& words) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto& texts = words.of_entry[i].texts;
+    if (!entries[i].standard_output || texts.empty() || texts.front() != "-") continue;
+    usage_error("--json and " + shown_name(entries[i]) +
+                " - are both for standard output: write one of them to a file");
   }
 }
 
@@ -421,7 +433,8 @@ void print_outcome(const About& about, const Common& common, const Outcome& outc
   } else if (!common.quiet) {
     for (const std::string& line : outcome.lines) text += shown(input, line) + '\n';
   }
-  print(text);
+  if (outcome.output) std::cerr << text;
+  print(outcome.output.value_or(text));
 }
 
 /// What the files of machines are not sure of, in every tool that has --machine.
@@ -463,6 +476,7 @@ int run(int argc, const char* const* argv, const About& about,
   const std::string settings = add_settings(arguments.entries(), about, input, words);
   const Signals signals(about.can_stop_early);
   assign(arguments.entries(), words, input);
+  if (common.json) refuse_beside_json(arguments.entries(), words);
   Console console(common.quiet, ::isatty(STDERR_FILENO) == 1, signals);
   if (!settings.empty()) console.note("settings from " + input.named(settings));
   Outcome outcome = work(console);

@@ -57,6 +57,8 @@ struct Outcome {
   /// without effect (Arguments::only_if()) too. NaN becomes null.
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   std::vector<std::string> lines;  ///< printed without --json
+  /// Printed in their place, which is then standard error: Entry::standard_output.
+  std::optional<std::string> output = std::nullopt;
   std::vector<Warning> warnings;
   bool trustworthy = true;
   bool stopped_early = false;

@@ -11,8 +11,8 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/controller/joint_motion.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/machine/joint_motion.hpp>
+#include <excavplan/plan/plan_motion.hpp>
 #include <excavplan/survey/density_estimate.hpp>
 
 /// @file
@@ -31,7 +31,7 @@ struct RobotMessage {
 
 /// Settings of a session.
 struct DigCycleSettings {
-  Machine machine;                    ///< that digs
+  Machine machine;                    ///< that digs; its robot_joints name the joint states
   SoilKind soil;                      ///< kind of the ground
   DensityLaw law;                     ///< of digs of this machine in this soil
   GroundDensity density{50.0, 25.0};  ///< until one was estimated
@@ -40,7 +40,6 @@ struct DigCycleSettings {
   /// Puts the points, or the site frame of /tf, into that of the machine: origin on the swing axis
   /// at ground level, x forward, z up.
   Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();
-  JointNames joint_names = opera_joint_names();  ///< of joint states and of the motion
   /// Points of boom, arm and bucket are left out, by the joint states; needs scans in the frame of
   /// the machine.
   bool machine_in_view = false;
@@ -48,7 +47,9 @@ struct DigCycleSettings {
   /// for the soil that fell back.
   bool digs_as_planned = true;
   DensityOptions estimate = {};  ///< `dug_path` is set by the session
-  PlanOptions plan = {};         ///< how the next dig is planned
+  PlanOptions plan = {};         ///< how the next dig is planned; its cycle is that of the motion
+  bool whole_cycle = false;      ///< as CycleWayOptions::whole_cycle
+  MotionOptions motion = {};     ///< of the trajectory that is sent
 };
 
 /// Settings of a machine in a soil by a law, each a shipped name or a file.
@@ -82,11 +83,11 @@ struct CyclePlan {
   GroundDensity density{0.0};     ///< that it is for
   bool density_is_stated = true;  ///< that of the settings: no dig gave one to trust
   bool previous_density = false;  ///< the last estimate was not to be trusted and is not used
-  JointMotion motion;             ///< of the plan; without points if there is no dig
+  JointMotion motion;             ///< from where the joints stand; without points if there is none
   bool trustworthy = true;        ///< false after a warning that ends trust
   /// Of the plan, of the ground, and previous_density (the last estimate was not trustworthy),
-  /// level_ground (no scan yet), far_from_start (the motion begins over 0.05 rad from where the
-  /// joints stand; that is ours), posture_unknown.
+  /// level_ground (no scan yet), posture_unknown (the motion begins above the dig), no_motion *
+  /// (the ground is in the way, or a joint stands beyond its limits).
   std::vector<Warning> warnings;
 };
 

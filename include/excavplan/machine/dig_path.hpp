@@ -19,8 +19,8 @@
 
 namespace excavplan {
 
-/// The parts of a dig, in their order.
-enum class DigPhase { approach, penetrate, drag, scoop, lift };
+/// The parts of a working cycle, in their order; those of a dig end with the lift.
+enum class DigPhase { approach, penetrate, drag, scoop, lift, swing, dump, back };
 /// "penetrate", as in files and messages.
 const char* name(DigPhase phase);
 

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <excavplan/machine/cylinders.hpp>
+#include <excavplan/machine/robot_joint.hpp>
 
 /// @file
 /// The excavator in its boom plane: x forward from the swing axis, z up from the ground.
@@ -112,6 +113,7 @@ struct Machine {
   std::optional<Body> body;              ///< nothing: the machine stands as if bolted down
   std::optional<Swing> swing;            ///< nothing if the file does not state it
   std::optional<Engine> engine;          ///< nothing: its power sets no limit
+  RobotJoints robot_joints = {{{"boom"}, {"arm"}, {"bucket"}, {"swing"}}};  ///< of its controller
 
   /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }
@@ -120,7 +122,6 @@ struct Machine {
 };
 
 /// Reads a machine file (docs/formats.md); every number in it names its source.
-///
 /// @throws Error (bad_file) naming file, key, value and rule; among the rules: lengths and masses
 ///         positive, limits in order, arm limits in 0 .. pi (the elbow stays above), profile
 ///         convex, counter-clockwise, tip at (bucket_length, 0), length of every cylinder strictly

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,20 +26,11 @@ struct DataSheet {
   std::optional<double> height;           ///< largest height of the tip [m]
 };
 
-/// How the angle of a joint follows from that of a URDF: sign * angle + zero.
-struct UrdfAngle {
-  std::string joint;  ///< its name in the URDF
-  double sign = 1.0;  ///< -1 or 1
-  double zero = 0.0;  ///< [rad]
-};
-
 /// A machine, and what its file says besides.
 struct MachineFile {
   Machine machine;       ///< as load_machine() reads it
   DataSheet data_sheet;  ///< what of it the file states
   std::string text;      ///< of a machine file of ours that gives the same machine
-  /// Of boom, arm and bucket; nothing if the file is no URDF.
-  std::optional<std::array<UrdfAngle, 3>> urdf_angles = std::nullopt;
   /// Of a URDF: urdf_scaled (numbers that neither it nor the JSON beside it states are those of the
   /// zx120, scaled), urdf_placeholder (numbers of it that no machine of this size has, and that
   /// were replaced), urdf_angles (its angles are not those of ours).

@@ -10,6 +10,13 @@
 
 namespace excavplan {
 
+/// Of the upper structure, about z, positive to the left; 0 where the boom plane is y = 0.
+struct SwingState {
+  double angle = 0.0;         ///< [rad]
+  double rate = 0.0;          ///< [rad/s]
+  double acceleration = 0.0;  ///< [rad/s^2]
+};
+
 /// The machine at one time.
 struct TrajectoryPoint {
   double time = 0.0;                         ///< [s], starts at 0, strictly increasing
@@ -21,12 +28,17 @@ struct TrajectoryPoint {
   /// state its cylinders.
   Eigen::Vector3d cylinders = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Vector3d cylinder_speeds = cylinders;  ///< [m/s]; NaN likewise
+  /// [rad/s^2]; NaN in a trajectory of time_dig_path(), which jump at its points.
+  JointAngles accelerations = JointAngles::Constant(std::numeric_limits<double>::quiet_NaN());
+  SwingState swing;  ///< at rest at 0 in a trajectory of time_dig_path()
 };
 
-/// A timed dig path.
+/// A dig path or a way (motion.hpp) with its times.
 struct Trajectory {
   std::string machine;                  ///< its name
   std::vector<TrajectoryPoint> points;  ///< in the order of time
+  /// Machine::robot_joints; time_way() leaves the name of one that is not there empty.
+  RobotJoints robot_joints = Machine{}.robot_joints;
   /// Of all points [s].
   double duration() const { return points.empty() ? 0.0 : points.back().time; }
   double dig_duration() const;  ///< of penetrate, drag and scoop [s]
@@ -64,8 +76,9 @@ Trajectory time_dig_path(const Machine& machine, const DigPath& path,
                          const TrajectoryOptions& options = {},
                          const std::vector<JointAngles>& torques = {});
 
-/// CSV (`docs/formats.md#trajectory`): time, phase, joints, tip, floor angle, rates, and the
-/// cylinders if the machine states them. Numbers do not depend on the locale.
+/// CSV (`docs/formats.md#trajectory`): time, phase, joints, tip, floor angle, rates, the cylinders
+/// if the machine states them, and of time_way() accelerations and swing. Numbers do not depend on
+/// the locale.
 std::string to_csv(const Trajectory& trajectory);
 
 /// The same as JSON, which load_trajectory() reads back exactly (`docs/formats.md#trajectory`).

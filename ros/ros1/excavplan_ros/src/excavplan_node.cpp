@@ -40,6 +40,7 @@ trajectory_msgs::JointTrajectory message_of(const excavplan::JointMotion& motion
     trajectory_msgs::JointTrajectoryPoint sent;
     sent.positions = point.positions;
     sent.velocities = point.velocities;
+    sent.accelerations = point.accelerations;
     sent.time_from_start = ros::Duration(point.time);
     message.points.push_back(sent);
   }

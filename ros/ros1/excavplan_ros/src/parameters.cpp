@@ -42,16 +42,15 @@ class Parameters {
   std::vector<std::string> known_;
 };
 
-excavplan::JointNames joint_names(Parameters& parameters) {
-  excavplan::JointNames names = excavplan::opera_joint_names();
-  const auto given =
-      parameters.value("joint_names", std::vector<std::string>(names.begin(), names.end()));
-  if (given.size() != names.size()) {
-    throw Error(ErrorKind::bad_input, "parameter joint_names: has " + std::to_string(given.size()) +
-                                          " names, must have 4: swing, boom, arm, bucket");
+void name_joints(Parameters& parameters, excavplan::RobotJoints& joints) {
+  std::vector<std::string> names;
+  for (const excavplan::RobotJoint& joint : joints) names.push_back(joint.name);
+  names = parameters.value("joint_names", names);
+  if (names.size() != joints.size()) {
+    throw Error(ErrorKind::bad_input, "parameter joint_names: has " + std::to_string(names.size()) +
+                                          " names, must have 4: boom, arm, bucket, swing");
   }
-  std::copy(given.begin(), given.end(), names.begin());
-  return names;
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i].name = names[i];
 }
 
 }  // namespace
@@ -68,12 +67,16 @@ excavplan::DigCycleSettings settings_of(const ros::NodeHandle& node) {
   settings.site_frame = parameters.value<std::string>("site_frame", "");
   const auto frame_file = parameters.value<std::string>("frame_file", "");
   if (!frame_file.empty()) settings.site_from_scan = excavplan::read_frame(frame_file);
-  settings.joint_names = joint_names(parameters);
+  name_joints(parameters, settings.machine.robot_joints);
   settings.machine_in_view = parameters.value("machine_in_view", settings.machine_in_view);
   settings.digs_as_planned = parameters.value("digs_as_planned", settings.digs_as_planned);
   if (parameters.value("search", false)) settings.plan.method = excavplan::PlanMethod::search;
-  double& speed = settings.plan.trajectory.speed_fraction;
-  speed = parameters.value("speed_fraction", speed);
+  settings.whole_cycle = parameters.value("whole_cycle", settings.whole_cycle);
+  excavplan::MotionOptions& motion = settings.motion;
+  motion.rate = parameters.value("rate_hz", motion.rate);
+  motion.max_jerk = parameters.value("max_jerk", motion.max_jerk);
+  motion.speed_fraction = parameters.value("speed_fraction", motion.speed_fraction);
+  settings.plan.trajectory.speed_fraction = motion.speed_fraction;
   parameters.done();
   return settings;
 }

@@ -44,6 +44,7 @@ JointTrajectory message_of(const excavplan::JointMotion& motion) {
     trajectory_msgs::msg::JointTrajectoryPoint sent;
     sent.positions = point.positions;
     sent.velocities = point.velocities;
+    sent.accelerations = point.accelerations;
     const double seconds = std::floor(point.time);
     sent.time_from_start.sec = static_cast<std::int32_t>(seconds);
     sent.time_from_start.nanosec = static_cast<std::uint32_t>(1e9 * (point.time - seconds));
@@ -74,22 +75,27 @@ excavplan::DigCycleSettings settings_of(rclcpp::Node& node) {
   settings.site_frame = text("site_frame", "");
   const std::string frame_file = text("frame_file", "");
   if (!frame_file.empty()) settings.site_from_scan = excavplan::read_frame(frame_file);
-  auto& names = settings.joint_names;
-  const auto given = node.declare_parameter<std::vector<std::string>>(
-      "joint_names", std::vector<std::string>(names.begin(), names.end()));
-  if (given.size() != names.size()) {
+  excavplan::RobotJoints& joints = settings.machine.robot_joints;
+  std::vector<std::string> names;
+  for (const excavplan::RobotJoint& joint : joints) names.push_back(joint.name);
+  names = node.declare_parameter<std::vector<std::string>>("joint_names", names);
+  if (names.size() != joints.size()) {
     throw excavplan::Error(excavplan::ErrorKind::bad_input,
-                           "parameter joint_names: has " + std::to_string(given.size()) +
-                               " names, must have 4: swing, boom, arm, bucket");
+                           "parameter joint_names: has " + std::to_string(names.size()) +
+                               " names, must have 4: boom, arm, bucket, swing");
   }
-  std::copy(given.begin(), given.end(), names.begin());
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i].name = names[i];
   settings.machine_in_view = node.declare_parameter<bool>("machine_in_view", false);
   settings.digs_as_planned = node.declare_parameter<bool>("digs_as_planned", true);
   if (node.declare_parameter<bool>("search", false)) {
     settings.plan.method = excavplan::PlanMethod::search;
   }
-  double& speed = settings.plan.trajectory.speed_fraction;
-  speed = node.declare_parameter<double>("speed_fraction", speed);
+  settings.whole_cycle = node.declare_parameter<bool>("whole_cycle", settings.whole_cycle);
+  excavplan::MotionOptions& motion = settings.motion;
+  motion.rate = node.declare_parameter<double>("rate_hz", motion.rate);
+  motion.max_jerk = node.declare_parameter<double>("max_jerk", motion.max_jerk);
+  motion.speed_fraction = node.declare_parameter<double>("speed_fraction", motion.speed_fraction);
+  settings.plan.trajectory.speed_fraction = motion.speed_fraction;
   return settings;
 }
 

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <variant>
+
+#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/planning/cycle_motion.hpp>
+
+namespace excavplan {
+
+/// The motion of a planned dig for a controller: way_of_cycle() of its path, with its torques and
+/// payload, timed by time_way().
+/// @param ground  before the dig
+/// @return the motion, without points if the plan has no dig; or what blocks the way
+/// @throws Error (bad_input) as way_of_cycle() and time_way()
+std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const Terrain& ground,
+                                                 const DigPlan& plan,
+                                                 const CycleWayOptions& way = {},
+                                                 const MotionOptions& motion = {});
+
+}  // namespace excavplan

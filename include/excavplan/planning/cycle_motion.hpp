@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <excavplan/machine/motion.hpp>
+#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/simulation/terrain.hpp>
+
+/// @file
+/// The way of the joints over a working cycle: from where the machine stands to the dig, along it,
+/// and on over swing, dump and back, clear of the ground (docs/methods.md#motion).
+
+namespace excavplan {
+
+/// What loads the joints along a dig.
+struct DigLoad {
+  std::vector<JointAngles> torques;  ///< DigResult::torques [N m]
+  double payload_mass = 0.0;         ///< after it [kg], >= 0
+};
+
+/// What a way holds besides the dig.
+struct CycleWayOptions {
+  /// Joints from which it begins [rad]; nothing: it begins where the path does.
+  std::optional<FrontJoints> start;
+  bool whole_cycle = false;  ///< whether it goes on over swing, dump and back
+  CycleOptions cycle = {};   ///< swing, to the left, and dump height, if it does
+};
+
+/// Ground in the way of the machine.
+struct BlockedWay {
+  DigPhase phase = DigPhase::approach;              ///< in which
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the ground there [m]
+  double clearance = 0.0;                           ///< of the machine above it [m]
+  std::string message;                              ///< all of this in one sentence
+};
+
+/// @throws Error (bad_input) if an option is out of range for the machine, as way_of_cycle()
+void check(const Machine& machine, const CycleWayOptions& options);
+
+/// Lays out the way of a cycle. Off the path of the dig the joints go straight to where they have
+/// to be; where that leads within 0.1 m of the ground, the boom rises first and comes down last.
+/// Ground that is unknown or off the map counts as the plane of the tracks.
+///
+/// @param ground  before the dig
+/// @return the way, or what blocks it
+/// @throws Error (bad_input) as require_machine(), require_terrain() and way_of(); if a joint of
+/// the
+///         start is not finite or beyond its limits, the payload is negative or not finite, an
+///         option of the cycle is out of range, or the machine does not state its swing but has to
+std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain& ground,
+                                           const DigPath& path, const DigLoad& load,
+                                           const CycleWayOptions& options);
+
+}  // namespace excavplan

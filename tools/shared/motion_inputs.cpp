@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "shared/motion_inputs.hpp"
+
+#include <array>
+#include <filesystem>
+
+#include <excavplan/error.hpp>
+
+#include <excavplan/machine/joint_motion.hpp>
+#include <excavplan/plan/plan_motion.hpp>
+
+#include "base/files.hpp"
+#include "base/text.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+struct Format {
+  const char* word;
+  std::vector<std::string> endings;
+  std::string (*text)(const Trajectory& trajectory);
+};
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> rows = {{"csv", {".csv", ""}, to_csv},
+                                           {"json", {".json"}, to_json},
+                                           {"yaml", {".yaml", ".yml"}, to_joint_trajectory},
+                                           {"com3", {".com3"}, to_joint_commands}};
+  return rows;
+}
+
+std::vector<std::string> words() {
+  std::vector<std::string> list = {"ending"};
+  for (const Format& format : formats()) list.emplace_back(format.word);
+  return list;
+}
+
+std::vector<std::string> endings() {
+  std::vector<std::string> list;
+  for (const Format& format : formats()) {
+    list.insert(list.end(), format.endings.begin(), format.endings.end());
+  }
+  return list;
+}
+
+const Format& format_of(const MotionInputs& inputs) {
+  const std::string ending =
+      *inputs.file == "-" ? ""
+                          : small_letters(std::filesystem::path(*inputs.file).extension().string());
+  for (const Format& format : formats()) {
+    if (inputs.format == format.word) return format;
+    if (inputs.format != "ending") continue;
+    for (const std::string& each : format.endings) {
+      if (each == ending) return format;
+    }
+  }
+  return formats().front();
+}
+
+FrontJoints parse_joints(const std::string& text) {
+  const std::string what = "--joints";
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() < 3 || parts.size() > 4) {
+    usage_error(what + ": '" + text +
+                "' is not BOOM,ARM,BUCKET or BOOM,ARM,BUCKET,SWING such as -40deg,90deg,40deg");
+  }
+  FrontJoints joints = FrontJoints::Zero();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    joints[static_cast<Eigen::Index>(i)] = parse_quantity(what, parts[i], Quantity::angle);
+  }
+  return joints;
+}
+
+const OptionNames option_names = {{"joints at the start", "--joints"},
+                                  {"MotionOptions::rate", "--rate"},
+                                  {"MotionOptions::max_jerk", "--max-jerk"}};
+
+std::string names_of(const Trajectory& motion) {
+  std::string text;
+  for (const RobotJoint& joint : motion.robot_joints) {
+    if (!joint.name.empty()) text += (text.empty() ? "" : ", ") + joint.name;
+  }
+  return text;
+}
+
+Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
+  auto motion = plan_motion(planned.machine, planned.ground, planned.plan,
+                            {inputs.joints, inputs.whole_cycle, planned.objective}, inputs.options);
+  if (const auto* stop = std::get_if<BlockedWay>(&motion)) {
+    usage_error("--trajectory: the ground is in the way: " + stop->message);
+  }
+  return std::get<Trajectory>(std::move(motion));
+}
+
+}  // namespace
+
+void declare_motion(Arguments& arguments, MotionInputs& inputs) {
+  arguments.output("trajectory", inputs.file,
+                   "write the joint motion: .csv, .json, .yaml or .yml (ROS 2 JointTrajectory), "
+                   ".com3 (OPERA's JointCmd); - is standard output, as CSV");
+  arguments.require_ending(endings());
+  arguments.allow_standard_output();
+  arguments.only_if(
+      {[&inputs] { return inputs.file.has_value(); }, "no --trajectory is written"}, [&] {
+        arguments.choice("trajectory-format", inputs.format, words(),
+                         "format of the trajectory; ending: that of its file's name");
+        Arguments::Entry joints;
+        joints.name = "joints";
+        joints.placeholder = "BOOM,ARM,BUCKET[,SWING]";
+        joints.help =
+            "present joints, from which the trajectory begins; swing to the left of the plane of "
+            "the dig, 0 if left out; angles as in the CSV [rad]";
+        joints.assign = [&inputs](const std::string& text) { inputs.joints = parse_joints(text); };
+        arguments.add(joints);
+        arguments.flag("whole-cycle", inputs.whole_cycle,
+                       "go on over swing, dump and back to above the dig");
+        arguments.option("rate", inputs.options.rate, Quantity::frequency,
+                         "points of the trajectory per second, 10 .. 500");
+        Arguments::Entry jerk;
+        jerk.name = "max-jerk";
+        jerk.placeholder = "NUMBER";
+        jerk.help = "largest jerk of every joint, at least 0.1; without it none is set [rad/s^3]";
+        jerk.assign = [&inputs](const std::string& text) {
+          inputs.options.max_jerk = parse_quantity("--max-jerk", text, Quantity::ratio);
+        };
+        arguments.add(jerk);
+      });
+}
+
+void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle) {
+  if (!inputs.file) return;
+  naming_options(option_names, [&] {
+    excavplan::check(inputs.options);
+    excavplan::check(machine, CycleWayOptions{inputs.joints, inputs.whole_cycle, cycle});
+  });
+}
+
+Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan) {
+  return time_way(machine, way_of(plan.path, plan.torques), inputs.options);
+}
+
+void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {
+  if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;
+  const Trajectory motion =
+      naming_options(option_names, [&] { return motion_of(inputs, planned); });
+  const Format& format = format_of(inputs);
+  const std::string text = format.text(motion);
+  if (*inputs.file == "-") {
+    outcome.output = text;
+  } else {
+    write_file(*inputs.file, text);
+  }
+  if (motion.points.empty()) return;
+  outcome.json["trajectory"] = {{"format", format.word},
+                                {"points", motion.points.size()},
+                                {"rate_hz", inputs.options.rate},
+                                {"duration_s", motion.duration()},
+                                {"joint_names", names_of(motion)}};
+  outcome.lines.push_back("trajectory   " + readable(motion.duration()) + " s, " +
+                          std::to_string(motion.points.size()) + " points of " + names_of(motion));
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/planning/cycle_motion.hpp>
+
+#include "shared/arguments.hpp"
+#include "shared/tool.hpp"
+
+/// @file
+/// The motion of a planned dig: what it begins and ends with, and the file that it is written to.
+
+namespace excavplan::tools {
+
+struct MotionInputs {
+  std::optional<std::string> file;  ///< "-": standard output
+  std::string format = "ending";
+  std::optional<FrontJoints> joints;
+  bool whole_cycle = false;
+  MotionOptions options;
+};
+
+void declare_motion(Arguments& arguments, MotionInputs& inputs);
+
+/// Checks made before the work. @throws Error (bad_input) naming the option
+void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle);
+
+/// A plan with the ground that it was made for and the objective that has its swing and dump
+/// height.
+struct PlannedMotion {
+  const Machine& machine;
+  const Terrain& ground;
+  const DigPlan& plan;
+  const DigObjective& objective;
+};
+
+/// That of the dig alone, for pages: the points of a file without present joints or whole cycle.
+Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan);
+
+/// Writes the motion, if it is asked for; one without poses if there is no dig, so that none of an
+/// earlier plan is driven. Sets key "trajectory" of the outcome.
+/// @throws Error (bad_input) naming the option, also where the ground blocks the way
+void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome);
+
+}  // namespace excavplan::tools
