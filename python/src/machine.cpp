@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/data_files.hpp>
 #include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
@@ -36,6 +37,12 @@ void bind_machine_itself(py::module_& module) {
       .def_readonly("speed", &JointLimits::speed, "[rad/s]")
       .def_readonly("acceleration", &JointLimits::acceleration, "[rad/s^2]")
       .def_readonly("torque", &JointLimits::torque, "[N m]");
+  py::class_<RobotJoint>(module, "RobotJoint", "A joint of a robot: ours = sign * its + zero.")
+      .def_readonly("name", &RobotJoint::name, "Empty: the robot has no such joint.")
+      .def_readonly("sign", &RobotJoint::sign, "-1 or 1")
+      .def_readonly("zero", &RobotJoint::zero, "[rad]")
+      .def("to_ours", &RobotJoint::to_ours, arg("its"), "Angles [rad].")
+      .def("from_ours", &RobotJoint::from_ours, arg("ours"), "Angles [rad].");
   py::class_<Machine>(
       module, "Machine",
       "An excavator in its boom plane. Joints are boom, arm, bucket; positive turns\n"
@@ -52,6 +59,12 @@ void bind_machine_itself(py::module_& module) {
             return std::vector<JointLimits>(m.limits.begin(), m.limits.end());
           },
           "Of boom, arm, bucket.")
+      .def_property_readonly(
+          "robot_joints",
+          [](const Machine& m) {
+            return std::vector<RobotJoint>(m.robot_joints.begin(), m.robot_joints.end());
+          },
+          "Of boom, arm, bucket and swing, as its controller calls and counts them.")
       .def_property_readonly(
           "bucket_width", [](const Machine& m) { return m.bucket.width_outside; },
           "Outside, which it cuts [m].")
@@ -178,9 +191,19 @@ Array rows(const Trajectory& trajectory, const Row& row) {
   return array_of_rows(trajectory.points, row);
 }
 
+Array columns(const JointMotion& motion, std::vector<double> JointPoint::*values) {
+  std::vector<double> numbers;
+  for (const JointPoint& point : motion.points) {
+    numbers.insert(numbers.end(), (point.*values).begin(), (point.*values).end());
+  }
+  const auto rows = static_cast<py::ssize_t>(motion.points.size());
+  const py::ssize_t count = rows > 0 ? static_cast<py::ssize_t>(numbers.size()) / rows : 0;
+  return array(std::move(numbers), {rows, count});
+}
+
 void bind_trajectory(py::module_& module) {
   using Point = TrajectoryPoint;
-  py::class_<Trajectory>(module, "Trajectory", "A timed dig path.")
+  py::class_<Trajectory>(module, "Trajectory", "A timed dig path, or the motion of a plan.")
       .def_readonly("machine", &Trajectory::machine, "Its name.")
       .def_property_readonly("duration", &Trajectory::duration, "Of all points [s].")
       .def_property_readonly("dig_duration", &Trajectory::dig_duration,
@@ -196,7 +219,8 @@ void bind_trajectory(py::module_& module) {
           [](const Trajectory& t) {
             return texts(t.points, [](const Point& p) { return name(p.phase); });
           },
-          "That leads to each point: 'approach', 'penetrate', 'drag', 'scoop' or 'lift'.")
+          "That leads to each point: 'approach', 'penetrate', 'drag', 'scoop', 'lift', 'swing',\n"
+          "'dump' or 'back'.")
       .def_property_readonly(
           "joints",
           [](const Trajectory& t) { return rows(t, [](const Point& p) { return p.joints; }); },
@@ -205,6 +229,20 @@ void bind_trajectory(py::module_& module) {
           "rates",
           [](const Trajectory& t) { return rows(t, [](const Point& p) { return p.rates; }); },
           "Likewise [rad/s].")
+      .def_property_readonly(
+          "accelerations",
+          [](const Trajectory& t) {
+            return rows(t, [](const Point& p) { return p.accelerations; });
+          },
+          "Likewise [rad/s^2]; NaN in a trajectory of time_dig_path().")
+      .def_property_readonly(
+          "swing",
+          [](const Trajectory& t) {
+            return rows(t, [](const Point& p) {
+              return Eigen::Vector3d(p.swing.angle, p.swing.rate, p.swing.acceleration);
+            });
+          },
+          "Angle [rad], rate and acceleration, positive to the left, shape (N, 3).")
       .def_property_readonly(
           "bucket",
           [](const Trajectory& t) {
@@ -226,6 +264,9 @@ void bind_trajectory(py::module_& module) {
       .def(
           "to_json", [](const Trajectory& t) { return to_json(t); },
           "What load_trajectory() reads back exactly.")
+      .def("to_joint_trajectory", &to_joint_trajectory,
+           "A message trajectory_msgs/JointTrajectory as YAML.")
+      .def("to_joint_commands", &to_joint_commands, "Messages com3_msgs/JointCmd of OPERA as YAML.")
       .def("__len__", [](const Trajectory& t) { return t.points.size(); });
   module.def(
       "time_dig_path",
@@ -242,6 +283,29 @@ void bind_trajectory(py::module_& module) {
       arg("torques") = std::vector<JointAngles>{},
       "Times a path as fast as the machine allows. speed_fraction: of its limits, in (0, 1];\n"
       "corner_tolerance: distance from the path at corners [m]; torques: DigResult.torques [N m].");
+  py::class_<JointMotion>(
+      module, "JointMotion",
+      "A trajectory for a controller, in the names and angles of the robot; M joints.")
+      .def_readonly("names", &JointMotion::names, "Of the joints that have one.")
+      .def_property_readonly(
+          "time",
+          [](const JointMotion& m) {
+            return array_of(m.points, [](const JointPoint& p) { return p.time; });
+          },
+          "From the start, shape (N,) [s].")
+      .def_property_readonly(
+          "positions", [](const JointMotion& m) { return columns(m, &JointPoint::positions); },
+          "Shape (N, M) [rad].")
+      .def_property_readonly(
+          "velocities", [](const JointMotion& m) { return columns(m, &JointPoint::velocities); },
+          "Shape (N, M) [rad/s].")
+      .def_property_readonly(
+          "accelerations",
+          [](const JointMotion& m) { return columns(m, &JointPoint::accelerations); },
+          "Shape (N, M) [rad/s^2]; (N, 0) in a trajectory of time_dig_path().")
+      .def("__len__", [](const JointMotion& m) { return m.points.size(); });
+  module.def("joint_motion", &joint_motion, arg("trajectory"),
+             "A trajectory in the names and angles of the robot.");
   module.def("load_trajectory", &load_trajectory, arg("file"), "Reads what to_json() writes.");
 }
 

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/plan/plan_motion.hpp>
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"
@@ -294,6 +295,51 @@ DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensit
   });
 }
 
+std::variant<Trajectory, BlockedWay> motion_of(const Machine& machine, const DigPlan& plan,
+                                               const std::optional<Terrain>& terrain,
+                                               const std::optional<FrontJoints>& start,
+                                               bool whole_cycle, double swing, double dump_height,
+                                               const MotionOptions& motion) {
+  CycleWayOptions way = {start, whole_cycle};
+  way.cycle.swing = swing;
+  way.cycle.dump_height = dump_height;
+  return call([&] {
+    return plan_motion(machine, terrain ? *terrain : level_planning_ground(machine), plan, way,
+                       motion);
+  });
+}
+
+void bind_motion(py::module_& module) {
+  py::class_<BlockedWay>(module, "BlockedWay", "Ground in the way of a motion. It is false.")
+      .def_property_readonly(
+          "phase", [](const BlockedWay& way) { return name(way.phase); }, "In which.")
+      .def_readonly("place", &BlockedWay::place, "(x, y, z) of the ground there [m].")
+      .def_readonly("clearance", &BlockedWay::clearance, "Of the machine above it [m].")
+      .def_readonly("message", &BlockedWay::message, "All of this in one sentence.")
+      .def("__bool__", [](const BlockedWay&) { return false; })
+      .def("__repr__", [](const BlockedWay& way) { return "<BlockedWay: " + way.message + ">"; });
+  const CycleOptions cycle;
+  const MotionOptions usual;
+  module.def(
+      "plan_motion",
+      [](const Machine& machine, const DigPlan& plan, const std::optional<Terrain>& terrain,
+         const std::optional<FrontJoints>& start, bool whole_cycle, double swing,
+         double dump_height, double rate, double speed_fraction, double corner_tolerance,
+         double max_jerk) {
+        return motion_of(machine, plan, terrain, start, whole_cycle, swing, dump_height,
+                         {rate, speed_fraction, corner_tolerance, max_jerk});
+      },
+      arg("machine"), arg("plan"), arg("terrain") = py::none(), py::kw_only(),
+      arg("start") = py::none(), arg("whole_cycle") = false, arg("swing") = cycle.swing,
+      arg("dump_height") = cycle.dump_height, arg("rate") = usual.rate,
+      arg("speed_fraction") = usual.speed_fraction,
+      arg("corner_tolerance") = usual.corner_tolerance, arg("max_jerk") = usual.max_jerk,
+      "The motion of a plan for a controller, or what blocks the way; it keeps the limits of the\n"
+      "machine between its points. start: boom, arm, bucket, swing [rad] from which it begins;\n"
+      "whole_cycle: over swing, dump and back; swing [rad], dump_height [m]: as of DigObjective;\n"
+      "rate: points per second; corner_tolerance [m]; max_jerk: of each joint [rad/s^3].");
+}
+
 }  // namespace
 
 void bind_planning(py::module_& module) {
@@ -319,6 +365,7 @@ void bind_planning(py::module_& module) {
 void bind_plan_dig(py::module_& module) {
   bind_cycle(module);
   bind_plan(module);
+  bind_motion(module);
   module.def(
       "plan_dig", &planned, arg("machine"), arg("soil"), arg("density"),
       arg("terrain") = py::none(), py::kw_only(), arg("method") = "library",

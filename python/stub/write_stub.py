@@ -26,6 +26,7 @@ Array = Any  # numpy.ndarray where NumPy is installed, else memoryview; read-onl
 ArrayLike = Any  # whatever has the buffer protocol, or nested sequences of numbers
 Vector2 = Tuple[float, float]
 Vector3 = Tuple[float, float, float]
+Vector4 = Tuple[float, float, float, float]
 File = Union[str, "os.PathLike[str]"]
 Start = Union[str, float, None]
 '''

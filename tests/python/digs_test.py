@@ -4,6 +4,8 @@
 
 import json
 import math
+import os
+import tempfile
 import unittest
 
 import excavplan as ex
@@ -38,13 +40,48 @@ class Machines(unittest.TestCase):
         self.assertEqual(why.phase, "penetrate")
 
     def test_a_trajectory_is_read_back(self):
-        import tempfile
         path = ex.make_dig_path(MACHINE, ex.paper_fixed_path())
         trajectory = ex.time_dig_path(MACHINE, path)
         with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
             file.write(trajectory.to_json())
             file.flush()
             self.assertEqual(ex.load_trajectory(file.name).to_csv(), trajectory.to_csv())
+
+
+class Motions(unittest.TestCase):
+    def test_a_motion_is_that_of_the_tool(self):
+        joints = "-0.6,1.6,0.5,0.7"
+        with tempfile.TemporaryDirectory() as folder:
+            told = result_of("plan-path", "--density", 40, "--joints=" + joints, "--whole-cycle",
+                             "--rate", 50, "--trajectory", os.path.join(folder, "dig.yaml"))
+        plan = ex.plan_dig(MACHINE, LOAM, 40)
+        start = [float(joint) for joint in joints.split(",")]
+        motion = ex.plan_motion(MACHINE, plan, start=start, whole_cycle=True, rate=50)
+        self.assertEqual(motion.duration, told["trajectory"]["duration_s"])
+        self.assertEqual(len(motion), told["trajectory"]["points"])
+        self.assertEqual(motion.phase[-1], "back")
+        self.assertEqual(motion.swing.shape, (len(motion), 3))
+        sent = ex.joint_motion(motion)
+        self.assertEqual(", ".join(sent.names), told["trajectory"]["joint_names"])
+        self.assertEqual(sent.accelerations.shape, (len(motion), 4))
+        for one, other in zip(sent.positions.tolist()[0], start):
+            self.assertAlmostEqual(one, other, 12)
+        self.assertIn("time_from_start: {sec: 0, nanosec: 20000000}", motion.to_joint_trajectory())
+        self.assertEqual(motion.to_joint_commands().count("control_type: 0"), len(motion))
+
+    def test_the_ground_in_the_way_is_told(self):
+        plan = ex.plan_dig(MACHINE, LOAM, 40)
+        low = (0.4, 0.6, 0.2, 0.0)  # the tip below the ground
+        blocked = ex.plan_motion(MACHINE, plan, start=low)
+        self.assertFalse(blocked)
+        self.assertEqual(blocked.phase, "approach")
+        self.assertLess(blocked.clearance, 0.0)
+        self.assertIn("approach", repr(blocked))
+
+    def test_a_joint_beyond_its_limits_is_refused(self):
+        plan = ex.plan_dig(MACHINE, LOAM, 40)
+        with self.assertRaisesRegex(ex.Error, "boom"):
+            ex.plan_motion(MACHINE, plan, start=(3.0, 1.6, 0.5, 0.0))
 
 
 class Digs(unittest.TestCase):
