@@ -11,6 +11,7 @@
 #include "shared/law_figure.hpp"
 #include "shared/results.hpp"
 #include "shared/simulator_inputs.hpp"
+#include "shared/site.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {
@@ -33,7 +34,7 @@ struct Inputs {
   std::string densities = "0:5:100";
   std::optional<DigParameters> path;
   int draws = CalibrationOptions{}.draws;
-  double cell_size = 0.05;
+  std::optional<double> cell_size;
   std::optional<std::string> out;
   Plots plots;
 };
@@ -52,12 +53,11 @@ void declare(Arguments& arguments, Inputs& inputs) {
                        "relative densities of the simulated digs [%], or a list a,b,c");
         arguments.option(
             "path", inputs.path,
-            "dig path that the law is for (default: the paper's, with the scatter of digs "
-            "along others)");
+            "dig path that the law is for (default: the paper's, in proportion to the bucket, with "
+            "the scatter of digs along others)");
         arguments.option("draws", inputs.draws,
                          "digs in drawn soils, for the scatter of the law; 0: none");
-        arguments.option("cell", inputs.cell_size, Quantity::length,
-                         "cell size of the simulated ground");
+        declare_cell(arguments, inputs.cell_size);
       });
   arguments.output("out", inputs.out, "law file to write, for estimate-density --law");
   declare_plots(arguments, inputs.plots, names_of(calibration_figures()));
@@ -80,8 +80,7 @@ DensityCalibration from_simulator(const Inputs& inputs, Console& console) {
   CalibrationOptions options;
   options.densities_percent = parse_densities("--densities", inputs.densities);
   options.cell_size = inputs.cell_size;
-  options.path = inputs.path.value_or(options.path);
-  options.any_path = !inputs.path;
+  options.path = inputs.path;
   options.draws = inputs.draws;
   options.simulator = simulator_of(inputs.simulator, console);
   OptionNames names = cell_option;

@@ -44,7 +44,7 @@ struct Inputs {
   std::string soil = "loam";
   std::string machine = "zx120";
   SimulatorInputs simulator;
-  double cell_size = PlanOptions{}.cell_size;
+  std::optional<double> cell_size;
   SearchInputs dig_search;
   MotionInputs motion;
   Plots plots;
@@ -75,10 +75,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_simulator(arguments, inputs.simulator);
   arguments.only_if({[&inputs] { return simulates(inputs); },
                      "nothing is simulated: a library has the digs of level ground"},
-                    [&] {
-                      arguments.option("cell", inputs.cell_size, Quantity::length,
-                                       "cell size of the simulated ground");
-                    });
+                    [&] { declare_cell(arguments, inputs.cell_size); });
   declare_search(arguments, inputs.dig_search, [&inputs] { return use_of(inputs); });
   declare_motion(arguments, inputs.motion);
   const Arguments::Use searches = {[&inputs] { return inputs.search; }, "nothing is searched"};
@@ -112,7 +109,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   const GroundDensity density = density_of(inputs.density);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  const Site site = make_site(inputs.terrain, planning_extent(machine), inputs.cell_size);
+  const Site site = make_site(inputs.terrain, planning_extent(machine),
+                              inputs.cell_size.value_or(usual_cell(machine)));
   const PlanOptions options = options_of(inputs, machine, soil, console);
   check(inputs.motion, machine, options.search.objective);
   DigPlan plan = naming_options(search_option_names, [&] {

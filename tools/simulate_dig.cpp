@@ -31,7 +31,8 @@ const About about = {
      {"simulate-dig --density 40 --before b.pcd --after a.pcd --seed 7", "write a pair of scans"}}};
 
 struct Inputs {
-  double density = 0.0, cell_size = 0.05;
+  double density = 0.0;
+  std::optional<double> cell_size;
   SceneOptions scene;
   std::optional<DigParameters> path;
   TerrainInput terrain;
@@ -61,7 +62,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   declare_simulator(arguments, inputs.simulator);
   declare_terrain(arguments, inputs.terrain);
   arguments.option("dump-at", inputs.scene.dump_at, "point at which the payload is dumped");
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
+  declare_cell(arguments, inputs.cell_size);
   declare_scans(arguments, inputs.scans);
   inputs.blocks.declare(arguments);
   arguments.only_if(
@@ -115,7 +116,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   check_scans(inputs.scans);
   const Machine machine = machine_named(inputs.machine);
   const SoilKind soil = soil_named(inputs.soil);
-  Site site = make_site(inputs.terrain, scene_extent(machine, options.dump_at), inputs.cell_size);
+  Site site = make_site(inputs.terrain, scene_extent(machine, options.dump_at),
+                        inputs.cell_size.value_or(usual_cell(machine)));
   const Stopwatch watch;
   const OptionNames names = {{"the dump point", "--dump-at"}};
   const DigScene scene = naming_options(

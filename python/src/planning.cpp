@@ -279,7 +279,7 @@ DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensit
                 const std::optional<Terrain>& terrain, const std::string& method,
                 const std::optional<PathLibrary>& library,
                 const std::optional<SearchOptionsInPython>& search, const py::object& simulator,
-                double speed_fraction, double cell_size) {
+                double speed_fraction, std::optional<double> cell_size) {
   const auto own = std::make_shared<Call>();
   PlanOptions options;
   options.method = of_word<PlanMethod>(
@@ -370,13 +370,13 @@ void bind_plan_dig(py::module_& module) {
       "plan_dig", &planned, arg("machine"), arg("soil"), arg("density"),
       arg("terrain") = py::none(), py::kw_only(), arg("method") = "library",
       arg("library") = py::none(), arg("search") = py::none(), arg("simulator") = py::none(),
-      arg("speed_fraction") = TrajectoryOptions{}.speed_fraction,
-      arg("cell_size") = PlanOptions{}.cell_size,
+      arg("speed_fraction") = TrajectoryOptions{}.speed_fraction, arg("cell_size") = py::none(),
       "Plans the next dig on the ground given, or on level ground, as plan-path does.\n\n"
       "density: a number [%] or a GroundDensity, whose standard deviation counts; terrain:\n"
       "Terrain or HeightMap in the site frame; method: 'library' or 'search'; library: else\n"
       "the shipped one; search: DigSearchOptions; simulator: word or class; speed_fraction:\n"
-      "of the limits of the machine; cell_size: of level ground [m].");
+      "of the limits of the machine; cell_size: of level ground, else as the machine\n"
+      "needs it [m].");
 }
 
 }  // namespace excavplan::python

@@ -63,8 +63,14 @@ void bind_terrain(py::module_& module) {
   module.def("planning_extent", &planning_extent, arg("machine"), "Ground that affects a dig.");
   module.def("scene_extent", &scene_extent, arg("machine"), arg("dump_at") = default_dump_point(),
              "Ground for the digs of a machine and a heap at (x, y) [m].");
-  module.def("level_planning_ground", &level_planning_ground, arg("machine"),
-             arg("cell_size") = 0.05, "planning_extent() as level ground; cell_size in [m].");
+  module.def(
+      "level_planning_ground",
+      [](const Machine& machine, std::optional<double> cell_size) {
+        return level_planning_ground(machine, cell_size.value_or(usual_cell(machine)));
+      },
+      arg("machine"), arg("cell_size") = py::none(),
+      "planning_extent() as level ground; cell_size [m]: else 5 cm for the zx120, in proportion\n"
+      "to the bucket for others.");
   module.def("sloped_planning_ground", &sloped_planning_ground, arg("machine"), arg("slope"),
              arg("cell_size") = 0.05,
              "Level up to the tracks, then rising by `slope` [rad]; cell_size in [m].");
@@ -327,13 +333,13 @@ void bind_scene(py::module_& module) {
 
 DensityCalibration calibrated(const Machine& machine, const SoilKind& soil,
                               const std::vector<double>& densities,
-                              const std::optional<DigParameters>& path, int draws, double cell_size,
-                              const py::object& simulator, unsigned threads) {
+                              const std::optional<DigParameters>& path, int draws,
+                              std::optional<double> cell_size, const py::object& simulator,
+                              unsigned threads) {
   const auto own = std::make_shared<Call>();
   CalibrationOptions options;
   options.densities_percent = densities;
-  options.path = path.value_or(options.path);
-  options.any_path = !path;
+  options.path = path;
   options.draws = draws;
   options.cell_size = cell_size;
   options.simulator = simulator_kind(simulator, own);
@@ -352,12 +358,12 @@ void bind_simulation(py::module_& module) {
   bind_scene(module);
   module.def("calibrate_density", &calibrated, arg("machine"), arg("soil"), py::kw_only(),
              arg("densities_percent") = std::vector<double>{}, arg("path") = py::none(),
-             arg("draws") = CalibrationOptions{}.draws, arg("cell_size") = 0.05,
+             arg("draws") = CalibrationOptions{}.draws, arg("cell_size") = py::none(),
              arg("simulator") = py::none(), arg("threads") = 0,
              "A density law from simulated digs, as calibrate-density makes it.\n\n"
              "densities_percent: of the digs, else 0, 5 .. 100; path: that the law is for, else\n"
              "the paper's with the scatter of digs along others; draws: digs in drawn soils;\n"
-             "cell_size in [m]; threads: 0 is one per core.");
+             "cell_size [m]: else as the machine needs it; threads: 0 is one per core.");
 }
 
 }  // namespace excavplan::python

@@ -172,7 +172,7 @@ DensityOptions DigCycleSession::State::estimate_options() const {
 /// As the last scan shows it, level without one.
 ScannedTerrain DigCycleSession::State::terrain() {
   Frames& seen = stage == CycleStage::digging || recent.empty() ? before : recent;
-  const double cell = settings.plan.cell_size;
+  const double cell = settings.plan.cell_size.value_or(usual_cell(settings.machine));
   if (seen.empty()) {
     return {level_planning_ground(settings.machine, cell),
             {{"level_ground", "no scan came yet: the ground is taken to be level"}}};

@@ -29,7 +29,9 @@ double gain(const DigObjective& objective, const PlannedDig& of, const PlannedDi
 }
 
 Terrain ground_of(const Machine& machine, const ExperimentOptions& options) {
-  return options.ground ? *options.ground : level_planning_ground(machine, options.plan.cell_size);
+  return options.ground
+             ? *options.ground
+             : level_planning_ground(machine, options.plan.cell_size.value_or(usual_cell(machine)));
 }
 
 struct Dug {
@@ -173,7 +175,7 @@ ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, co
                                 double density_percent, const ExperimentOptions& options) {
   require_machine(machine);
   require_soil(soil);
-  require_simulated_cell(options.plan.cell_size);
+  if (options.plan.cell_size) require_simulated_cell(*options.plan.cell_size);
   Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
   result.held_because = hold_if_moved(experiment, options.fixed_path);

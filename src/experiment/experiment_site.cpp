@@ -21,8 +21,8 @@ std::unique_ptr<const SoilSimulator> ExperimentSite::simulator(const Machine& ma
 
 Terrain ExperimentSite::scene_ground(const Machine& machine) const {
   if (options_.ground) return *options_.ground;
-  return undisturbed(
-      flat_ground(scene_extent(machine, default_dump_point()), options_.plan.cell_size));
+  return undisturbed(flat_ground(scene_extent(machine, default_dump_point()),
+                                 options_.plan.cell_size.value_or(usual_cell(machine))));
 }
 
 DigScene ExperimentSite::scene(const Machine& machine, const Terrain& ground,

@@ -13,28 +13,14 @@
 namespace excavplan {
 namespace {
 
-constexpr double usual_bucket = 1.23;  // of the zx120, pin to tip [m]
-constexpr double usual_cell = 0.05;    // [m]
-
-/// To a millimetre.
-double cell_of(const Machine& machine) {
-  return std::max(1e-3, std::round(1e3 * usual_cell * dig_size(machine)) / 1e3);
-}
-
 DensityCalibration law_of(const Machine& machine, const SoilKind& soil, const KitOptions& options) {
   CalibrationOptions calibration;
-  calibration.size = dig_size(machine);
-  calibration.path.penetration_length *= calibration.size;
-  calibration.path.drag_length *= calibration.size;
-  calibration.cell_size = cell_of(machine);
   calibration.draws = options.draws;
   calibration.threads = options.threads;
   return calibrate_density(machine, soil, calibration);
 }
 
 }  // namespace
-
-double dig_size(const Machine& machine) { return machine.bucket_length / usual_bucket; }
 
 DigObjective feasible_objective(const Machine& machine, DigObjective objective) {
   constexpr double share = 0.9;  // ours
@@ -55,7 +41,7 @@ KitSoil make_kit(const Machine& machine, const SoilKind& soil, const KitOptions&
 
   LibraryBuildOptions build;
   build.search.objective = options.objective;
-  build.search.cell_size = cell_of(machine);
+  build.search.cell_size = usual_cell(machine);
   build.search.seed = options.seed;
   build.threads = options.threads;
   build.progress = [&](const LibraryProgress& now) {

@@ -561,7 +561,8 @@ DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensi
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const PlanOptions& options) {
-  const Terrain level = level_planning_ground(machine, options.cell_size);
+  const Terrain level =
+      level_planning_ground(machine, options.cell_size.value_or(usual_cell(machine)));
   return plan_dig(Task{machine, soil, density, level, true, options});
 }
 

@@ -21,11 +21,20 @@
 namespace excavplan {
 namespace {
 
+DigParameters path_of(const Machine& machine, const CalibrationOptions& options) {
+  if (options.path) return *options.path;
+  DigParameters path = paper_fixed_path();
+  path.penetration_length *= dig_size(machine);
+  path.drag_length *= dig_size(machine);
+  return path;
+}
+
 /// A dig on level ground as of a calibration.
 struct CalibrationDig {
   explicit CalibrationDig(const Machine& machine, const CalibrationOptions& options)
-      : ground(undisturbed(flat_ground(scene_extent(machine, scene.dump_at), options.cell_size))) {
-    scene.path = options.path;
+      : ground(undisturbed(flat_ground(scene_extent(machine, scene.dump_at),
+                                       options.cell_size.value_or(usual_cell(machine))))) {
+    scene.path = path_of(machine, options);
     scene.simulator = options.simulator;
   }
 
@@ -67,7 +76,8 @@ DensityCalibration::Sample measure_draw(const Machine& machine, const SoilKind& 
   const auto draws = static_cast<std::size_t>(options.draws);
   const double density = 100.0 * (static_cast<double>(draw) + 0.5) / options.draws;
   const SoilKind drawn = drawn_soil(soil, options.scatter, Random(draw, 1).bits());
-  options.cell_size = options.size * CalibrationOptions{}.cell_size;
+  const bool any_path = !options.path;
+  options.cell_size = usual_cell(machine);
   const auto can_be_dug = [&] {
     const CalibrationDig dig(machine, options);
     try {
@@ -77,8 +87,8 @@ DensityCalibration::Sample measure_draw(const Machine& machine, const SoilKind& 
     }
     return true;
   };
-  for (std::size_t i = 0; options.any_path && i < most_paths; ++i) {
-    options.path = drawn_path(draw + i * draws, options.size);
+  for (std::size_t i = 0; any_path && i < most_paths; ++i) {
+    options.path = drawn_path(draw + i * draws, dig_size(machine));
     if (can_be_dug()) break;
   }
   return measure(machine, drawn, density, options);
@@ -102,9 +112,9 @@ DensityCalibration origin_of(const Machine& machine, const SoilKind& soil,
   calibration.soil = soil.name;
   calibration.machine = machine.name;
   calibration.simulator = options.simulator.name;
-  const DigParameters& path = options.path;
+  const DigParameters path = path_of(machine, options);
   calibration.path = {path.penetration_angle, path.penetration_length, path.drag_length};
-  calibration.any_path = options.any_path && options.draws > 0;
+  calibration.any_path = !options.path && options.draws > 0;
   calibration.scatter = {options.draws, options.scatter};
   calibration.use = std::string("closed_form") + as_measured;
   return calibration;
@@ -126,8 +136,7 @@ DensityCalibration calibrate_density(const Machine& machine, const SoilKind& soi
   require_soil(soil);
   require(options.draws >= 0 && options.draws <= most_draws, "the number of draws", options.draws,
           "in 0 .. " + std::to_string(most_draws));
-  require_simulated_cell(options.cell_size);
-  require_in("size of the machine to one of 12 t", options.size, 0.1, 10.0);
+  if (options.cell_size) require_simulated_cell(*options.cell_size);
   std::vector<double> densities = options.densities_percent;
   if (densities.empty()) {
     for (int i = 0; i <= 20; ++i) densities.push_back(5.0 * i);
@@ -161,7 +170,6 @@ DensityCalibration calibrate_path(const Machine& machine, const SoilKind& soil,
   CalibrationOptions options;
   for (int i = 0; i <= 10; ++i) options.densities_percent.push_back(10.0 * i);
   options.path = path;
-  options.any_path = false;
   options.draws = 100;
   options.threads = threads;
   DensityCalibration calibration = calibrate_density(machine, soil, options);

@@ -52,6 +52,21 @@ void require_simulated_cell(double cell_size) {
               number_text(finest_cell) + " .. " + number_text(coarsest_cell) + " m");
 }
 
+double dig_size(const Machine& machine) {
+  constexpr double usual_bucket = 1.23;  // of the zx120, pin to tip [m]
+  return machine.bucket_length / usual_bucket;
+}
+
+double usual_cell(const Machine& machine) {
+  constexpr double of_zx120 = 0.05;  // [m]
+  const double cell = std::round(1e3 * of_zx120 * dig_size(machine)) / 1e3;
+  return std::clamp(cell, finest_cell, coarsest_cell);
+}
+
+Terrain level_planning_ground(const Machine& machine) {
+  return level_planning_ground(machine, usual_cell(machine));
+}
+
 Terrain level_planning_ground(const Machine& machine, double cell_size) {
   require_simulated_cell(cell_size);
   return undisturbed(flat_ground(planning_extent(machine), cell_size));

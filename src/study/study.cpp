@@ -189,7 +189,7 @@ ExperimentOptions StudyTask::options() const {
   if (setting.plan == StudyPlan::search) plan.method = PlanMethod::search;
   if (setting.plan == StudyPlan::not_adapted) made.planned_density = whatever_density;
   if (setting.slope != 0.0 || setting.roughness > 0.0) {
-    made.ground = study_ground(machine, setting, plan.cell_size, seed);
+    made.ground = study_ground(machine, setting, usual_cell(machine), seed);
   }
   if (setting.plan == StudyPlan::search && setting.sensor != StudySensor::none) {
     made.seen = [this](const Terrain& ground) {

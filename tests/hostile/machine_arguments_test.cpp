@@ -464,7 +464,7 @@ TEST(HostileLaw, OptionsOfACalibration) {
   EXPECT_TRUE(refused(options, "density is nan"));
   options = {};
   options.draws = 0;
-  options.path.drag_length = nan;
+  options.path = {0.8, 0.35, nan};
   EXPECT_TRUE(refused(options, "drag length"));
   options = {};
   options.threads = std::numeric_limits<unsigned>::max();

@@ -524,7 +524,7 @@ TEST_F(Tools, PlanWarnsOfAnEstimateThatShouldNotBeTrusted) {
 TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
   const std::string file = folder.file("result.json");
   for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
-           {R"({"density_percent": null})", "density_percent: is null, expected a number"},
+           {R"({"density_percent": null})", "density_percent: is null, as the scans gave no density"},
            {R"({"density_percent": "40"})", "density_percent: is \"40\", expected a number"},
            {R"({"density_percent": 140})", "density_percent: is 140, must be in 0 .. 100"},
            {R"({"bulking_factor": 1.2})", "density_percent: is missing"},

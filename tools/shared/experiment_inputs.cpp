@@ -53,7 +53,7 @@ void declare_experiment(Arguments& arguments, ExperimentInputs& inputs) {
   declare_goal(arguments, inputs.goal);
   arguments.soil(inputs.soil);
   declare_simulator(arguments, inputs.simulator);
-  arguments.option("cell", inputs.cell_size, Quantity::length, "cell size of the simulated ground");
+  declare_cell(arguments, inputs.cell_size);
 }
 
 OptionNames experiment_option_names() {

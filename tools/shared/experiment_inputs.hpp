@@ -32,7 +32,7 @@ struct ExperimentInputs {
   bool sensitivity = false;
   bool search = false;
   SearchMethodInputs method;  ///< of the search
-  double cell_size = 0.05;
+  std::optional<double> cell_size;
   std::uint64_t seed = 1;
   std::uint64_t threads = 0;
 };

@@ -77,7 +77,6 @@ nlohmann::ordered_json regression_json(const Machine& machine, const SoilKind& s
   digs.path = options.fixed_path;
   digs.simulator = options.plan.simulator;
   digs.draws = 0;
-  digs.any_path = false;
   const DensityCalibration calibration = calibrate_density(machine, soil, digs);
   nlohmann::ordered_json samples = nlohmann::ordered_json::array();
   for (const DensityCalibration::Sample& sample : calibration.samples) {
@@ -160,7 +159,8 @@ Report experiment_report(const Machine& machine, const SoilKind& soil, const Pla
   report.title = "Fixed path against planned path in " + soil.name;
   report.plot_always = true;
   report.scene.machine = machine;
-  const Terrain ground = level_planning_ground(machine, options.cell_size);
+  const Terrain ground =
+      level_planning_ground(machine, options.cell_size.value_or(usual_cell(machine)));
   report.scene.areas = {{{{"before", ground.surface()}}}};
   for (const auto& [condition, result] : experiments.done) {
     Machine standing = machine;

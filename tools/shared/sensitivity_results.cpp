@@ -51,7 +51,7 @@ Outcome sensitivity(const Machine& machine, const ExperimentInputs& inputs, Cons
   reference.simulator = simulator_of(inputs.simulator, console);
   reference.search.objective = objective_of(inputs.goal);
   reference.search.seed = inputs.seed;
-  reference.cell_size = inputs.cell_size;
+  reference.cell_size = inputs.cell_size.value_or(usual_cell(machine));
   SensitivityOptions options;
   options.threads = static_cast<unsigned>(inputs.threads);
   if (inputs.method.evaluations > 0) options.digs = inputs.method.evaluations;

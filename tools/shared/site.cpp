@@ -53,6 +53,12 @@ void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
   declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");
 }
 
+void declare_cell(Arguments& arguments, std::optional<double>& cell_size) {
+  arguments.option("cell", cell_size, Quantity::length,
+                   "cell size of the simulated ground (default: 5 cm for the zx120, else in "
+                   "proportion to the bucket)");
+}
+
 Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
   if (terrain.frame && !terrain.cloud) {
     usage_error("--terrain-frame needs --terrain");

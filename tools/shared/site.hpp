@@ -24,6 +24,9 @@ struct TerrainInput {
 /// --terrain, --terrain-frame and --unit.
 void declare_terrain(Arguments& arguments, TerrainInput& terrain);
 
+/// Option --cell of tools that simulate digs of a machine; by default usual_cell() of the machine.
+void declare_cell(Arguments& arguments, std::optional<double>& cell_size);
+
 /// Ground to dig on, with its warnings.
 struct Site {
   Terrain ground;

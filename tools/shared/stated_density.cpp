@@ -78,6 +78,9 @@ double distance_to(const std::vector<Rectangle>& holes, const Rectangle& here) {
 
 StatedDensity stated_density(const std::string& file) {
   JsonObject result = JsonObject::result_of("estimate-density", file);
+  if (result.has("density_percent") && !result.states("density_percent")) {
+    result.fail("density_percent", "is null, as the scans gave no density; its warnings say why");
+  }
   StatedDensity stated{result.number("density_percent", 0.0, 100.0)};
   require_whole_estimate(result);
   GroundDensity& density = stated.density;

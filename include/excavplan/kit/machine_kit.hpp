@@ -40,10 +40,6 @@ struct KitSoil {
   bool stopped = false;     ///< by `progress`; law and library are then not complete
 };
 
-/// How many times longer its digs are than those of the zx120, as the ranges of a search are: the
-/// ratio of the lengths of the buckets. Cells of the simulated ground are as much larger.
-double dig_size(const Machine& machine);
-
 /// The goal with what the machine cannot do taken back: a dump height of at most nine tenths of
 /// what its bucket pin reaches.
 DigObjective feasible_objective(const Machine& machine, DigObjective objective);

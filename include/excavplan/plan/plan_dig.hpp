@@ -50,7 +50,8 @@ struct PlanOptions {
   DigSearchOptions search = budget_search();
   SimulatorKind simulator = default_simulator();  ///< digs what is searched or not on level ground
   TrajectoryOptions trajectory = {};              ///< how fast the machine moves
-  double cell_size = 0.05;                        ///< of the level ground, if none is given [m]
+  /// Of the level ground, if none is given; nothing: usual_cell() [m].
+  std::optional<double> cell_size = {};
 };
 
 /// Results of the search.

@@ -15,19 +15,17 @@ namespace excavplan {
 
 /// Digs of a calibration.
 struct CalibrationOptions {
-  std::vector<double> densities_percent = {};     ///< empty: 0, 5 .. 100, as the paper does
-  DigParameters path = paper_fixed_path();        ///< of every dig
-  double cell_size = 0.05;                        ///< [m]
+  std::vector<double> densities_percent = {};  ///< empty: 0, 5 .. 100, as the paper does
+  /// Of every dig, for a law of digs along it. Nothing: the paper's, its lengths times dig_size(),
+  /// for a law that is used where the path is not known: the digs in drawn soils are then along
+  /// drawn paths, angle from 0.5 to 1.1 rad, penetration from 0.2 to 0.6 m, drag from 0.8 to 2.5 m,
+  /// even, times dig_size(); ours, digs of a third of a bucket to two buckets.
+  std::optional<DigParameters> path = {};
+  std::optional<double> cell_size = {};           ///< nothing: usual_cell() [m]
   SimulatorKind simulator = default_simulator();  ///< that digs
-  /// Digs in drawn soils of all densities, in cells of 5 cm, for the scatter of the law; 0: none.
+  /// Digs in drawn soils of all densities, in cells of usual_cell(), for the scatter of the law; 0:
+  /// none.
   int draws = 200;
-  /// These are along drawn paths too, for a law that is used where the path is not known: angle
-  /// from 0.5 to 1.1 rad, penetration from 0.2 to 0.6 m, drag from 0.8 to 2.5 m, even; ours, digs
-  /// of a third of a bucket to two buckets.
-  bool any_path = true;
-  /// Of the machine to one of 12 t: lengths of drawn paths and cells of their ground are as many
-  /// times larger.
-  double size = 1.0;
   SoilScatter scatter = {};  ///< of the drawn soils
   unsigned threads = 0;      ///< 0: one per core; the result is the same for any number
 };

@@ -29,8 +29,17 @@ inline constexpr double coarsest_cell = 1.0;
 /// @throws Error (bad_input) unless a cell size is in finest_cell .. coarsest_cell
 void require_simulated_cell(double cell_size);
 
+/// How many times longer the digs of a machine are than those of the zx120, as the ranges of a
+/// search are: the ratio of the lengths of the buckets.
+double dig_size(const Machine& machine);
+
+/// Cell size of the ground that a machine digs: 5 cm for the zx120, else times dig_size() to a
+/// millimetre, within finest_cell .. coarsest_cell; ours [m].
+double usual_cell(const Machine& machine);
+
 /// planning_extent() as level ground. @throws Error (bad_input) as require_simulated_cell()
-Terrain level_planning_ground(const Machine& machine, double cell_size = 0.05);
+Terrain level_planning_ground(const Machine& machine, double cell_size);
+Terrain level_planning_ground(const Machine& machine);  ///< in cells of usual_cell()
 
 /// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the rows
 /// of cells that it needs.
