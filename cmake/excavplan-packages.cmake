@@ -29,7 +29,7 @@ set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexcavplan-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS 
+string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "excavplan (= ${PROJECT_VERSION}), "  # data
   "libeigen3-dev, libnlopt-dev, libnlopt-cxx-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, libbz2-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS  # excavplan::survey
   "libpcl-dev, libopencv-core-dev, libopencv-imgcodecs-dev, zlib1g-dev")
@@ -59,5 +59,16 @@ set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION
 "${PROJECT_DESCRIPTION}
  The guide, methods, formats and examples.")
+
+# Copyright and changelog where the Debian policy (12.5, 12.7) wants them; in no other install.
+set(changelog ${PROJECT_BINARY_DIR}/changelog.gz)
+execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${changelog})
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  string(TOUPPER ${component} key)
+  set(folder ${CMAKE_INSTALL_DATAROOTDIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME})
+  install(FILES .reuse/dep5 DESTINATION ${folder} RENAME copyright COMPONENT ${component}
+    EXCLUDE_FROM_ALL)
+  install(FILES ${changelog} DESTINATION ${folder} COMPONENT ${component} EXCLUDE_FROM_ALL)
+endforeach()
 
 include(CPack)

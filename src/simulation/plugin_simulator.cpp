@@ -73,10 +73,11 @@ const excavplan_simulator* entry_of(const std::string& file) {
     refuse_file(file, "is made for version " + std::to_string(simulator->version) +
                           " of simulator_plugin.h, this program takes version " + own);
   }
-  if (simulator->size < sizeof(excavplan_simulator)) {
+  constexpr std::size_t first_size =  // of version 1: what is appended may be missing
+      offsetof(excavplan_simulator, destroy) + sizeof simulator->destroy;
+  if (simulator->size < first_size) {
     refuse_file(file, "describes itself in " + std::to_string(simulator->size) +
-                          " bytes, version " + own + " has " +
-                          std::to_string(sizeof(excavplan_simulator)));
+                          " bytes, version " + own + " has at least " + std::to_string(first_size));
   }
   return simulator;
 }

@@ -9,8 +9,9 @@
  *
  * All numbers are SI and radians. Frame: x forward from the swing axis of the machine, y left, z
  * up. Moments in the boom plane turn from +x to +z. Arrays of joints hold boom, arm, bucket.
- * Structs of excavplan and their arrays are valid during the call that gets them. Every struct
- * begins with its size: a later header of the same version may append members, never move one. */
+ * Structs of excavplan and their arrays are valid during the call that gets them. A later header of
+ * the same version may append members to structs that begin with their size; no member moves, and
+ * the other structs stay as they are. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -115,7 +116,7 @@ typedef struct excavplan_load {
 /** What the dig did. excavplan has set all of it: numbers to 0, the ground as it was. */
 typedef struct excavplan_result {
   size_t size;          /**< of this struct [byte] */
-  uint32_t has;         /**< of the above: loads, energy, or both */
+  uint32_t has;         /**< of the above: loads, energy, or both; and that it gave up */
   double payload;       /**< moist soil in the bucket once it is clear of the ground [kg] */
   double* bank;         /**< rows * cols: the ground afterwards, without the payload [m] */
   double* loose;        /**< likewise [m] */
@@ -151,9 +152,15 @@ typedef struct excavplan_simulator {
   void (*destroy)(void* instance); /**< ends an instance */
 } excavplan_simulator;
 
+#if defined(__GNUC__)
+#define EXCAVPLAN_SIMULATOR_EXPORT __attribute__((visibility("default")))
+#else
+#define EXCAVPLAN_SIMULATOR_EXPORT
+#endif
+
 /** The one function that the library exports. @param version  of excavplan's header
  * @return what lives as long as the library; NULL: not for this version */
-const excavplan_simulator* excavplan_simulator_entry(uint32_t version);
+EXCAVPLAN_SIMULATOR_EXPORT const excavplan_simulator* excavplan_simulator_entry(uint32_t version);
 
 #ifdef __cplusplus
 }
