@@ -223,7 +223,7 @@ std::string ChildProcess::ask(const std::string& line, std::chrono::duration<dou
                               std::size_t longest) {
   const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
   const std::string request = line + '\n';
-  if (pipes_[input] < 0 || !read_some(output, read_)) throw ChildFailure(how_it_ended());
+  if (pipes_[input] < 0 || !read_some(output, read_)) throw ChildEnded(how_it_ended());
   if (!read_.empty()) {
     throw ChildFailure("it wrote to its standard output without being asked: " +
                        excavplan::quoted(read_));
@@ -247,7 +247,7 @@ std::string ChildProcess::ask(const std::string& line, std::chrono::duration<dou
       if (!answer.empty() && answer.back() == '\r') answer.pop_back();
       return answer;
     }
-    if (!open) throw ChildFailure(how_it_ended());
+    if (!open) throw ChildEnded(how_it_ended());
     if (written < request.size()) write_some(request, written);
   }
 }

@@ -21,6 +21,11 @@ struct ChildFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// It ended or closed its output.
+struct ChildEnded : ChildFailure {
+  using ChildFailure::ChildFailure;
+};
+
 /// The words of a command. Spaces part them, '..' and ".." hold them together.
 /// @throws ChildFailure if there is none, or a quotation does not end
 std::vector<std::string> words_of(const std::string& command);

@@ -50,16 +50,22 @@ class Programs {
 
   const ForeignSimulator& simulator() const { return simulator_; }
 
-  /// Hands `work` a program that is prepared; one that fails in it is ended.
+  /// Hands `work` a program that is prepared; one that fails in it is ended. Where one ends that
+  /// has dug before, a fresh one is asked the same.
   template <typename Work>
   auto with_program(const std::string& prepare, const Work& work) {
     std::unique_ptr<Program> program = taken(prepare);
     try {
+      if (program && program->digs > 0) {
+        try {
+          return done_by(program, prepare, work);
+        } catch (const ChildEnded&) {
+          pass_on(program->process.take_notes());
+          program.reset();
+        }
+      }
       if (!program) program = started();
-      if (program->prepared_for != prepare) make_ready(*program, prepare);
-      auto result = work(*program);
-      give_back(std::move(program));
-      return result;
+      return done_by(program, prepare, work);
     } catch (const ChildFailure& failure) {
       failed(std::move(program), failure.what());
     } catch (const Error& error) {
@@ -77,6 +83,14 @@ class Programs {
   }
 
  private:
+  template <typename Work>
+  auto done_by(std::unique_ptr<Program>& program, const std::string& prepare, const Work& work) {
+    if (program->prepared_for != prepare) make_ready(*program, prepare);
+    auto result = work(*program);
+    give_back(std::move(program));
+    return result;
+  }
+
   std::unique_ptr<Program> started() {
     auto program = std::make_unique<Program>(words_);
     try {

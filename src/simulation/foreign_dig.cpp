@@ -19,6 +19,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double room_around = 2.0;       // of the window around what the bucket sweeps [m]; ours
+constexpr double most_fill = 2.0;         // of the heaped capacity; ours
 constexpr double height_rounding = 1e-9;  // by which an answer may raise undisturbed soil [m]
 
 /// The cells that a dig can change.
@@ -119,6 +120,10 @@ ForeignDig::ForeignDig(const ForeignModel& model, const Terrain& terrain, const 
 void ForeignDig::check_numbers(const ForeignAnswer& answer) const {
   require(answer.payload >= 0.0 && std::isfinite(answer.payload), "its payload [kg]",
           answer.payload, "finite and not negative");
+  const double full = heaped_capacity(model_.machine) * model_.loose.bulk_density;
+  require(answer.payload <= most_fill * full, "its payload [kg]", answer.payload,
+          "at most " + number_text(most_fill) + " times the " + readable(full) +
+              " kg of a heaped bucket");
   if (answer.loads.empty() && !answer.energy) refuse("it gives neither loads nor an energy");
   if (!answer.loads.empty() && answer.loads.size() != steps()) {
     refuse("it gives " + std::to_string(answer.loads.size()) + " loads for " +

@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Odd{"wrong-number", "its payload [kg] is -1"},
         Odd{"text-number", "payload_kg: is \"many\", expected a number"},
-        Odd{"heavy", "its balance of dry mass is off"},
+        Odd{"heavy", "its balance of dry mass is off"}, Odd{"overfull", "times the 562"},
         Odd{"no-load", "neither loads nor an energy"}, Odd{"few-loads", "it gives 2 loads for"},
         Odd{"odd-loads", "loads: has 7 numbers, must be 4 a step"},
         Odd{"other-id", "id: is 77, expected that of the question, 1"},
@@ -181,6 +181,12 @@ TEST(CommandSimulator, StartsAgainAfterACrash) {
   const SimulatorKind kind = program(odd("crash-once " + folder.file("crashed")));
   EXPECT_TRUE(contains(error_of([&] { dug(kind); }), "signal 11"));
   EXPECT_GT(dug(kind).payload_mass, 50.0);
+}
+
+TEST(CommandSimulator, OneThatEndsAfterSomeDigsLosesNone) {
+  const SimulatorKind kind = program(odd("crash-third"));
+  const double payload = dug(kind).payload_mass;
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(dug(kind).payload_mass, payload);
 }
 
 TEST(CommandSimulator, IsNotStartedForEver) {

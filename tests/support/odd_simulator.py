@@ -24,6 +24,7 @@ def edit(reply):
         "wrong-number": lambda: reply.update(payload_kg=-1.0),
         "text-number": lambda: reply.update(payload_kg="many"),
         "heavy": lambda: reply.update(payload_kg=1.1 * reply["payload_kg"]),
+        "overfull": lambda: reply.update(payload_kg=2000.0),
         "no-load": lambda: reply.pop("loads"),
         "few-loads": lambda: reply.update(loads=reply["loads"][:8]),
         "odd-loads": lambda: reply.update(loads=reply["loads"][:7]),
@@ -51,6 +52,9 @@ def misbehave():
         Path(sys.argv[2]).touch()
     if HOW == "crash-once" and first or HOW == "crash":
         os.kill(os.getpid(), signal.SIGSEGV)
+    misbehave.digs += 1
+    if HOW == "crash-third" and misbehave.digs % 3 == 0:
+        os.kill(os.getpid(), signal.SIGSEGV)
     if HOW == "exit":
         print("out of\x1b[31m licences", file=sys.stderr, flush=True)
         sys.exit(3)
@@ -76,6 +80,9 @@ def misbehave():
     if HOW == "refuses":
         print(json.dumps({"type": "error", "message": "no licence left"}), flush=True)
     return HOW in ("no-json", "half-json", "nan", "long", "refuses")
+
+
+misbehave.digs = 0
 
 
 for line in sys.stdin:
