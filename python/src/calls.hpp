@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <pybind11/pybind11.h>
@@ -26,6 +27,27 @@ namespace py = pybind11;
 bool is_error(const py::error_already_set& error);
 /// What such an exception says, in C++.
 Error error_of(const py::error_already_set& error);
+
+/// Whether the interpreter is ending: it kills threads that ask for its lock then, through frames
+/// of C++ that cannot bear it.
+inline bool is_ending() {
+#if PY_VERSION_HEX >= 0x030D0000
+  return Py_IsFinalizing() != 0;
+#else
+  return _Py_IsFinalizing() != 0;
+#endif
+}
+
+/// Waits for the end of the process, if that has come.
+inline void stay_if_ending() {
+  while (is_ending()) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
+/// Whether this thread answers signals.
+inline bool is_main_thread() {
+  const py::module_ threading = py::module_::import("threading");
+  return threading.attr("current_thread")().is(threading.attr("main_thread")());
+}
 
 /// One call of the library. It runs on a thread of its own without the lock of the interpreter,
 /// while the caller answers signals: Ctrl-C cancels what can be cancelled, and is raised at its
@@ -46,6 +68,8 @@ class Call {
   auto run(const Work& work) -> decltype(work()) {
     std::optional<decltype(work())> result;
     std::exception_ptr thrown;
+    const auto between_signals = std::chrono::milliseconds(50);
+    const bool answers_signals = is_main_thread();
     {
       const py::gil_scoped_release release;
       auto answer = std::async(std::launch::async, [&] {
@@ -55,10 +79,12 @@ class Call {
           thrown = std::current_exception();
         }
       });
-      while (answer.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+      while (answers_signals && answer.wait_for(between_signals) != std::future_status::ready) {
         const py::gil_scoped_acquire acquire;
         if (PyErr_CheckSignals() != 0) fail(std::make_exception_ptr(py::error_already_set()));
       }
+      answer.wait();
+      stay_if_ending();
     }
     if (raised_) std::rethrow_exception(raised_);
     if (thrown) std::rethrow_exception(thrown);
@@ -82,6 +108,7 @@ inline std::shared_ptr<const py::object> shared(py::object object) {
 /// Tells a callback, if there is one, of the state of a call. @return false: it shall stop
 template <typename State>
 bool goes_on(Call& call, const py::object& callback, const State& state) {
+  if (is_ending()) return false;
   const py::gil_scoped_acquire acquire;
   if (callback.is_none()) return true;
   try {

@@ -3,7 +3,10 @@
 """Wrong shapes, types and numbers give errors, never a crash."""
 
 import array
+import copy
 import itertools
+import subprocess
+import sys
 import unittest
 
 import excavplan as ex
@@ -38,6 +41,36 @@ class Hostile(unittest.TestCase):
         for cell in (0, -1, NAN, INF, "a", None, 10 ** 400):
             with self.assertRaises(REFUSED):
                 ex.HeightMap([[0.0]], cell_size=cell)
+
+    def test_no_object_is_made_without_its_constructor(self):
+        for name in ("Trajectory", "DigPlan", "Cloud", "Machine", "DigParameters", "HeightMap"):
+            kind = getattr(ex, name)
+            with self.assertRaisesRegex(TypeError, "without its constructor", msg=name):
+                kind.__new__(kind)
+        for copied in (copy.copy, copy.deepcopy):
+            with self.assertRaises(TypeError):
+                copied(MACHINE)
+        self.assertEqual(ex.DigParameters(0.7, 0.3, 1.5).drag_length, 1.5)
+
+    def test_the_interpreter_may_end_amid_calls_of_other_threads(self):
+        for search in ("ex.DigSearchOptions(evaluations=100000)",
+                       "ex.DigSearchOptions(evaluations=100000, progress=lambda state: True)"):
+            ended = subprocess.run([sys.executable, "-c", f"""
+import sys, threading, time
+import excavplan as ex
+machine, loam = ex.load_machine("zx120"), ex.load_soil("loam")
+search = {search}
+threading.Thread(daemon=True, target=lambda: ex.plan_dig(
+    machine, loam, 40, method="search", search=search)).start()
+time.sleep(0.5)
+sys.exit(5)
+"""], check=False, stderr=subprocess.PIPE, timeout=120)
+            self.assertEqual((ended.returncode, ended.stderr), (5, b""))
+
+    def test_a_plan_of_another_machine_has_no_motion(self):
+        plan = ex.plan_dig(MACHINE, LOAM, 40)
+        with self.assertRaisesRegex(ex.Error, "of the machine 'zx120', not of 'zx200'"):
+            ex.plan_motion(ex.load_machine("zx200"), plan)
 
     def test_the_messages_are_those_of_the_library(self):
         with self.assertRaises(ex.Error) as raised:

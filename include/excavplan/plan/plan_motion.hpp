@@ -13,7 +13,7 @@ namespace excavplan {
 /// payload, timed by time_way().
 /// @param ground  before the dig
 /// @return the motion, without points if the plan has no dig; or what blocks the way
-/// @throws Error (bad_input) as way_of_cycle() and time_way()
+/// @throws Error (bad_input) as way_of_cycle() and time_way(), or if the plan is of another machine
 std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const Terrain& ground,
                                                  const DigPlan& plan,
                                                  const CycleWayOptions& way = {},
