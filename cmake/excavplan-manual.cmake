@@ -13,12 +13,13 @@ if(EXCAVPLAN_HELP2MAN AND NOT CMAKE_CROSSCOMPILING)
   foreach(tool IN LISTS tools)
     set(page ${PROJECT_BINARY_DIR}/man/${tool}.1)
     get_target_property(purpose ${tool} EXCAVPLAN_PURPOSE)
-    add_custom_command(OUTPUT ${page}
+    add_custom_command(OUTPUT ${page}.gz
       COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
       COMMAND ${EXCAVPLAN_HELP2MAN} --no-info --section=1 --name=${purpose} --output=${page}
         $<TARGET_FILE:${tool}>
+      COMMAND gzip -9nf ${page}
       DEPENDS ${tool} VERBATIM)
-    list(APPEND pages ${page})
+    list(APPEND pages ${page}.gz)
   endforeach()
   add_custom_target(manual ALL DEPENDS ${pages})
   install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT Runtime)

@@ -24,8 +24,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME excavplan)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS fonts-dejavu-core)  # texts of --plot F.png, F.pdf
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
-"${PROJECT_DESCRIPTION}
- The command line tools, with machines, soils, laws and path libraries.")
+"The command line tools, with machines, soils, laws and path libraries.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexcavplan-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -34,8 +33,7 @@ string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "excavplan (= ${PROJECT_V
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS  # excavplan::survey
   "libpcl-dev, libopencv-core-dev, libopencv-imgcodecs-dev, zlib1g-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-"${PROJECT_DESCRIPTION}
- Headers, libraries, CMake and pkg-config files.")
+"Headers, libraries, CMake and pkg-config files.")
 
 if(TARGET excavplan_python)
   list(APPEND CPACK_COMPONENTS_ALL Python)
@@ -49,20 +47,25 @@ if(TARGET excavplan_python)
     "python3 (<< ${Python_VERSION_MAJOR}.${next_minor})")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-numpy)
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
-"${PROJECT_DESCRIPTION}
- The package of Python.")
+"The package of Python.")
 endif()
 
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME excavplan-doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION
-"${PROJECT_DESCRIPTION}
- The guide, methods, formats and examples.")
+"The guide, methods, formats and examples.")
 
 # Copyright and changelog where the Debian policy (12.5, 12.7) wants them; in no other install.
+string(TIMESTAMP today "%a, %d %b %Y %H:%M:%S +0000" UTC)  # heeds SOURCE_DATE_EPOCH
+file(WRITE ${PROJECT_BINARY_DIR}/changelog "excavplan (${PROJECT_VERSION}) unstable; urgency=medium
+
+  * Version ${PROJECT_VERSION}; what changed is in CHANGELOG.md of excavplan-doc.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${today}
+")
 set(changelog ${PROJECT_BINARY_DIR}/changelog.gz)
-execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${changelog})
+execute_process(COMMAND gzip -9nc ${PROJECT_BINARY_DIR}/changelog OUTPUT_FILE ${changelog})
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} key)
   set(folder ${CMAKE_INSTALL_DATAROOTDIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME})
