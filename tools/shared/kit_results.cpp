@@ -23,15 +23,6 @@ const PathLibraryEntry& shown_entry(const PathLibrary& library) {
 
 }  // namespace
 
-DigObjective kit_objective(const GoalInputs& inputs, const Machine& machine) {
-  const DigObjective objective = objective_of(inputs);
-  const auto& parameters = objective_parameters();
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].field == &DigObjective::dump_height && inputs.numbers[i]) return objective;
-  }
-  return feasible_objective(machine, objective);
-}
-
 nlohmann::ordered_json joints_json(const RobotJoints& joints) {
   constexpr std::array<const char*, 4> words = {"boom", "arm", "bucket", "swing"};
   nlohmann::ordered_json json;

@@ -10,16 +10,12 @@
 #include <excavplan/machine/machine_file.hpp>
 
 #include "base/json.hpp"
-#include "shared/goal_inputs.hpp"
 #include "shared/tool.hpp"
 
 /// @file
 /// What machine-kit writes and prints.
 
 namespace excavplan::tools {
-
-/// The goal of the command line; a dump height that was not given is one that the machine reaches.
-DigObjective kit_objective(const GoalInputs& inputs, const Machine& machine);
 
 nlohmann::ordered_json joints_json(const RobotJoints& joints);
 
