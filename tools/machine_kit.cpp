@@ -4,7 +4,6 @@
 #include <system_error>
 
 #include <excavplan/kit/machine_kit.hpp>
-#include <excavplan/kit/workspace.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"
@@ -77,36 +76,6 @@ KitOptions options_of(const Inputs& inputs, const Machine& machine, Console& con
   return options;
 }
 
-/// What the file says of the machine, checked and drawn.
-Outcome examined(const Inputs& inputs, const MachineFile& file) {
-  const Machine& machine = file.machine;
-  const Reach reach = reach_of(machine);
-  Outcome outcome;
-  outcome.warnings = file.warnings;
-  for (Warning& each : check_machine(machine, file.data_sheet)) {
-    outcome.trustworthy = outcome.trustworthy && !each.ends_trust;
-    outcome.warnings.push_back(std::move(each));
-  }
-  outcome.json = {
-      {"machine", machine.name},
-      {"folder", inputs.folder()},
-      {"reach_m", {{"ground", reach.ground}, {"depth", reach.depth}, {"height", reach.height}}},
-      {"digging_force_kn",
-       {{"bucket", 1e-3 * bucket_force(machine)}, {"arm", 1e-3 * arm_force(machine)}}},
-      {"capacity_m3",
-       {{"struck", struck_capacity(machine)}, {"heaped", heaped_capacity(machine)}}}};
-  outcome.json["robot_joints"] = joints_json(machine.robot_joints);
-  outcome.lines = {machine.name + ": reaches " + readable(reach.ground) + " m on the ground, " +
-                       readable(reach.depth) + " m deep, " + readable(reach.height) + " m high",
-                   "digging force: bucket " + readable(1e-3 * bucket_force(machine)) + " kN, arm " +
-                       readable(1e-3 * arm_force(machine)) + " kN; bucket holds " +
-                       readable(heaped_capacity(machine)) + " m3 heaped"};
-  for (Warning& each : goal_warnings(inputs.goal, {machine})) {
-    outcome.warnings.push_back(std::move(each));
-  }
-  return outcome;
-}
-
 /// Of a machine that digs.
 void write_machine(const Inputs& inputs, const MachineFile& file, Outcome& outcome) {
   write_file(inputs.folder() + "/" + kit_machine, file.text);
@@ -148,7 +117,10 @@ void make_kits(const Inputs& inputs, const MachineFile& file, Console& console, 
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
   const MachineFile file = load_machine_file(machine_path(inputs.machine));
-  Outcome outcome = examined(inputs, file);
+  Outcome outcome = examined(file, inputs.folder());
+  for (Warning& each : goal_warnings(inputs.goal, {file.machine})) {
+    outcome.warnings.push_back(std::move(each));
+  }
   outcome.json["soils"] = nlohmann::ordered_json::array();
   in_folder(inputs.folder(), [&] { make_kits(inputs, file, console, outcome); });
   outcome.json["wall_time_s"] = watch.seconds();

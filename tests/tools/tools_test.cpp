@@ -536,7 +536,7 @@ done)");
             "loam sand clay gravel\n"
             "zx120 zx200 generic-20t generic-mini\n"
             "cycle energy time priced:\n"
-            "all= before= after= change= path=\n"
+            "all= before= after= change= footprint= path=\n"
             "\n"
             "height-map section\n"
             "\n");
