@@ -48,9 +48,9 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.require("out");
 }
 
-LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
+LibraryBuildOptions options_of(const Inputs& inputs, const LibraryGrid& grid, Console& console) {
   LibraryBuildOptions options;
-  options.search = search_of(inputs.library, console);
+  options.search = search_of(inputs.library, grid, console);
   options.threads = static_cast<unsigned>(inputs.threads);
   options.folder = inputs.cells.value_or(inputs.out + ".cells");
   options.note = [&console](const std::string& line) { console.note(line); };
@@ -72,7 +72,7 @@ LibraryBuildOptions options_of(const Inputs& inputs, Console& console) {
 Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
   const Stopwatch watch;
   const LibraryGrid grid = grid_of(inputs.library);
-  LibraryBuildOptions options = options_of(inputs, console);
+  LibraryBuildOptions options = options_of(inputs, grid, console);
   naming_options(library_option_names, [&] { require_buildable(grid, options.search); });
   if (ranks != nullptr) {
     if (options.threads == 0) options.threads = 1;
@@ -91,6 +91,9 @@ Outcome work(const Inputs& inputs, Console& console, Ranks* ranks) {
   Outcome outcome = build.stopped ? stopped_build(build, options.folder,
                                                   inputs.cells ? "the same command" : "--resume")
                                   : written_libraries(build.libraries, inputs.out);
+  for (Warning& each : goal_warnings(inputs.library.goal, grid.machines)) {
+    outcome.warnings.push_back(std::move(each));
+  }
   if (own) build.stopped ? own->keep() : own->clear();
   outcome.json["wall_time_s"] = watch.seconds();
   return outcome;

@@ -46,6 +46,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("tf-frame", "NAME", inputs.tf_frame,
                  "frame of the transforms of a recording into which its scan is put");
   declare_pose(arguments, inputs.pose, "scan_x_m,scan_y_m,scan_z_m");
+  arguments.exclude("frame", {"pose", "level", "points"});
   arguments.output("out", inputs.out, "write the cloud here: " + cloud_endings());
   arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text, with full precision");
 }
@@ -64,7 +65,6 @@ Outcome inspect(const Inputs& inputs) {
     usage_error("--ascii needs --out");
   }
   PoseInputs placed = inputs.pose;
-  if (inputs.frame && placed.pose) usage_error("--frame and --pose are the same: give one of them");
   if (inputs.frame) placed.pose = inputs.frame;
   check_pose(placed);
   CloudFormat format;

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <system_error>
+
 #include <excavplan/kit/machine_kit.hpp>
-#include <excavplan/kit/workspace.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "shared/goal_inputs.hpp"
 #include "shared/kit_figures.hpp"
 #include "shared/kit_files.hpp"
 #include "shared/kit_results.hpp"
@@ -62,7 +65,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
 
 KitOptions options_of(const Inputs& inputs, const Machine& machine, Console& console) {
   KitOptions options = inputs.kit;
-  options.objective = kit_objective(inputs.goal, machine);
+  options.objective = objective_of(inputs.goal, {machine});
   options.densities_percent = parse_densities("--densities", inputs.densities);
   options.slopes = parse_series("--slopes", inputs.slopes, Quantity::angle);
   options.threads = static_cast<unsigned>(inputs.threads);
@@ -73,51 +76,53 @@ KitOptions options_of(const Inputs& inputs, const Machine& machine, Console& con
   return options;
 }
 
-/// What the file says of the machine, checked and drawn.
-Outcome examined(const Inputs& inputs, const MachineFile& file) {
-  const Machine& machine = file.machine;
-  const Reach reach = reach_of(machine);
-  Outcome outcome;
-  outcome.warnings = file.warnings;
-  for (Warning& each : check_machine(machine, file.data_sheet)) {
-    outcome.trustworthy = outcome.trustworthy && !each.ends_trust;
-    outcome.warnings.push_back(std::move(each));
-  }
-  outcome.json = {
-      {"machine", machine.name},
-      {"folder", inputs.folder()},
-      {"reach_m", {{"ground", reach.ground}, {"depth", reach.depth}, {"height", reach.height}}},
-      {"digging_force_kn",
-       {{"bucket", 1e-3 * bucket_force(machine)}, {"arm", 1e-3 * arm_force(machine)}}},
-      {"capacity_m3",
-       {{"struck", struck_capacity(machine)}, {"heaped", heaped_capacity(machine)}}}};
-  outcome.json["robot_joints"] = joints_json(machine.robot_joints);
-  outcome.lines = {machine.name + ": reaches " + readable(reach.ground) + " m on the ground, " +
-                       readable(reach.depth) + " m deep, " + readable(reach.height) + " m high",
-                   "digging force: bucket " + readable(1e-3 * bucket_force(machine)) + " kN, arm " +
-                       readable(1e-3 * arm_force(machine)) + " kN; bucket holds " +
-                       readable(heaped_capacity(machine)) + " m3 heaped"};
-  make_folder(inputs.folder());
+/// Of a machine that digs.
+void write_machine(const Inputs& inputs, const MachineFile& file, Outcome& outcome) {
   write_file(inputs.folder() + "/" + kit_machine, file.text);
   Plots plots = inputs.plots;
   plots.files.push_back({"reach", inputs.folder() + "/reach.svg"});
-  write_plots(plots, kit_figures(), machine, outcome.lines, outcome.warnings);
-  return outcome;
+  write_plots(plots, kit_figures(), file.machine, outcome.lines, outcome.warnings);
+}
+
+/// Runs `work`, which writes into a folder that is made now; one that it leaves empty is removed.
+template <typename Work>
+void in_folder(const std::string& folder, const Work& work) {
+  std::error_code unknown;
+  const bool is_new = !std::filesystem::exists(folder, unknown);
+  make_folder(folder);
+  try {
+    work();
+  } catch (const Error&) {
+    if (is_new) std::filesystem::remove(folder, unknown);
+    throw;
+  }
+}
+
+void make_kits(const Inputs& inputs, const MachineFile& file, Console& console, Outcome& outcome) {
+  const std::vector<SoilKind> soils = soils_named(inputs.soils);
+  const KitOptions options = options_of(inputs, file.machine, console);
+  const std::string path = machine_path(inputs.machine);
+  const OptionNames names = {{"this dig", path + ": a dig of its size"},
+                             {"machine kit: ", path + ": "}};
+  for (const SoilKind& soil : soils) {
+    const KitSoil kit =
+        naming_options(names, [&] { return make_kit(file.machine, soil, options); });
+    outcome.stopped_early = kit.stopped;
+    if (kit.stopped) return;
+    if (outcome.json["soils"].empty()) write_machine(inputs, file, outcome);
+    add_kit(kit, file.machine, soil, inputs.folder(), outcome);
+  }
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
   const MachineFile file = load_machine_file(machine_path(inputs.machine));
-  const std::vector<SoilKind> soils = soils_named(inputs.soils);
-  const KitOptions options = options_of(inputs, file.machine, console);
-  Outcome outcome = examined(inputs, file);
-  outcome.json["soils"] = nlohmann::ordered_json::array();
-  for (const SoilKind& soil : soils) {
-    const KitSoil kit = make_kit(file.machine, soil, options);
-    outcome.stopped_early = kit.stopped;
-    if (kit.stopped) break;
-    add_kit(kit, file.machine, soil, inputs.folder(), outcome);
+  Outcome outcome = examined(file, inputs.folder());
+  for (Warning& each : goal_warnings(inputs.goal, {file.machine})) {
+    outcome.warnings.push_back(std::move(each));
   }
+  outcome.json["soils"] = nlohmann::ordered_json::array();
+  in_folder(inputs.folder(), [&] { make_kits(inputs, file, console, outcome); });
   outcome.json["wall_time_s"] = watch.seconds();
   if (!outcome.stopped_early) {
     outcome.lines.push_back("next: plan-path --machine " +

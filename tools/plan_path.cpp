@@ -90,7 +90,7 @@ PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilK
                        Console& console) {
   PlanOptions options;
   options.method = inputs.search ? PlanMethod::search : PlanMethod::library;
-  options.search = search_options(inputs.dig_search, use_of(inputs), console);
+  options.search = search_options(inputs.dig_search, machine, use_of(inputs), console);
   if (inputs.library) {
     options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
   } else {
@@ -121,7 +121,9 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();
   outcome.warnings = plan_warnings(plan, inputs.density, inputs.terrain.cloud.has_value());
-  outcome.warnings.insert(outcome.warnings.begin(), site.warnings.begin(), site.warnings.end());
+  for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), site.warnings}) {
+    outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
+  }
   outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);
   outcome.json = plan_json(plan, density, options.search.objective);
   outcome.json.update({{"trustworthy", outcome.trustworthy},

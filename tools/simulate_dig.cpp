@@ -57,6 +57,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
                    "x at which the tip enters the ground (default: planned)");
   arguments.file("path-from", inputs.path_from,
                  "take path and start from this result of plan-path --json");
+  arguments.exclude("path-from", {"path", "start"});
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   declare_simulator(arguments, inputs.simulator);
@@ -84,7 +85,6 @@ SceneOptions options_of(const Inputs& inputs, Console& console) {
   options.history = true;
   options.blocks = inputs.blocks.with_seed(inputs.seed);
   if (!inputs.path_from) return options;
-  if (inputs.path || options.start_x) usage_error("--path-from excludes --path and --start");
   std::tie(options.path, options.start_x) = read_planned_path(*inputs.path_from);
   options.rules = rules_for_planned_path();
   return options;

@@ -13,8 +13,12 @@ _excavplan() {
     return
   fi
   [[ $before == --?* ]] || return 0
-  words=$("$1" --help 2>/dev/null | sed -nE "s/^  $before ([a-z0-9|-]+)( .*)?$/\1/p")
-  mapfile -t COMPREPLY < <(compgen -W "${words//|/ }" -- "$word")
+  # "loam|sand|FILE", "cycle|priced:WATT", "[before|after=]FILE.tif|ply": the words in small letters.
+  words=$("$1" --help 2>/dev/null | sed -nE "s/^  $before ([^ ]+)( .*)?$/\1/p" |
+    sed -E '/^\[/ { s/^\[([^]]*)=\].*/\1/; s/\||$/=&/g }; s/FILE\..*//' | tr '|' '\n' |
+    sed -nE 's/^([a-z0-9-]+[=:]?)([A-Z]*)$/\1/p')
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
+  if [[ ${COMPREPLY[*]} == *[=:] ]]; then compopt -o nospace; fi
 }
 
 complete -o default -F _excavplan @tools@

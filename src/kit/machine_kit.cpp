@@ -11,8 +11,14 @@
 #include <excavplan/simulation/calibration.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "base/check.hpp"
+#include "base/text.hpp"
+
 namespace excavplan {
 namespace {
+
+// Pin to tip [m]; ours. Below it the ground of a dig has millions of cells, and a kit takes hours.
+constexpr double shortest_bucket = 0.2;
 
 DensityCalibration law_of(const Machine& machine, const SoilKind& soil, const KitOptions& options) {
   CalibrationOptions calibration;
@@ -32,6 +38,8 @@ DigObjective feasible_objective(const Machine& machine, DigObjective objective) 
 }
 
 KitSoil make_kit(const Machine& machine, const SoilKind& soil, const KitOptions& options) {
+  require(machine.bucket_length >= shortest_bucket, "machine kit: the length of the bucket [m]",
+          machine.bucket_length, "at least " + number_text(shortest_bucket));
   KitSoil kit;
   const auto tell = [&](double done, const std::string& what) {
     return !options.progress || options.progress(done, what + " of " + soil.name);

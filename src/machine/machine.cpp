@@ -288,8 +288,15 @@ Machine read_machine(JsonObject file) {
   if (file.has("body")) machine.body = read_body(file.object("body"), machine.track_front);
   if (file.has("swing")) machine.swing = read_swing(file.object("swing"));
   if (file.has("engine")) machine.engine = read_engine(file.object("engine"));
-  if (file.has("robot_joints"))
-    machine.robot_joints = read_robot_joints(file.object("robot_joints"));
+  if (file.has("robot_joints")) {
+    JsonObject robot = file.object("robot_joints");
+    machine.robot_joints = read_robot_joints(robot);
+    for (std::size_t i = 0; i < all_joints.size(); ++i) {
+      if (!machine.robot_joints[i].name.empty()) continue;
+      robot.fail(std::string(name(all_joints[i])) + ".name",
+                 "is empty; boom, arm and bucket must have a name");
+    }
+  }
   for (JsonObject* object : {&joints, &links, &file}) {
     object->ignore("sources");
     object->done();

@@ -48,7 +48,9 @@ MachineFile load_machine_file(const std::string& path) {
   std::string content = read_file(path);
   if (!is_xml(content)) return file_of(path, std::move(content));
   UrdfDraft draft = draft_of_urdf(path, content);
-  MachineFile read = file_of(path, draft.json.dump(2) + "\n");
+  const std::string name =
+      draft.beside.empty() ? path : path + " with " + draft.beside + " beside it";
+  MachineFile read = file_of(name, draft.json.dump(2) + "\n");
   read.warnings = std::move(draft.warnings);
   return read;
 }

@@ -13,8 +13,8 @@ namespace excavplan {
 /// The machine of a file whose format was checked. @throws Error (bad_file)
 Machine read_machine(JsonObject file);
 
-/// Objects `boom`, `arm`, `bucket`, `swing` of `name`, `sign`, `zero_rad`; names that are not empty
-/// differ. @throws Error (bad_file)
+/// Objects `boom`, `arm`, `bucket`, `swing` of `name`, `sign`, `zero_rad`, each optional, else as
+/// in a Machine; names that are not empty differ. @throws Error (bad_file)
 RobotJoints read_robot_joints(JsonObject file);
 nlohmann::ordered_json robot_joints_json(const RobotJoints& joints);
 

@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::array<const char*, 4> words = {"boom", "arm", "bucket", "swing"};
 
-RobotJoint read_robot_joint(JsonObject file) {
-  RobotJoint joint = {file.text("name")};
+RobotJoint read_robot_joint(JsonObject file, RobotJoint joint) {
+  joint.name = file.text_or("name", joint.name);
   joint.sign = file.number_or("sign", joint.sign, -1.0, 1.0);
   if (std::abs(joint.sign) != 1.0)
     file.fail("sign", "is " + number_text(joint.sign) + ", must be -1 or 1");
@@ -21,9 +21,9 @@ RobotJoint read_robot_joint(JsonObject file) {
 }  // namespace
 
 RobotJoints read_robot_joints(JsonObject file) {
-  RobotJoints joints;
+  RobotJoints joints = Machine{}.robot_joints;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    joints[i] = read_robot_joint(file.object(words[i]));
+    if (file.has(words[i])) joints[i] = read_robot_joint(file.object(words[i]), joints[i]);
     for (std::size_t other = 0; other < i; ++other) {
       if (joints[i].name.empty() || joints[i].name != joints[other].name) continue;
       file.fail(words[i],

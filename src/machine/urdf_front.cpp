@@ -122,6 +122,9 @@ class Front {
   }
 
   void require_turning(const UrdfJoint& joint) const {
+    if (joint.mimics) {
+      tree_.refuse(joint, "has a 'mimic', expected a joint that moves by itself");
+    }
     if (joint.type == "revolute" || joint.type == "continuous") return;
     tree_.refuse(joint,
                  "is " + excavplan::quoted(joint.type) + ", expected 'revolute' or 'continuous'");

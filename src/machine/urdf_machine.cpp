@@ -286,6 +286,7 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
   }
   warn_of_angles(front, draft.warnings);
   draft.json = std::move(machine);
+  draft.beside = side.file;
   return draft;
 }
 

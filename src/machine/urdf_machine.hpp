@@ -18,6 +18,7 @@ namespace excavplan {
 struct UrdfDraft {
   nlohmann::json json;  ///< of a machine file, with the source of each number
   std::vector<Warning> warnings;
+  std::string beside;  ///< the JSON beside it; empty: there is none
 };
 
 /// @param path  of the URDF, for messages and for the JSON beside it

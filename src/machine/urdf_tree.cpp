@@ -49,7 +49,9 @@ class Parser {
 
   void refuse_xacro(const XmlElement& element) const {
     const auto has_macro = [](const auto& attribute) {
-      return attribute.first.rfind("xmlns:", 0) != 0 && attribute.second.find("${") != string::npos;
+      const string& value = attribute.second;
+      return attribute.first.rfind("xmlns:", 0) != 0 &&
+             (value.find("${") != string::npos || value.find("$(") != string::npos);
     };
     const auto& attributes = element.attributes;
     if (element.name.rfind("xacro:", 0) == 0 ||
@@ -70,27 +72,43 @@ class Parser {
     return *value;
   }
 
+  /// The child of that name, or null.
+  const XmlElement* only(const XmlElement& of, const string& key) const {
+    const XmlElement* first = of.child(key);
+    for (const XmlElement& each : of.children) {
+      if (each.name != key || &each == first) continue;
+      const string* name = of.attribute("name");
+      refuse(each, of.name + (name ? " " + excavplan::quoted(*name) : "") + " has a second " +
+                       excavplan::quoted(key) + ", expected one at most");
+    }
+    return first;
+  }
+
+  /// Numbers with blanks between them.
   std::vector<double> numbers(const XmlElement& of, const string& key) const {
     const string& text = *of.attribute(key);
     std::vector<double> found;
     const char* at = text.data();
     const char* const end = at + text.size();
-    const auto skip_blanks = [&] {
-      while (at != end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '\r')) ++at;
-    };
-    for (skip_blanks(); at != end; skip_blanks()) {
-      if (*at == '+') ++at;
+    const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+    for (;; ++at) {
+      at = std::find_if_not(at, end, is_blank);
+      if (at == end) return found;
+      const bool has_plus = *at == '+';
+      if (has_plus) ++at;
       double value = 0.0;
       const auto [next, error] = read_double(at, end, value);
-      const bool is_number = error == std::errc() && std::abs(value) <= largest;
+      const bool is_number = error == std::errc() && std::abs(value) <= largest &&
+                             !(has_plus && *at == '-') && (next == end || is_blank(*next));
       if (!is_number || found.size() == 3) {
         refuse(of, key + " of " + excavplan::quoted(of.name) + " is " + excavplan::quoted(text) +
-                       ", expected numbers of at most " + number_text(largest));
+                       ", expected numbers of at most " + number_text(largest) +
+                       " with blanks between them");
       }
       found.push_back(value);
       at = next;
+      if (at == end) return found;
     }
-    return found;
   }
 
   std::optional<double> number(const XmlElement* of, const string& key) const {
@@ -124,9 +142,9 @@ class Parser {
   UrdfLink link(const XmlElement& element) const {
     UrdfLink link;
     link.name = attribute(element, "name");
-    if (const XmlElement* inertial = element.child("inertial")) {
-      link.mass = number(inertial->child("mass"), "value");
-      link.centre = pose(inertial->child("origin")).translation();
+    if (const XmlElement* inertial = only(element, "inertial")) {
+      link.mass = number(only(*inertial, "mass"), "value");
+      link.centre = pose(only(*inertial, "origin")).translation();
     }
     return link;
   }
@@ -137,22 +155,23 @@ class Parser {
     joint.type = attribute(element, "type");
     joint.line = element.line;
     for (const auto& [key, value] : {std::pair("parent", &joint.parent), {"child", &joint.child}}) {
-      const XmlElement* end = element.child(key);
+      const XmlElement* end = only(element, key);
       if (!end)
         refuse(element,
                "joint " + excavplan::quoted(joint.name) + " has no " + excavplan::quoted(key));
       *value = attribute(*end, "link");
     }
-    joint.origin = pose(element.child("origin"));
-    const Eigen::Vector3d axis = vector(element.child("axis"), "xyz", Eigen::Vector3d::UnitX());
+    joint.origin = pose(only(element, "origin"));
+    const Eigen::Vector3d axis = vector(only(element, "axis"), "xyz", Eigen::Vector3d::UnitX());
     if (!(axis.norm() > 1e-6)) {
       refuse(element,
              "joint " + excavplan::quoted(joint.name) + " has an axis without a direction");
     }
     joint.axis = axis.normalized();
-    const XmlElement* limit = element.child("limit");
+    const XmlElement* limit = only(element, "limit");
     joint.limits = {number(limit, "lower"), number(limit, "upper"), number(limit, "velocity"),
                     number(limit, "effort")};
+    joint.mimics = element.child("mimic") != nullptr;
     return joint;
   }
 

@@ -27,6 +27,7 @@ struct UrdfJoint {
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< in the frame of the parent link
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();           ///< of length 1, in the joint's frame
   UrdfLimits limits;
+  bool mimics = false;  ///< follows another joint
 };
 
 struct UrdfLink {

@@ -432,6 +432,25 @@ TEST(MachineFile, NamesKeyValueAndRuleOfWhatItRefuses) {
   EXPECT_EQ(complaint_about([](json& f) { f["links"].erase("boom"); }), "links.boom: is missing");
 }
 
+TEST(MachineFile, MayNameSomeOfTheRobotsJoints) {
+  json file = shipped_json();
+  file["robot_joints"] = {{"boom", {{"name", "b"}}}, {"arm", {{"sign", -1}}}};
+  const std::string path = testing::TempDir() + "joints_" + std::to_string(::getpid()) + ".json";
+  std::ofstream(path) << file;
+  const RobotJoints joints = load_machine(path).robot_joints;
+  EXPECT_EQ(joints[0].name, "b");
+  EXPECT_EQ(joints[1].name, "arm");
+  EXPECT_EQ(joints[1].sign, -1.0);
+  EXPECT_EQ(joints[2].name, "bucket");
+  EXPECT_EQ(joints[3].name, "swing");
+  EXPECT_EQ(set("/robot_joints/swing/name", ""), "no error");
+  EXPECT_EQ(set("/robot_joints/arm/name", ""),
+            "robot_joints.arm.name: is empty; boom, arm and bucket must have a name");
+  EXPECT_EQ(set("/robot_joints/arm", {{"name", "bucket_joint"}}),
+            "robot_joints.bucket: has the name 'bucket_joint' of arm");
+  std::remove(path.c_str());
+}
+
 TEST(MachineFile, MayLeaveOutTheTeeth) {
   json file = shipped_json();
   file["bucket"].erase("teeth");

@@ -244,6 +244,20 @@ TEST_F(Urdf, TakesTheRestFromTheJsonBesideIt) {
             "geometry.boom_length_m: found it here and in the URDF, expected it in the URDF");
 }
 
+TEST_F(Urdf, NamesTheJsonBesideItWhereThatIsWrong) {
+  const std::string name = folder.file("digger.urdf") + " with " + folder.file("digger.json");
+  const auto complaint_of = [&](const json& beside) {
+    return test::error_about([&] { read(urdf_of(zx120_joints()), beside); }, name + " beside it");
+  };
+  const json head = {{"format", "excavplan-machine"}, {"version", 1}};
+  json beside = head;
+  beside["foo"] = 1;
+  EXPECT_EQ(complaint_of(beside), "foo: is not a key of this file");
+  beside = head;
+  beside["robot_joints"]["boom"]["sign"] = 0.5;
+  EXPECT_EQ(complaint_of(beside), "robot_joints.boom.sign: is 0.5, must be -1 or 1");
+}
+
 TEST_F(Urdf, BelievesMassesOfItsSize) {
   auto joints = zx120_joints();
   std::string text = urdf_of(joints);
@@ -283,6 +297,23 @@ TEST_F(Urdf, SaysWhatIsWrong) {
   begins(with(3, [](auto& j) { j.xyz = "nan 0 0"; }), "line #: xyz of 'origin' is 'nan 0 0'");
   begins(with(3, [](auto& j) { j.xyz = "1e308 0 0"; }), "line #: xyz of 'origin' is '1e308 0 0'");
   begins(with(3, [](auto& j) { j.xyz = "1 2"; }), "line #: xyz of 'origin' is not three numbers");
+  for (const std::string glued : {"4.6.6 0", "2.3.0.0", "4-6 0", "+-4.6 0 0", "4.6+0 0", "1,2,3"}) {
+    begins(with(3, [&](auto& j) { j.xyz = glued; }),
+           "line #: xyz of 'origin' is '" + glued +
+               "', expected numbers of at most 1e+06 with blanks between them");
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string name = zx120_joints()[i].name;
+    const auto with_more = [&](const std::string& element) {
+      std::string text = urdf_of(zx120_joints());
+      return text.insert(text.find("<origin", text.find("<joint name=\"" + name)), element);
+    };
+    begins(with_more("<mimic joint=\"other\"/>"),
+           "line #: joint '" + name + "' has a 'mimic', expected a joint that moves by itself");
+    begins(with_more("<origin/>"),
+           "line #: joint '" + name + "' has a second 'origin', expected one at most");
+    begins(with_more("<limit/><limit/>"), "line #: joint '" + name + "' has a second 'limit'");
+  }
   begins(with(3, [](auto& j) { j.xyz = "0 0 0"; }),
          "line #: joint 'arm_joint' is 0 m from the next pin, expected at least 0.05");
   begins(with(3, [](auto& j) { j.axis = "0 0 0"; }), "line #: joint 'bucket_joint' has an axis");
@@ -308,6 +339,8 @@ TEST_F(Urdf, ShowsHowToExpandAXacro) {
   EXPECT_EQ(complaint("<robot name=\"a\">\n<xacro:include filename=\"b\"/></robot>"),
             "line 2: 'xacro:include' " + said);
   EXPECT_EQ(complaint("<robot name=\"a\"><link name=\"${prefix}_b\"/></robot>"),
+            "line 1: 'link' " + said);
+  EXPECT_EQ(complaint("<robot name=\"a\"><link name=\"$(arg prefix)_b\"/></robot>"),
             "line 1: 'link' " + said);
 }
 

@@ -562,7 +562,7 @@ TEST_F(DepthTool, PosesExcludeEachOther) {
     EXPECT_EQ(result.code, 2);
     EXPECT_NE(result.err.find(text), string::npos) << result.err;
   };
-  refused({"--level", "--points", "p.csv"}, "--pose, --level and --points are mutually exclusive");
+  refused({"--level", "--points", "p.csv"}, "--level excludes --points");
   refused({"--pose-out", "p.txt"}, "--pose-out needs --level or --points");
   refused({"--pose", "1,2,3,0,0,0,2"}, "--pose: pose of a scan: the quaternion's norm is 2");
 }

@@ -700,8 +700,7 @@ TEST_F(ScansOfACamera, FramesExcludeEachOther) {
   refuse("--level excludes --frame", {"--level", "--frame", "camera"});
   refuse("--level excludes --before-pose", {"--level", "--before-pose", pose});
   refuse("--frame excludes --after-frame", {"--frame", "lidar", "--after-frame", file});
-  refuse("give either --before-frame or --before-pose",
-         {"--before-pose", pose, "--before-frame", file});
+  refuse("--before-frame excludes --before-pose", {"--before-pose", pose, "--before-frame", file});
   refuse("--before-pose: '1,2' is not a pose", {"--before-pose", "1,2"});
   refuse("the quaternion's norm is 2, must be 1", {"--after-pose", "0,0,0,0,0,0,2"});
 }

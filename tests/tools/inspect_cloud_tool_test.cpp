@@ -124,8 +124,8 @@ TEST_F(Tools, InspectCloudTakesFramesByWordAndNumbers) {
 
 TEST_F(BadInput, PosesOfACloudExcludeEachOther) {
   const Words both = {scan, "--frame", "lidar", "--pose", "camera"};
-  refused(2, "--frame and --pose are the same", "inspect-cloud", both);
-  refused(2, "mutually exclusive", "inspect-cloud", {scan, "--frame", "lidar", "--level"});
+  refused(2, "--frame excludes --pose", "inspect-cloud", both);
+  refused(2, "--frame excludes --level", "inspect-cloud", {scan, "--frame", "lidar", "--level"});
   refused(2, "--pose-out needs --level or --points", "inspect-cloud", {scan, "--pose-out", plot});
   refused(3, "no column", "inspect-cloud", {scan, "--points", folder.write("m.csv", "u_px\n1\n")});
 }

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "support/tool_answers.hpp"
@@ -67,6 +69,58 @@ TEST_F(Tools, AMachineWithoutAKitIsToldOfIt) {
   const ProgramResult result = run_program("plan-path", {"--machine", "zx200", "--density", "40"});
   EXPECT_EQ(result.code, 2);
   EXPECT_TRUE(contains(result.err, "make one with machine-kit")) << result.err;
+}
+
+/// A machine of the same shape and strength in another size.
+json scaled(json value, double size, const std::string& key = {}) {
+  if (value.is_structured()) {
+    for (auto& [name, part] : value.items()) {
+      part = scaled(part, size, value.is_array() ? key : name);
+    }
+    return value;
+  }
+  const std::vector<std::pair<std::string, double>> powers = {
+      {"mass_kg", 3.0}, {"_n_m", 4.0}, {"kg_m2", 5.0}, {"power_w", 3.5}, {"_m", 1.0}};
+  for (const auto& [unit, power] : powers) {
+    const bool ends = key.size() >= unit.size() && key.substr(key.size() - unit.size()) == unit;
+    if (ends && value.is_number()) return value.get<double>() * std::pow(size, power);
+  }
+  return value;
+}
+
+TEST_F(Tools, AMachineThatCannotDigLeavesNoKit) {
+  json toy = json::parse(content_of(shipped("machines/zx120.json")));
+  toy.erase("cylinders");
+  toy = scaled(toy, 0.1);
+  const std::string file = folder.write("toy.json", toy.dump());
+  const ProgramResult small = run_program("machine-kit", Words{file} + small_kit);
+  EXPECT_EQ(small.code, 2);
+  EXPECT_TRUE(
+      contains(small.err, file + ": the length of the bucket [m] is 0.123, must be at least 0.2"))
+      << small.err;
+  json stiff = json::parse(content_of(shipped("machines/zx120.json")));
+  stiff.erase("cylinders");
+  stiff["joints"]["boom"]["upper_rad"] = -1.1;
+  const std::string other = folder.write("stiff.json", stiff.dump());
+  const ProgramResult high = run_program("machine-kit", Words{other} + small_kit);
+  EXPECT_EQ(high.code, 2);
+  EXPECT_TRUE(contains(high.err, other + ": a dig of its size cannot be driven: ")) << high.err;
+  for (const char* kit : {"toy-kit", "stiff-kit"})
+    EXPECT_FALSE(fs::exists(folder.file(kit))) << kit;
+}
+
+TEST_F(Tools, AMachineThatHardlyLiftsDumpsLower) {
+  const Words search = {"--machine",     "generic-mini", "--density", "40",  "--search",
+                        "--evaluations", "15",           "--cell",    "0.05"};
+  const json plan = answer("plan-path", search);
+  EXPECT_TRUE(warns(plan, "dump_height_lowered"));
+  EXPECT_LT(number(plan, "/goal_parameters/dump_height_m"), 2.9);
+  EXPECT_FALSE(
+      warns(answer("plan-path", search + Words{"--dump-height", "2"}), "dump_height_lowered"));
+  const ProgramResult high = run_program("plan-path", search + Words{"--dump-height", "3"});
+  EXPECT_EQ(high.code, 2);
+  EXPECT_TRUE(contains(high.err, "the dump height is 3 m")) << high.err;
+  EXPECT_FALSE(warns(answer("plan-path", {"--density", "40"}), "dump_height_lowered"));
 }
 
 // Each shipped machine fills its bucket in loam, with a mass of its class.

@@ -44,6 +44,7 @@ TEST_F(BadInput, MapsAreRefusedBeforeTheWork) {
   refused(2, "--map: there is no map 'chnge', expected one of all, before, after, change",
           "simulate-dig", map("chnge=a.ply"));
   refused(2, "--map: change= names no file", "simulate-dig", map("change="));
+  refused(2, "--map: =a.tif has an empty name before its '='", "simulate-dig", map("=a.tif"));
   refused(2, "--map and --map name the same file", "simulate-dig",
           map("after=a.ply") + Words{"--map", "a.ply"});
   refused(2, "--map: no map 'dump-sd': the dump area has no scans of its own", "estimate-density",

@@ -95,6 +95,12 @@ TEST_F(Tools, TrajectoryIsAMessageByItsEndingOrItsFormat) {
   EXPECT_EQ(content_of(com3).rfind("joint_name: [\"boom_joint\"", 0), 0U);
 }
 
+TEST_F(Tools, TrajectoryOfAGivenFormatMayEndInAnyWay) {
+  const std::string file = folder.file("dig.txt");
+  answer("plan-path", {"--density", "40", "--trajectory", file, "--trajectory-format", "json"});
+  EXPECT_EQ(json::parse(content_of(file)).at("format"), "excavplan-trajectory");
+}
+
 TEST_F(Tools, TrajectoryOnStandardOutputStandsAlone) {
   const std::string file = folder.file("dig.csv");
   answer("plan-path", {"--density", "40", "--trajectory", file});
@@ -524,7 +530,8 @@ TEST_F(Tools, PlanWarnsOfAnEstimateThatShouldNotBeTrusted) {
 TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
   const std::string file = folder.file("result.json");
   for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
-           {R"({"density_percent": null})", "density_percent: is null, as the scans gave no density"},
+           {R"({"density_percent": null})",
+            "density_percent: is null, as the scans gave no density"},
            {R"({"density_percent": "40"})", "density_percent: is \"40\", expected a number"},
            {R"({"density_percent": 140})", "density_percent: is 140, must be in 0 .. 100"},
            {R"({"bulking_factor": 1.2})", "density_percent: is missing"},
@@ -556,7 +563,7 @@ TEST_F(BadInput, ResultsWithoutADensityAreRefused) {
   refused(2, "give either --density or --density-from", "plan-path", {});
   refused(2, "--goal priced: the price of time is -5, must be in 0 .. 1e+09 W", "plan-path",
           {"--density", "40", "--goal", "priced:-5"});
-  refused(2, "give either --density or --density-from", "plan-path",
+  refused(2, "--density excludes --density-from", "plan-path",
           {"--density", "40", "--density-from", file});
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "shared/simulator_inputs.hpp"
 #include "support/errors.hpp"
 #include "support/tool_answers.hpp"
 
@@ -20,6 +21,7 @@ class SettingsText : public ::testing::Test {
     arguments.text("soil", "NAME", soil, "");
     arguments.text("range", "FROM,TO", range, "");
     arguments.option("camera", cameras, "");
+    declare_simulator(arguments, simulator);
   }
   std::vector<std::string> texts(const std::string& toml, const std::string& name) const {
     for (const auto& option :
@@ -37,6 +39,7 @@ class SettingsText : public ::testing::Test {
   std::string scan, soil, range;
   bool search = false;
   std::vector<CameraPlace> cameras;
+  SimulatorInputs simulator;
 };
 
 using Texts = std::vector<std::string>;
@@ -84,6 +87,20 @@ TEST_F(SettingsText, WhatIsWrongIsNamedWithItsPlace) {
   EXPECT_EQ(refusal("soil = '\xff'"), "site.toml: byte 8 is no UTF-8 text");
   EXPECT_EQ(refusal("a" + std::string(2000, '.')),
             "site.toml: line 1: 2001 bytes, at most 1000 are allowed");
+  EXPECT_EQ(refusal("\n[plan-pth]"),
+            "site.toml: line 2, column 1: '[plan-pth]' is the name of no tool, did you mean "
+            "'plan-path'?");
+}
+
+TEST_F(SettingsText, NothingInItRunsCode) {
+  EXPECT_EQ(texts("simulator = 'section'", "simulator"), Texts{"section"});
+  EXPECT_EQ(refusal("simulator = './evil.so'"),
+            "site.toml: line 1, column 13: --simulator: './evil.so' in a file, expected height-map "
+            "or section; a shared library is named on the command line alone");
+  EXPECT_EQ(
+      refusal("[plan-path]\nsimulator-command = 'touch x'"),
+      "site.toml: line 2, column 21: --simulator-command is of the command line alone: a file "
+      "names no program to run");
 }
 
 }  // namespace
@@ -114,6 +131,45 @@ TEST(Settings, ComeFromStandardInputToo) {
   const std::string file = folder.write("site.toml", "[plan-path]\ndensity = 40\n");
   const ProgramResult result = run_program("plan-path", {"--config", "-", "--json"}, file);
   EXPECT_EQ(result.code, 0) << result.err;
+}
+
+TEST(Settings, TheCommandLineWinsOverWhatExcludesIt) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("site.toml", "density = 40\n");
+  const std::string result = folder.write("result.json", R"({"density_percent": 70})");
+  const ProgramResult run = run_program("plan-path", {"--config", file, "--density-from", result});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.err.rfind("settings from " + file +
+                              ": nothing; left out: --density (--density-from is given)\n",
+                          0),
+            0U)
+      << run.err;
+}
+
+TEST(Settings, ManyUnknownKeysAreCut) {
+  const TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += "k" + std::to_string(i) + " = 1\n";
+  const std::string file = folder.write("site.toml", text);
+  const ProgramResult run = run_program("plan-path", {"--config", file, "--density", "40"});
+  EXPECT_TRUE(contains(run.err, " and 980 more\n")) << run.err;
+}
+
+TEST(Settings, ValuesThatAreRefusedAreNamedWithTheirPlace) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("site.toml");
+  const auto said = [&](const std::string& text) {
+    folder.write("site.toml", text);
+    const ProgramResult run = run_program("plan-path", {"--config", file});
+    EXPECT_EQ(run.code, 3) << run.err;
+    return run.err;
+  };
+  const std::string start = "plan-path: " + file + ": line ";
+  EXPECT_EQ(said("density = nan").rfind(start + "1, column 11: --density: 'nan'", 0), 0U);
+  EXPECT_EQ(
+      said("[plan-path]\ndensity = [1, 2]").rfind(start + "2, column 11: --density: '1,2'", 0), 0U);
+  EXPECT_EQ(said("density = 40\nseed = 1.5").rfind(start + "2, column 8: --seed: '1.5'", 0), 0U);
+  EXPECT_TRUE(contains(said("density = 400"), start + "1, column 11: --density: 400 % is outside"));
 }
 
 TEST(Settings, AreCheckedAsTheCommandLineIs) {

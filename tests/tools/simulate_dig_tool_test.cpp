@@ -297,8 +297,7 @@ TEST_F(BadInput, ThePathOfAPlanIsDugAndNothingElseTaken) {
   EXPECT_EQ(dug.at("path"), planned.at("path"));
   EXPECT_NEAR(dug.at("energy_kj"), planned.at("energy_kj"),
               0.01 * planned["energy_kj"].get<double>());
-  refused(2, "--path-from excludes --path and --start", "simulate-dig",
-          dig + Words{"--start", "5"});
+  refused(2, "--path-from excludes --start", "simulate-dig", dig + Words{"--start", "5"});
   const std::string other = folder.write("other.json", R"({"path": {"start_x_m": 5}})");
   refused(3, other + ": path.penetration_angle_rad: is missing", "simulate-dig",
           {"--density", "40", "--path-from", other});

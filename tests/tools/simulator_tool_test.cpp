@@ -69,13 +69,21 @@ TEST(SimulatorTool, SaysWhatIsWrong) {
       contains(said({"--simulator", "magic"}, 2), "'magic' is none of height-map, section"));
   EXPECT_TRUE(contains(said({"--simulator", "./none.so"}, 3), "./none.so: cannot be opened"));
   EXPECT_TRUE(contains(said({"--simulator", "section", "--simulator-command", program}, 2),
-                       "--simulator-command excludes --simulator section"));
+                       "--simulator-command excludes --simulator"));
   EXPECT_TRUE(contains(said({"--simulator-command", program, "--simulator-timeout", "0"}, 2),
                        "--simulator-timeout"));
   EXPECT_TRUE(contains(said({"--simulator-timeout", "5"}, 0), "there is no --simulator-command"));
-  const std::string exits = said({"--simulator-command", odd("exit")}, 2);
+  const std::string exits = said({"--simulator-command", odd("exit")}, 3);
+  EXPECT_FALSE(contains(exits, "--help")) << exits;
   EXPECT_TRUE(contains(exits, "simulator: out of?[31m licences\n")) << exits;
   EXPECT_TRUE(contains(exits, "simulator 'odd 1 (program)': it ended, with exit code 3")) << exits;
+}
+
+TEST(SimulatorTool, ALibraryThatEndsTheToolIsNoSuccess) {
+  const auto result = run_program(
+      "simulate-dig", {"--density", "40", "--simulator", EXCAVPLAN_PLUGINS "/libodd_ends.so"});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.err, "the program was ended by code that is no part of excavplan\n");
 }
 
 TEST(SimulatorTool, ShowsWhatTheProgramWritesOnStandardError) {

@@ -520,6 +520,28 @@ TEST_F(BadInput, NamesThatAreLoopsOrTooLongAreRefused) {
           {"--out", folder.file("library.json"), "--cells", loop});
 }
 
+TEST_F(Tools, TheShellOffersTheWordsOfAnOption) {
+  const std::string completion = EXCAVPLAN_BIN "/../completion/excavplan.bash";
+  if (!fs::exists(completion) || std::system("bash -c : 2>/dev/null") != 0) GTEST_SKIP();
+  const std::string script = folder.write("offer.bash", "source " + completion + R"(
+compopt() { :; }
+for option in --soil --machine --goal --map --plot --simulator --density; do
+  COMP_WORDS=(plan-path $option "") COMP_CWORD=2
+  _excavplan ")" EXCAVPLAN_BIN R"(/plan-path"
+  echo "${COMPREPLY[*]}"
+done)");
+  const std::string offered = folder.file("offered");
+  ASSERT_EQ(std::system(("bash " + script + " > " + offered).c_str()), 0);
+  EXPECT_EQ(content_of(offered),
+            "loam sand clay gravel\n"
+            "zx120 zx200 generic-20t generic-mini\n"
+            "cycle energy time priced:\n"
+            "all= before= after= change= footprint= path=\n"
+            "\n"
+            "height-map section\n"
+            "\n");
+}
+
 TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
   const std::string png = folder.file("plot.png");
   const std::string gif = folder.file("plot.gif");
@@ -528,6 +550,8 @@ TEST_F(BadInput, FilesOfOtherFormatsAreNotWritten) {
   refused(2, "must end in .svg", "plan-path", {"--density", "40", "--plot", gif});
   refused(2, "--trajectory: '" + png + "' must end in .csv or .json", "plan-path",
           {"--density", "40", "--trajectory", png});
+  refused(2, "--trajectory: '.json' is an ending without a name before it", "plan-path",
+          {"--density", "40", "--trajectory", ".json"});
   refused(2, "must end in .pcd, .ply", "inspect-cloud", {scan, "--out", png});
   refused(2, "must end in .pcd, .ply", "simulate-dig",
           {"--density", "40", "--before", folder.file("b.pcd"), "--after", png});

@@ -229,7 +229,7 @@ void Arguments::text(const std::string& name, const std::string& placeholder,
 }
 
 void Arguments::soil(std::string& name) {
-  text("soil", "NAME|FILE", name, "soil: loam, sand, clay, gravel, or a soil file");
+  text("soil", "loam|sand|clay|gravel|FILE", name, "soil: a shipped one, or a soil file");
 }
 
 void Arguments::report(std::optional<std::string>& path) {
@@ -251,13 +251,14 @@ void Arguments::threads(std::uint64_t& count, const std::string& note) {
 }
 
 void Arguments::machine(std::string& name) {
-  text("machine", "NAME|FILE", name,
-       "excavator: zx120, zx200, generic-20t, generic-mini, a machine file, a URDF, or a folder of "
-       "machine-kit");
+  text("machine", "zx120|zx200|generic-20t|generic-mini|FILE", name,
+       "excavator: a shipped one, a machine file, a URDF, or a folder of machine-kit");
 }
 
-void Arguments::require_ending(const std::vector<std::string>& endings) {
+void Arguments::require_ending(const std::vector<std::string>& endings,
+                               const std::function<bool()>& if_so) {
   entries_.back().endings = endings;
+  entries_.back().by_ending = if_so;
 }
 
 void Arguments::allow_standard_output() { entries_.back().standard_output = true; }
@@ -271,10 +272,16 @@ void Arguments::only_if(const Use& use, const std::function<void()>& declare) {
   }
 }
 
-void Arguments::require(const std::string& name) {
-  std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-    return entry.name == name;
-  })->required = true;
+void Arguments::require(const std::string& name) { entry(name).required = true; }
+
+void Arguments::exclude(const std::string& name, const std::vector<std::string>& others) {
+  std::vector<std::string>& excludes = entry(name).excludes;
+  excludes.insert(excludes.end(), others.begin(), others.end());
+}
+
+Arguments::Entry& Arguments::entry(const std::string& name) {
+  return *std::find_if(entries_.begin(), entries_.end(),
+                       [&](const Entry& each) { return each.name == name; });
 }
 
 }  // namespace excavplan::tools

@@ -9,37 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/error.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_parameters.hpp>
 #include <excavplan/simulation/scene.hpp>
 
+#include "shared/option_names.hpp"
 #include "shared/quantity.hpp"
 
 namespace excavplan::tools {
 
 /// @throws Error (bad_input)
 [[noreturn]] void usage_error(const std::string& message);
-
-/// What the library calls an input in its messages, and the option that sets it.
-using OptionNames = std::vector<std::pair<std::string, std::string>>;
-
-/// Of functions that take the size of cells.
-inline const OptionNames cell_option = {{"the cell size is", "--cell: the cell size is"},
-                                        {"in cells of", "in cells (--cell) of"}};
-
-/// A message of the library with the names of options.
-std::string with_option_names(std::string message, const OptionNames& names);
-
-/// Runs `work`; an error then names the options.
-template <typename Work>
-auto naming_options(const OptionNames& names, const Work& work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    throw Error(error.kind(), with_option_names(error.what(), names));
-  }
-}
 
 /// The options of a tool. Each is bound to a variable that holds its default, which the help
 /// shows. Names are without the dashes.
@@ -69,9 +49,14 @@ class Arguments {
     Beside beside = {};
     std::vector<Use> uses = {};             ///< all must hold
     std::vector<std::string> endings = {};  ///< of the name of a file to write; empty: any
+    std::function<bool()> by_ending = {};   ///< whether these matter; empty: always
     /// The name of the file in the text; empty: it is the text.
     std::function<std::string(const std::string& text)> file_in = {};
     Assign check = {};  ///< called for each text once all are assigned
+    /// Called for each text of a file of settings. @throws Error (bad_input) if the command line
+    /// alone may say so
+    Assign check_in_file = {};
+    std::vector<std::string> excludes = {};  ///< names of options that may not stand beside it
   };
 
   void positional(const std::string& name, std::string& value, const std::string& help);
@@ -130,8 +115,13 @@ class Arguments {
   void threads(std::uint64_t& count, const std::string& note);
 
   void require(const std::string& name);  ///< the option must be given
+  /// No two of an option and one of the others are given; both were declared. In a file of settings
+  /// the command line wins.
+  void exclude(const std::string& name, const std::vector<std::string>& others);
   /// The file of the last option must end so, in letters of either size; "" is no ending.
-  void require_ending(const std::vector<std::string>& endings);
+  /// @param if_so  whether the ending tells the format; without it, always
+  void require_ending(const std::vector<std::string>& endings,
+                      const std::function<bool()>& if_so = {});
   void allow_standard_output();  ///< "-" as the file of the last option, without --json
 
   /// Those that `declare` declares have an effect only if this holds. May be nested.
@@ -143,6 +133,8 @@ class Arguments {
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:
+  Entry& entry(const std::string& name);
+
   std::vector<Entry> entries_;
 };
 

@@ -84,7 +84,7 @@ ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& mach
   options.fixed_path = inputs.path.value_or(options.fixed_path);
   PlanOptions& plan = options.plan;
   plan.method = inputs.search ? PlanMethod::search : PlanMethod::library;
-  plan.search.objective = objective_of(inputs.goal);
+  plan.search.objective = objective_of(inputs.goal, {machine});
   if (!inputs.library) {
     plan.library =
         kit_library(inputs.machine, machine, soil.name, inputs.goal, plan.search.objective);

@@ -184,6 +184,9 @@ Outcome field_experiment(const Machine& machine, const FieldInputs& field,
   });
   Outcome outcome;
   outcome.warnings = unlike_law(law, machine.name, soil.name);
+  for (Warning& each : goal_warnings(inputs.goal, {machine})) {
+    outcome.warnings.push_back(std::move(each));
+  }
   outcome.json = {{"preset", field.preset}, {"soils", ordered_json::array()}};
   int failed = 0;
   for (std::size_t i = 0; i < results.size(); ++i) {

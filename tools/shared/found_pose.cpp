@@ -67,14 +67,13 @@ void declare_pose(Arguments& arguments, PoseInputs& inputs, const std::string& c
   arguments.file(
       "points", inputs.points,
       "CSV of 3 or more known points: " + columns + " and x_m,y_m,z_m in the site frame");
+  arguments.exclude("pose", {"level", "points"});
+  arguments.exclude("level", {"points"});
   arguments.output("pose-out", inputs.pose_out,
                    "write the pose found, for --pose of the next scan");
 }
 
 void check_pose(const PoseInputs& inputs) {
-  if ((inputs.pose ? 1 : 0) + (inputs.level ? 1 : 0) + (inputs.points ? 1 : 0) > 1) {
-    usage_error("--pose, --level and --points are mutually exclusive");
-  }
   if (inputs.pose_out && !inputs.level && !inputs.points) {
     usage_error("--pose-out needs --level or --points");
   }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <excavplan/kit/machine_kit.hpp>
+
 #include "shared/quantity.hpp"
 
 namespace excavplan::tools {
@@ -39,10 +41,11 @@ double in_range(const std::string& option, const DigObjectiveParameter& paramete
               (parameter.unit == std::string("-") ? "" : std::string(" ") + parameter.unit));
 }
 
-const DigObjectiveParameter& parameter_of(const DigGoalInfo& goal) {
+std::size_t row_of(double DigObjective::*field) {
   const auto& all = objective_parameters();
-  return *std::find_if(all.begin(), all.end(),
-                       [&](const auto& each) { return each.field == goal.parameter; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.field == field; });
+  return static_cast<std::size_t>(found - all.begin());
 }
 
 DigObjective goal_of(const std::string& text) {
@@ -54,7 +57,7 @@ DigObjective goal_of(const std::string& text) {
     if (goal.parameter) {
       const std::string option = "--goal " + word;
       objective.*goal.parameter =
-          in_range(option, parameter_of(goal),
+          in_range(option, objective_parameters()[row_of(goal.parameter)],
                    parse_quantity(option, text.substr(colon + 1), Quantity::ratio));
     }
     return objective;
@@ -65,7 +68,8 @@ DigObjective goal_of(const std::string& text) {
 }  // namespace
 
 void declare_goal(Arguments& arguments, GoalInputs& inputs) {
-  arguments.text("goal", "GOAL", inputs.goal, goals_text("; ", [](const DigGoalInfo& goal) {
+  arguments.text("goal", goals_text("|", usage), inputs.goal,
+                 goals_text("; ", [](const DigGoalInfo& goal) {
                    return usage(goal) + ": " + goal.description;
                  }));
   const auto& parameters = objective_parameters();
@@ -90,6 +94,25 @@ DigObjective objective_of(const GoalInputs& inputs) {
     objective.*parameters[i].field = in_range(option, parameters[i], *inputs.numbers[i]);
   }
   return objective;
+}
+
+DigObjective objective_of(const GoalInputs& inputs, const std::vector<Machine>& machines) {
+  DigObjective objective = objective_of(inputs);
+  const auto row = row_of(&DigObjective::dump_height);
+  if (inputs.numbers[row]) return objective;
+  for (const Machine& machine : machines) objective = feasible_objective(machine, objective);
+  return objective;
+}
+
+std::vector<Warning> goal_warnings(const GoalInputs& inputs, const std::vector<Machine>& machines) {
+  const DigObjective usual = objective_of(inputs);
+  const double height = objective_of(inputs, machines).dump_height;
+  const auto& parameter = objective_parameters()[row_of(&DigObjective::dump_height)];
+  if (height == usual.dump_height || !parameter.matters_to(info_of(usual.goal))) return {};
+  return {{"dump_height_lowered",
+           "the dump height is " + readable(height) + " m, not the usual " +
+               number_text(usual.dump_height) +
+               " m, to which the bucket pin hardly rises, if at all; --dump-height sets it"}};
 }
 
 std::string worth_text(const DigObjective& objective, double worth) {

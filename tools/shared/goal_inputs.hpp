@@ -24,6 +24,10 @@ void declare_goal(Arguments& arguments, GoalInputs& inputs);
 
 /// @throws Error (bad_input) naming the option, also if it does not matter to the goal
 DigObjective objective_of(const GoalInputs& inputs);
+/// Without --dump-height the usual height is lowered to what these machines reach.
+DigObjective objective_of(const GoalInputs& inputs, const std::vector<Machine>& machines);
+/// Warning `dump_height_lowered`, where that matters to the goal.
+std::vector<Warning> goal_warnings(const GoalInputs& inputs, const std::vector<Machine>& machines);
 
 /// The worth of a dig in the unit of its goal: "25.1 kg/kJ".
 std::string worth_text(const DigObjective& objective, double worth);

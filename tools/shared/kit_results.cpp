@@ -3,6 +3,9 @@
 #include "shared/kit_results.hpp"
 
 #include <algorithm>
+#include <array>
+
+#include <excavplan/kit/workspace.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
@@ -21,17 +24,6 @@ const PathLibraryEntry& shown_entry(const PathLibrary& library) {
                            [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
 }
 
-}  // namespace
-
-DigObjective kit_objective(const GoalInputs& inputs, const Machine& machine) {
-  const DigObjective objective = objective_of(inputs);
-  const auto& parameters = objective_parameters();
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].field == &DigObjective::dump_height && inputs.numbers[i]) return objective;
-  }
-  return feasible_objective(machine, objective);
-}
-
 nlohmann::ordered_json joints_json(const RobotJoints& joints) {
   constexpr std::array<const char*, 4> words = {"boom", "arm", "bucket", "swing"};
   nlohmann::ordered_json json;
@@ -40,6 +32,34 @@ nlohmann::ordered_json joints_json(const RobotJoints& joints) {
     json[words[i]] = {{"name", joint.name}, {"sign", joint.sign}, {"zero_rad", joint.zero}};
   }
   return json;
+}
+
+}  // namespace
+
+Outcome examined(const MachineFile& file, const std::string& folder) {
+  const Machine& machine = file.machine;
+  const Reach reach = reach_of(machine);
+  Outcome outcome;
+  outcome.warnings = file.warnings;
+  for (Warning& each : check_machine(machine, file.data_sheet)) {
+    outcome.trustworthy = outcome.trustworthy && !each.ends_trust;
+    outcome.warnings.push_back(std::move(each));
+  }
+  outcome.json = {
+      {"machine", machine.name},
+      {"folder", folder},
+      {"reach_m", {{"ground", reach.ground}, {"depth", reach.depth}, {"height", reach.height}}},
+      {"digging_force_kn",
+       {{"bucket", 1e-3 * bucket_force(machine)}, {"arm", 1e-3 * arm_force(machine)}}},
+      {"capacity_m3",
+       {{"struck", struck_capacity(machine)}, {"heaped", heaped_capacity(machine)}}}};
+  outcome.json["robot_joints"] = joints_json(machine.robot_joints);
+  outcome.lines = {machine.name + ": reaches " + readable(reach.ground) + " m on the ground, " +
+                       readable(reach.depth) + " m deep, " + readable(reach.height) + " m high",
+                   "digging force: bucket " + readable(1e-3 * bucket_force(machine)) + " kN, arm " +
+                       readable(1e-3 * arm_force(machine)) + " kN; bucket holds " +
+                       readable(heaped_capacity(machine)) + " m3 heaped"};
+  return outcome;
 }
 
 std::vector<SoilKind> soils_named(const std::string& list) {

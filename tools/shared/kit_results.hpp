@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
 #include <excavplan/kit/machine_kit.hpp>
 #include <excavplan/machine/machine_file.hpp>
 
-#include "base/json.hpp"
-#include "shared/goal_inputs.hpp"
 #include "shared/tool.hpp"
 
 /// @file
@@ -18,10 +15,8 @@
 
 namespace excavplan::tools {
 
-/// The goal of the command line; a dump height that was not given is one that the machine reaches.
-DigObjective kit_objective(const GoalInputs& inputs, const Machine& machine);
-
-nlohmann::ordered_json joints_json(const RobotJoints& joints);
+/// What the file says of the machine, checked; `folder` is that of its kit.
+Outcome examined(const MachineFile& file, const std::string& folder);
 
 /// Names and files between commas. @throws Error (bad_input) or (bad_file)
 std::vector<SoilKind> soils_named(const std::string& list);

@@ -69,9 +69,9 @@ LibraryGrid grid_of(const LibraryInputs& inputs) {
   return grid;
 }
 
-LibrarySearch search_of(const LibraryInputs& inputs, Console& console) {
+LibrarySearch search_of(const LibraryInputs& inputs, const LibraryGrid& grid, Console& console) {
   LibrarySearch search = inputs.search;
-  search.objective = objective_of(inputs.goal);
+  search.objective = objective_of(inputs.goal, grid.machines);
   search.simulator = simulator_of(inputs.simulator, console);
   search.method = inputs.anchored;
   if (inputs.method == "paper") search.method = inputs.genetic;

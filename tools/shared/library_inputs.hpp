@@ -34,6 +34,6 @@ extern const OptionNames library_option_names;
 
 /// @throws Error (bad_input) or (bad_file) naming option or file
 LibraryGrid grid_of(const LibraryInputs& inputs);
-LibrarySearch search_of(const LibraryInputs& inputs, Console& console);
+LibrarySearch search_of(const LibraryInputs& inputs, const LibraryGrid& grid, Console& console);
 
 }  // namespace excavplan::tools

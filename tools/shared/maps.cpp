@@ -13,6 +13,7 @@ namespace {
 const MapName& map_of(const std::string& text, const std::vector<MapName>& names) {
   const NamedFile words = named_file(text);
   if (words.file.empty()) usage_error("--map: " + text + " names no file");
+  if (text.front() == '=') usage_error("--map: " + text + " has an empty name before its '='");
   if (words.name.empty()) return names.front();
   std::string all;
   for (const MapName& each : names) {
@@ -48,6 +49,12 @@ std::string help_of(const std::vector<MapName>& names) {
   return help + ". May be given several times";
 }
 
+std::string words_of(const std::vector<MapName>& names) {
+  std::string words;
+  for (const MapName& each : names) words += (words.empty() ? "" : "|") + each.name;
+  return words;
+}
+
 void write(const std::string& file, const NamedMap& map) {
   if (map.lines.empty()) {
     write_map(file, map.map);
@@ -61,7 +68,7 @@ void write(const std::string& file, const NamedMap& map) {
 void declare_maps(Arguments& arguments, Maps& maps, const std::vector<MapName>& names) {
   Arguments::Entry entry;
   entry.name = "map";
-  entry.placeholder = "[NAME=]FILE.tif|ply|asc";
+  entry.placeholder = "[" + words_of(names) + "=]FILE.tif|ply|asc";
   entry.help = help_of(names);
   entry.output = true;
   entry.repeated = true;

@@ -99,7 +99,7 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs) {
   arguments.output("trajectory", inputs.file,
                    "write the joint motion: .csv, .json, .yaml or .yml (ROS 2 JointTrajectory), "
                    ".com3 (OPERA's JointCmd); - is standard output, as CSV");
-  arguments.require_ending(endings());
+  arguments.require_ending(endings(), [&inputs] { return inputs.format == "ending"; });
   arguments.allow_standard_output();
   arguments.only_if(
       {[&inputs] { return inputs.file.has_value(); }, "no --trajectory is written"}, [&] {

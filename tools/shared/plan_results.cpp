@@ -131,6 +131,7 @@ void declare_density(Arguments& arguments, DensityInput& input) {
   arguments.file(
       "density-from", input.file,
       "take the density and its uncertainty from this result of estimate-density --json");
+  arguments.exclude("density", {"density-from"});
 }
 
 void check(const DensityInput& input) {
@@ -138,7 +139,7 @@ void check(const DensityInput& input) {
     usage_error("--density-sd: " + number_text(*input.sd) + " % is outside 0 .. " +
                 number_text(most_density_sd));
   }
-  if (input.percent.has_value() == input.file.has_value()) {
+  if (!input.percent && !input.file) {
     usage_error("give either --density or --density-from");
   }
   if (input.percent && !(*input.percent >= 0.0 && *input.percent <= 100.0)) {

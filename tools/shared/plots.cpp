@@ -24,6 +24,7 @@ bool is_possible(const FigureName& figure) {
 const FigureName* named(const std::string& text, const std::vector<FigureName>& figures) {
   const NamedFile words = named_file(text);
   if (words.file.empty()) usage_error("--plot: " + text + " names no file");
+  if (text.front() == '=') usage_error("--plot: " + text + " has an empty name before its '='");
   if (words.name.empty()) return nullptr;
   const auto same = [&](const FigureName& figure) { return figure.name == words.name; };
   const auto found = std::find_if(figures.begin(), figures.end(), same);

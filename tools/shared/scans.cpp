@@ -63,12 +63,6 @@ Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
 /// Brings a scan into the site frame if an option says how.
 void place(const Side& side, const ScanFrames& frames, Scan& scan) {
   const std::string option = "--" + std::string(side.name);
-  if (side.frame && side.pose)
-    usage_error("give either " + option + "-frame or " + option + "-pose");
-  if ((side.frame || side.pose) && (frames.both || frames.level)) {
-    usage_error(std::string(frames.both ? "--frame" : "--level") + " excludes " + option +
-                (side.frame ? "-frame" : "-pose"));
-  }
   scan.z_is_up = side.frame || side.pose || frames.both || !frames.tf_frame.empty();
   if (side.pose) scan.site_from_scan = *side.pose;
   if (side.frame) scan.site_from_scan = frame_named(option + "-frame", *side.frame);
@@ -88,6 +82,12 @@ void declare_frames(Arguments& arguments, ScanFrames& frames) {
   arguments.flag("level", frames.level,
                  "level both clouds by the ground plane in the one before: origin on the ground "
                  "below the sensor, z up, x forward");
+  arguments.exclude("level", {"frame"});
+  for (const char* both : {"frame", "level"}) {
+    arguments.exclude(both, {"before-frame", "after-frame", "before-pose", "after-pose"});
+  }
+  arguments.exclude("before-frame", {"before-pose"});
+  arguments.exclude("after-frame", {"after-pose"});
   arguments.text("tf-frame", "NAME", frames.tf_frame,
                  "frame of the transforms of a recording into which its scans are put");
   arguments.option("sensor-origin", frames.sensor_origin,
@@ -113,19 +113,15 @@ void declare_machine_in_view(Arguments& arguments, MachineInView& view) {
   arguments.option("after-machine-pose", view.after, "the same of the scan after");
   arguments.flag("machine-recorded", view.recorded,
                  "the same by the joint states in the recordings; needs --tf-frame");
+  arguments.exclude("machine-pose", {"before-machine-pose", "after-machine-pose"});
+  arguments.exclude("machine-recorded",
+                    {"machine-pose", "before-machine-pose", "after-machine-pose"});
 }
 
 ScanPair placed_pair(const std::string& before, const std::string& after, const ScanFrames& frames,
                      ScanReport& report) {
-  if (frames.both && frames.level) usage_error("--level excludes --frame");
   if (frames.level && frames.view.any()) {
     usage_error("--level excludes --machine-pose: it does not find the swing axis");
-  }
-  if (frames.view.both && (frames.view.before || frames.view.after)) {
-    usage_error("--machine-pose excludes --before-machine-pose and --after-machine-pose");
-  }
-  if (frames.view.recorded && (frames.view.both || frames.view.before || frames.view.after)) {
-    usage_error("--machine-recorded excludes --machine-pose and those of one scan");
   }
   if (frames.view.recorded && frames.tf_frame.empty()) {
     usage_error("--machine-recorded needs --tf-frame, with the swing axis as origin");

@@ -68,13 +68,14 @@ void declare_search(Arguments& arguments, SearchInputs& inputs,
                     [&] { declare_whole_search(arguments, inputs); });
 }
 
-DigSearchOptions search_options(const SearchInputs& inputs, SearchUse use, Console& console) {
+DigSearchOptions search_options(const SearchInputs& inputs, const Machine& machine, SearchUse use,
+                                Console& console) {
   DigSearchOptions options = budget_search();
   if (use == SearchUse::all) apply(inputs.method, options);
   if (inputs.start) options.start_rule = start_rule_of(*inputs.start);
   options.seed = inputs.seed;
   options.threads = static_cast<unsigned>(inputs.threads);
-  options.objective = objective_of(inputs.goal);
+  options.objective = objective_of(inputs.goal, {machine});
   options.checkpoint = inputs.checkpoint.value_or("");
   options.resume = inputs.resume;
   options.progress = [&console, objective = options.objective](const SearchProgress& progress) {

@@ -41,6 +41,7 @@ void declare_search(Arguments& arguments, SearchInputs& inputs,
 void check(const SearchInputs& inputs);
 
 /// For plan_dig(), with progress on the console, which also stops the search.
-DigSearchOptions search_options(const SearchInputs& inputs, SearchUse use, Console& console);
+DigSearchOptions search_options(const SearchInputs& inputs, const Machine& machine, SearchUse use,
+                                Console& console);
 
 }  // namespace excavplan::tools

@@ -49,7 +49,7 @@ Outcome sensitivity(const Machine& machine, const ExperimentInputs& inputs, Cons
   reference.machine = machine;
   reference.soil = soil_named(inputs.soil);
   reference.simulator = simulator_of(inputs.simulator, console);
-  reference.search.objective = objective_of(inputs.goal);
+  reference.search.objective = objective_of(inputs.goal, {machine});
   reference.search.seed = inputs.seed;
   reference.cell_size = inputs.cell_size.value_or(usual_cell(machine));
   SensitivityOptions options;
@@ -70,6 +70,7 @@ Outcome sensitivity(const Machine& machine, const ExperimentInputs& inputs, Cons
   });
   const DigObjective& objective = reference.search.objective;
   Outcome outcome;
+  outcome.warnings = goal_warnings(inputs.goal, {machine});
   outcome.json["sensitivity"] = ordered_json::array();
   for (const AssumptionResult& row : rows) {
     outcome.json["sensitivity"].push_back(row_json(row, objective));

@@ -35,6 +35,7 @@ class Settings {
       if (!value.is_table()) {
         take(name, value, false);
       } else if (name != tool_) {
+        require_tool(name, value);
         stated_.left_out.push_back("[" + name + "]");
       }
     }
@@ -95,14 +96,30 @@ class Settings {
       return;
     }
     const auto index = static_cast<std::size_t>(entry - entries_.begin());
-    std::vector<std::string> texts = texts_of(*entry, value);
+    StatedSettings::Option option = {index, texts_of(*entry, value), place(value.source())};
+    if (entry->check_in_file) check(*entry, option);
     const auto same = std::find_if(stated_.options.begin(), stated_.options.end(),
                                    [&](const auto& each) { return each.entry == index; });
     if (same == stated_.options.end()) {
-      stated_.options.push_back({index, std::move(texts)});
+      stated_.options.push_back(std::move(option));
     } else {
-      same->texts = std::move(texts);
+      *same = std::move(option);
     }
+  }
+
+  static void check(const Arguments::Entry& entry, const StatedSettings::Option& option) {
+    try {
+      for (const std::string& text : option.texts) entry.check_in_file(text);
+    } catch (const Error& error) {
+      throw Error(ErrorKind::bad_file, option.place + error.what());
+    }
+  }
+
+  void require_tool(const std::string& name, const toml::node& value) const {
+    const std::vector<std::string> tools = split(EXCAVPLAN_TOOL_NAMES, ' ');
+    if (name == tool_ || std::find(tools.begin(), tools.end(), name) != tools.end()) return;
+    refuse(value,
+           excavplan::quoted("[" + name + "]") + " is the name of no tool" + meant(name, tools));
   }
 
   [[noreturn]] void refuse_unknown(const std::string& name, const toml::node& value) const {
@@ -110,9 +127,12 @@ class Settings {
     for (const Arguments::Entry& entry : entries_) {
       if (!entry.positional) names.push_back(entry.name);
     }
-    const auto meant = nearest_word(name, names);
-    refuse(value, quoted(name) + " is no option of " + tool_ +
-                      (meant ? ", did you mean '" + *meant + "'?" : ""));
+    refuse(value, quoted(name) + " is no option of " + tool_ + meant(name, names));
+  }
+
+  static std::string meant(const std::string& name, const std::vector<std::string>& names) {
+    const auto nearest = nearest_word(name, names);
+    return nearest ? ", did you mean '" + *nearest + "'?" : "";
   }
 
   std::vector<std::string> texts_of(const Arguments::Entry& entry, const toml::node& value) const {

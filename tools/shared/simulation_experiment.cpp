@@ -26,6 +26,9 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
   std::string failure;
   Outcome outcome;
   outcome.warnings = unlike_law(law, machine.name, soil.name);
+  for (Warning& each : goal_warnings(experiment.goal, {machine})) {
+    outcome.warnings.push_back(std::move(each));
+  }
   outcome.json["conditions"] = nlohmann::ordered_json::array();
   for (const ExperimentCondition& condition : conditions) {
     const auto count = static_cast<double>(outcome.json["conditions"].size());

@@ -4,6 +4,8 @@
 
 #include <excavplan/simulation/foreign_simulators.hpp>
 
+#include "base/text.hpp"
+
 namespace excavplan::tools {
 namespace {
 
@@ -21,17 +23,41 @@ std::string words_and_file() {
   return words + "FILE.so";
 }
 
+void require_built_in(const std::string& text) {
+  std::string words;
+  for (const SimulatorKind& kind : simulator_kinds()) {
+    if (text == kind.word) return;
+    words += (words.empty() ? "" : " or ") + kind.word;
+  }
+  usage_error("--simulator: " + excavplan::quoted(text) + " in a file, expected " + words +
+              "; a shared library is named on the command line alone");
+}
+
 }  // namespace
 
 void declare_simulator(Arguments& arguments, SimulatorInputs& inputs) {
-  arguments.add({"simulator", words_and_file(),
-                 "simulator; section: faster, only in the vertical plane of the boom; FILE.so: a "
-                 "shared library, whose code is run (docs/simulators.md)",
-                 inputs.simulator, false, false,
-                 [&inputs](const std::string& text) { inputs.simulator = text; }});
-  arguments.text("simulator-command", "COMMAND", inputs.command,
-                 "run this program as the simulator, without a shell, and ask it line by line "
-                 "(docs/simulators.md)");
+  Arguments::Entry simulator;
+  simulator.name = "simulator";
+  simulator.placeholder = words_and_file();
+  simulator.help =
+      "simulator; section: faster, only in the vertical plane of the boom; FILE.so: a shared "
+      "library, whose code is run (docs/simulators.md)";
+  simulator.default_text = inputs.simulator;
+  simulator.assign = [&inputs](const std::string& text) { inputs.simulator = text; };
+  simulator.check_in_file = require_built_in;
+  arguments.add(simulator);
+  Arguments::Entry command;
+  command.name = "simulator-command";
+  command.placeholder = "COMMAND";
+  command.help =
+      "run this program as the simulator, without a shell, and ask it line by line "
+      "(docs/simulators.md)";
+  command.assign = [&inputs](const std::string& text) { inputs.command = text; };
+  command.check_in_file = [](const std::string&) {
+    usage_error("--simulator-command is of the command line alone: a file names no program to run");
+  };
+  arguments.add(command);
+  arguments.exclude("simulator-command", {"simulator"});
   arguments.only_if(
       {[&inputs] { return inputs.command.has_value(); }, "there is no --simulator-command"}, [&] {
         arguments.option("simulator-timeout", inputs.timeout, Quantity::time,
@@ -45,9 +71,6 @@ bool is_default(const SimulatorInputs& inputs) {
 
 SimulatorKind simulator_of(const SimulatorInputs& inputs, Console& console) {
   if (inputs.command) {
-    if (inputs.simulator != default_simulator().word) {
-      usage_error("--simulator-command excludes --simulator " + inputs.simulator);
-    }
     const SimulatorCommand command = {
         *inputs.command, inputs.timeout,
         [&console](const std::string& line) { console.note("simulator: " + line); }};

@@ -26,8 +26,8 @@ const SoilLaw* find(const std::vector<SoilLaw>& laws, const std::string& soil) {
 }  // namespace
 
 void declare_soil(Arguments& arguments, SoilInputs& inputs) {
-  arguments.text("soil", "NAME|FILE|unknown", inputs.soil,
-                 "soil that was dug: loam, sand, clay, gravel, a soil file, or unknown: any of the "
+  arguments.text("soil", "loam|sand|clay|gravel|unknown|FILE", inputs.soil,
+                 "soil that was dug: a shipped one, a soil file, or unknown: any of the shipped "
                  "four (default: loam is assumed, with a warning)");
 }
 

@@ -7,11 +7,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 
 #include <excavplan/data_files.hpp>
@@ -94,8 +97,7 @@ std::string help_text(const About& about, const std::vector<Arguments::Entry>& e
   }
   std::string codes =
       "Exit codes: 0 done; 1 internal error, or not enough memory; 2 wrong usage; 3 a file cannot "
-      "be read or written, or "
-      "has the wrong format or content";
+      "be read or written, or has the wrong format or content, or a simulator fails";
   if (about.can_be_untrustworthy) codes += "; 4 result not trustworthy, with --strict";
   if (about.can_stop_early) codes += "; 75 stopped early, can be resumed";
   return text + '\n' + wrapped(codes + ".", 0) + '\n';
@@ -131,6 +133,7 @@ struct ParsedWords {
   struct Given {
     std::string text;  ///< the last one
     std::vector<std::string> texts;
+    std::string place = {};  ///< in the file of settings; empty: on the command line
   };
   std::vector<Given> of_entry;
   std::vector<std::string> left_over;  ///< also the first "--", behind which all words are names
@@ -167,6 +170,38 @@ ParsedWords sort_words(int argc, const char* const* argv,
   return words;
 }
 
+std::vector<bool> given_entries(const ParsedWords& words) {
+  std::vector<bool> given;
+  for (const ParsedWords::Given& each : words.of_entry) given.push_back(!each.texts.empty());
+  return given;
+}
+
+bool excludes(const Arguments::Entry& entry, const Arguments::Entry& other) {
+  const std::vector<std::string>& names = entry.excludes;
+  return std::find(names.begin(), names.end(), other.name) != names.end();
+}
+
+/// The first of the given entries beside which an entry may not stand.
+std::optional<std::size_t> excluded_by(const std::vector<Arguments::Entry>& entries,
+                                       const std::vector<bool>& given, std::size_t entry) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!given[i]) continue;
+    if (excludes(entries[i], entries[entry]) || excludes(entries[entry], entries[i])) return i;
+  }
+  return std::nullopt;
+}
+
+/// The first of some names.
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 20;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+  return text;
+}
+
 /// Takes from --config what the command line does not give. @return what was taken, as a line for
 /// the user; empty without --config
 std::string add_settings(const std::vector<Arguments::Entry>& entries, const About& about,
@@ -178,18 +213,56 @@ std::string add_settings(const std::vector<Arguments::Entry>& entries, const Abo
   std::string& path = file.texts.back();
   if (path == "-") path = input.path();
   StatedSettings stated = read_settings_file(path, about.name, entries);
-  std::string taken;
+  const std::vector<bool> by_words = given_entries(words);
+  std::vector<std::string> taken;
+  std::vector<std::string> left_out;
   for (StatedSettings::Option& option : stated.options) {
     ParsedWords::Given& given = words.of_entry[option.entry];
     if (!given.texts.empty() || option.texts.empty()) continue;
+    const std::string name = "--" + entries[option.entry].name;
+    if (const auto other = excluded_by(entries, by_words, option.entry)) {
+      left_out.push_back(name + " (--" + entries[*other].name + " is given)");
+      continue;
+    }
     given.texts = std::move(option.texts);
-    taken += (taken.empty() ? " --" : ", --") + entries[option.entry].name;
+    given.place = std::move(option.place);
+    taken.push_back(name);
   }
-  std::string line = path + ":" + (taken.empty() ? " nothing" : "") + taken;
-  for (std::size_t i = 0; i < stated.left_out.size(); ++i) {
-    line += (i == 0 ? "; left out: " : ", ") + stated.left_out[i];
+  left_out.insert(left_out.end(), stated.left_out.begin(), stated.left_out.end());
+  return path + ": " + (taken.empty() ? "nothing" : listed(taken)) +
+         (left_out.empty() ? "" : "; left out: " + listed(left_out));
+}
+
+/// Runs `work`; an error about the value of an option then says where in the file it stands.
+template <typename Work>
+auto naming_settings(const std::vector<Arguments::Entry>& entries, const ParsedWords& words,
+                     const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const std::string option = "--" + entries[i].name;
+      const std::size_t end = option.size();
+      const bool is_about = message.compare(0, end, option) == 0 && message.size() > end &&
+                            (message[end] == ':' || message[end] == ' ');
+      if (is_about && !words.of_entry[i].place.empty()) {
+        throw Error(ErrorKind::bad_file, words.of_entry[i].place + message);
+      }
+    }
+    throw;
   }
-  return line;
+}
+
+void refuse_excluded(const std::vector<Arguments::Entry>& entries, const ParsedWords& words) {
+  const std::vector<bool> given = given_entries(words);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto other = given[i] ? excluded_by(entries, given, i) : std::nullopt;
+    if (!other) continue;
+    const bool first = excludes(entries[i], entries[*other]);
+    usage_error("--" + entries[first ? i : *other].name + " excludes --" +
+                entries[first ? *other : i].name);
+  }
 }
 
 void refuse_left_over(const std::vector<std::string>& left_over,
@@ -259,13 +332,22 @@ std::vector<UsedFile> used_files(const std::vector<Arguments::Entry>& entries,
 }
 
 void require_ending(const Arguments::Entry& entry, const std::string& file) {
-  const std::string own = small_letters(std::filesystem::path(file).extension().string());
+  const std::filesystem::path path(file);
+  const std::string own = small_letters(path.extension().string());
+  const std::string whole = small_letters(path.filename().string());
+  if (!whole.empty() &&
+      std::find(entry.endings.begin(), entry.endings.end(), whole) != entry.endings.end()) {
+    usage_error(shown_name(entry) + ": '" + file + "' is an ending without a name before it");
+  }
   std::string rule;
   for (const std::string& ending : entry.endings) {
     if (ending == own) return;
     if (!ending.empty()) rule += (rule.empty() ? "" : " or ") + ending;
   }
-  if (!rule.empty()) usage_error(shown_name(entry) + ": '" + file + "' must end in " + rule);
+  const bool matters = !entry.by_ending || entry.by_ending();
+  if (matters && !rule.empty()) {
+    usage_error(shown_name(entry) + ": '" + file + "' must end in " + rule);
+  }
 }
 
 /// The first use of an option that does not hold; nothing if it has its effect.
@@ -475,11 +557,14 @@ int run(int argc, const char* const* argv, const About& about,
   refuse_left_over(words.left_over, arguments.entries());
   const std::string settings = add_settings(arguments.entries(), about, input, words);
   const Signals signals(about.can_stop_early);
-  assign(arguments.entries(), words, input);
+  naming_settings(arguments.entries(), words, [&] {
+    refuse_excluded(arguments.entries(), words);
+    assign(arguments.entries(), words, input);
+  });
   if (common.json) refuse_beside_json(arguments.entries(), words);
   Console console(common.quiet, ::isatty(STDERR_FILENO) == 1, signals);
   if (!settings.empty()) console.note("settings from " + input.named(settings));
-  Outcome outcome = work(console);
+  Outcome outcome = naming_settings(arguments.entries(), words, [&] { return work(console); });
   for (Warning& each : ignored_options(arguments.entries(), words)) {
     outcome.warnings.push_back(std::move(each));
   }
@@ -497,6 +582,32 @@ int run(int argc, const char* const* argv, const About& about,
   return common.strict && !outcome.trustworthy ? 4 : 0;
 }
 
+/// Errors of a user's simulator begin so (simulation/checked_dig.hpp).
+bool is_of_simulator(const std::string& message) { return message.rfind("simulator '", 0) == 0; }
+
+/// Says so where other code, such as a simulator of a shared library, ends a tool that is at work:
+/// its exit code would be taken for the tool's.
+class EndGuard {
+ public:
+  EndGuard() {
+    static const bool registered = std::atexit(refuse_early_end) == 0;
+    at_work = registered;
+  }
+  ~EndGuard() { at_work = false; }
+  EndGuard(const EndGuard&) = delete;
+  EndGuard& operator=(const EndGuard&) = delete;
+
+ private:
+  static void refuse_early_end() {
+    if (!at_work) return;
+    constexpr std::string_view message =
+        "the program was ended by code that is no part of excavplan\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message.data(), message.size());
+    std::_Exit(1);
+  }
+  static inline std::atomic<bool> at_work = false;
+};
+
 /// Runs a tool and says what went wrong. @return its exit code
 template <typename Run>
 int reported(const About& about, const StandardInput& input, const Run& run) {
@@ -507,7 +618,7 @@ int reported(const About& about, const StandardInput& input, const Run& run) {
     return run();
   } catch (const Error& error) {
     report(error.what());
-    if (error.kind() == ErrorKind::bad_file) return 3;
+    if (error.kind() == ErrorKind::bad_file || is_of_simulator(error.what())) return 3;
     std::cerr << "See " << about.name << " --help\n";
     return 2;
   } catch (const std::filesystem::filesystem_error& error) {
@@ -561,6 +672,7 @@ int run_tool(int argc, const char* const* argv, const About& about,
     std::cerr << about.name << ": not enough memory for a stack of 1 MiB (ulimit -s or -v)\n";
     return 1;
   }
+  const EndGuard guard;
   StandardInput input;
   return reported(about, input, [&] { return run(argc, argv, about, declare, work, input); });
 }

@@ -30,9 +30,9 @@
 ///       return tool_main(argc, argv, about, declare, work);
 ///     }
 ///
-/// Exit codes: 0 done; 1 internal, or not enough memory; 2 usage, Error bad_input; 3 Error
-/// bad_file; 4 not trustworthy, with --strict; 75 stopped early. How signals end a tool:
-/// signals.hpp.
+/// Exit codes: 0 done; 1 internal, not enough memory, or ended by other code; 2 usage, Error
+/// bad_input; 3 Error bad_file, or a user's simulator fails; 4 not trustworthy, with --strict; 75
+/// stopped early. How signals end a tool: signals.hpp.
 
 namespace excavplan::tools {
 

@@ -44,7 +44,8 @@ struct KitSoil {
 /// what its bucket pin reaches.
 DigObjective feasible_objective(const Machine& machine, DigObjective objective);
 
-/// @throws Error (bad_input) as calibrate_density() and build_path_libraries()
+/// @throws Error (bad_input) as calibrate_density() and build_path_libraries(), and if the bucket
+/// is shorter than 0.2 m: its digs would take millions of cells
 KitSoil make_kit(const Machine& machine, const SoilKind& soil, const KitOptions& options = {});
 
 }  // namespace excavplan
