@@ -9,6 +9,7 @@
 #include <excavplan/library/library_build.hpp>
 #include <excavplan/machine/kinematics.hpp>
 #include <excavplan/simulation/calibration.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 namespace excavplan {
 namespace {
