@@ -114,10 +114,10 @@ TEST(DigCycleSession, PlansOnTheGroundAsScanned) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(answer.motion.points.back().positions[i], end.joints[static_cast<int>(i)], 1e-9);
   }
-  double last = -1.0;
+  std::int64_t last = -1;
   for (const JointPoint& point : answer.motion.points) {
-    EXPECT_GT(point.time, last);
-    last = point.time;
+    EXPECT_GT(point.time_ns, last);
+    last = point.time_ns;
     ASSERT_EQ(point.positions.size(), 4U);
     EXPECT_EQ(point.positions[3], 0.0);
     for (std::size_t i = 0; i < 3; ++i) {
