@@ -5,6 +5,7 @@
 /// The dig cycle as a node of ROS 1 (docs/ros.md): topics to DigCycleSession, its answers to topics
 /// and services.
 
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 
@@ -15,7 +16,7 @@
 #include <std_msgs/String.h>
 #include <tf2_msgs/TFMessage.h>
 #include <trajectory_msgs/JointTrajectory.h>
-#include <excavplan/controller/dig_cycle_session.hpp>
+#include <excavplan/controller/robot_node.hpp>
 
 #include <excavplan_ros/DigAndPlan.h>
 #include <excavplan_ros/Estimate.h>
@@ -34,17 +35,8 @@ using excavplan::Warning;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 trajectory_msgs::JointTrajectory message_of(const excavplan::JointMotion& motion) {
-  trajectory_msgs::JointTrajectory message;
-  message.joint_names = motion.names;
-  for (const excavplan::JointPoint& point : motion.points) {
-    trajectory_msgs::JointTrajectoryPoint sent;
-    sent.positions = point.positions;
-    sent.velocities = point.velocities;
-    sent.accelerations = point.accelerations;
-    sent.time_from_start = ros::Duration(point.time);
-    message.points.push_back(sent);
-  }
-  return message;
+  return excavplan::joint_trajectory_message<trajectory_msgs::JointTrajectory>(
+      motion, [](ros::Duration& time, std::int64_t ns) { time.fromNSec(ns); });
 }
 
 std_msgs::String text_message(const std::string& text) {
@@ -55,11 +47,8 @@ std_msgs::String text_message(const std::string& text) {
 
 /// Shows warnings, and gives their texts.
 std::vector<std::string> told(const std::vector<Warning>& warnings) {
-  std::vector<std::string> texts;
-  for (const Warning& warning : warnings) {
-    texts.push_back(warning.code + ": " + warning.message);
-    ROS_WARN("%s", texts.back().c_str());
-  }
+  std::vector<std::string> texts = excavplan::texts_of(warnings);
+  for (const std::string& text : texts) ROS_WARN("%s", text.c_str());
   return texts;
 }
 
@@ -142,14 +131,9 @@ class Node {
   void answer_plan(Response& response) {
     const std::string error = error_of([&] {
       const CyclePlan answer = make_plan();
-      response.success = answer.plan.dig.has_value();
-      response.message = answer.plan.reason;
-      response.trustworthy = answer.trustworthy;
-      response.previous_density = answer.previous_density;
-      response.density_percent = answer.density.percent;
+      fill_plan(answer, response);
       response.trajectory = message_of(answer.motion);
       for (std::string& text : told(answer.warnings)) response.warnings.push_back(text);
-      response.json = to_json(answer);
     });
     if (!error.empty()) response.message = error;
   }
@@ -158,15 +142,8 @@ class Node {
     response.density_percent = response.density_sd_percent = response.bulking_factor = unknown;
     response.message = error_of([&] {
       const CycleEstimate answer = make_estimate();
-      response.success = true;
-      response.trustworthy = answer.adopted;
-      if (answer.estimate.density) {
-        response.density_percent = answer.estimate.density->percent;
-        response.density_sd_percent = answer.estimate.density->sd_percent;
-      }
-      if (answer.estimate.bulking) response.bulking_factor = answer.estimate.bulking->value;
+      fill_estimate(answer, response);
       response.warnings = told(answer.warnings);
-      response.json = to_json(answer);
     });
     return true;
   }
