@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "shared/kit_files.hpp"
 #include "shared/results.hpp"
+#include "shared/site.hpp"
 
 namespace excavplan::tools {
 
