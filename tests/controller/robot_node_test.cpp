@@ -27,7 +27,7 @@ struct GivenParameters {
 
 DigCycleSettings settings_by(std::map<std::string, std::any> given) {
   GivenParameters parameters = {std::move(given)};
-  return settings_of(parameters);
+  return settings_of(parameters).session;
 }
 
 TEST(RobotNode, ParametersAreTheSettings) {
@@ -53,6 +53,33 @@ TEST(RobotNode, ParametersAreTheSettings) {
               settings_by({{"joint_names", std::vector<std::string>{"a"}}});
             }),
             "parameter joint_names: has 1 names, must have 4: boom, arm, bucket, swing");
+}
+
+TEST(RobotNode, ATimeForTheSearchNeedsASearch) {
+  EXPECT_EQ(settings_by({{"search", true}, {"search_seconds", 3.0}}).search_seconds, 3.0);
+  EXPECT_EQ(error_of([] {
+              settings_by({{"search_seconds", 3.0}});
+            }),
+            "parameter search_seconds: has no effect without search");
+}
+
+TEST(RobotNode, SendsNoMotionThatIsNotSafe) {
+  CyclePlan plan;
+  plan.motion = {{"b"}, {{0, {1.0}, {0.0}, {0.0}}}};
+  for (const bool trustworthy : {true, false}) {
+    for (const bool known : {true, false}) {
+      plan.trustworthy = trustworthy;
+      plan.posture_known = known;
+      const JointMotion sent = safe_motion(plan);
+      EXPECT_EQ(sent.names, plan.motion.names);
+      EXPECT_EQ(sent.points.size(), trustworthy && known ? 1U : 0U);
+    }
+  }
+}
+
+TEST(RobotNode, AClockBeforeItBeganIsNoTime) {
+  EXPECT_FALSE(known_time(0));
+  EXPECT_EQ(known_time(5), 5);
 }
 
 struct PointMessage {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,17 +17,24 @@
 
 namespace excavplan {
 
+/// Settings of a node.
+struct NodeSettings {
+  DigCycleSettings session;
+  bool send_doubtful = false;  ///< the trajectory is sent even if it is not a safe_motion()
+};
+
 /// The settings that parameters give (docs/ros.md#parameters).
 /// @param parameters  has `value(name, fallback)` for texts, numbers, flags, counts (int) and lists
 /// of texts
 /// @throws Error as shipped_settings() and read_frame(), or (bad_input) naming a parameter
 template <typename Parameters>
-DigCycleSettings settings_of(Parameters& parameters) {
+NodeSettings settings_of(Parameters& parameters) {
   const auto text = [&](const char* name, const std::string& usual) {
     return parameters.value(name, usual);
   };
-  DigCycleSettings settings =
-      shipped_settings(text("machine", "zx120"), text("soil", "loam"), text("law", ""));
+  NodeSettings node = {
+      shipped_settings(text("machine", "zx120"), text("soil", "loam"), text("law", ""))};
+  DigCycleSettings& settings = node.session;
   const auto read = [&](const char* name, auto& value) { value = parameters.value(name, value); };
   double percent = settings.density.percent, sd_percent = settings.density.sd_percent;
   read("density_percent", percent);
@@ -46,13 +56,27 @@ DigCycleSettings settings_of(Parameters& parameters) {
   for (std::size_t i = 0; i < joints.size(); ++i) joints[i].name = names[i];
   read("machine_in_view", settings.machine_in_view);
   read("digs_as_planned", settings.digs_as_planned);
+  read("joint_age_seconds", settings.oldest_joints);
   if (parameters.value("search", false)) settings.plan.method = PlanMethod::search;
+  read("search_seconds", settings.search_seconds);
+  if (std::isfinite(settings.search_seconds) && settings.plan.method != PlanMethod::search) {
+    throw Error(ErrorKind::bad_input, "parameter search_seconds: has no effect without search");
+  }
   read("whole_cycle", settings.whole_cycle);
   read("rate_hz", settings.motion.rate);
   read("max_jerk", settings.motion.max_jerk);
   read("speed_fraction", settings.motion.speed_fraction);
   settings.plan.trajectory.speed_fraction = settings.motion.speed_fraction;
-  return settings;
+  read("send_doubtful", node.send_doubtful);
+  return node;
+}
+
+/// The motion that may go to a controller: without points unless the plan is to be trusted and
+/// begins where the machine stands.
+inline JointMotion safe_motion(const CyclePlan& plan) {
+  JointMotion motion = plan.motion;
+  if (!plan.trustworthy || !plan.posture_known) motion.points.clear();
+  return motion;
 }
 
 /// A trajectory_msgs/JointTrajectory.
@@ -71,6 +95,16 @@ Message joint_trajectory_message(const JointMotion& motion, const SetTime& set_t
     set_time(sent.time_from_start, point.time_ns);
   }
   return message;
+}
+
+/// Of the clock of a node, which is at 0 until simulated time begins [ns].
+inline std::optional<std::int64_t> known_time(std::int64_t now) {
+  return now > 0 ? std::optional(now) : std::nullopt;
+}
+
+/// What to tell where points are left out that came too late.
+inline std::string early_text(const DigCycleSession& session) {
+  return "points were measured before the dig was over and are left out: " + describe(session);
 }
 
 /// "code: text" of each.

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
@@ -52,27 +53,36 @@ std::vector<std::string> told(const std::vector<Warning>& warnings) {
   return texts;
 }
 
+std::optional<std::int64_t> time_now() {
+  return excavplan::known_time(static_cast<std::int64_t>(ros::Time::now().toNSec()));
+}
+
 class Node {
  public:
-  Node(ros::NodeHandle topics, const ros::NodeHandle& own)
-      : session_(settings_of(own)), topics_(topics), own_(own) {
+  Node(ros::NodeHandle topics, const ros::NodeHandle& own) : Node(topics, own, settings_of(own)) {}
+
+ private:
+  Node(ros::NodeHandle topics, const ros::NodeHandle& own, const excavplan::NodeSettings& settings)
+      : session_(settings.session),
+        send_doubtful_(settings.send_doubtful),
+        topics_(topics),
+        own_(own) {
     listen<sensor_msgs::PointCloud2>("points", "sensor_msgs/msg/PointCloud2", 10);
     listen<tf2_msgs::TFMessage>("/tf", "tf2_msgs/msg/TFMessage", 1000);
     listen<tf2_msgs::TFMessage>("/tf_static", "tf2_msgs/msg/TFMessage", 1000);
     listen<sensor_msgs::JointState>("joint_states", "sensor_msgs/msg/JointState", 10);
-    mark("start_dig", [this] { session_.start_dig(); });
-    mark("end_dig", [this] { session_.end_dig(); });
+    mark("start_dig", [this] { session_.start_dig(time_now()); });
+    mark("end_dig", [this] { session_.end_dig(time_now()); });
     state_ = own_.advertise<std_msgs::String>("state", 1, true);
     estimate_ = own_.advertise<std_msgs::String>("estimate_result", 1, true);
     plan_ = own_.advertise<std_msgs::String>("plan_result", 1, true);
-    trajectory_ = own_.advertise<trajectory_msgs::JointTrajectory>("trajectory", 1, true);
+    trajectory_ = own_.advertise<trajectory_msgs::JointTrajectory>("trajectory", 1);
     services_ = {own_.advertiseService("estimate", &Node::estimate, this),
                  own_.advertiseService("plan", &Node::plan, this),
                  own_.advertiseService("dig_and_plan", &Node::dig_and_plan, this)};
     tell_state();
   }
 
- private:
   /// Does the work; an error goes to rosout and is returned.
   template <typename Work>
   std::string error_of(const Work& work) {
@@ -90,7 +100,7 @@ class Node {
     const std::string name = topics_.resolveName(topic);
     const boost::function<void(const boost::shared_ptr<const Raw<Message>>&)> take =
         [this, name, type](const boost::shared_ptr<const Raw<Message>>& message) {
-          error_of([&] { session_.take({name, type, false, message->bytes}); });
+          error_of([&] { session_.take({name, type, false, message->bytes, time_now()}); });
           tell_state();
         };
     subscribers_.push_back(topics_.subscribe<Raw<Message>>(name, queue, take));
@@ -111,6 +121,9 @@ class Node {
     const std::string state = excavplan::describe(session_);
     if (state != told_state_) state_.publish(text_message(state));
     told_state_ = state;
+    const bool any_early = session_.early_scans() > 0;
+    if (any_early && !told_early_) ROS_WARN("%s", excavplan::early_text(session_).c_str());
+    told_early_ = any_early;
   }
 
   CycleEstimate make_estimate() {
@@ -122,7 +135,7 @@ class Node {
   CyclePlan make_plan() {
     CyclePlan answer = session_.plan();
     plan_.publish(text_message(to_json(answer)));
-    trajectory_.publish(message_of(answer.motion));
+    trajectory_.publish(message_of(send_doubtful_ ? answer.motion : safe_motion(answer)));
     return answer;
   }
 
@@ -164,9 +177,11 @@ class Node {
   }
 
   excavplan::DigCycleSession session_;
+  bool send_doubtful_;
   ros::NodeHandle topics_, own_;
   std::vector<ros::Subscriber> subscribers_;
   std::string told_state_;
+  bool told_early_ = false;
   ros::Publisher state_, estimate_, plan_, trajectory_;
   std::vector<ros::ServiceServer> services_;
 };

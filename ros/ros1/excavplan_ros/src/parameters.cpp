@@ -44,9 +44,9 @@ class Parameters {
 
 }  // namespace
 
-excavplan::DigCycleSettings settings_of(const ros::NodeHandle& node) {
+excavplan::NodeSettings settings_of(const ros::NodeHandle& node) {
   Parameters parameters(node);
-  excavplan::DigCycleSettings settings = excavplan::settings_of(parameters);
+  excavplan::NodeSettings settings = excavplan::settings_of(parameters);
   parameters.done();
   return settings;
 }

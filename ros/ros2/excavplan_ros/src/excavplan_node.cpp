@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 #include <excavplan/controller/robot_node.hpp>
@@ -72,19 +73,19 @@ class Parameters {
   rclcpp::Node& node_;
 };
 
-excavplan::DigCycleSettings settings_of(rclcpp::Node& node) {
+excavplan::NodeSettings settings_of(rclcpp::Node& node) {
   Parameters parameters(node);
   return excavplan::settings_of(parameters);
 }
 
 class ExcavplanNode : public rclcpp::Node {
  public:
-  ExcavplanNode() : Node("excavplan"), session_(settings_of(*this)) {
+  ExcavplanNode() : Node("excavplan"), settings_(settings_of(*this)), session_(settings_.session) {
     const rclcpp::QoS latched = rclcpp::QoS(1).transient_local();
     state_ = create_publisher<String>("~/state", latched);
     estimate_ = create_publisher<String>("~/estimate_result", latched);
     plan_ = create_publisher<String>("~/plan_result", latched);
-    trajectory_ = create_publisher<JointTrajectory>("~/trajectory", latched);
+    trajectory_ = create_publisher<JointTrajectory>("~/trajectory", rclcpp::QoS(1));
     listen<sensor_msgs::msg::PointCloud2>("points", "sensor_msgs/msg/PointCloud2",
                                           rclcpp::SensorDataQoS());
     listen<tf2_msgs::msg::TFMessage>("/tf", "tf2_msgs/msg/TFMessage", rclcpp::QoS(100));
@@ -92,8 +93,8 @@ class ExcavplanNode : public rclcpp::Node {
                                      rclcpp::QoS(100).transient_local());
     listen<sensor_msgs::msg::JointState>("joint_states", "sensor_msgs/msg/JointState",
                                          rclcpp::SensorDataQoS());
-    mark("start_dig", [this] { session_.start_dig(); });
-    mark("end_dig", [this] { session_.end_dig(); });
+    mark("start_dig", [this] { session_.start_dig(time_now()); });
+    mark("end_dig", [this] { session_.end_dig(time_now()); });
     serve<Estimate>("~/estimate", [this](Estimate::Response& answer) { fill(answer); });
     serve<Plan>("~/plan", [this](Plan::Response& answer) { answer_plan(answer); });
     serve<DigAndPlan>("~/dig_and_plan", [this](DigAndPlan::Response& answer) { fill(answer); });
@@ -101,6 +102,10 @@ class ExcavplanNode : public rclcpp::Node {
   }
 
  private:
+  std::optional<std::int64_t> time_now() const {
+    return excavplan::known_time(now().nanoseconds());
+  }
+
   /// Does the work; an error goes to rosout and is returned.
   template <typename Work>
   std::string error_of(const Work& work) {
@@ -119,7 +124,7 @@ class ExcavplanNode : public rclcpp::Node {
       const rcl_serialized_message_t& message = raw->get_rcl_serialized_message();
       const std::string_view bytes(reinterpret_cast<const char*>(message.buffer),
                                    message.buffer_length);
-      error_of([&] { session_.take({topic, type, true, bytes}); });
+      error_of([&] { session_.take({topic, type, true, bytes, time_now()}); });
       tell_state();
     };
     subscriptions_.push_back(create_subscription<Message>(topic, qos, take));
@@ -147,6 +152,11 @@ class ExcavplanNode : public rclcpp::Node {
     const std::string state = describe(session_);
     if (state != told_state_) state_->publish(text_message(state));
     told_state_ = state;
+    const bool any_early = session_.early_scans() > 0;
+    if (any_early && !told_early_) {
+      RCLCPP_WARN(get_logger(), "%s", excavplan::early_text(session_).c_str());
+    }
+    told_early_ = any_early;
   }
 
   void tell(const std::vector<excavplan::Warning>& warnings, std::vector<std::string>& texts) {
@@ -187,13 +197,16 @@ class ExcavplanNode : public rclcpp::Node {
       response.trajectory = message_of(answer.motion);
       tell(answer.warnings, response.warnings);
       plan_->publish(text_message(response.json));
-      trajectory_->publish(response.trajectory);
+      trajectory_->publish(
+          message_of(settings_.send_doubtful ? answer.motion : safe_motion(answer)));
     });
     if (!error.empty()) response.message = error;
   }
 
+  excavplan::NodeSettings settings_;
   excavplan::DigCycleSession session_;
   std::string told_state_;
+  bool told_early_ = false;
   rclcpp::Publisher<String>::SharedPtr state_, estimate_, plan_;
   rclcpp::Publisher<JointTrajectory>::SharedPtr trajectory_;
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
