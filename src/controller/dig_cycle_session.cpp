@@ -3,6 +3,7 @@
 #include <excavplan/controller/dig_cycle_session.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -11,13 +12,21 @@
 #include <excavplan/survey/scan_terrain.hpp>
 
 #include "base/check.hpp"
+#include "base/text.hpp"
 #include "controller/live_scan.hpp"
+#include "controller/message_clock.hpp"
+#include "controller/recent_joints.hpp"
 #include "controller/recent_transforms.hpp"
 
 namespace excavplan {
 namespace {
 
 using Frames = std::vector<LiveFrame>;
+using Time = std::optional<std::int64_t>;  // [ns]
+
+double seconds(std::int64_t from, std::int64_t to) {
+  return 1e-9 * (static_cast<double>(to) - static_cast<double>(from));
+}
 
 std::string count_text(std::size_t found, std::size_t wanted) {
   return std::to_string(found) + " of " + std::to_string(wanted);
@@ -31,6 +40,8 @@ void check(const DigCycleSettings& settings) {
   const bool named = std::none_of(joints.begin(), joints.begin() + 3,
                                   [](const RobotJoint& joint) { return joint.name.empty(); });
   require(named, "robot_joints: boom, arm and bucket need a name");
+  require(settings.oldest_joints > 0.0, "oldest_joints [s]", settings.oldest_joints, "above 0");
+  require(settings.search_seconds > 0.0, "search_seconds", settings.search_seconds, "above 0");
 }
 
 }  // namespace
@@ -53,13 +64,21 @@ const char* name(CycleStage stage) {
 struct DigCycleSession::State {
   explicit State(DigCycleSettings given) : settings(std::move(given)), density(settings.density) {}
 
-  void take_points(LiveFrame frame);
-  void take_joints(const std::vector<std::pair<std::string, double>>& positions);
-  std::optional<MachinePosture> posture() const;
+  Time time_of(const RobotMessage& message, std::int64_t stamp);
+  void come(const RobotMessage& message, Time time);
+  void mark(Time time);
+  void take_points(LiveFrame frame, Time time);
+  void take_joints(const std::vector<std::pair<std::string, double>>& positions, Time time);
+  std::string joint_problem(std::int64_t time) const;
+  std::optional<MachinePosture> posture(std::int64_t time) const;
   void settle(Frames& frames, bool all);
+  void settle_postures(Frames& frames, bool all) const;
+  std::string early_text() const;
+  std::vector<Warning> scan_warnings(bool averaged) const;
   Scan scan_of(Frames& frames, const char* which, bool& averaged);
   DensityOptions estimate_options() const;
   ScannedTerrain terrain();
+  PlanOptions plan_options() const;
   std::optional<FrontJoints> start() const;
   void add_motion(const Terrain& ground, CyclePlan& answer) const;
 
@@ -67,7 +86,11 @@ struct DigCycleSession::State {
   CycleStage stage = CycleStage::before;
   Frames recent, before, after;  ///< recent: since the last dig
   RecentTransforms transforms;
-  std::map<std::string, double> joints;  ///< of the settings' names, where they stand
+  RecentJoints joints;                         ///< of the settings' names
+  std::map<std::string, MessageClock> clocks;  ///< by topic
+  Time now;                                    ///< when the newest message came
+  Time marked;                                 ///< when the dig began or ended
+  std::size_t early = 0;                       ///< messages of points from before that
   GroundDensity density;
   bool density_is_stated = true;
   bool last_refused = false;          ///< the last estimate was not to be trusted
@@ -75,13 +98,37 @@ struct DigCycleSession::State {
   std::optional<PlannedDig> driven;   ///< what was planned when the last dig began
 };
 
-void DigCycleSession::State::take_points(LiveFrame frame) {
-  frame.posture = posture();
-  if (settings.site_frame.empty()) frame.pose = Eigen::Isometry3d(settings.site_from_scan);
+/// When a message with this stamp was measured.
+Time DigCycleSession::State::time_of(const RobotMessage& message, std::int64_t stamp) {
+  return clocks[message.topic].time(stamp, message.received);
+}
+
+/// @param time  of the message, if it does not tell when it was received
+void DigCycleSession::State::come(const RobotMessage& message, Time time) {
+  if (message.received) {
+    now = message.received;
+  } else if (time && (!now || *time > *now)) {
+    now = time;
+  }
+}
+
+void DigCycleSession::State::mark(Time time) {
+  if (time) marked = now = time;
+}
+
+void DigCycleSession::State::take_points(LiveFrame frame, Time time) {
   if (stage == CycleStage::digging) return;
+  if (time && marked && *time < *marked) {
+    ++early;
+    return;
+  }
+  frame.time = time.value_or(now.value_or(0));
+  if (settings.site_frame.empty()) frame.pose = Eigen::Isometry3d(settings.site_from_scan);
   settle(recent, false);
+  settle(after, false);
   if (recent.size() == settings.scans) recent.erase(recent.begin());
   recent.push_back(std::move(frame));
+  settle_postures(recent, false);
   if (stage == CycleStage::after && recent.size() == settings.scans) {
     after = recent;
     stage = CycleStage::done;
@@ -89,23 +136,39 @@ void DigCycleSession::State::take_points(LiveFrame frame) {
 }
 
 void DigCycleSession::State::take_joints(
-    const std::vector<std::pair<std::string, double>>& positions) {
+    const std::vector<std::pair<std::string, double>>& positions, Time time) {
   for (const auto& [name, position] : positions) {
     if (name.empty() || !std::isfinite(position)) continue;
     for (const RobotJoint& joint : settings.machine.robot_joints) {
-      if (joint.name == name) joints[name] = position;
+      if (joint.name == name) joints.add(name, {time.value_or(now.value_or(0)), position});
     }
   }
+  for (Frames* frames : {&recent, &before, &after}) settle_postures(*frames, false);
 }
 
-std::optional<MachinePosture> DigCycleSession::State::posture() const {
+/// Why the posture at a time is not known; empty if it is.
+std::string DigCycleSession::State::joint_problem(std::int64_t time) const {
+  for (const RobotJoint& joint : settings.machine.robot_joints) {
+    if (joint.name.empty()) continue;
+    const auto found = joints.nearest(joint.name, time);
+    if (!found) return "no joint states came of " + joint.name;
+    const double away = std::abs(seconds(found->time, time));
+    if (away <= settings.oldest_joints) continue;
+    return "no joint states of " + joint.name + " came within " +
+           plain_number(settings.oldest_joints) + " s, the nearest is " + readable(away) +
+           " s away";
+  }
+  return "";
+}
+
+std::optional<MachinePosture> DigCycleSession::State::posture(std::int64_t time) const {
+  if (!joint_problem(time).empty()) return {};
   FrontJoints angles = FrontJoints::Zero();
   for (std::size_t i = 0; i < settings.machine.robot_joints.size(); ++i) {
     const RobotJoint& joint = settings.machine.robot_joints[i];
     if (joint.name.empty()) continue;
-    const auto found = joints.find(joint.name);
-    if (found == joints.end()) return {};
-    angles[static_cast<Eigen::Index>(i)] = joint.to_ours(found->second);
+    const double position = joints.nearest(joint.name, time)->position;
+    angles[static_cast<Eigen::Index>(i)] = joint.to_ours(position);
   }
   return MachinePosture{angles[3], angles.head<3>()};
 }
@@ -113,10 +176,10 @@ std::optional<MachinePosture> DigCycleSession::State::posture() const {
 /// Where the motion begins: sensors of joints that stand at a limit read a little beyond it.
 std::optional<FrontJoints> DigCycleSession::State::start() const {
   constexpr double most_beyond = 0.02;  // ours [rad]
-  const std::optional<MachinePosture> now = posture();
-  if (!now) return {};
+  const std::optional<MachinePosture> present = posture(now.value_or(0));
+  if (!present) return {};
   FrontJoints start;
-  start << now->joints, now->swing;
+  start << present->joints, present->swing;
   for (std::size_t i = 0; i < settings.machine.limits.size(); ++i) {
     const JointLimits& limits = settings.machine.limits[i];
     double& angle = start[static_cast<Eigen::Index>(i)];
@@ -144,8 +207,23 @@ void DigCycleSession::State::settle(Frames& frames, bool all) {
   }
 }
 
+/// Finds postures that are not known yet, once the joint states reach the time of the points;
+/// `all`: by those that came.
+void DigCycleSession::State::settle_postures(Frames& frames, bool all) const {
+  if (!settings.machine_in_view) return;
+  const RobotJoints& robot = settings.machine.robot_joints;
+  for (LiveFrame& frame : frames) {
+    if (frame.posture) continue;
+    const bool reached = std::all_of(robot.begin(), robot.end(), [&](const RobotJoint& joint) {
+      return joint.name.empty() || joints.reaches(joint.name, frame.time);
+    });
+    if (reached || all) frame.posture = posture(frame.time);
+  }
+}
+
 Scan DigCycleSession::State::scan_of(Frames& frames, const char* which, bool& averaged) {
   settle(frames, true);
+  settle_postures(frames, true);
   LiveScan live = merged(frames);
   averaged = averaged && (live.averaged || frames.size() == 1);
   Scan scan;
@@ -153,9 +231,10 @@ Scan DigCycleSession::State::scan_of(Frames& frames, const char* which, bool& av
   scan.clouds = {std::make_shared<const Cloud>(std::move(live.cloud))};
   scan.z_is_up = !settings.site_frame.empty() || !settings.site_from_scan.isIdentity(0.0);
   if (settings.machine_in_view) {
-    require(frames.front().posture.has_value(),
-            scan.name + ": the machine is in view, but no joint states came before it");
-    scan.machine = std::make_shared<const MachineFront>(settings.machine, *frames.front().posture);
+    const LiveFrame& first = frames.front();
+    require(first.posture.has_value(),
+            scan.name + ": the machine is in view, but " + joint_problem(first.time));
+    scan.machine = std::make_shared<const MachineFront>(settings.machine, *first.posture);
   }
   return scan;
 }
@@ -184,10 +263,11 @@ ScannedTerrain DigCycleSession::State::terrain() {
 
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
   const CycleWayOptions way = {start(), settings.whole_cycle, settings.plan.search.objective};
+  answer.posture_known = way.start.has_value();
   if (!way.start) {
-    answer.warnings.push_back({"posture_unknown",
-                               "no joint states came: the motion begins above the dig, wherever "
-                               "the machine stands"});
+    answer.warnings.push_back({"posture_unknown", joint_problem(now.value_or(0)) +
+                                                      ": the motion begins above the dig, wherever "
+                                                      "the machine stands"});
   }
   const auto refuse = [&](const std::string& why) {
     answer.warnings.push_back({"no_motion", "the plan has no motion: " + why, true});
@@ -204,6 +284,34 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
   }
 }
 
+std::string DigCycleSession::State::early_text() const {
+  return std::to_string(early) + " messages of points were measured before the dig was over";
+}
+
+/// Of the scans before and after the dig.
+std::vector<Warning> DigCycleSession::State::scan_warnings(bool averaged) const {
+  std::vector<Warning> warnings;
+  if (before.size() < after.size()) {
+    warnings.push_back({"fewer_scans", "the scan before the dig has " +
+                                           count_text(before.size(), after.size()) +
+                                           " messages: the dig began before more came"});
+  }
+  if (!averaged) {
+    warnings.push_back({"not_averaged",
+                        "the messages of a scan are not of one organised size with one pose: "
+                        "their points were joined"});
+  }
+  if (early > 0) warnings.push_back({"early_points", early_text() + " and left out"});
+  const bool stamped = std::all_of(after.begin(), after.end(),
+                                   [](const LiveFrame& frame) { return frame.header.stamp != 0; });
+  if (marked && !stamped) {
+    warnings.push_back({"not_stamped",
+                        "points of the scan after have no stamp: whether they were measured after "
+                        "the dig is not known"});
+  }
+  return warnings;
+}
+
 DigCycleSession::DigCycleSession(DigCycleSettings settings) {
   check(settings);
   state_ = std::make_unique<State>(std::move(settings));
@@ -217,24 +325,36 @@ void DigCycleSession::take(const RobotMessage& message) {
   const RecordedMessage raw = {topic, 0, message.is_cdr ? Serialization::cdr : Serialization::ros1,
                                message.bytes, "message"};
   const std::string& from = message.topic;
-  switch (use_of(message.type)) {
+  const MessageUse use = use_of(message.type);
+  switch (use) {
     case MessageUse::points: {
       LiveFrame frame;
       frame.header = decode_header(from, raw);
       frame.points = decode_points(from, raw);
-      return state_->take_points(std::move(frame));
+      const Time time = state_->time_of(message, frame.header.stamp);
+      state_->come(message, time);
+      return state_->take_points(std::move(frame), time);
     }
-    case MessageUse::transforms:
-      return state_->transforms.add(decode_transforms(from, raw));
-    case MessageUse::joints:
-      return state_->take_joints(decode_joints(from, raw));
+    case MessageUse::transforms: {
+      auto transforms = decode_transforms(from, raw);
+      for (const StampedTransform& transform : transforms) {
+        state_->come(message, transform.is_static ? Time() : transform.stamp);
+      }
+      return state_->transforms.add(std::move(transforms));
+    }
+    case MessageUse::joints: {
+      const auto positions = decode_joints(from, raw);
+      const Time time = state_->time_of(message, decode_header(from, raw).stamp);
+      state_->come(message, time);
+      return state_->take_joints(positions, time);
+    }
     default:
       throw Error(ErrorKind::bad_file, from + ": found a message of " + message.type +
                                            ", expected points, transforms or joint states");
   }
 }
 
-void DigCycleSession::start_dig() {
+void DigCycleSession::start_dig(Time time) {
   State& state = *state_;
   require(state.stage == CycleStage::digging || !state.recent.empty(),
           "the dig begins, but no scan came before it");
@@ -245,21 +365,28 @@ void DigCycleSession::start_dig() {
   state.after.clear();
   state.driven = std::exchange(state.planned, std::nullopt);
   state.stage = CycleStage::digging;
+  state.early = 0;
+  state.marked.reset();
+  state.mark(time);
 }
 
-void DigCycleSession::end_dig() {
+void DigCycleSession::end_dig(Time time) {
   require(state_->stage == CycleStage::digging, "the dig is over, but none had begun");
   state_->stage = CycleStage::after;
+  state_->mark(time);
 }
 
 CycleStage DigCycleSession::stage() const { return state_->stage; }
 std::size_t DigCycleSession::scans() const { return state_->recent.size(); }
 std::size_t DigCycleSession::scans_wanted() const { return state_->settings.scans; }
+std::size_t DigCycleSession::early_scans() const { return state_->early; }
 const GroundDensity& DigCycleSession::density() const { return state_->density; }
 
 std::string describe(const DigCycleSession& session) {
+  const std::size_t early = session.early_scans();
   return std::string(name(session.stage())) + ' ' +
-         count_text(session.scans(), session.scans_wanted());
+         count_text(session.scans(), session.scans_wanted()) +
+         (early == 0 ? "" : ", " + std::to_string(early) + " too early");
 }
 
 CycleEstimate DigCycleSession::estimate() {
@@ -267,7 +394,8 @@ CycleEstimate DigCycleSession::estimate() {
   require(state.stage == CycleStage::done,
           state.stage == CycleStage::after
               ? "the scan after the dig has " +
-                    count_text(state.recent.size(), state.settings.scans) + " messages"
+                    count_text(state.recent.size(), state.settings.scans) + " messages" +
+                    (state.early == 0 ? "" : "; " + state.early_text())
               : std::string("no dig has been scanned: it is the time ") + name(state.stage) +
                     (state.stage == CycleStage::before ? " the first dig" : ""));
   state.last_refused = true;
@@ -280,16 +408,8 @@ CycleEstimate DigCycleSession::estimate() {
   answer.before = state.before.size();
   answer.after = state.after.size();
   answer.warnings = answer.estimate.warnings;
-  if (answer.before < answer.after) {
-    answer.warnings.push_back({"fewer_scans", "the scan before the dig has " +
-                                                  count_text(answer.before, answer.after) +
-                                                  " messages: the dig began before more came"});
-  }
-  if (!averaged) {
-    answer.warnings.push_back({"not_averaged",
-                               "the messages of a scan are not of one organised size with one "
-                               "pose: their points were joined"});
-  }
+  const std::vector<Warning> more = state.scan_warnings(averaged);
+  answer.warnings.insert(answer.warnings.end(), more.begin(), more.end());
   const std::optional<GroundDensity> found = answer.estimate.ground_density();
   answer.adopted = answer.estimate.trustworthy && found;
   state.last_refused = !answer.adopted;
@@ -300,13 +420,26 @@ CycleEstimate DigCycleSession::estimate() {
   return answer;
 }
 
+PlanOptions DigCycleSession::State::plan_options() const {
+  using Clock = std::chrono::steady_clock;
+  PlanOptions options = settings.plan;
+  if (!std::isfinite(settings.search_seconds)) return options;
+  const auto begin = Clock::now();
+  options.search.progress = [=, own = options.search.progress,
+                             most = settings.search_seconds](const SearchProgress& progress) {
+    const bool in_time = std::chrono::duration<double>(Clock::now() - begin).count() < most;
+    return (!own || own(progress)) && in_time;
+  };
+  return options;
+}
+
 CyclePlan DigCycleSession::plan() {
   State& state = *state_;
   ScannedTerrain ground = state.terrain();
   const DigCycleSettings& settings = state.settings;
   CyclePlan answer;
-  answer.plan =
-      plan_dig(settings.machine, settings.soil, state.density, ground.terrain, settings.plan);
+  answer.plan = plan_dig(settings.machine, settings.soil, state.density, ground.terrain,
+                         state.plan_options());
   answer.density = state.density;
   answer.density_is_stated = state.density_is_stated;
   answer.previous_density = state.last_refused;
@@ -319,6 +452,12 @@ CyclePlan DigCycleSession::plan() {
   }
   answer.warnings.insert(answer.warnings.end(), answer.plan.warnings.begin(),
                          answer.plan.warnings.end());
+  if (answer.plan.stopped) {
+    const std::string stopped =
+        "the search was stopped after " + std::to_string(answer.plan.evaluations) + " digs";
+    answer.warnings.push_back({"search_stopped", stopped + ": there may be a better dig"});
+    if (!answer.plan.dig) answer.plan.reason = stopped + " that could not be done";
+  }
   if (answer.plan.dig) state.add_motion(ground.terrain, answer);
   answer.trustworthy = answer.plan.trustworthy && answer.plan.dig &&
                        std::none_of(answer.warnings.begin(), answer.warnings.end(),

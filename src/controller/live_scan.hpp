@@ -21,9 +21,10 @@ namespace excavplan {
 struct LiveFrame {
   MessageHeader header;
   PointMessage points;
+  std::int64_t time = 0;                  ///< when they were measured, as far as known [ns]
   std::optional<Eigen::Isometry3d> pose;  ///< of the sensor in the site frame; unset: not yet known
   bool from_sensor = false;               ///< the pose is that of the sensor
-  std::optional<MachinePosture> posture;  ///< of the machine when it came
+  std::optional<MachinePosture> posture;  ///< of the machine then; unset: not yet known
 };
 
 /// Frames as one cloud.

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 
 #include "base/check.hpp"
 #include "base/json.hpp"
@@ -39,15 +39,16 @@ std::string yaml(const std::vector<std::string>& names) {
 
 std::string yaml(const std::vector<double>& numbers) { return yaml_list(numbers, yaml_number); }
 
-std::string duration_text(double time) {
-  constexpr std::int64_t nano = 1000000000;
-  const auto all = static_cast<std::int64_t>(std::llround(time * static_cast<double>(nano)));
-  return "{sec: " + std::to_string(all / nano) + ", nanosec: " + std::to_string(all % nano) + "}";
+std::string duration_text(std::int64_t time_ns) {
+  constexpr std::int64_t second = 1'000'000'000;
+  return "{sec: " + std::to_string(time_ns / second) +
+         ", nanosec: " + std::to_string(time_ns % second) + "}";
 }
 
 }  // namespace
 
 JointMotion joint_motion(const Trajectory& trajectory) {
+  constexpr double longest = std::numeric_limits<std::int32_t>::max();  // of a message [s]
   JointMotion motion;
   const RobotJoints& joints = trajectory.robot_joints;
   for (const RobotJoint& joint : joints) {
@@ -55,7 +56,8 @@ JointMotion joint_motion(const Trajectory& trajectory) {
   }
   for (const TrajectoryPoint& point : trajectory.points) {
     JointPoint sent;
-    sent.time = point.time;
+    require_in("trajectory: time [s]", point.time, 0.0, longest);
+    sent.time_ns = std::llround(1e9 * point.time);
     for (std::size_t i = 0; i < joints.size(); ++i) {
       if (joints[i].name.empty()) continue;
       const auto j = static_cast<Eigen::Index>(i);
@@ -79,7 +81,7 @@ std::string to_joint_trajectory(const Trajectory& trajectory) {
   for (const JointPoint& point : motion.points) {
     text += "- positions: " + yaml(point.positions) + "\n  velocities: " + yaml(point.velocities);
     if (!point.accelerations.empty()) text += "\n  accelerations: " + yaml(point.accelerations);
-    text += "\n  time_from_start: " + duration_text(point.time) + '\n';
+    text += "\n  time_from_start: " + duration_text(point.time_ns) + '\n';
   }
   return text;
 }

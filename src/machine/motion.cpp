@@ -253,7 +253,7 @@ struct Smoothing {
   FrontJoints acceleration = FrontJoints::Zero();  ///< at which all its limits hold
 
   Smoothing(const Machine& machine, const MotionOptions& options, const FrontJoints& most)
-      : step(1.0 / options.rate), acceleration(most) {
+      : step(std::round(1e9 / options.rate) / 1e9), acceleration(most) {
     const double off = drift / (machine.boom_pin.x() + machine.full_length());  // of a joint [rad]
     const double jerk = options.max_jerk;
     if (std::isfinite(jerk)) {

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/controller/dig_cycle_session.hpp>
 
-#include <gtest/gtest.h>
+#include <algorithm>
 #include <limits>
+#include <optional>
+
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <excavplan/machine/kinematics.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/survey/machine_front.hpp>
 #include <excavplan/survey/scan_terrain.hpp>
 
 #include "support/errors.hpp"
@@ -114,10 +119,10 @@ TEST(DigCycleSession, PlansOnTheGroundAsScanned) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(answer.motion.points.back().positions[i], end.joints[static_cast<int>(i)], 1e-9);
   }
-  double last = -1.0;
+  std::int64_t last = -1;
   for (const JointPoint& point : answer.motion.points) {
-    EXPECT_GT(point.time, last);
-    last = point.time;
+    EXPECT_GT(point.time_ns, last);
+    last = point.time_ns;
     ASSERT_EQ(point.positions.size(), 4U);
     EXPECT_EQ(point.positions[3], 0.0);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -199,20 +204,61 @@ TEST(DigCycleSession, PutsScansIntoTheSiteFrameByTransforms) {
   EXPECT_EQ(session.stage(), CycleStage::digging);
 }
 
+constexpr std::int64_t second = 1'000'000'000;  // [ns]
+
+/// A session with the frame "base", and one of its sensor.
+struct SensedSession {
+  SensedSession() : session(settings()) {}
+
+  static DigCycleSettings settings() {
+    DigCycleSettings settings = settings_of();
+    settings.site_frame = "base";
+    return settings;
+  }
+  void place(std::int64_t at, const std::string& frame = "lidar", double height = 1.5) {
+    send(session, transform_bytes({{at, "base", frame, {0.0, 0.0, height}}}), "/tf", tf_type);
+  }
+  void scan(std::int64_t at) { send(session, cloud_bytes(at, "lidar", ground())); }
+
+  DigCycleSession session;
+};
+
 TEST(DigCycleSession, PosesAreFoundWhileTheirTransformsAreKept) {
-  DigCycleSettings settings = settings_of();
-  settings.site_frame = "base";
-  DigCycleSession session(settings);
-  const auto moved = [&](std::int64_t at) {
-    send(session, transform_bytes({{at, "base", "lidar", {0.0, 0.0, 1.5}}}), "/tf", tf_type);
-  };
-  moved(now);
-  send(session, cloud_bytes(now, "lidar", ground()));
-  moved(now + 60'000'000'000);
-  EXPECT_NE(error_of([&] { session.start_dig(); }, ErrorKind::bad_file).find("lidar"),
+  SensedSession robot;
+  robot.place(now);
+  robot.scan(now);
+  for (const int later : {40, 60, 61}) robot.place(now + later * second);
+  EXPECT_NE(error_of([&] { robot.session.start_dig(); }, ErrorKind::bad_file).find("at -40.000 s"),
             std::string::npos);
-  send(session, cloud_bytes(now + 60'000'000'000, "lidar", ground()));
-  session.start_dig();
+  robot.scan(now + 60 * second);
+  robot.session.start_dig();
+}
+
+TEST(DigCycleSession, OneClockThatIsAheadDropsNoOtherFrame) {
+  SensedSession robot;
+  robot.place(now);
+  robot.place(now + 20 * second, "other");
+  robot.scan(now);
+  robot.session.start_dig();
+  EXPECT_EQ(robot.session.stage(), CycleStage::digging);
+}
+
+TEST(DigCycleSession, SlowFramesStayKnownBetweenTheirStamps) {
+  SensedSession robot;
+  robot.place(now);
+  robot.place(now + 15 * second);
+  robot.scan(now + 8 * second);
+  robot.session.start_dig();
+  EXPECT_EQ(robot.session.stage(), CycleStage::digging);
+}
+
+TEST(DigCycleSession, FramesOutliveAClockThatIsSetBack) {
+  SensedSession robot;
+  robot.place(now);
+  robot.place(now - 100 * second);
+  robot.scan(now - 100 * second);
+  robot.session.start_dig();
+  EXPECT_EQ(robot.session.stage(), CycleStage::digging);
 }
 
 TEST(DigCycleSession, AveragesOrganisedMessagesOfASensorThatStood) {
@@ -277,6 +323,194 @@ TEST(DigCycleSession, SaysWhyThereIsNoMotion) {
   EXPECT_TRUE(beyond.motion.points.empty());
 }
 
+/// Points with this stamp that came at another time.
+void scan(DigCycleSession& session, std::int64_t stamp,
+          std::optional<std::int64_t> received = std::nullopt) {
+  static const std::string frame = "site";
+  const std::string bytes = cloud_bytes(stamp, frame, ground());
+  session.take({"/points", points_type, true, bytes, received});
+}
+
+TEST(DigCycleSession, PointsOfTheDigThatComeAfterItDoNotCount) {
+  DigCycleSession session(settings_of());
+  scan(session, now);
+  session.start_dig(now + second);
+  session.end_dig(now + 20 * second);
+  scan(session, now + 19 * second);
+  scan(session, now + 20 * second - 1);
+  EXPECT_EQ(describe(session), "after 0 of 1, 2 too early");
+  EXPECT_EQ(error_of([&] { session.estimate(); }),
+            "the scan after the dig has 0 of 1 messages; 2 messages of points were measured before "
+            "the dig was over");
+  scan(session, now + 20 * second);
+  EXPECT_EQ(session.stage(), CycleStage::done);
+  const CycleEstimate answer = session.estimate();
+  EXPECT_TRUE(has(answer.warnings, "early_points"));
+  EXPECT_FALSE(has(answer.warnings, "not_stamped"));
+  session.start_dig(now + 30 * second);
+  EXPECT_EQ(session.early_scans(), 0U);
+}
+
+TEST(DigCycleSession, TheMarkOfTheBeginHoldsIfTheEndHasNoTime) {
+  DigCycleSession session(settings_of());
+  scan(session, now);
+  session.start_dig(now + second);
+  session.end_dig();
+  scan(session, now);
+  EXPECT_EQ(session.early_scans(), 1U);
+  scan(session, now + 2 * second);
+  EXPECT_EQ(session.stage(), CycleStage::done);
+}
+
+TEST(DigCycleSession, PointsWithoutAStampCountAndAreTold) {
+  for (const bool is_received : {true, false}) {
+    DigCycleSession session(settings_of());
+    const auto at = [&](int seconds) {
+      return is_received ? std::optional(now + seconds * second) : std::nullopt;
+    };
+    scan(session, 0, at(0));
+    session.start_dig(now + 5 * second);
+    session.end_dig(now + 10 * second);
+    scan(session, 0, at(11));
+    ASSERT_EQ(session.stage(), CycleStage::done);
+    EXPECT_TRUE(has(session.estimate().warnings, "not_stamped"));
+  }
+}
+
+TEST(DigCycleSession, StampsOfAnotherClockAreComparedByTheirDelay) {
+  constexpr std::int64_t year = 365 * 86400 * second;
+  for (const std::int64_t offset : {-year, year}) {
+    DigCycleSession session(settings_of());
+    const auto at = [&](int taken, int came) {
+      scan(session, now + offset + taken * second, now + came * second);
+    };
+    at(0, 0);
+    session.start_dig(now + 5 * second);
+    session.end_dig(now + 20 * second);
+    at(18, 21);
+    EXPECT_EQ(session.early_scans(), 1U);
+    at(22, 22);
+    EXPECT_EQ(session.stage(), CycleStage::done);
+  }
+}
+
+TEST(DigCycleSession, AStampThatIsWrongIsForgotten) {
+  DigCycleSession session(settings_of());
+  scan(session, now + 1'000'000 * second, now);
+  session.start_dig(now + second);
+  session.end_dig(now + 2 * second);
+  int refused = 0;
+  for (int i = 3; session.stage() != CycleStage::done && i < 100; ++i, ++refused) {
+    scan(session, now + i * second, now + i * second);
+  }
+  EXPECT_EQ(session.stage(), CycleStage::done);
+  EXPECT_LE(refused, 21);
+}
+
+/// Tells the joint states of a machine: boom, arm, bucket, swing.
+struct JointTeller {
+  const DigCycleSettings& settings;
+  DigCycleSession& session;
+
+  void operator()(std::int64_t stamp, const std::vector<double>& angles,
+                  std::optional<std::int64_t> received = std::nullopt) const {
+    std::vector<std::pair<std::string, double>> named;
+    for (std::size_t i = 0; i < 4; ++i) {
+      named.emplace_back(settings.machine.robot_joints[i].name, angles[i]);
+    }
+    const std::string bytes = joint_bytes(stamp, named);
+    session.take({"/joint_states", joints_type, true, bytes, received});
+  }
+};
+
+TEST(DigCycleSession, JointStatesThatEndedAreNotWhereTheMachineStands) {
+  const std::vector<double> angles = {-0.6, 1.6, 0.5, 0.0};
+  const DigCycleSettings settings = settings_of();
+  for (const bool is_received : {true, false}) {
+    DigCycleSession session(settings);
+    const JointTeller tell{settings, session};
+    const auto at = [&](std::int64_t time) {
+      return is_received ? std::optional(time) : std::nullopt;
+    };
+    tell(now, angles, at(now));
+    scan(session, now + second, at(now + second));
+    EXPECT_TRUE(session.plan().posture_known);
+    scan(session, now + second + second / 100, at(now + second + second / 100));
+    const CyclePlan plan = session.plan();
+    EXPECT_FALSE(plan.posture_known);
+    ASSERT_TRUE(has(plan.warnings, "posture_unknown"));
+    EXPECT_NE(to_json(plan).find("no joint states of boom_joint came within 1 s"),
+              std::string::npos);
+    tell(now + 2 * second, angles, at(now + 2 * second));
+    EXPECT_TRUE(session.plan().posture_known);
+  }
+}
+
+TEST(DigCycleSession, JointStatesMayHaveNoStampAndAnyClock) {
+  const std::vector<double> angles = {-0.6, 1.6, 0.5, 0.0};
+  const DigCycleSettings settings = settings_of();
+  for (const std::int64_t stamp : {std::int64_t{0}, 7 * second}) {
+    DigCycleSession session(settings);
+    const JointTeller tell{settings, session};
+    tell(stamp, angles, now);
+    scan(session, now, now);
+    EXPECT_TRUE(session.plan().posture_known);
+    scan(session, now + 3 * second, now + 3 * second);
+    EXPECT_FALSE(session.plan().posture_known);
+  }
+}
+
+TEST(DigCycleSession, ThePostureOfPointsIsTheOneNearestInTime) {
+  DigCycleSettings settings = settings_of();
+  settings.machine_in_view = true;
+  const JointAngles raised(-0.6, 1.6, 0.5);
+  const std::vector<double> then = {-0.6, 1.6, 0.5, 0.0}, soon = {-0.6, 1.6, 0.5, 1.5};
+  Points points = quickstart("before").points;
+  const Eigen::Vector2d pin = link_positions(settings.machine, raised).arm_pin;
+  points.emplace_back(pin.x(), 0.0, pin.y());
+  const MachineFront front(settings.machine, {0.0, raised});
+  const auto of_machine = static_cast<std::uint64_t>(
+      std::count_if(points.begin(), points.end(), [&](const auto& p) { return front.holds(p); }));
+  ASSERT_GT(of_machine, 0U);
+  for (const bool states_first : {true, false}) {
+    DigCycleSession session(settings);
+    const JointTeller tell{settings, session};
+    const auto cloud = [&](std::int64_t stamp) {
+      const std::string bytes = cloud_bytes(stamp, "site", points);
+      session.take({"/points", points_type, true, bytes});
+    };
+    const auto states = [&](std::int64_t at) {
+      tell(at - second / 10, then);
+      tell(at + second / 2, soon);
+    };
+    const auto both = [&](std::int64_t at) {
+      if (states_first) states(at);
+      cloud(at);
+      if (!states_first) states(at);
+    };
+    both(now);
+    session.start_dig();
+    session.end_dig();
+    both(now + 60 * second);
+    tell(now + 100 * second, soon);
+    EXPECT_EQ(session.estimate().estimate.machine_points, 2 * of_machine) << states_first;
+  }
+}
+
+TEST(DigCycleSession, ASearchEndsInTime) {
+  DigCycleSettings settings = settings_of();
+  settings.plan.method = PlanMethod::search;
+  settings.search_seconds = 1e-9;
+  const CyclePlan plan = DigCycleSession(settings).plan();
+  EXPECT_TRUE(plan.plan.stopped);
+  EXPECT_TRUE(has(plan.warnings, "search_stopped"));
+  EXPECT_LT(plan.plan.evaluations, 100);
+  EXPECT_TRUE(plan.plan.dig || !plan.plan.reason.empty());
+  settings.search_seconds = 0.0;
+  EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
+            "search_seconds is 0, must be above 0");
+}
+
 TEST(DigCycleSession, MachineInViewNeedsJointStates) {
   DigCycleSettings settings = settings_of();
   settings.machine_in_view = true;
@@ -306,6 +540,10 @@ TEST(DigCycleSession, ChecksItsSettings) {
   DigCycleSettings settings = settings_of();
   settings.site_from_scan(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(error_of([&] { DigCycleSession session(settings); }), "no error");
+  settings = settings_of();
+  settings.oldest_joints = 0.0;
+  EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
+            "oldest_joints [s] is 0, must be above 0");
   EXPECT_NE(error_of([] { shipped_settings("zx120", "snow"); }).find("snow"), std::string::npos);
 }
 

@@ -46,6 +46,7 @@ struct QoS {
 struct SensorDataQoS : QoS { SensorDataQoS(); };
 struct NodeOptions {};
 struct Logger {};
+struct Time { std::int64_t nanoseconds() const; };
 struct SubscriptionBase { using SharedPtr = std::shared_ptr<SubscriptionBase>; };
 struct ServiceBase { using SharedPtr = std::shared_ptr<ServiceBase>; };
 template <typename M> struct Subscription : SubscriptionBase {
@@ -63,6 +64,7 @@ class Node {
  public:
   explicit Node(const std::string& name, const NodeOptions& options = NodeOptions());
   Logger get_logger() const;
+  Time now() const;
   template <typename T> T declare_parameter(const std::string& name, const T& value);
   template <typename M>
   typename Publisher<M>::SharedPtr create_publisher(const std::string& topic, const QoS& qos);

@@ -3,60 +3,20 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include <excavplan/controller/dig_cycle_settings.hpp>
 #include <excavplan/machine/joint_motion.hpp>
-#include <excavplan/plan/plan_motion.hpp>
-#include <excavplan/survey/density_estimate.hpp>
 
 /// @file
 /// The dig cycle of a robot: its messages in, density and plan out. Knows the bytes of ROS 1 and
 /// ROS 2 messages and needs neither (docs/ros.md).
 
 namespace excavplan {
-
-/// A message of a robot as it was sent.
-struct RobotMessage {
-  std::string topic;   ///< "/points"; transforms on one that ends in "tf_static" hold at all times
-  std::string type;    ///< as ROS 2 spells it: "sensor_msgs/msg/PointCloud2"
-  bool is_cdr = true;  ///< of ROS 2; false: of ROS 1
-  std::string_view bytes;  ///< serialized
-};
-
-/// Settings of a session.
-struct DigCycleSettings {
-  Machine machine;                    ///< that digs; its robot_joints name the joint states
-  SoilKind soil;                      ///< kind of the ground
-  DensityLaw law;                     ///< of digs of this machine in this soil
-  GroundDensity density{50.0, 25.0};  ///< until one was estimated
-  std::size_t scans = 5;              ///< messages in a scan, averaged if they can be; 1 .. 100
-  std::string site_frame = {};        ///< into which /tf puts the points; empty: not by /tf
-  /// Puts the points, or the site frame of /tf, into that of the machine: origin on the swing axis
-  /// at ground level, x forward, z up.
-  Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();
-  /// Points of boom, arm and bucket are left out, by the joint states; needs scans in the frame of
-  /// the machine.
-  bool machine_in_view = false;
-  /// The dig that is scanned is the last plan of the session, if there is one, whose path corrects
-  /// for the soil that fell back.
-  bool digs_as_planned = true;
-  DensityOptions estimate = {};  ///< `dug_path` is set by the session
-  PlanOptions plan = {};         ///< how the next dig is planned; its cycle is that of the motion
-  bool whole_cycle = false;      ///< as CycleWayOptions::whole_cycle
-  MotionOptions motion = {};     ///< of the trajectory that is sent
-};
-
-/// Settings of a machine in a soil by a law, each a shipped name or a file.
-/// @param law  empty: the shipped one of machine and soil
-/// @throws Error as shipped_or_file(), load_machine(), load_soil() and load_density_law()
-DigCycleSettings shipped_settings(const std::string& machine, const std::string& soil,
-                                  const std::string& law = "");
 
 /// Where a session is in the cycle.
 enum class CycleStage {
@@ -70,11 +30,13 @@ const char* name(CycleStage stage);
 
 /// The density by the last dig.
 struct CycleEstimate {
-  DensityEstimate estimate;       ///< as estimate_density() gives it
-  std::size_t before = 0;         ///< messages in the scan before
-  std::size_t after = 0;          ///< and in that after
-  bool adopted = false;           ///< the next plan is for this density
-  std::vector<Warning> warnings;  ///< of the estimate, and fewer_scans, not_averaged
+  DensityEstimate estimate;  ///< as estimate_density() gives it
+  std::size_t before = 0;    ///< messages in the scan before
+  std::size_t after = 0;     ///< and in that after
+  bool adopted = false;      ///< the next plan is for this density
+  /// Of the estimate, and fewer_scans, not_averaged, early_points (some were left out, measured
+  /// before the dig was over), not_stamped (whether points were is not known).
+  std::vector<Warning> warnings;
 };
 
 /// The next dig.
@@ -84,10 +46,11 @@ struct CyclePlan {
   bool density_is_stated = true;  ///< that of the settings: no dig gave one to trust
   bool previous_density = false;  ///< the last estimate was not to be trusted and is not used
   JointMotion motion;             ///< from where the joints stand; without points if there is none
+  bool posture_known = false;     ///< of the machine; if not the motion begins above the dig
   bool trustworthy = true;        ///< false after a warning that ends trust
   /// Of the plan, of the ground, and previous_density (the last estimate was not trustworthy),
-  /// level_ground (no scan yet), posture_unknown (the motion begins above the dig), no_motion *
-  /// (the ground is in the way, or a joint stands beyond its limits).
+  /// level_ground (no scan yet), posture_unknown (the motion begins above the dig), search_stopped
+  /// (by its time), no_motion * (the ground is in the way, or a joint stands beyond its limits).
   std::vector<Warning> warnings;
 };
 
@@ -109,15 +72,19 @@ class DigCycleSession {
   void take(const RobotMessage& message);
 
   /// The dig begins: the latest scans are those before it.
+  /// @param time  when [ns]. Points that were measured before the last mark and come after it are
+  /// left out; nothing: what comes counts
   /// @throws Error (bad_input) if there is none; the session is then as before
-  void start_dig();
-  /// The dig is over: what comes now shows the ground after it.
+  void start_dig(std::optional<std::int64_t> time = {});
+  /// The dig is over: what is measured from now on shows the ground after it.
+  /// @param time  the same; nothing: that of start_dig() holds
   /// @throws Error (bad_input) unless digging
-  void end_dig();
+  void end_dig(std::optional<std::int64_t> time = {});
 
   CycleStage stage() const;              ///< where the session is
   std::size_t scans() const;             ///< messages that wait as the next scan
   std::size_t scans_wanted() const;      ///< those of the settings
+  std::size_t early_scans() const;       ///< messages left out since the last start_dig()
   const GroundDensity& density() const;  ///< that the next plan is for
 
   /// The density by the scans before and after the last dig. One to trust is adopted.
@@ -133,7 +100,8 @@ class DigCycleSession {
   std::unique_ptr<State> state_;
 };
 
-/// "after 2 of 5": the stage and the messages that wait as the next scan.
+/// "after 2 of 5": the stage and the messages that wait as the next scan; ", 3 too early": of
+/// early_scans().
 std::string describe(const DigCycleSession& session);
 
 /// As JSON with the keys that estimate-density prints, as far as it has them; plan-path

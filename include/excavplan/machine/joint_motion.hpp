@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace excavplan {
 
 /// All joints at one time, in the order of JointMotion::names.
 struct JointPoint {
-  double time = 0.0;                  ///< from the start [s]
+  std::int64_t time_ns = 0;           ///< from the start, rounded [ns]
   std::vector<double> positions;      ///< [rad]
   std::vector<double> velocities;     ///< [rad/s]
   std::vector<double> accelerations;  ///< [rad/s^2]; empty in a trajectory of time_dig_path()
@@ -24,6 +25,7 @@ struct JointMotion {
 };
 
 /// A trajectory for a robot, by Trajectory::robot_joints.
+/// @throws Error (bad_input) naming a time that is not in 0 .. 2^31 - 1 s
 JointMotion joint_motion(const Trajectory& trajectory);
 
 /// A message trajectory_msgs/JointTrajectory of ROS 2 as YAML (`docs/formats.md#trajectory`).

@@ -5,8 +5,10 @@
 /// The dig cycle as a node of ROS 1 (docs/ros.md): topics to DigCycleSession, its answers to topics
 /// and services.
 
+#include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
@@ -15,7 +17,7 @@
 #include <std_msgs/String.h>
 #include <tf2_msgs/TFMessage.h>
 #include <trajectory_msgs/JointTrajectory.h>
-#include <excavplan/controller/dig_cycle_session.hpp>
+#include <excavplan/controller/robot_node.hpp>
 
 #include <excavplan_ros/DigAndPlan.h>
 #include <excavplan_ros/Estimate.h>
@@ -34,17 +36,8 @@ using excavplan::Warning;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 trajectory_msgs::JointTrajectory message_of(const excavplan::JointMotion& motion) {
-  trajectory_msgs::JointTrajectory message;
-  message.joint_names = motion.names;
-  for (const excavplan::JointPoint& point : motion.points) {
-    trajectory_msgs::JointTrajectoryPoint sent;
-    sent.positions = point.positions;
-    sent.velocities = point.velocities;
-    sent.accelerations = point.accelerations;
-    sent.time_from_start = ros::Duration(point.time);
-    message.points.push_back(sent);
-  }
-  return message;
+  return excavplan::joint_trajectory_message<trajectory_msgs::JointTrajectory>(
+      motion, [](ros::Duration& time, std::int64_t ns) { time.fromNSec(ns); });
 }
 
 std_msgs::String text_message(const std::string& text) {
@@ -55,35 +48,41 @@ std_msgs::String text_message(const std::string& text) {
 
 /// Shows warnings, and gives their texts.
 std::vector<std::string> told(const std::vector<Warning>& warnings) {
-  std::vector<std::string> texts;
-  for (const Warning& warning : warnings) {
-    texts.push_back(warning.code + ": " + warning.message);
-    ROS_WARN("%s", texts.back().c_str());
-  }
+  std::vector<std::string> texts = excavplan::texts_of(warnings);
+  for (const std::string& text : texts) ROS_WARN("%s", text.c_str());
   return texts;
+}
+
+std::optional<std::int64_t> time_now() {
+  return excavplan::known_time(static_cast<std::int64_t>(ros::Time::now().toNSec()));
 }
 
 class Node {
  public:
-  Node(ros::NodeHandle topics, const ros::NodeHandle& own)
-      : session_(settings_of(own)), topics_(topics), own_(own) {
+  Node(ros::NodeHandle topics, const ros::NodeHandle& own) : Node(topics, own, settings_of(own)) {}
+
+ private:
+  Node(ros::NodeHandle topics, const ros::NodeHandle& own, const excavplan::NodeSettings& settings)
+      : session_(settings.session),
+        send_doubtful_(settings.send_doubtful),
+        topics_(topics),
+        own_(own) {
     listen<sensor_msgs::PointCloud2>("points", "sensor_msgs/msg/PointCloud2", 10);
     listen<tf2_msgs::TFMessage>("/tf", "tf2_msgs/msg/TFMessage", 1000);
     listen<tf2_msgs::TFMessage>("/tf_static", "tf2_msgs/msg/TFMessage", 1000);
     listen<sensor_msgs::JointState>("joint_states", "sensor_msgs/msg/JointState", 10);
-    mark("start_dig", [this] { session_.start_dig(); });
-    mark("end_dig", [this] { session_.end_dig(); });
+    mark("start_dig", [this] { session_.start_dig(time_now()); });
+    mark("end_dig", [this] { session_.end_dig(time_now()); });
     state_ = own_.advertise<std_msgs::String>("state", 1, true);
     estimate_ = own_.advertise<std_msgs::String>("estimate_result", 1, true);
     plan_ = own_.advertise<std_msgs::String>("plan_result", 1, true);
-    trajectory_ = own_.advertise<trajectory_msgs::JointTrajectory>("trajectory", 1, true);
+    trajectory_ = own_.advertise<trajectory_msgs::JointTrajectory>("trajectory", 1);
     services_ = {own_.advertiseService("estimate", &Node::estimate, this),
                  own_.advertiseService("plan", &Node::plan, this),
                  own_.advertiseService("dig_and_plan", &Node::dig_and_plan, this)};
     tell_state();
   }
 
- private:
   /// Does the work; an error goes to rosout and is returned.
   template <typename Work>
   std::string error_of(const Work& work) {
@@ -101,7 +100,7 @@ class Node {
     const std::string name = topics_.resolveName(topic);
     const boost::function<void(const boost::shared_ptr<const Raw<Message>>&)> take =
         [this, name, type](const boost::shared_ptr<const Raw<Message>>& message) {
-          error_of([&] { session_.take({name, type, false, message->bytes}); });
+          error_of([&] { session_.take({name, type, false, message->bytes, time_now()}); });
           tell_state();
         };
     subscribers_.push_back(topics_.subscribe<Raw<Message>>(name, queue, take));
@@ -122,6 +121,9 @@ class Node {
     const std::string state = excavplan::describe(session_);
     if (state != told_state_) state_.publish(text_message(state));
     told_state_ = state;
+    const bool any_early = session_.early_scans() > 0;
+    if (any_early && !told_early_) ROS_WARN("%s", excavplan::early_text(session_).c_str());
+    told_early_ = any_early;
   }
 
   CycleEstimate make_estimate() {
@@ -133,7 +135,7 @@ class Node {
   CyclePlan make_plan() {
     CyclePlan answer = session_.plan();
     plan_.publish(text_message(to_json(answer)));
-    trajectory_.publish(message_of(answer.motion));
+    trajectory_.publish(message_of(send_doubtful_ ? answer.motion : safe_motion(answer)));
     return answer;
   }
 
@@ -142,14 +144,9 @@ class Node {
   void answer_plan(Response& response) {
     const std::string error = error_of([&] {
       const CyclePlan answer = make_plan();
-      response.success = answer.plan.dig.has_value();
-      response.message = answer.plan.reason;
-      response.trustworthy = answer.trustworthy;
-      response.previous_density = answer.previous_density;
-      response.density_percent = answer.density.percent;
+      fill_plan(answer, response);
       response.trajectory = message_of(answer.motion);
       for (std::string& text : told(answer.warnings)) response.warnings.push_back(text);
-      response.json = to_json(answer);
     });
     if (!error.empty()) response.message = error;
   }
@@ -158,15 +155,8 @@ class Node {
     response.density_percent = response.density_sd_percent = response.bulking_factor = unknown;
     response.message = error_of([&] {
       const CycleEstimate answer = make_estimate();
-      response.success = true;
-      response.trustworthy = answer.adopted;
-      if (answer.estimate.density) {
-        response.density_percent = answer.estimate.density->percent;
-        response.density_sd_percent = answer.estimate.density->sd_percent;
-      }
-      if (answer.estimate.bulking) response.bulking_factor = answer.estimate.bulking->value;
+      fill_estimate(answer, response);
       response.warnings = told(answer.warnings);
-      response.json = to_json(answer);
     });
     return true;
   }
@@ -187,9 +177,11 @@ class Node {
   }
 
   excavplan::DigCycleSession session_;
+  bool send_doubtful_;
   ros::NodeHandle topics_, own_;
   std::vector<ros::Subscriber> subscribers_;
   std::string told_state_;
+  bool told_early_ = false;
   ros::Publisher state_, estimate_, plan_, trajectory_;
   std::vector<ros::ServiceServer> services_;
 };

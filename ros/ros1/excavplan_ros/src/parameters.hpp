@@ -3,12 +3,12 @@
 #pragma once
 
 #include <ros/node_handle.h>
-#include <excavplan/controller/dig_cycle_session.hpp>
+#include <excavplan/controller/robot_node.hpp>
 
 namespace excavplan_ros {
 
 /// The settings that the private parameters of the node give (docs/ros.md#parameters).
 /// @throws excavplan::Error naming a parameter that is not of its type, not known or out of range
-excavplan::DigCycleSettings settings_of(const ros::NodeHandle& parameters);
+excavplan::NodeSettings settings_of(const ros::NodeHandle& parameters);
 
 }  // namespace excavplan_ros

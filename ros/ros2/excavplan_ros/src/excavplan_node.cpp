@@ -6,12 +6,13 @@
 /// and services. Checked for syntax only: Debian has no rclcpp.
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <optional>
+#include <type_traits>
 
-#include <excavplan/controller/dig_cycle_session.hpp>
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/controller/robot_node.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
 #include <sensor_msgs/msg/point_cloud2.hpp>
@@ -38,19 +39,12 @@ using trajectory_msgs::msg::JointTrajectory;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 JointTrajectory message_of(const excavplan::JointMotion& motion) {
-  JointTrajectory message;
-  message.joint_names = motion.names;
-  for (const excavplan::JointPoint& point : motion.points) {
-    trajectory_msgs::msg::JointTrajectoryPoint sent;
-    sent.positions = point.positions;
-    sent.velocities = point.velocities;
-    sent.accelerations = point.accelerations;
-    const double seconds = std::floor(point.time);
-    sent.time_from_start.sec = static_cast<std::int32_t>(seconds);
-    sent.time_from_start.nanosec = static_cast<std::uint32_t>(1e9 * (point.time - seconds));
-    message.points.push_back(sent);
-  }
-  return message;
+  return excavplan::joint_trajectory_message<JointTrajectory>(
+      motion, [](auto& time, std::int64_t ns) {
+        constexpr std::int64_t second = 1'000'000'000;
+        time.sec = static_cast<std::int32_t>(ns / second);
+        time.nanosec = static_cast<std::uint32_t>(ns % second);
+      });
 }
 
 String text_message(const std::string& text) {
@@ -59,54 +53,39 @@ String text_message(const std::string& text) {
   return message;
 }
 
-/// The settings that the parameters give (docs/ros.md#parameters).
-excavplan::DigCycleSettings settings_of(rclcpp::Node& node) {
-  const auto text = [&](const char* name, const std::string& value) {
-    return node.declare_parameter<std::string>(name, value);
-  };
-  auto settings =
-      excavplan::shipped_settings(text("machine", "zx120"), text("soil", "loam"), text("law", ""));
-  settings.density = {
-      node.declare_parameter<double>("density_percent", settings.density.percent),
-      node.declare_parameter<double>("density_sd_percent", settings.density.sd_percent)};
-  const auto scans =
-      node.declare_parameter<std::int64_t>("scans", static_cast<std::int64_t>(settings.scans));
-  settings.scans = static_cast<std::size_t>(std::max<std::int64_t>(scans, 0));
-  settings.site_frame = text("site_frame", "");
-  const std::string frame_file = text("frame_file", "");
-  if (!frame_file.empty()) settings.site_from_scan = excavplan::read_frame(frame_file);
-  excavplan::RobotJoints& joints = settings.machine.robot_joints;
-  std::vector<std::string> names;
-  for (const excavplan::RobotJoint& joint : joints) names.push_back(joint.name);
-  names = node.declare_parameter<std::vector<std::string>>("joint_names", names);
-  if (names.size() != joints.size()) {
-    throw excavplan::Error(excavplan::ErrorKind::bad_input,
-                           "parameter joint_names: has " + std::to_string(names.size()) +
-                               " names, must have 4: boom, arm, bucket, swing");
+/// Parameters by name, each of its type.
+class Parameters {
+ public:
+  explicit Parameters(rclcpp::Node& node) : node_(node) {}
+
+  template <typename Value>
+  Value value(const std::string& name, const Value& fallback) {
+    if constexpr (std::is_same_v<Value, int>) {
+      constexpr std::int64_t most = std::numeric_limits<int>::max();
+      const auto count = node_.declare_parameter<std::int64_t>(name, fallback);
+      return static_cast<int>(std::clamp<std::int64_t>(count, -1, most));
+    } else {
+      return node_.declare_parameter<Value>(name, fallback);
+    }
   }
-  for (std::size_t i = 0; i < joints.size(); ++i) joints[i].name = names[i];
-  settings.machine_in_view = node.declare_parameter<bool>("machine_in_view", false);
-  settings.digs_as_planned = node.declare_parameter<bool>("digs_as_planned", true);
-  if (node.declare_parameter<bool>("search", false)) {
-    settings.plan.method = excavplan::PlanMethod::search;
-  }
-  settings.whole_cycle = node.declare_parameter<bool>("whole_cycle", settings.whole_cycle);
-  excavplan::MotionOptions& motion = settings.motion;
-  motion.rate = node.declare_parameter<double>("rate_hz", motion.rate);
-  motion.max_jerk = node.declare_parameter<double>("max_jerk", motion.max_jerk);
-  motion.speed_fraction = node.declare_parameter<double>("speed_fraction", motion.speed_fraction);
-  settings.plan.trajectory.speed_fraction = motion.speed_fraction;
-  return settings;
+
+ private:
+  rclcpp::Node& node_;
+};
+
+excavplan::NodeSettings settings_of(rclcpp::Node& node) {
+  Parameters parameters(node);
+  return excavplan::settings_of(parameters);
 }
 
 class ExcavplanNode : public rclcpp::Node {
  public:
-  ExcavplanNode() : Node("excavplan"), session_(settings_of(*this)) {
+  ExcavplanNode() : Node("excavplan"), settings_(settings_of(*this)), session_(settings_.session) {
     const rclcpp::QoS latched = rclcpp::QoS(1).transient_local();
     state_ = create_publisher<String>("~/state", latched);
     estimate_ = create_publisher<String>("~/estimate_result", latched);
     plan_ = create_publisher<String>("~/plan_result", latched);
-    trajectory_ = create_publisher<JointTrajectory>("~/trajectory", latched);
+    trajectory_ = create_publisher<JointTrajectory>("~/trajectory", rclcpp::QoS(1));
     listen<sensor_msgs::msg::PointCloud2>("points", "sensor_msgs/msg/PointCloud2",
                                           rclcpp::SensorDataQoS());
     listen<tf2_msgs::msg::TFMessage>("/tf", "tf2_msgs/msg/TFMessage", rclcpp::QoS(100));
@@ -114,15 +93,19 @@ class ExcavplanNode : public rclcpp::Node {
                                      rclcpp::QoS(100).transient_local());
     listen<sensor_msgs::msg::JointState>("joint_states", "sensor_msgs/msg/JointState",
                                          rclcpp::SensorDataQoS());
-    mark("start_dig", [this] { session_.start_dig(); });
-    mark("end_dig", [this] { session_.end_dig(); });
+    mark("start_dig", [this] { session_.start_dig(time_now()); });
+    mark("end_dig", [this] { session_.end_dig(time_now()); });
     serve<Estimate>("~/estimate", [this](Estimate::Response& answer) { fill(answer); });
-    serve<Plan>("~/plan", [this](Plan::Response& answer) { fill_plan(answer); });
+    serve<Plan>("~/plan", [this](Plan::Response& answer) { answer_plan(answer); });
     serve<DigAndPlan>("~/dig_and_plan", [this](DigAndPlan::Response& answer) { fill(answer); });
     tell_state();
   }
 
  private:
+  std::optional<std::int64_t> time_now() const {
+    return excavplan::known_time(now().nanoseconds());
+  }
+
   /// Does the work; an error goes to rosout and is returned.
   template <typename Work>
   std::string error_of(const Work& work) {
@@ -141,7 +124,7 @@ class ExcavplanNode : public rclcpp::Node {
       const rcl_serialized_message_t& message = raw->get_rcl_serialized_message();
       const std::string_view bytes(reinterpret_cast<const char*>(message.buffer),
                                    message.buffer_length);
-      error_of([&] { session_.take({topic, type, true, bytes}); });
+      error_of([&] { session_.take({topic, type, true, bytes, time_now()}); });
       tell_state();
     };
     subscriptions_.push_back(create_subscription<Message>(topic, qos, take));
@@ -169,12 +152,17 @@ class ExcavplanNode : public rclcpp::Node {
     const std::string state = describe(session_);
     if (state != told_state_) state_->publish(text_message(state));
     told_state_ = state;
+    const bool any_early = session_.early_scans() > 0;
+    if (any_early && !told_early_) {
+      RCLCPP_WARN(get_logger(), "%s", excavplan::early_text(session_).c_str());
+    }
+    told_early_ = any_early;
   }
 
   void tell(const std::vector<excavplan::Warning>& warnings, std::vector<std::string>& texts) {
-    for (const excavplan::Warning& warning : warnings) {
-      texts.push_back(warning.code + ": " + warning.message);
-      RCLCPP_WARN(get_logger(), "%s", texts.back().c_str());
+    for (const std::string& text : excavplan::texts_of(warnings)) {
+      texts.push_back(text);
+      RCLCPP_WARN(get_logger(), "%s", text.c_str());
     }
   }
 
@@ -183,15 +171,8 @@ class ExcavplanNode : public rclcpp::Node {
     response.density_percent = response.density_sd_percent = response.bulking_factor = unknown;
     response.message = error_of([&] {
       const CycleEstimate answer = session_.estimate();
-      response.success = true;
-      response.trustworthy = answer.adopted;
-      if (answer.estimate.density) {
-        response.density_percent = answer.estimate.density->percent;
-        response.density_sd_percent = answer.estimate.density->sd_percent;
-      }
-      if (answer.estimate.bulking) response.bulking_factor = answer.estimate.bulking->value;
+      fill_estimate(answer, response);
       tell(answer.warnings, response.warnings);
-      response.json = to_json(answer);
       estimate_->publish(text_message(response.json));
     });
   }
@@ -203,31 +184,29 @@ class ExcavplanNode : public rclcpp::Node {
       tell(answer.warnings, response.warnings);
       estimate_->publish(text_message(response.estimate_json));
     });
-    fill_plan(response);
+    answer_plan(response);
   }
 
   /// What Plan and DigAndPlan have in common.
   template <typename Response>
-  void fill_plan(Response& response) {
+  void answer_plan(Response& response) {
     response.success = response.trustworthy = response.previous_density = false;
     const std::string error = error_of([&] {
       const CyclePlan answer = session_.plan();
-      response.success = answer.plan.dig.has_value();
-      response.message = answer.plan.reason;
-      response.trustworthy = answer.trustworthy;
-      response.previous_density = answer.previous_density;
-      response.density_percent = answer.density.percent;
+      excavplan::fill_plan(answer, response);
       response.trajectory = message_of(answer.motion);
       tell(answer.warnings, response.warnings);
-      response.json = to_json(answer);
       plan_->publish(text_message(response.json));
-      trajectory_->publish(response.trajectory);
+      trajectory_->publish(
+          message_of(settings_.send_doubtful ? answer.motion : safe_motion(answer)));
     });
     if (!error.empty()) response.message = error;
   }
 
+  excavplan::NodeSettings settings_;
   excavplan::DigCycleSession session_;
   std::string told_state_;
+  bool told_early_ = false;
   rclcpp::Publisher<String>::SharedPtr state_, estimate_, plan_;
   rclcpp::Publisher<JointTrajectory>::SharedPtr trajectory_;
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;

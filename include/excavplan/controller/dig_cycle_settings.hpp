@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include <excavplan/plan/plan_motion.hpp>
+#include <excavplan/survey/density_estimate.hpp>
+
+/// @file
+/// What a DigCycleSession is given: settings, and messages of a robot.
+
+namespace excavplan {
+
+/// A message of a robot as it was sent.
+struct RobotMessage {
+  std::string topic;   ///< "/points"; transforms on one that ends in "tf_static" hold at all times
+  std::string type;    ///< as ROS 2 spells it: "sensor_msgs/msg/PointCloud2"
+  bool is_cdr = true;  ///< of ROS 2; false: of ROS 1
+  std::string_view bytes;  ///< serialized
+  /// By the clock of the marks; nothing: it is that of the stamps [ns].
+  std::optional<std::int64_t> received = {};
+};
+
+/// Settings of a session.
+struct DigCycleSettings {
+  Machine machine;                    ///< that digs; its robot_joints name the joint states
+  SoilKind soil;                      ///< kind of the ground
+  DensityLaw law;                     ///< of digs of this machine in this soil
+  GroundDensity density{50.0, 25.0};  ///< until one was estimated
+  std::size_t scans = 5;              ///< messages in a scan, averaged if they can be; 1 .. 100
+  std::string site_frame = {};        ///< into which /tf puts the points; empty: not by /tf
+  /// Puts the points, or the site frame of /tf, into that of the machine: origin on the swing axis
+  /// at ground level, x forward, z up.
+  Eigen::Matrix4d site_from_scan = Eigen::Matrix4d::Identity();
+  /// Points of boom, arm and bucket are left out, by the joint states; needs scans in the frame of
+  /// the machine.
+  bool machine_in_view = false;
+  /// A joint state that is older than this where it is needed is unknown: against the time at which
+  /// the newest message of any kind came, or the stamp of the points [s]; above 0.
+  double oldest_joints = 1.0;
+  /// The dig that is scanned is the last plan of the session, if there is one, whose path corrects
+  /// for the soil that fell back.
+  bool digs_as_planned = true;
+  DensityOptions estimate = {};  ///< `dug_path` is set by the session
+  PlanOptions plan = {};         ///< how the next dig is planned; its cycle is that of the motion
+  double search_seconds = std::numeric_limits<double>::infinity();  ///< a search ends then [s]; > 0
+  bool whole_cycle = false;   ///< as CycleWayOptions::whole_cycle
+  MotionOptions motion = {};  ///< of the trajectory that is sent
+};
+
+/// Settings of a machine in a soil by a law, each a shipped name or a file.
+/// @param law  empty: the shipped one of machine and soil
+/// @throws Error as shipped_or_file(), load_machine(), load_soil() and load_density_law()
+DigCycleSettings shipped_settings(const std::string& machine, const std::string& soil,
+                                  const std::string& law = "");
+
+}  // namespace excavplan
