@@ -75,6 +75,8 @@ TEST(SimulatorTool, SaysWhatIsWrong) {
   EXPECT_TRUE(contains(said({"--simulator-timeout", "5"}, 0), "there is no --simulator-command"));
   const std::string exits = said({"--simulator-command", odd("exit")}, 3);
   EXPECT_FALSE(contains(exits, "--help")) << exits;
+  said({"--simulator-command", "false"}, 3);
+  said({"--simulator", EXCAVPLAN_PLUGINS "/libodd_fails.so"}, 3);
   EXPECT_TRUE(contains(exits, "simulator: out of?[31m licences\n")) << exits;
   EXPECT_TRUE(contains(exits, "simulator 'odd 1 (program)': it ended, with exit code 3")) << exits;
 }

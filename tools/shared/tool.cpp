@@ -19,6 +19,7 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/simulation/simulators.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"
@@ -582,8 +583,17 @@ int run(int argc, const char* const* argv, const About& about,
   return common.strict && !outcome.trustworthy ? 4 : 0;
 }
 
-/// Errors of a user's simulator begin so (simulation/checked_dig.hpp).
-bool is_of_simulator(const std::string& message) { return message.rfind("simulator '", 0) == 0; }
+/// Errors of a simulator begin with its name, or with its command until it has told one
+/// (simulation/checked_dig.hpp, command_simulator.cpp); those of a built-in one are about its
+/// inputs.
+bool is_of_users_simulator(const std::string& message) {
+  const auto begins = [&](const std::string& start) { return message.rfind(start, 0) == 0; };
+  if (begins("simulator command ")) return true;
+  const std::vector<SimulatorKind>& own = simulator_kinds();
+  return begins("simulator '") && std::none_of(own.begin(), own.end(), [&](const auto& kind) {
+           return begins("simulator " + excavplan::quoted(kind.name) + ":");
+         });
+}
 
 /// Says so where other code, such as a simulator of a shared library, ends a tool that is at work:
 /// its exit code would be taken for the tool's.
@@ -618,7 +628,7 @@ int reported(const About& about, const StandardInput& input, const Run& run) {
     return run();
   } catch (const Error& error) {
     report(error.what());
-    if (error.kind() == ErrorKind::bad_file || is_of_simulator(error.what())) return 3;
+    if (error.kind() == ErrorKind::bad_file || is_of_users_simulator(error.what())) return 3;
     std::cerr << "See " << about.name << " --help\n";
     return 2;
   } catch (const std::filesystem::filesystem_error& error) {
