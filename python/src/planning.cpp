@@ -335,9 +335,11 @@ void bind_motion(py::module_& module) {
       arg("speed_fraction") = usual.speed_fraction,
       arg("corner_tolerance") = usual.corner_tolerance, arg("max_jerk") = usual.max_jerk,
       "The motion of a plan for a controller, or what blocks the way; it keeps the limits of the\n"
-      "machine between its points. start: boom, arm, bucket, swing [rad] from which it begins;\n"
-      "whole_cycle: over swing, dump and back; swing [rad], dump_height [m]: as of DigObjective;\n"
-      "rate: points per second; corner_tolerance [m]; max_jerk: of each joint [rad/s^3].");
+      "machine between its points. terrain: the ground that it must be clear of, as given to\n"
+      "plan_dig(); None: level ground, nothing else that stands on the site is looked at;\n"
+      "start: boom, arm, bucket, swing [rad] from which it begins; whole_cycle: over swing, dump\n"
+      "and back; swing [rad], dump_height [m]: as of DigObjective; rate: points per second;\n"
+      "corner_tolerance [m]; max_jerk: of each joint [rad/s^3].");
 }
 
 }  // namespace

@@ -73,7 +73,6 @@ def points_of(name):
 def cloud(data, frame="site"):
     """Points of three float32."""
     message = PointCloud2()
-    message.header.stamp = rospy.Time.from_sec(time.time())
     message.header.frame_id = frame
     message.fields = [PointField(axis, 4 * i, PointField.FLOAT32, 1)
                       for i, axis in enumerate("xyz")]
@@ -135,6 +134,9 @@ class Node:
                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         self.parameters = parameters
         self.state = ""
+        self.trajectory = None
+        self.heard = rospy.Subscriber("/excavplan/trajectory", JointTrajectory,
+                                      self.take_trajectory)
         self.told = rospy.Subscriber("/excavplan/state", String, self.take_state)
         self.publishers = {
             "points": rospy.Publisher("/points", PointCloud2, queue_size=10),
@@ -146,12 +148,23 @@ class Node:
         for topic, publisher in self.publishers.items():
             wait_until(lambda p=publisher: p.get_num_connections() > 0, f"{topic} to be heard")
         wait_until(lambda: self.state != "", "the first state")
+        wait_until(lambda: self.heard.get_num_connections() > 0, "the trajectory's topic")
 
     def take_state(self, message):
         self.state = message.data
 
-    def send(self, topic, message):
+    def take_trajectory(self, message):
+        self.trajectory = message
+
+    def send(self, topic, message, age=0.0):
+        if topic in ("points", "joints"):
+            message.header.stamp = rospy.Time.from_sec(time.time() - age)
         self.publishers[topic].publish(message)
+
+    def stand(self, angles):
+        """The joints stand there, from now on until the next message of any kind."""
+        self.send("joints", JointState(name=JOINTS, position=angles))
+        time.sleep(0.2)
 
     def send_until(self, topic, message, state):
         self.send(topic, message)
@@ -180,6 +193,7 @@ class Node:
 
     def __exit__(self, *_):
         self.told.unregister()
+        self.heard.unregister()
         for publisher in self.publishers.values():
             publisher.unregister()
         self.process.send_signal(signal.SIGINT)
@@ -211,7 +225,7 @@ class Master(unittest.TestCase):
             node.dig(cloud(points_of("before")), cloud(points_of("after")))
             estimated = node.call("estimate", Estimate)
             answer = node.call("dig_and_plan", DigAndPlan)
-            latched = rospy.wait_for_message("/excavplan/trajectory", JointTrajectory, PATIENCE)
+            wait_until(lambda: node.trajectory, "the trajectory")
             results = [rospy.wait_for_message(f"/excavplan/{name}_result", String, PATIENCE).data
                        for name in ("estimate", "plan")]
         expected = tool("estimate-density", shipped("before"), shipped("after"), "--soil", "loam")
@@ -239,7 +253,8 @@ class Master(unittest.TestCase):
                     "duration_s", "start_rule"):
             self.assertEqual(given[key], planned[key], key)
         self.check_trajectory(answer.trajectory, limits)
-        self.assertEqual(latched.points, answer.trajectory.points)
+        self.assertEqual(node.trajectory.joint_names, JOINTS)
+        self.assertEqual(node.trajectory.points, [])  # it does not begin where the machine stands
         self.assertTrue(any(text.startswith("posture_unknown: ") for text in answer.warnings))
 
     def test_an_estimate_not_to_be_trusted_keeps_the_previous_density(self):
@@ -274,6 +289,55 @@ class Master(unittest.TestCase):
         self.assertIn("dug_path_doubtful", " ".join(answer.warnings))  # it had planned another dig
         expected = tool("estimate-density", shipped("before"), shipped("after"), "--soil", "loam")
         self.assertAlmostEqual(answer.bulking_factor, expected["bulking_factor"], delta=0.02)
+
+    def test_sends_a_trajectory_once_and_only_from_where_the_machine_stands(self):
+        present = [-0.6, 1.6, 0.5, 0.4]
+        with Node(scans=1, density_percent=40.0, density_sd_percent=2.0) as node:
+            node.stand(present)
+            answer = node.call("plan", Plan)
+            self.assertTrue(answer.trustworthy, answer.warnings)
+            wait_until(lambda: node.trajectory, "the trajectory")
+            self.assertEqual(node.trajectory.points, answer.trajectory.points)
+            for one, other in zip(node.trajectory.points[0].positions, present):
+                self.assertAlmostEqual(one, other, 9)
+            with self.assertRaises(rospy.ROSException):  # not latched
+                rospy.wait_for_message("/excavplan/trajectory", JointTrajectory, 1.0)
+            time.sleep(1.0)
+            node.send_until("points", cloud(points_of("before")), "before 1 of 1")
+            node.trajectory = None
+            answer = node.call("plan", Plan)
+            self.assertIn("posture_unknown: no joint states of boom_joint came within 1 s",
+                          " ".join(answer.warnings))
+            wait_until(lambda: node.trajectory, "the trajectory")
+            self.assertEqual(node.trajectory.points, [])
+        with Node(scans=1, send_doubtful=True) as node:
+            answer = node.call("plan", Plan)
+            wait_until(lambda: node.trajectory, "the trajectory")
+            self.assertEqual(node.trajectory.points, answer.trajectory.points)
+            self.assertGreater(len(answer.trajectory.points), 10)
+
+    def test_points_of_the_dig_that_come_late_are_left_out_and_told(self):
+        told = []
+        log = rospy.Subscriber("/rosout", Log, lambda message: told.append(message.msg))
+        self.addCleanup(log.unregister)
+        with Node(scans=1) as node:
+            wait_until(lambda: log.get_num_connections() > 0, "rosout")
+            node.send_until("points", cloud(points_of("before")), "before 1 of 1")
+            node.send_until("start", Bool(True), "digging 0 of 1")
+            node.send_until("end", Bool(True), "after 0 of 1")
+            node.send("points", cloud(points_of("before")), age=20.0)
+            wait_until(lambda: node.state == "after 0 of 1, 1 too early", "the state")
+            wait_until(lambda: "are left out" in " ".join(told), "the warning")
+            node.send("points", cloud(points_of("after")))
+            wait_until(lambda: node.state == "done 1 of 1, 1 too early", "the state")
+            answer = node.call("estimate", Estimate)
+        self.assertTrue(answer.success, answer.message)
+        self.assertIn("early_points", " ".join(answer.warnings))
+
+    def test_a_search_ends_in_time(self):
+        with Node(search=True, search_seconds=0.2) as node:
+            answer = node.call("plan", Plan)
+        self.assertIn("search_stopped", " ".join(answer.warnings))
 
     def test_survives_garbage(self):
         told = []
