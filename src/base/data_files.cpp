@@ -3,6 +3,7 @@
 #include <excavplan/data_files.hpp>
 
 #include <dlfcn.h>
+#include <sys/auxv.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -22,7 +23,11 @@ namespace fs = std::filesystem;
 /// The file of the running program; empty if the system does not provide it.
 fs::path program_file() {
   std::error_code none;
-  return fs::read_symlink("/proc/self/exe", none);
+  const fs::path file = fs::read_symlink("/proc/self/exe", none);
+  if (!none) return file;
+  // A root without /proc: as the program was called, the folder of PATH included.
+  const auto* const called = reinterpret_cast<const char*>(::getauxval(AT_EXECFN));
+  return called == nullptr ? fs::path() : fs::canonical(called, none);
 }
 
 /// The shared library that this code is part of; empty if it is part of the program itself.
