@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -69,8 +70,9 @@ struct DigCycleSession::State {
   void mark(Time time);
   void take_points(LiveFrame frame, Time time);
   void take_joints(const std::vector<std::pair<std::string, double>>& positions, Time time);
-  std::string joint_problem(std::int64_t time) const;
-  std::optional<MachinePosture> posture(std::int64_t time) const;
+  std::optional<JointSample> sample(const std::string& joint, Time at) const;
+  std::string joint_problem(Time at) const;
+  std::optional<MachinePosture> posture(Time at) const;
   void settle(Frames& frames, bool all);
   void settle_postures(Frames& frames, bool all) const;
   std::string early_text() const;
@@ -105,8 +107,10 @@ Time DigCycleSession::State::time_of(const RobotMessage& message, std::int64_t s
 
 /// @param time  of the message, if it does not tell when it was received
 void DigCycleSession::State::come(const RobotMessage& message, Time time) {
+  constexpr std::int64_t set_back = 1'000'000'000;  // the clock, not the order of messages; ours
   if (message.received) {
     now = message.received;
+    if (marked && *now < *marked - set_back) marked.reset();
   } else if (time && (!now || *time > *now)) {
     now = time;
   }
@@ -146,11 +150,17 @@ void DigCycleSession::State::take_joints(
   for (Frames* frames : {&recent, &before, &after}) settle_postures(*frames, false);
 }
 
-/// Why the posture at a time is not known; empty if it is.
-std::string DigCycleSession::State::joint_problem(std::int64_t time) const {
+/// @param at  nothing: the newest
+std::optional<JointSample> DigCycleSession::State::sample(const std::string& joint, Time at) const {
+  return joints.nearest(joint, at.value_or(std::numeric_limits<std::int64_t>::max()));
+}
+
+/// Why the posture at a time, or now, is not known; empty if it is.
+std::string DigCycleSession::State::joint_problem(Time at) const {
+  const std::int64_t time = at.value_or(now.value_or(0));
   for (const RobotJoint& joint : settings.machine.robot_joints) {
     if (joint.name.empty()) continue;
-    const auto found = joints.nearest(joint.name, time);
+    const auto found = sample(joint.name, at);
     if (!found) return "no joint states came of " + joint.name;
     const double away = std::abs(seconds(found->time, time));
     if (away <= settings.oldest_joints) continue;
@@ -161,14 +171,13 @@ std::string DigCycleSession::State::joint_problem(std::int64_t time) const {
   return "";
 }
 
-std::optional<MachinePosture> DigCycleSession::State::posture(std::int64_t time) const {
-  if (!joint_problem(time).empty()) return {};
+std::optional<MachinePosture> DigCycleSession::State::posture(Time at) const {
+  if (!joint_problem(at).empty()) return {};
   FrontJoints angles = FrontJoints::Zero();
   for (std::size_t i = 0; i < settings.machine.robot_joints.size(); ++i) {
     const RobotJoint& joint = settings.machine.robot_joints[i];
     if (joint.name.empty()) continue;
-    const double position = joints.nearest(joint.name, time)->position;
-    angles[static_cast<Eigen::Index>(i)] = joint.to_ours(position);
+    angles[static_cast<Eigen::Index>(i)] = joint.to_ours(sample(joint.name, at)->position);
   }
   return MachinePosture{angles[3], angles.head<3>()};
 }
@@ -176,7 +185,7 @@ std::optional<MachinePosture> DigCycleSession::State::posture(std::int64_t time)
 /// Where the motion begins: sensors of joints that stand at a limit read a little beyond it.
 std::optional<FrontJoints> DigCycleSession::State::start() const {
   constexpr double most_beyond = 0.02;  // ours [rad]
-  const std::optional<MachinePosture> present = posture(now.value_or(0));
+  const std::optional<MachinePosture> present = posture({});
   if (!present) return {};
   FrontJoints start;
   start << present->joints, present->swing;
@@ -265,7 +274,7 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
   const CycleWayOptions way = {start(), settings.whole_cycle, settings.plan.search.objective};
   answer.posture_known = way.start.has_value();
   if (!way.start) {
-    answer.warnings.push_back({"posture_unknown", joint_problem(now.value_or(0)) +
+    answer.warnings.push_back({"posture_unknown", joint_problem({}) +
                                                       ": the motion begins above the dig, wherever "
                                                       "the machine stands"});
   }

@@ -407,6 +407,15 @@ TEST(DigCycleSession, AStampThatIsWrongIsForgotten) {
   EXPECT_LE(refused, 21);
 }
 
+TEST(DigCycleSession, AMarkEndsWithItsClock) {
+  DigCycleSession session(settings_of());
+  scan(session, now, now);
+  session.start_dig(now + second);
+  session.end_dig(now + 60 * second);
+  scan(session, now + second, now + second);  // a recording that begins again
+  EXPECT_EQ(session.stage(), CycleStage::done);
+}
+
 /// Tells the joint states of a machine: boom, arm, bucket, swing.
 struct JointTeller {
   const DigCycleSettings& settings;
@@ -444,6 +453,15 @@ TEST(DigCycleSession, JointStatesThatEndedAreNotWhereTheMachineStands) {
     tell(now + 2 * second, angles, at(now + 2 * second));
     EXPECT_TRUE(session.plan().posture_known);
   }
+}
+
+TEST(DigCycleSession, TheNewestJointStatesAreWhereTheMachineStands) {
+  const DigCycleSettings settings = settings_of();
+  DigCycleSession session(settings);
+  const JointTeller tell{settings, session};
+  tell(now, {-0.6, 1.6, 0.5, 0.0}, now);  // then by a clock that is half a second ahead
+  tell(now + second / 2, {-0.5, 1.5, 0.5, 0.0}, now);
+  EXPECT_NEAR(session.plan().motion.points.front().positions[0], -0.5, 1e-12);
 }
 
 TEST(DigCycleSession, JointStatesMayHaveNoStampAndAnyClock) {
