@@ -290,7 +290,8 @@ void bind_trajectory(py::module_& module) {
       .def_property_readonly(
           "time",
           [](const JointMotion& m) {
-            return array_of(m.points, [](const JointPoint& p) { return static_cast<double>(p.time_ns) / 1e9; });
+            return array_of(
+                m.points, [](const JointPoint& p) { return static_cast<double>(p.time_ns) / 1e9; });
           },
           "From the start, shape (N,) [s].")
       .def_property_readonly(
