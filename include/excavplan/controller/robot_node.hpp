@@ -19,7 +19,7 @@ namespace excavplan {
 
 /// Settings of a node.
 struct NodeSettings {
-  DigCycleSettings session;
+  DigCycleSettings session;    ///< of the dig cycle
   bool send_doubtful = false;  ///< the trajectory is sent even if it is not a safe_motion()
 };
 

@@ -152,6 +152,7 @@ typedef struct excavplan_simulator {
   void (*destroy)(void* instance); /**< ends an instance */
 } excavplan_simulator;
 
+/** Makes a function visible outside of its library. */
 #if defined(__GNUC__)
 #define EXCAVPLAN_SIMULATOR_EXPORT __attribute__((visibility("default")))
 #else
