@@ -133,11 +133,11 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"wall_time_s", watch.seconds()}});
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
+  write_motion(inputs.motion, {machine, site.ground, plan, options.search.objective}, outcome);
   if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
   write_maps(
       inputs.maps, [&] { return plan_maps(machine, plan, dug); }, outcome);
-  write_motion(inputs.motion, {machine, site.ground, plan, options.search.objective}, outcome);
   return outcome;
 }
 

@@ -11,9 +11,9 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const T
                                                  const DigPlan& plan, const CycleWayOptions& way,
                                                  const MotionOptions& motion) {
   if (!plan.dig) return Trajectory{machine.name, {}, machine.robot_joints};
-  require(plan.trajectory.machine == machine.name, "motion: the plan is of the machine " +
-                                                       quoted(plan.trajectory.machine) +
-                                                       ", not of " + quoted(machine.name));
+  require(plan.trajectory.machine == machine.name,
+          "motion: the plan is of the machine " + excavplan::quoted(plan.trajectory.machine) +
+              ", not of " + excavplan::quoted(machine.name));
   const auto laid =
       way_of_cycle(machine, ground, plan.path, {plan.torques, plan.dig->payload_mass}, way);
   if (const auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;

@@ -4,6 +4,7 @@
 """Tables of the documents against their sources: check_tables.py SOURCE
 
 * docs/guide/warnings.md has each warning code of docs/formats.md once, and no other;
+* each warning code of the sources is in docs/formats.md, or, of the nodes of ROS, in docs/ros.md;
 * every test that docs/ecosystem.md names is in the tree, and every wish that is met names one.
 """
 
@@ -37,6 +38,20 @@ def check_codes():
     failures.extend(f"docs/guide/warnings.md: {code} is there twice" for code in sorted(set(guide)) if guide.count(code) > 1)
 
 
+def codes_of_the_sources():
+    files = [file for folder in ("src", "tools") for file in (SOURCE / folder).rglob("*.cpp")]
+    made = r'(?:warnings?\.(?:push_back|insert|emplace_back)\(|Warning)[^";]{0,80}?\{?"([a-z]+(?:_[a-z]+)+)",'
+    return {code for file in files for code in re.findall(made, file.read_text())}
+
+
+def check_codes_of_the_sources():
+    stated = {word for name in ("formats", "ros") for row in rows((SOURCE / f"docs/{name}.md").read_text()) for word in words(row[0])}
+    made = codes_of_the_sources()
+    if len(made) < 40:
+        failures.append(f"only {len(made)} warning codes were found in the sources")
+    failures.extend(f"docs/formats.md: lacks the warning code {code}" for code in sorted(made - stated))
+
+
 def tests_of_the_tree():
     sources = "\n".join(file.read_text() for file in (SOURCE / "tests").rglob("*.cpp"))
     names = {".".join(match) for match in re.findall(r"\bTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", sources)}
@@ -64,6 +79,7 @@ def check_ecosystem():
 
 
 check_codes()
+check_codes_of_the_sources()
 check_ecosystem()
 print(*failures, sep="\n")
 sys.exit(1 if failures else 0)

@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cctype>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "support/tool_answers.hpp"
@@ -17,6 +22,34 @@ TEST_F(Tools, MapWithoutNameHasAllLayers) {
   for (const std::string layer : {"height_before_m", "height_after_m", "change_m"}) {
     EXPECT_TRUE(contains(head, "property double scalar_" + layer + "\n")) << head;
   }
+}
+
+std::vector<double> cells_of_grid(const std::string& file) {
+  std::istringstream text(content_of(file));
+  std::string line, key;
+  std::vector<double> cells;
+  while (std::getline(text, line)) {
+    if (std::isalpha(static_cast<unsigned char>(line[0])) != 0) continue;
+    std::istringstream row(line);
+    for (double cell; row >> cell;) cells.push_back(cell);
+  }
+  return cells;
+}
+
+TEST_F(Tools, GroundThatNoScanSawIsInNoZoneAndNotUnchanged) {
+  const std::string zones = folder.file("zones.asc"), change = folder.file("change.asc");
+  answer("estimate-density", {shipped("quickstart/before.pcd"), shipped("quickstart/after.pcd"),
+                              "--map", "zones=" + zones, "--map", "change=" + change});
+  const std::vector<double> kinds = cells_of_grid(zones), heights = cells_of_grid(change);
+  ASSERT_EQ(kinds.size(), heights.size());
+  ASSERT_FALSE(kinds.empty());
+  constexpr double unknown = -9999.0;
+  std::size_t unseen = 0;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (heights[i] == unknown && kinds[i] == unknown) ++unseen;
+    EXPECT_NE(kinds[i], heights[i] == unknown ? 0.0 : unknown) << i;
+  }
+  EXPECT_GT(unseen, 0U);
 }
 
 TEST_F(Tools, WithoutADigThereIsTheGroundAlone) {

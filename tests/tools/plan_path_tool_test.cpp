@@ -135,13 +135,55 @@ TEST_F(Tools, TrajectoryThatCannotBeRunIsRefusedBeforeTheWork) {
   for (const auto& [words, text] : cases) {
     EXPECT_NE(complaint(words).find(text), std::string::npos) << text;
   }
-  const ProgramResult ground = run_program(
-      "plan-path", {"--density", "40", "--trajectory", file, "--joints", "40deg,30deg,0"});
-  EXPECT_EQ(ground.code, 2);
-  EXPECT_NE(ground.err.find("the ground is in the way: approach: the machine would be 5.1 m in the "
-                            "ground at x = "),
+}
+
+TEST_F(Tools, GroundInTheWayEndsTrustButNotThePlan) {
+  const std::string file = folder.write("dig.csv", "of an earlier plan");
+  const Words words = {"--density",     "40",           "--trajectory", file, "--joints",
+                       "40deg,30deg,0", "--whole-cycle"};
+  const json plan = answer("plan-path", words);
+  EXPECT_FALSE(plan.at("path").is_null());
+  EXPECT_EQ(plan.at("trustworthy"), false);
+  EXPECT_FALSE(plan.contains("trajectory"));
+  const std::string warnings = plan.at("warnings").dump();
+  EXPECT_NE(warnings.find("no_motion"), std::string::npos);
+  EXPECT_NE(warnings.find("approach: the machine would be 5.1 m in the ground at x = "),
             std::string::npos)
-      << ground.err;
+      << warnings;
+  const std::string head = content_of(file);
+  EXPECT_EQ(head.rfind("time_s,phase,", 0), 0U);
+  EXPECT_EQ(head.find('\n'), head.size() - 1) << "the head alone";
+  EXPECT_EQ(run_program("plan-path", words + Words{"--strict"}).code, 4);
+}
+
+TEST_F(Tools, PresentJointsMayBeThoseOfTheRobot) {
+  const std::string ours = folder.file("ours.csv"), its = folder.file("its.csv");
+  json machine = json::parse(content_of(EXCAVPLAN_DATA_SOURCE "/machines/zx120.json"));
+  machine["robot_joints"] = {{"boom", {{"name", "b"}, {"sign", -1}, {"zero_rad", 0.25}}},
+                             {"arm", {{"name", "a"}}},
+                             {"bucket", {{"name", "k"}}},
+                             {"swing", {{"name", "s"}, {"sign", -1}}}};
+  const std::string file = folder.write("robot.json", machine.dump());
+  const auto plan = [&](const std::string& out, const std::string& joints) {
+    return run_program("plan-path", {"--density", "40", "--machine", file, "--library",
+                                     EXCAVPLAN_DATA_SOURCE "/libraries/zx120-loam-cycle.json",
+                                     "--trajectory", out, "--joints", joints});
+  };
+  ASSERT_EQ(plan(ours, "0.5,1.5,0.5,0.3").code, 0);
+  const ProgramResult named = plan(its, "s=-0.3,a=1.5,b=-0.25,k=0.5");
+  ASSERT_EQ(named.code, 0) << named.err;
+  EXPECT_EQ(content_of(its), content_of(ours));
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"s=0,a=1,b=0", "there is no angle of k"},
+      {"s=0,a=1,b=0,k=0,a=1", "a is given twice"},
+      {"boom=0,a=1,k=0,s=0", "'boom=0' is not NAME=ANGLE of a joint of the machine: b, a, k, s"},
+      {"0.1,a=1,k=0,s=0", "'0.1' is not NAME=ANGLE"},
+      {"s=x,a=1,b=0,k=0", "'x' is not a number"}};
+  for (const auto& [joints, text] : cases) {
+    const ProgramResult run = plan(its, joints);
+    EXPECT_EQ(run.code, 2) << joints;
+    EXPECT_NE(run.err.find(text), std::string::npos) << run.err;
+  }
 }
 
 TEST_F(Tools, ALinkIsWrittenThrough) {

@@ -3,6 +3,7 @@
 #include "shared/ground_maps.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -43,12 +44,16 @@ std::vector<Shown> ground_layers(const Eigen::ArrayXXd& before, const Eigen::Arr
           {"change", {"change_m", "height after less before", change}}};
 }
 
-/// 0 for unchanged ground, 1 hole, 2 spill, 3 heap, 4 other changes and objects.
+/// 0 for unchanged ground, 1 hole, 2 spill, 3 heap, 4 other changes and objects; NaN where that is
+/// unknown.
 Eigen::ArrayXXd kinds_of(const AreaChange& area, const std::vector<ChangeZone>& zones) {
-  return area.zone.unaryExpr([&](int zone) {
-    if (zone < 0) return 0.0;
-    return 1.0 + static_cast<double>(zones[static_cast<std::size_t>(zone)].kind);
-  });
+  Eigen::ArrayXXd kinds =
+      area.difference.z.unaryExpr([](double z) { return std::isnan(z) ? nan : 0.0; });
+  for (Eigen::Index i = 0; i < kinds.size(); ++i) {
+    const int zone = area.zone(i);
+    if (zone >= 0) kinds(i) = 1.0 + static_cast<double>(zones[static_cast<std::size_t>(zone)].kind);
+  }
+  return kinds;
 }
 
 /// 1 where the dig lowers the ground.

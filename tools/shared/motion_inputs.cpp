@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/motion_inputs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -58,21 +59,62 @@ const Format& format_of(const MotionInputs& inputs) {
   return formats().front();
 }
 
-FrontJoints parse_joints(const std::string& text) {
-  const std::string what = "--joints";
-  const std::vector<std::string> parts = split(text, ',');
-  if (parts.size() < 3 || parts.size() > 4) {
-    usage_error(what + ": '" + text +
-                "' is not BOOM,ARM,BUCKET or BOOM,ARM,BUCKET,SWING such as -40deg,90deg,40deg");
-  }
+const std::string joints_option = "--joints";
+
+FrontJoints parse_list(const std::vector<std::string>& parts) {
   FrontJoints joints = FrontJoints::Zero();
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    joints[static_cast<Eigen::Index>(i)] = parse_quantity(what, parts[i], Quantity::angle);
+    joints[static_cast<Eigen::Index>(i)] = parse_quantity(joints_option, parts[i], Quantity::angle);
   }
   return joints;
 }
 
-const OptionNames option_names = {{"joints at the start", "--joints"},
+/// @param parts  NAME=ANGLE, in any order, in the names and angles of the robot
+FrontJoints parse_named(const std::vector<std::string>& parts, const RobotJoints& robot) {
+  std::array<std::optional<double>, 4> given;
+  std::string names;
+  for (const RobotJoint& joint : robot) {
+    if (!joint.name.empty()) names += (names.empty() ? "" : ", ") + joint.name;
+  }
+  for (const std::string& part : parts) {
+    const std::size_t equal = part.find('=');
+    const std::string name = part.substr(0, equal);
+    const auto joint = std::find_if(robot.begin(), robot.end(), [&](const RobotJoint& each) {
+      return !name.empty() && each.name == name;
+    });
+    if (equal == std::string::npos || joint == robot.end()) {
+      usage_error(joints_option + ": '" + part +
+                  "' is not NAME=ANGLE of a joint of the machine: " + names);
+    }
+    auto& angle = given[static_cast<std::size_t>(joint - robot.begin())];
+    if (angle) usage_error(joints_option + ": " + name + " is given twice");
+    angle = joint->to_ours(parse_quantity(joints_option, part.substr(equal + 1), Quantity::angle));
+  }
+  FrontJoints joints = FrontJoints::Zero();
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (!given[i] && !robot[i].name.empty()) {
+      usage_error(joints_option + ": there is no angle of " + robot[i].name);
+    }
+    joints[static_cast<Eigen::Index>(i)] = given[i].value_or(0.0);
+  }
+  return joints;
+}
+
+std::optional<FrontJoints> joints_of(const MotionInputs& inputs, const Machine& machine) {
+  if (!inputs.joints) return std::nullopt;
+  const std::vector<std::string> parts = split(*inputs.joints, ',');
+  if (inputs.joints->find('=') != std::string::npos) {
+    return parse_named(parts, machine.robot_joints);
+  }
+  if (parts.size() < 3 || parts.size() > 4) {
+    usage_error(joints_option + ": '" + *inputs.joints +
+                "' is not BOOM,ARM,BUCKET or BOOM,ARM,BUCKET,SWING such as -40deg,90deg,40deg, "
+                "nor NAME=ANGLE of each joint");
+  }
+  return parse_list(parts);
+}
+
+const OptionNames option_names = {{"joints at the start", joints_option},
                                   {"MotionOptions::rate", "--rate"},
                                   {"MotionOptions::max_jerk", "--max-jerk"}};
 
@@ -84,13 +126,18 @@ std::string names_of(const Trajectory& motion) {
   return text;
 }
 
-Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
-  auto motion = plan_motion(planned.machine, planned.ground, planned.plan,
-                            {inputs.joints, inputs.whole_cycle, planned.objective}, inputs.options);
-  if (const auto* stop = std::get_if<BlockedWay>(&motion)) {
-    usage_error("--trajectory: the ground is in the way: " + stop->message);
-  }
-  return std::get<Trajectory>(std::move(motion));
+/// Without points, and a warning, where the ground is in the way: the plan is worth having still.
+Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {
+  auto motion = plan_motion(
+      planned.machine, planned.ground, planned.plan,
+      {joints_of(inputs, planned.machine), inputs.whole_cycle, planned.objective}, inputs.options);
+  const auto* stop = std::get_if<BlockedWay>(&motion);
+  if (stop == nullptr) return std::get<Trajectory>(std::move(motion));
+  outcome.warnings.push_back(
+      {"no_motion", "the plan has no motion: the ground is in the way: " + stop->message, true});
+  outcome.trustworthy = false;
+  outcome.json["trustworthy"] = false;
+  return {planned.machine.name, {}, planned.machine.robot_joints};
 }
 
 }  // namespace
@@ -107,11 +154,12 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs) {
                          "format of the trajectory; ending: that of its file's name");
         Arguments::Entry joints;
         joints.name = "joints";
-        joints.placeholder = "BOOM,ARM,BUCKET[,SWING]";
+        joints.placeholder = "BOOM,ARM,BUCKET[,SWING]|NAME=ANGLE,...";
         joints.help =
             "present joints, from which the trajectory begins; swing to the left of the plane of "
-            "the dig, 0 if left out; angles as in the CSV [rad]";
-        joints.assign = [&inputs](const std::string& text) { inputs.joints = parse_joints(text); };
+            "the dig, 0 if left out; angles as in the CSV, or with names as in /joint_states: "
+            "those of the robot [rad]";
+        joints.assign = [&inputs](const std::string& text) { inputs.joints = text; };
         arguments.add(joints);
         arguments.flag("whole-cycle", inputs.whole_cycle,
                        "go on over swing, dump and back to above the dig");
@@ -132,7 +180,8 @@ void check(const MotionInputs& inputs, const Machine& machine, const CycleOption
   if (!inputs.file) return;
   naming_options(option_names, [&] {
     excavplan::check(inputs.options);
-    excavplan::check(machine, CycleWayOptions{inputs.joints, inputs.whole_cycle, cycle});
+    excavplan::check(machine,
+                     CycleWayOptions{joints_of(inputs, machine), inputs.whole_cycle, cycle});
   });
 }
 
@@ -143,7 +192,7 @@ Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const 
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {
   if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;
   const Trajectory motion =
-      naming_options(option_names, [&] { return motion_of(inputs, planned); });
+      naming_options(option_names, [&] { return motion_of(inputs, planned, outcome); });
   const Format& format = format_of(inputs);
   const std::string text = format.text(motion);
   if (*inputs.file == "-") {

@@ -19,7 +19,7 @@ namespace excavplan::tools {
 struct MotionInputs {
   std::optional<std::string> file;  ///< "-": standard output
   std::string format = "ending";
-  std::optional<FrontJoints> joints;
+  std::optional<std::string> joints;  ///< ours in their order, or by name those of the robot
   bool whole_cycle = false;
   MotionOptions options;
 };
@@ -41,9 +41,9 @@ struct PlannedMotion {
 /// That of the dig alone, for pages: the points of a file without present joints or whole cycle.
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan);
 
-/// Writes the motion, if it is asked for; one without poses if there is no dig, so that none of an
-/// earlier plan is driven. Sets key "trajectory" of the outcome.
-/// @throws Error (bad_input) naming the option, also where the ground blocks the way
+/// Writes the motion, if it is asked for; one without points if there is no dig, or the ground is
+/// in the way (warning no_motion), so that none of an earlier plan is driven. Sets key "trajectory"
+/// of the outcome. @throws Error (bad_input) naming the option
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome);
 
 }  // namespace excavplan::tools
