@@ -74,14 +74,19 @@ install(
   DESTINATION ${package_dir} COMPONENT Development)
 install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/excavplan COMPONENT Runtime)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT Runtime)
-install(FILES README.md CHANGELOG.md SECURITY.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
-  COMPONENT Documentation)
+# Beside the documents the folder data, to which they refer, as in a clone.
+file(RELATIVE_PATH data_from_documents ${CMAKE_INSTALL_FULL_DOCDIR} ${excavplan_data})
+set(data_link ${PROJECT_BINARY_DIR}/documents/data)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/documents)
+file(CREATE_LINK ${data_from_documents} ${data_link} SYMBOLIC)
+install(FILES README.md CONTRIBUTING.md CHANGELOG.md SECURITY.md ${data_link}
+  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT Documentation)
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT Documentation
   PATTERN "Doxyfile.in" EXCLUDE)
 
-# What `cmake --install` wrote last, as it lists that itself.
+# What `cmake --install` wrote, as it lists that itself.
 if(PROJECT_IS_TOP_LEVEL)
   add_custom_target(uninstall COMMAND ${CMAKE_COMMAND}
-    -D MANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt
+    -D BUILD=${PROJECT_BINARY_DIR}
     -P ${PROJECT_SOURCE_DIR}/cmake/excavplan-uninstall.cmake)
 endif()

@@ -7,6 +7,10 @@
 set(excavplan_data ${CMAKE_INSTALL_FULL_DATADIR}/excavplan)
 file(RELATIVE_PATH excavplan_data_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${excavplan_data})
 file(RELATIVE_PATH excavplan_data_from_lib ${CMAKE_INSTALL_FULL_LIBDIR} ${excavplan_data})
+set(EXCAVPLAN_PYTHON_DIR . CACHE STRING
+  "Where the component Python is installed, relative to the prefix: lib/python3/dist-packages of a system")
+file(RELATIVE_PATH excavplan_data_from_module
+  ${CMAKE_INSTALL_PREFIX}/${EXCAVPLAN_PYTHON_DIR}/excavplan ${excavplan_data})
 file(RELATIVE_PATH excavplan_lib_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)

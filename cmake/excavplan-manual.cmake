@@ -28,8 +28,10 @@ endif()
 list(JOIN tools " " tools)
 configure_file(cmake/completion/excavplan.bash completion/excavplan.bash @ONLY)
 configure_file(cmake/completion/_excavplan completion/_excavplan @ONLY)
+set(EXCAVPLAN_ZSH_DIR ${CMAKE_INSTALL_DATADIR}/zsh/site-functions CACHE STRING
+  "Where the completion for zsh is installed, relative to the prefix: share/zsh/vendor-completions of Debian's own")
 install(FILES ${PROJECT_BINARY_DIR}/completion/_excavplan
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT Runtime)
+  DESTINATION ${EXCAVPLAN_ZSH_DIR} COMPONENT Runtime)
 # bash looks for a file of the name of the program.
 set(bash_folder ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 separate_arguments(tools)

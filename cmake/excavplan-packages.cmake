@@ -9,7 +9,8 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME excavplan)
 set(CPACK_PACKAGE_VENDOR "The excavplan authors")
-set(CPACK_PACKAGE_CONTACT "The excavplan authors <excavplan@example.invalid>")  # no mail is read
+set(CPACK_PACKAGE_CONTACT "The excavplan authors <excavplan@example.org>")  # no mail is read
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own, the first line of its text
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL Runtime Development Documentation)
@@ -24,7 +25,9 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME excavplan)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS fonts-dejavu-core)  # texts of --plot F.png, F.pdf
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
-"The command line tools, with machines, soils, laws and path libraries.")
+"soil-adaptive planning of excavation - command line tools
+Estimates the density of the ground from scans of a dig and plans the next dig of an excavator.
+With machines, soils, laws and path libraries.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexcavplan-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -33,7 +36,8 @@ string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "excavplan (= ${PROJECT_V
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS  # excavplan::survey
   "libpcl-dev, libopencv-core-dev, libopencv-imgcodecs-dev, zlib1g-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-"Headers, libraries, CMake and pkg-config files.")
+"soil-adaptive planning of excavation - C++ development files
+Headers, static libraries, CMake and pkg-config files.")
 
 if(TARGET excavplan_python)
   list(APPEND CPACK_COMPONENTS_ALL Python)
@@ -46,15 +50,20 @@ if(TARGET excavplan_python)
     "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), "
     "python3 (<< ${Python_VERSION_MAJOR}.${next_minor})")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-numpy)
+  # Without them an import as root leaves files that no package removes.
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+    ${PROJECT_SOURCE_DIR}/cmake/debian/postinst ${PROJECT_SOURCE_DIR}/cmake/debian/prerm)
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
-"The package of Python.")
+"soil-adaptive planning of excavation - Python 3 module
+The C++ library of excavplan for Python: import excavplan.")
 endif()
 
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME excavplan-doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION
-"The guide, methods, formats and examples.")
+"soil-adaptive planning of excavation - documentation
+The guide, methods, formats and examples.")
 
 # Copyright and changelog where the Debian policy (12.5, 12.7) wants them; in no other install.
 string(TIMESTAMP today "%a, %d %b %Y %H:%M:%S +0000" UTC)  # heeds SOURCE_DATE_EPOCH

@@ -1,16 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
 
-# Removes the files named in MANIFEST, and the folders of excavplan that are empty then.
-if(NOT EXISTS ${MANIFEST})
-  message(FATAL_ERROR "${MANIFEST}: not found; nothing was installed from this build folder")
+# Removes what `cmake --install` wrote from the build folder BUILD, and the folders of excavplan that
+# are empty then. Each component that was installed alone has a list of its own.
+file(GLOB manifests ${BUILD}/install_manifest*.txt)
+if(NOT manifests)
+  message(FATAL_ERROR "${BUILD}/install_manifest*.txt: not found; nothing was installed from this build folder")
 endif()
-file(STRINGS ${MANIFEST} files)
-foreach(file IN LISTS files)
-  set(path "$ENV{DESTDIR}${file}")
-  if(NOT EXISTS ${path} AND NOT IS_SYMLINK ${path})
-    continue()
-  endif()
+
+function(remove_with_folders path)
   file(REMOVE ${path})
   message(STATUS "Removed ${path}")
   cmake_path(GET path PARENT_PATH folder)
@@ -22,4 +20,15 @@ foreach(file IN LISTS files)
     file(REMOVE_RECURSE ${folder})
     cmake_path(GET folder PARENT_PATH folder)
   endwhile()
+endfunction()
+
+foreach(manifest IN LISTS manifests)
+  file(STRINGS ${manifest} files)
+  foreach(file IN LISTS files)
+    set(path "$ENV{DESTDIR}${file}")
+    if(EXISTS ${path} OR IS_SYMLINK ${path})
+      remove_with_folders(${path})
+    endif()
+  endforeach()
+  file(REMOVE ${manifest})  # what comes to these places later is of others
 endforeach()

@@ -35,6 +35,44 @@ foreach(place "CITATION.cff|^version: " "ros/ros1/excavplan_ros/package.xml|<ver
   endif()
 endforeach()
 
+# The tools are those of the table in the README, and where they are counted, as many.
+file(STRINGS ${ROOT}/tools/CMakeLists.txt tools REGEX "^ *excavplan_tool\\([a-z]")
+list(TRANSFORM tools REPLACE "^ *excavplan_tool\\(([a-z-]+).*" "\\1")
+list(REMOVE_DUPLICATES tools)
+file(STRINGS ${ROOT}/README.md table REGEX "^\\| `[a-z-]+` \\|")
+list(TRANSFORM table REPLACE "^\\| `([a-z-]+)`.*" "\\1")
+list(SORT tools)
+list(SORT table)
+if(NOT tools STREQUAL table)
+  message(SEND_ERROR "README.md: a table of the tools ${table}, but tools/CMakeLists.txt has ${tools}")
+endif()
+list(LENGTH tools count)
+set(words zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen)
+list(GET words ${count} count)
+foreach(place "README.md|${count} command line tools" "docs/ecosystem.md|${count} tools"
+    "docs/paper.md|${count} [tools](../README.md#tools)")
+  string(REPLACE "|" ";" place ${place})
+  list(GET place 0 file)
+  list(GET place 1 stated)
+  file(READ ${ROOT}/${file} text)
+  string(FIND "${text}" "${stated}" found)
+  if(found EQUAL -1)
+    message(SEND_ERROR "${file}: does not say '${stated}'")
+  endif()
+endforeach()
+
+# The checks of scripts/check-all are those of the table in docs/reliability.md.
+file(GLOB checks RELATIVE ${ROOT}/scripts/check.d ${ROOT}/scripts/check.d/*)
+list(TRANSFORM checks REPLACE "^[0-9]+-" "")
+list(APPEND checks test)
+file(STRINGS ${ROOT}/docs/reliability.md table REGEX "^\\| `[a-z-]+` \\|")
+list(TRANSFORM table REPLACE "^\\| `([a-z-]+)`.*" "\\1")
+list(SORT checks)
+list(SORT table)
+if(NOT checks STREQUAL table)
+  message(SEND_ERROR "docs/reliability.md: a table of the checks ${table}, but there are ${checks}")
+endif()
+
 # Every text file names its copyright and licence, or lies where one statement covers the folder.
 file(GLOB_RECURSE licensed RELATIVE ${ROOT} ${ROOT}/src/* ${ROOT}/include/* ${ROOT}/tools/*
   ${ROOT}/tests/*.cpp ${ROOT}/tests/*.hpp ${ROOT}/tests/*.py ${ROOT}/tests/*.cmake ${ROOT}/cmake/*

@@ -30,7 +30,8 @@ fs::path program_file() {
   return called == nullptr ? fs::path() : fs::canonical(called, none);
 }
 
-/// The shared library that this code is part of; empty if it is part of the program itself.
+/// The shared library or Python module that this code is part of; empty if it is part of the
+/// program itself.
 fs::path shared_library_file() {
   static const char here = 0;
   Dl_info info;
@@ -55,6 +56,8 @@ std::vector<fs::path> data_folders(const std::string& package_folder) {
   if (const fs::path named = named_folder(); !named.empty()) folders.push_back(named);
   if (const fs::path library = shared_library_file(); !library.empty()) {
     folders.push_back(library.parent_path() / EXCAVPLAN_DATA_FROM_LIBRARY);
+    const fs::path of_module = library.parent_path() / EXCAVPLAN_DATA_FROM_MODULE;
+    if (of_module != folders.back()) folders.push_back(of_module);
   }
   if (!package_folder.empty()) folders.emplace_back(package_folder);
   if (const fs::path program = program_file(); !program.empty()) {

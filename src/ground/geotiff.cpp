@@ -107,10 +107,12 @@ std::vector<Field> fields_of(const LayeredMap& map, std::uint64_t first_strip) {
   const Strips strips = strips_of(map);
   const auto bands = static_cast<std::uint16_t>(map.layers.size());
   const std::string frame = "excavplan site frame|";
-  // Version 1.1.0 with three keys: a pixel is an area, name of the frame, metres.
-  const Words keys = {
-      1, 1,    0, 3, 1025, 0, 1, 1, 1026, 34737, static_cast<std::uint16_t>(frame.size()),
-      0, 3076, 0, 1, 9001};
+  const auto name_size = static_cast<std::uint16_t>(frame.size());
+  const Words keys = {1,    1,     1,         4,      // GeoTIFF 1.1, four keys:
+                      1024, 0,     1,         32767,  // a coordinate system of its own,
+                      1025, 0,     1,         1,      // a pixel is an area,
+                      1026, 34737, name_size, 0,      // name of the frame,
+                      3076, 0,     1,         9001};  // metres
   const Rectangle all = grid.extent();
   std::vector<Field> fields;
   fields.push_back(long_words(256, {static_cast<std::uint32_t>(grid.z.cols())}));

@@ -70,6 +70,8 @@ endif()
 string(SHA1 name ${BUILD})
 set(WORK /tmp/excavplan-consumer-${name})
 file(REMOVE_RECURSE ${WORK})
+file(GLOB manifests ${BUILD}/install_manifest*.txt)  # of installations that are no test
+file(COPY ${manifests} DESTINATION ${WORK}/manifests-before)
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/first --component Runtime)
 check_tool(${WORK}/first)
 if(EXISTS ${WORK}/first/include OR EXISTS ${WORK}/first/${LIBDIR}/cmake)
@@ -79,6 +81,21 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/first --component Devel
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/rest --component Unspecified)
 if(EXISTS ${WORK}/rest)
   message(FATAL_ERROR "some files are in neither Runtime nor Development: see ${WORK}/rest")
+endif()
+
+# ---- `uninstall` removes all that the components brought, and nothing else: tried on a copy.
+file(GLOB manifests ${BUILD}/install_manifest*.txt)
+file(COPY ${manifests} DESTINATION ${WORK}/manifests)
+file(REMOVE ${manifests})
+file(GLOB manifests ${WORK}/manifests-before/*)
+file(COPY ${manifests} DESTINATION ${BUILD})
+file(COPY ${WORK}/first DESTINATION ${WORK}/copy${WORK})
+file(WRITE ${WORK}/copy${WORK}/first/share/excavplan/soils/own.json "{}")
+run(env DESTDIR=${WORK}/copy ${CMAKE_COMMAND} -D BUILD=${WORK}/manifests
+  -P ${SOURCE}/cmake/excavplan-uninstall.cmake)
+file(GLOB_RECURSE left RELATIVE ${WORK}/copy${WORK}/first ${WORK}/copy/*)
+if(NOT left STREQUAL "share/excavplan/soils/own.json")
+  message(FATAL_ERROR "after uninstall there is: ${left}")
 endif()
 
 # ---- Nothing in it knows where it was built (but debug information), and shared libraries export

@@ -1,14 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the commands of a page as a reader would: run_guide.py PAGE BIN SOURCE [slow]
+"""Runs the commands of a page as a reader would.
 
-All ```sh blocks run one after the other in one folder, beginning in one that looks like a clone that
-was built. A word after "sh" says what is special:
+    run_guide.py PAGE                      with the Debian packages, which are installed
+    run_guide.py PAGE --clone BIN SOURCE   in a folder that looks like a clone with its programs built
+
+--on-path: the page takes it that the programs of the clone are on PATH. --all: the slow blocks too, and
+a block that cannot be run here is a failure.
+
+All ```sh blocks run one after the other in one folder. A word after "sh" says what is special:
 
     exit=4         the exit code that the text states; otherwise 0
     needs=python   run where `import excavplan` works, needs=mpirun where there is mpirun
-    slow           run only with the argument slow
+    slow           run only with --all
+    clone          run only in a clone; packages: only with the Debian packages
     example        not run: names files that only the reader has
 
 A ```text block right behind is what the block prints: a line "..." stands for any lines, numbers may
@@ -16,6 +22,7 @@ differ by one in the last digit shown. A block of another language with a file n
 ```python first.py, is saved under that name.
 """
 
+import argparse
 import os
 import re
 import shutil
@@ -67,14 +74,14 @@ def clone(folder, programs, source):
 class Reader:
     """Runs blocks one after the other; folder and environment are kept from one to the next."""
 
-    def __init__(self, root, programs, source):
+    def __init__(self, root, path):
         self.state = root / "state"
         self.state.mkdir()
-        clone(root / "excavplan", programs, source)
+        (root / "excavplan").mkdir(exist_ok=True)
         python = self.state / "python3"  # the one that the module was built for
         python.write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
         python.chmod(0o755)
-        self.environment = {**os.environ, "PATH": f"{self.state}:/usr/bin:/bin", "LC_ALL": "C.UTF-8",
+        self.environment = {**os.environ, "PATH": f"{self.state}:{path}", "LC_ALL": "C.UTF-8",
                             "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
         self.run(f'cd "{root}/excavplan"')
 
@@ -99,21 +106,31 @@ def lacks(words):
 
 
 def known(word):
-    return word in ("slow", "example", "needs=python", "needs=mpirun") or re.fullmatch(r"exit=\d+", word)
+    return (word in ("slow", "clone", "packages", "example", "needs=python", "needs=mpirun")
+            or re.fullmatch(r"exit=\d+", word))
 
 
-def run_page(page, reader, slow):
+def left_out(words, options):
+    """Whether the page itself says that a block with these words is not for this run."""
+    return ("example" in words or ("slow" in words and not options.all)
+            or ("packages" if options.clone else "clone") in words)
+
+
+def run_page(reader, options):
     """Messages about blocks that do not do what the page says, and how many ran."""
+    page = options.page
     failures, ran = [], 0
-    for language, words, content, expected, line in blocks(page.read_text()):
+    for language, words, content, expected, line in blocks(page.read_text(encoding="utf-8")):
         place = f"{page.name}:{line}"
         if language != "sh":
             if words:
                 reader.save(words[0], content)
             continue
         failures += [f"{place}: unknown word '{word}'" for word in words if not known(word)]
-        if "example" in words or ("slow" in words and not slow) or lacks(words):
+        if left_out(words, options) or lacks(words):
             print(f"not run: {place} {' '.join(words)}")
+            if options.all and not left_out(words, options):
+                failures.append(f"{place}: cannot be run here: {' '.join(words)}")
             continue
         code, printed = reader.run(content)
         ran += 1
@@ -125,13 +142,26 @@ def run_page(page, reader, slow):
     return failures, ran
 
 
+def options_of(words):
+    parser = argparse.ArgumentParser()
+    parser.add_argument("page", type=Path)
+    parser.add_argument("--clone", type=lambda word: Path(word).resolve(), nargs=2)
+    parser.add_argument("--on-path", action="store_true")
+    parser.add_argument("--all", action="store_true")
+    return parser.parse_args(words)
+
+
 def main():
-    page, programs, source = (Path(word).resolve() for word in sys.argv[1:4])
+    options = options_of(sys.argv[1:])
+    path = "/usr/bin:/bin"
     with tempfile.TemporaryDirectory(prefix="excavplan-guide-") as folder:
-        failures, ran = run_page(page, Reader(Path(folder), programs, source), sys.argv[4:] == ["slow"])
+        if options.clone:
+            clone(Path(folder) / "excavplan", *options.clone)
+            path = f"{options.clone[0]}:{path}" if options.on_path else path
+        failures, ran = run_page(Reader(Path(folder), path), options)
     if ran == 0:
-        failures.append(f"{page}: no block was run")
-    print(*failures, f"{ran} blocks of {page.name} run", sep="\n")
+        failures.append(f"{options.page}: no block was run")
+    print(*failures, f"{ran} blocks of {options.page.name} run", sep="\n")
     sys.exit(1 if failures else 0)
 
 

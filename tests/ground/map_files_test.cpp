@@ -143,6 +143,10 @@ TEST_F(MapFiles, GeoTiffBeginsWithTheLargestYAndHasItsOuterCorner) {
   EXPECT_EQ(field_of<std::uint32_t>(tiff, 257), (std::vector<std::uint32_t>{2}));
   EXPECT_EQ(field_of<double>(tiff, 33550), (std::vector<double>{0.5, 0.5, 0.0}));
   EXPECT_EQ(field_of<double>(tiff, 33922), (std::vector<double>{0, 0, 0, 10.0, -19.0, 0}));
+  // GeoTIFF 1.1 asks for the type of the model (1024), and of one of its own for a name (1026).
+  EXPECT_EQ(field_of<std::uint16_t>(tiff, 34735),
+            (std::vector<std::uint16_t>{1, 1, 1,    4,     1024, 0, 1,    32767, 1025, 0,
+                                        1, 1, 1026, 34737, 21,   0, 3076, 0,     1,    9001}));
   const auto strips = field_of<std::uint32_t>(tiff, 273);
   ASSERT_EQ(strips.size(), 4U);  // two rows of two bands
   EXPECT_EQ(number_at<double>(tiff, strips[0]), 4.0);
