@@ -4,7 +4,7 @@
 # The tools alone, in a small image:
 #
 #   docker build -t excavplan .
-#   docker run --rm -v "$PWD:/work" excavplan estimate-density before.pcd after.pcd
+#   docker run --rm --user "$(id -u):$(id -g)" -v "$PWD:/work" excavplan estimate-density before.pcd after.pcd
 FROM debian:bookworm-slim AS build
 WORKDIR /source
 COPY . .

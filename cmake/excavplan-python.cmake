@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
 
-# The module of Python, where pybind11 and the development files of Python are found (AUTO), always
+# The Python module, where pybind11 and the development files of Python are found (AUTO), always
 # (ON) or never (OFF).
 
-set(EXCAVPLAN_PYTHON AUTO CACHE STRING "Build the module of Python: AUTO, ON or OFF")
+set(EXCAVPLAN_PYTHON AUTO CACHE STRING "Build the Python module: AUTO, ON or OFF")
 set_property(CACHE EXCAVPLAN_PYTHON PROPERTY STRINGS AUTO ON OFF)
 set(excavplan_python_lacks "")
 if(NOT EXCAVPLAN_PYTHON)
@@ -23,9 +23,9 @@ endif()
 if(NOT excavplan_python_lacks)
   add_subdirectory(python)
 elseif(EXCAVPLAN_PYTHON AND NOT EXCAVPLAN_PYTHON STREQUAL "AUTO")
-  message(FATAL_ERROR "the module of Python needs ${excavplan_python_lacks}")
+  message(FATAL_ERROR "the Python module needs ${excavplan_python_lacks}")
 elseif(EXCAVPLAN_PYTHON)
-  message(STATUS "without the module of Python, which needs ${excavplan_python_lacks}")
+  message(STATUS "without the Python module, which needs ${excavplan_python_lacks}")
 endif()
 if(EXCAVPLAN_TESTS)
   add_subdirectory(tests/python)

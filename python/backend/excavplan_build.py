@@ -3,7 +3,7 @@
 """The build backend of `pip install .` (PEP 517 and 660).
 
 Calls CMake, which links the module against the static libraries, and packs a wheel. It needs no
-network and no package of Python; the compiler and the libraries are those of the system
+network and no other Python package; the compiler and the libraries are those of the system
 (docs/python.md). The same sources give the same bytes, with the time of SOURCE_DATE_EPOCH.
 """
 
