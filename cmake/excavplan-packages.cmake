@@ -61,6 +61,7 @@ endif()
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME excavplan-doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_RECOMMENDS excavplan)  # what the guide runs, and its data
 set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION
 "soil-adaptive planning of excavation - documentation
 The guide, methods, formats and examples.")
