@@ -20,7 +20,7 @@ set(experiment_may_use ground soil machine simulation planning library plan)
 set(recording_may_use "")
 set(survey_may_use ground soil machine simulation recording)
 set(study_may_use ground soil machine simulation planning library kit plan experiment survey)
-set(controller_may_use ground soil machine simulation planning library plan recording survey)
+set(controller_may_use ground soil machine simulation planning library kit plan recording survey)
 
 # Public headers that belong to no room; all may include them.
 set(roomless ceilings error data_files)

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include <excavplan/kit/kit_files.hpp>
 #include <excavplan/kit/machine_kit.hpp>
 
 #include "base/files.hpp"
@@ -10,7 +11,6 @@
 #include "base/text.hpp"
 #include "shared/goal_inputs.hpp"
 #include "shared/kit_figures.hpp"
-#include "shared/kit_files.hpp"
 #include "shared/kit_results.hpp"
 #include "shared/results.hpp"
 #include "shared/tool.hpp"

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
+#include <excavplan/kit/kit_files.hpp>
 #include <excavplan/plan/plan_dig.hpp>
 
 #include "base/text.hpp"
 #include "shared/ground_maps.hpp"
-#include "shared/kit_files.hpp"
 #include "shared/motion_inputs.hpp"
 #include "shared/plan_figures.hpp"
 #include "shared/plan_results.hpp"
@@ -94,8 +94,8 @@ PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilK
   if (inputs.library) {
     options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
   } else {
-    options.library = kit_library(inputs.machine, machine, soil.name, inputs.dig_search.goal,
-                                  options.search.objective);
+    options.library = kit_library(inputs.machine, machine, soil.name,
+                                  inputs.dig_search.goal.numbers, options.search.objective);
   }
   options.simulator = simulator_of(inputs.simulator, console);
   options.cell_size = inputs.cell_size;

@@ -25,6 +25,10 @@ namespace {
 using Frames = std::vector<LiveFrame>;
 using Time = std::optional<std::int64_t>;  // [ns]
 
+// Of a joint that stands still [rad]: what MoveIt allows by default between joint states and the
+// first point of a trajectory (trajectory_execution/allowed_start_tolerance).
+constexpr double most_turn = 0.01;
+
 double seconds(std::int64_t from, std::int64_t to) {
   return 1e-9 * (static_cast<double>(to) - static_cast<double>(from));
 }
@@ -33,29 +37,7 @@ std::string count_text(std::size_t found, std::size_t wanted) {
   return std::to_string(found) + " of " + std::to_string(wanted);
 }
 
-void check(const DigCycleSettings& settings) {
-  require_in("scans", static_cast<double>(settings.scans), 1.0, DigCycleSession::most_scans);
-  require(settings.site_from_scan.allFinite(), "site_from_scan: a number is not finite");
-  require_in("density", settings.density.percent, 0.0, 100.0);
-  const RobotJoints& joints = settings.machine.robot_joints;
-  const bool named = std::none_of(joints.begin(), joints.begin() + 3,
-                                  [](const RobotJoint& joint) { return joint.name.empty(); });
-  require(named, "robot_joints: boom, arm and bucket need a name");
-  require(settings.oldest_joints > 0.0, "oldest_joints [s]", settings.oldest_joints, "above 0");
-  require(settings.search_seconds > 0.0, "search_seconds", settings.search_seconds, "above 0");
-}
-
 }  // namespace
-
-DigCycleSettings shipped_settings(const std::string& machine, const std::string& soil,
-                                  const std::string& law) {
-  DigCycleSettings settings;
-  settings.machine = load_machine(shipped_or_file("machines", machine));
-  settings.soil = load_soil(shipped_or_file("soils", soil));
-  const std::string usual = settings.machine.name + "-" + settings.soil.name;
-  settings.law = load_density_law(shipped_or_file("laws", law.empty() ? usual : law));
-  return settings;
-}
 
 const char* name(CycleStage stage) {
   constexpr std::array<const char*, 4> names = {"before", "digging", "after", "done"};
@@ -72,6 +54,8 @@ struct DigCycleSession::State {
   void take_joints(const std::vector<std::pair<std::string, double>>& positions, Time time);
   std::optional<JointSample> sample(const std::string& joint, Time at) const;
   std::string joint_problem(Time at) const;
+  std::string moving_problem() const;
+  std::string start_problem(const JointMotion& motion) const;
   std::optional<MachinePosture> posture(Time at) const;
   void settle(Frames& frames, bool all);
   void settle_postures(Frames& frames, bool all) const;
@@ -171,6 +155,39 @@ std::string DigCycleSession::State::joint_problem(Time at) const {
   return "";
 }
 
+/// Why the machine may be moving; empty if it stands.
+std::string DigCycleSession::State::moving_problem() const {
+  constexpr std::int64_t span = 500'000'000;  // [ns]; ours
+  for (const RobotJoint& joint : settings.machine.robot_joints) {
+    if (joint.name.empty()) continue;
+    const auto turned = joints.turned(joint.name, span);
+    if (!turned) {
+      return "the joint states of " + joint.name + " reach back less than " +
+             plain_number(seconds(0, span)) + " s: whether it stands still is not known";
+    }
+    if (*turned <= most_turn) continue;
+    return joint.name + " turned by " + readable(*turned) + " rad within the last " +
+           plain_number(seconds(0, span)) + " s";
+  }
+  return "";
+}
+
+/// Why the machine does not stand now where a motion begins; empty if it does.
+std::string DigCycleSession::State::start_problem(const JointMotion& motion) const {
+  const std::optional<FrontJoints> present = start();
+  if (!present) return joint_problem({});
+  std::size_t sent = 0;
+  for (std::size_t i = 0; i < settings.machine.robot_joints.size(); ++i) {
+    const RobotJoint& joint = settings.machine.robot_joints[i];
+    if (joint.name.empty()) continue;
+    const double stands = joint.from_ours((*present)[static_cast<Eigen::Index>(i)]);
+    const double off = std::abs(stands - motion.points.front().positions[sent++]);
+    if (off <= most_turn) continue;
+    return joint.name + " stands " + readable(off) + " rad from there";
+  }
+  return "";
+}
+
 std::optional<MachinePosture> DigCycleSession::State::posture(Time at) const {
   if (!joint_problem(at).empty()) return {};
   FrontJoints angles = FrontJoints::Zero();
@@ -259,15 +276,25 @@ DensityOptions DigCycleSession::State::estimate_options() const {
 
 /// As the last scan shows it, level without one.
 ScannedTerrain DigCycleSession::State::terrain() {
-  Frames& seen = stage == CycleStage::digging || recent.empty() ? before : recent;
+  const bool is_outdated =
+      stage == CycleStage::digging || (stage == CycleStage::after && recent.empty());
+  Frames& seen = is_outdated ? before : recent;
   const double cell = settings.plan.cell_size.value_or(usual_cell(settings.machine));
   if (seen.empty()) {
     return {level_planning_ground(settings.machine, cell),
-            {{"level_ground", "no scan came yet: the ground is taken to be level"}}};
+            {{"level_ground", "no scan came yet: the ground is taken to be level",
+              !settings.level_ground}}};
   }
   bool averaged = true;
-  return terrain_from_scan(scan_of(seen, "of the ground", averaged),
-                           planning_extent(settings.machine), cell);
+  ScannedTerrain ground = terrain_from_scan(scan_of(seen, "of the ground", averaged),
+                                            planning_extent(settings.machine), cell);
+  if (is_outdated) {
+    ground.warnings.push_back({"ground_before_dig",
+                               "no scan came since the last dig began: the ground is taken to be "
+                               "as it was before it",
+                               true});
+  }
+  return ground;
 }
 
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
@@ -277,6 +304,8 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
     answer.warnings.push_back({"posture_unknown", joint_problem({}) +
                                                       ": the motion begins above the dig, wherever "
                                                       "the machine stands"});
+  } else if (const std::string moving = moving_problem(); !moving.empty()) {
+    answer.warnings.push_back({"not_standing", "the machine may be moving: " + moving, true});
   }
   const auto refuse = [&](const std::string& why) {
     answer.warnings.push_back({"no_motion", "the plan has no motion: " + why, true});
@@ -400,6 +429,7 @@ std::string describe(const DigCycleSession& session) {
 
 CycleEstimate DigCycleSession::estimate() {
   State& state = *state_;
+  state.last_refused = state.stage != CycleStage::before;
   require(state.stage == CycleStage::done,
           state.stage == CycleStage::after
               ? "the scan after the dig has " +
@@ -407,7 +437,6 @@ CycleEstimate DigCycleSession::estimate() {
                     (state.early == 0 ? "" : "; " + state.early_text())
               : std::string("no dig has been scanned: it is the time ") + name(state.stage) +
                     (state.stage == CycleStage::before ? " the first dig" : ""));
-  state.last_refused = true;
   bool averaged = true;
   DigScans scans;
   scans.before = state.scan_of(state.before, "before", averaged);
@@ -442,8 +471,9 @@ PlanOptions DigCycleSession::State::plan_options() const {
   return options;
 }
 
-CyclePlan DigCycleSession::plan() {
+CyclePlan DigCycleSession::plan(Time time) {
   State& state = *state_;
+  if (time) state.now = time;
   ScannedTerrain ground = state.terrain();
   const DigCycleSettings& settings = state.settings;
   CyclePlan answer;
@@ -452,12 +482,13 @@ CyclePlan DigCycleSession::plan() {
   answer.density = state.density;
   answer.density_is_stated = state.density_is_stated;
   answer.previous_density = state.last_refused;
-  answer.warnings = std::move(ground.warnings);
+  answer.warnings = settings.warnings;
+  answer.warnings.insert(answer.warnings.end(), ground.warnings.begin(), ground.warnings.end());
   if (state.last_refused) {
-    answer.warnings.push_back(
-        {"previous_density",
-         "the density by the last dig is not to be trusted: planned for the previous one, " +
-             plain_number(state.density.percent) + " %"});
+    answer.warnings.push_back({"previous_density",
+                               "the density by the last dig is not known or not to be trusted: "
+                               "planned for the previous one, " +
+                                   plain_number(state.density.percent) + " %"});
   }
   answer.warnings.insert(answer.warnings.end(), answer.plan.warnings.begin(),
                          answer.plan.warnings.end());
@@ -473,6 +504,16 @@ CyclePlan DigCycleSession::plan() {
                                     [](const Warning& warning) { return warning.ends_trust; });
   state.planned = answer.plan.dig;
   return answer;
+}
+
+void DigCycleSession::confirm_start(CyclePlan& plan, Time time) {
+  if (time) state_->now = time;
+  if (!plan.posture_known || plan.motion.points.empty()) return;
+  const std::string problem = state_->start_problem(plan.motion);
+  if (problem.empty()) return;
+  plan.trustworthy = false;
+  plan.warnings.push_back(
+      {"start_left", "the machine may stand where the motion does not begin: " + problem, true});
 }
 
 }  // namespace excavplan

@@ -40,6 +40,19 @@ std::optional<JointSample> RecentJoints::nearest(const std::string& name, std::i
   return after == samples.end() || time - before.time < after->time - time ? before : *after;
 }
 
+std::optional<double> RecentJoints::turned(const std::string& name, std::int64_t span) const {
+  const auto joint = joints_.find(name);
+  if (joint == joints_.end()) return {};
+  const std::deque<JointSample>& samples = joint->second;
+  double lowest = samples.back().position, highest = lowest;
+  for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
+    lowest = std::min(lowest, sample->position);
+    highest = std::max(highest, sample->position);
+    if (sample->time <= samples.back().time - span) return highest - lowest;
+  }
+  return {};
+}
+
 bool RecentJoints::reaches(const std::string& name, std::int64_t time) const {
   const auto joint = joints_.find(name);
   return joint != joints_.end() && joint->second.back().time >= time;

@@ -25,6 +25,9 @@ class RecentJoints {
   void add(const std::string& name, const JointSample& sample);
   /// The sample nearest to a time; nothing if none came.
   std::optional<JointSample> nearest(const std::string& name, std::int64_t time) const;
+  /// How far the joint turned since the last sample that is older than the newest by this span, to
+  /// and fro too [rad]; nothing if there is none.
+  std::optional<double> turned(const std::string& name, std::int64_t span) const;
   /// Whether a sample of that time or a later one came.
   bool reaches(const std::string& name, std::int64_t time) const;
 

@@ -26,7 +26,8 @@ const std::string joints_type = "sensor_msgs/msg/JointState";
 constexpr std::int64_t now = 1700000000000000000;  // [ns]
 
 DigCycleSettings settings_of(std::size_t scans = 1) {
-  DigCycleSettings settings = shipped_settings("zx120", "loam");
+  static const DigCycleSettings usual = cycle_settings();
+  DigCycleSettings settings = usual;
   settings.scans = scans;
   return settings;
 }
@@ -455,6 +456,105 @@ TEST(DigCycleSession, JointStatesThatEndedAreNotWhereTheMachineStands) {
   }
 }
 
+TEST(DigCycleSession, TheAgeOfJointStatesIsThatAtThePlan) {
+  const DigCycleSettings settings = settings_of();
+  DigCycleSession session(settings);
+  JointTeller{settings, session}(now, {-0.6, 1.6, 0.5, 0.0}, now);
+  EXPECT_TRUE(session.plan(now + second).posture_known);
+  EXPECT_FALSE(session.plan(now + 2 * second).posture_known);
+}
+
+TEST(DigCycleSession, AMachineThatMovesOrMayMoveIsNotTrusted) {
+  DigCycleSettings settings = settings_of();
+  settings.level_ground = true;
+  settings.density = GroundDensity(40.0, 2.0);
+  const auto plan_after = [&](const std::vector<std::pair<double, double>>& boom) {
+    DigCycleSession session(settings);
+    const JointTeller tell{settings, session};
+    for (const auto& [at, angle] : boom) {
+      const std::int64_t time = now + static_cast<std::int64_t>(1e9 * at);
+      tell(time, {angle, 1.6, 0.5, 0.0}, time);
+    }
+    return session.plan();
+  };
+  const CyclePlan stands = plan_after({{0.0, -0.605}, {0.5, -0.6}});
+  EXPECT_TRUE(stands.trustworthy) << to_json(stands);
+  const CyclePlan moves = plan_after({{0.0, -0.62}, {0.25, -0.6}, {0.5, -0.6}});
+  EXPECT_FALSE(moves.trustworthy);
+  EXPECT_NE(to_json(moves).find("boom_joint turned by 0.02"), std::string::npos);
+  EXPECT_TRUE(has(plan_after({{0.0, -0.6}, {0.25, -0.62}, {0.5, -0.6}}).warnings, "not_standing"))
+      << "to and fro";
+  EXPECT_FALSE(has(plan_after({{-1.0, 0.0}, {0.0, -0.6}, {0.5, -0.6}}).warnings, "not_standing"))
+      << "before that";
+  const CyclePlan unknown = plan_after({{0.0, -0.6}, {0.4, -0.6}});
+  EXPECT_FALSE(unknown.trustworthy);
+  EXPECT_TRUE(has(unknown.warnings, "not_standing"));
+}
+
+TEST(DigCycleSession, AMotionIsNotTrustedOnceTheMachineLeftItsStart) {
+  DigCycleSettings settings = settings_of();
+  settings.level_ground = true;
+  settings.density = GroundDensity(40.0, 2.0);
+  DigCycleSession session(settings);
+  const JointTeller tell{settings, session};
+  const auto at = [&](double seconds, double swing) {
+    const std::int64_t time = now + static_cast<std::int64_t>(1e9 * seconds);
+    tell(time, {-0.6, 1.6, 0.5, swing}, time);
+  };
+  at(0.0, 0.4);
+  at(1.0, 0.4);
+  const CyclePlan planned = session.plan(now + second);
+  ASSERT_TRUE(planned.trustworthy) << to_json(planned);
+  const auto confirmed = [&](double seconds) {
+    CyclePlan plan = planned;
+    session.confirm_start(plan, now + static_cast<std::int64_t>(1e9 * seconds));
+    return plan;
+  };
+  EXPECT_TRUE(confirmed(1.5).trustworthy);
+  const CyclePlan silent = confirmed(61.0);
+  EXPECT_FALSE(silent.trustworthy) << "joint states ended while it planned";
+  EXPECT_TRUE(has(silent.warnings, "start_left"));
+  at(60.0, 0.405);
+  EXPECT_TRUE(confirmed(60.0).trustworthy);
+  at(61.0, 0.42);
+  const CyclePlan left = confirmed(61.0);
+  EXPECT_FALSE(left.trustworthy);
+  EXPECT_NE(to_json(left).find("swing_joint stands 0.02"), std::string::npos) << to_json(left);
+}
+
+TEST(DigCycleSession, APlanOnGroundThatIsNotThePresentOneIsNotTrusted) {
+  for (const bool is_level : {true, false}) {
+    DigCycleSettings settings = settings_of();
+    settings.density = GroundDensity(40.0, 2.0);
+    settings.level_ground = is_level;
+    const CyclePlan plan = DigCycleSession(settings).plan();
+    EXPECT_TRUE(has(plan.warnings, "level_ground"));
+    EXPECT_EQ(plan.trustworthy, is_level) << to_json(plan);
+  }
+  DigCycleSession session(settings_of());
+  scan(session, now);
+  EXPECT_FALSE(has(session.plan().warnings, "ground_before_dig"));
+  EXPECT_NE(error_of([&] { session.estimate(); }), "no error");
+  EXPECT_FALSE(session.plan().previous_density) << "nothing was dug";
+  session.start_dig();
+  for (const bool is_over : {false, true}) {
+    if (is_over) session.end_dig();
+    const CyclePlan plan = session.plan();
+    EXPECT_TRUE(has(plan.warnings, "ground_before_dig"));
+    EXPECT_FALSE(plan.trustworthy);
+    EXPECT_NE(error_of([&] { session.estimate(); }), "no error");
+    EXPECT_TRUE(session.plan().previous_density);
+  }
+  scan(session, now + second);
+  EXPECT_FALSE(has(session.plan().warnings, "ground_before_dig"));
+}
+
+TEST(DigCycleSession, PlansTellWhatTheirSettingsAreMadeOf) {
+  DigCycleSettings settings = settings_of();
+  settings.warnings = {{"urdf_scaled", "numbers are those of the zx120", false}};
+  EXPECT_TRUE(has(DigCycleSession(settings).plan().warnings, "urdf_scaled"));
+}
+
 TEST(DigCycleSession, TheNewestJointStatesAreWhereTheMachineStands) {
   const DigCycleSettings settings = settings_of();
   DigCycleSession session(settings);
@@ -562,7 +662,37 @@ TEST(DigCycleSession, ChecksItsSettings) {
   settings.oldest_joints = 0.0;
   EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
             "oldest_joints [s] is 0, must be above 0");
-  EXPECT_NE(error_of([] { shipped_settings("zx120", "snow"); }).find("snow"), std::string::npos);
+}
+
+TEST(DigCycleSession, ChecksWhatWouldFailInEveryPlan) {
+  const auto error_with = [](const auto& change) {
+    DigCycleSettings settings = settings_of();
+    change(settings);
+    return error_of([&] { DigCycleSession session(settings); });
+  };
+  using Settings = DigCycleSettings;
+  EXPECT_EQ(error_with([](Settings& s) { s.motion.rate = 5.0; }),
+            "MotionOptions::rate [1/s] is 5, must be in 10 .. 500");
+  EXPECT_EQ(error_with([](Settings& s) { s.plan.trajectory.speed_fraction = 2.0; }),
+            "TrajectoryOptions::speed_fraction is 2, must be above 0 and at most 1");
+  EXPECT_EQ(error_with([](Settings& s) { s.density = GroundDensity(50.0, -1.0); }),
+            "the standard deviation of the density is -1, must be at least 0 and finite");
+  EXPECT_EQ(error_with([](Settings& s) { s.machine.limits[1].speed = 0.0; }).rfind("machine ", 0),
+            0U);
+  EXPECT_NE(error_with([](Settings& s) {
+              s.plan.search.objective.dump_height = 30.0;
+            }).find("the dump height is 30 m"),
+            std::string::npos);
+  EXPECT_NE(error_with([](Settings& s) {
+              s.plan.search.objective.dump_height = 2.0;
+            }).find("dump_height_m"),
+            std::string::npos)
+      << "the library is for another one";
+  EXPECT_EQ(error_with([](Settings& s) {
+              s.whole_cycle = true;
+              s.machine.robot_joints[3].name.clear();
+            }),
+            "whole_cycle: the swing joint has no name, so the machine would dump without swinging");
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -161,10 +162,11 @@ class Node:
             message.header.stamp = rospy.Time.from_sec(time.time() - age)
         self.publishers[topic].publish(message)
 
-    def stand(self, angles):
-        """The joints stand there, from now on until the next message of any kind."""
-        self.send("joints", JointState(name=JOINTS, position=angles))
-        time.sleep(0.2)
+    def stand(self, angles, times=4):
+        """The joints stand there, by messages of 0.6 s."""
+        for _ in range(times):
+            self.send("joints", JointState(name=JOINTS, position=angles))
+            time.sleep(0.2)
 
     def send_until(self, topic, message, state):
         self.send(topic, message)
@@ -292,7 +294,7 @@ class Master(unittest.TestCase):
 
     def test_sends_a_trajectory_once_and_only_from_where_the_machine_stands(self):
         present = [-0.6, 1.6, 0.5, 0.4]
-        with Node(scans=1, density_percent=40.0, density_sd_percent=2.0) as node:
+        with Node(scans=1, density_percent=40, density_sd_percent=2.0, level_ground=True) as node:
             node.stand(present)
             answer = node.call("plan", Plan)
             self.assertTrue(answer.trustworthy, answer.warnings)
@@ -302,19 +304,72 @@ class Master(unittest.TestCase):
                 self.assertAlmostEqual(one, other, 9)
             with self.assertRaises(rospy.ROSException):  # not latched
                 rospy.wait_for_message("/excavplan/trajectory", JointTrajectory, 1.0)
-            time.sleep(1.0)
-            node.send_until("points", cloud(points_of("before")), "before 1 of 1")
-            node.trajectory = None
-            answer = node.call("plan", Plan)
-            self.assertIn("posture_unknown: no joint states of boom_joint came within 1 s",
-                          " ".join(answer.warnings))
-            wait_until(lambda: node.trajectory, "the trajectory")
-            self.assertEqual(node.trajectory.points, [])
+            time.sleep(1.0)  # nothing comes
+            warnings = self.sends_nothing(node)
+            self.assertIn("posture_unknown: no joint states of boom_joint came within 1 s", warnings)
+            node.stand([-0.6, 1.6, 0.5, 0.2], 1)
+            node.stand([-0.6, 1.6, 0.5, 0.3], 1)
+            self.assertIn("not_standing: ", self.sends_nothing(node))
         with Node(scans=1, send_doubtful=True) as node:
             answer = node.call("plan", Plan)
             wait_until(lambda: node.trajectory, "the trajectory")
             self.assertEqual(node.trajectory.points, answer.trajectory.points)
             self.assertGreater(len(answer.trajectory.points), 10)
+
+    def sends_nothing(self, node):
+        """A plan whose trajectory has no points; its warnings."""
+        node.trajectory = None
+        answer = node.call("plan", Plan)
+        wait_until(lambda: node.trajectory, "the trajectory")
+        self.assertEqual(node.trajectory.points, [])
+        return " ".join(answer.warnings)
+
+    def test_a_machine_that_moves_during_a_search_is_sent_nothing(self):
+        for moves in (False, True):
+            with Node(scans=1, density_percent=40.0, density_sd_percent=0.0, level_ground=True,
+                      search=True, search_seconds=5) as node:
+                node.stand([-0.6, 1.6, 0.5, 0.4])
+                answers = []
+                plan = threading.Thread(target=lambda: answers.append(node.call("plan", Plan)))
+                plan.start()
+                node.stand([-0.6, 1.6, 0.5, 0.4], 10)  # until it plans
+                while not answers:
+                    node.stand([-0.6, 1.6, 0.5, 0.8 if moves else 0.4], 1)
+                plan.join()
+                wait_until(lambda: node.trajectory, "the trajectory")
+                self.assertGreater(len(answers[0].trajectory.points), 10)
+                self.assertEqual(answers[0].trustworthy, not moves, answers[0].warnings)
+                self.assertEqual(len(node.trajectory.points) == 0, moves)
+                self.assertEqual("start_left: " in " ".join(answers[0].warnings), moves)
+
+    def test_ground_that_is_assumed_or_outdated_is_not_trusted(self):
+        with Node(scans=1, density_percent=40.0, density_sd_percent=2.0) as node:
+            node.stand([-0.6, 1.6, 0.5, 0.4])
+            self.assertIn("level_ground: ", self.sends_nothing(node))
+            node.send_until("points", cloud(points_of("before")), "before 1 of 1")
+            node.send_until("start", Bool(True), "digging 0 of 1")
+            node.send_until("end", Bool(True), "after 0 of 1")
+            node.stand([-0.6, 1.6, 0.5, 0.4])
+            node.trajectory = None
+            answer = node.call("dig_and_plan", DigAndPlan)
+            wait_until(lambda: node.trajectory, "the trajectory")
+        self.assertEqual(node.trajectory.points, [])
+        self.assertTrue(answer.success and answer.previous_density)
+        self.assertFalse(answer.trustworthy)
+        self.assertIn("0 of 1 messages", answer.estimate_message)
+        self.assertIn("ground_before_dig: ", " ".join(answer.warnings))
+
+    def test_a_machine_with_a_kit(self):
+        kit = os.path.join(HOME.name, "zx200-kit")
+        tool("machine-kit", "zx200", "--output", kit, "--soil", "loam", "--densities", "0,50,100",
+             "--slopes", "0", "--draws", "20")
+        with Node(scans=1, machine=kit, level_ground=True, whole_cycle=True) as node:
+            node.stand([-0.6, 1.6, 0.5, 0.4])
+            answer = node.call("plan", Plan)
+        self.assertTrue(answer.success, answer.message)
+        self.assertGreater(len(answer.trajectory.points), 10)
+        planned = tool("plan-path", "--machine", kit, "--density", "50", "--density-sd", "25")
+        self.assertEqual(json.loads(answer.json)["path"], planned["path"])
 
     def test_points_of_the_dig_that_come_late_are_left_out_and_told(self):
         told = []
@@ -377,7 +432,13 @@ class Master(unittest.TestCase):
     def test_refuses_bad_parameters(self):
         for name, value, told in (("scans", 0, "scans is 0"), ("scan", 3, "is not known"),
                                   ("soil", "snow", "snow"), ("joint_names", ["a"], "4: boom"),
-                                  ("scans", "many", "not of its type")):
+                                  ("scans", "many", "not of its type"),
+                                  ("rate_hz", 5, "parameter rate_hz: "),
+                                  ("max_jerk", 0.0, "parameter max_jerk: "),
+                                  ("speed_fraction", 2, "parameter speed_fraction: "),
+                                  ("density_sd_percent", -1, "parameter density_sd_percent: "),
+                                  ("machine", "zx200", "make one with machine-kit"),
+                                  ("dump_height", 30.0, "the dump height is 30 m")):
             rospy.set_param("/bad/" + name, value)
             done = subprocess.run([NODE, "__name:=bad"], stdout=subprocess.PIPE,
                                   stderr=subprocess.STDOUT, timeout=PATIENCE, check=False)

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """stub_headers.py PACKAGE OUT: as much of the headers of ROS 2 (Humble) as the node of PACKAGE
 uses, to check its syntax without ROS 2. The messages have the fields of their definitions, rclcpp
-the signatures of its documentation, without any code."""
+the signatures of its documentation, without any code but that of parameters."""
 
 import pathlib
 import re
@@ -33,7 +33,10 @@ RCLCPP = """#pragma once
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
+namespace rcl_interfaces::msg { struct ParameterDescriptor { bool dynamic_typing = false; }; }
 struct rcl_serialized_message_t { std::uint8_t* buffer; std::size_t buffer_length; };
 namespace rclcpp {
 struct SerializedMessage { const rcl_serialized_message_t& get_rcl_serialized_message() const; };
@@ -45,6 +48,27 @@ struct QoS {
 };
 struct SensorDataQoS : QoS { SensorDataQoS(); };
 struct NodeOptions {};
+enum class ParameterType { PARAMETER_INTEGER, PARAMETER_DOUBLE, PARAMETER_OTHER };
+class ParameterValue {
+ public:
+  explicit ParameterValue(std::int64_t value) : value_(value) {}
+  explicit ParameterValue(double value) : value_(value) {}
+  explicit ParameterValue(bool value) : value_(value) {}
+  explicit ParameterValue(const std::string& value) : value_(value) {}
+  explicit ParameterValue(const std::vector<std::string>& value) : value_(value) {}
+  ParameterType get_type() const {
+    return value_.index() == 0   ? ParameterType::PARAMETER_INTEGER
+           : value_.index() == 1 ? ParameterType::PARAMETER_DOUBLE
+                                 : ParameterType::PARAMETER_OTHER;
+  }
+  template <typename T> const T& get() const { return std::get<T>(value_); }
+ private:
+  std::variant<std::int64_t, double, bool, std::string, std::vector<std::string>> value_;
+};
+enum class CallbackGroupType { MutuallyExclusive, Reentrant };
+struct CallbackGroup { using SharedPtr = std::shared_ptr<CallbackGroup>; };
+struct SubscriptionOptions { CallbackGroup::SharedPtr callback_group; };
+namespace node_interfaces { struct NodeBaseInterface; }
 struct Logger {};
 struct Time { std::int64_t nanoseconds() const; };
 struct SubscriptionBase { using SharedPtr = std::shared_ptr<SubscriptionBase>; };
@@ -65,12 +89,20 @@ class Node {
   explicit Node(const std::string& name, const NodeOptions& options = NodeOptions());
   Logger get_logger() const;
   Time now() const;
-  template <typename T> T declare_parameter(const std::string& name, const T& value);
+  const ParameterValue& declare_parameter(
+      const std::string& name, const ParameterValue& value,
+      const rcl_interfaces::msg::ParameterDescriptor& descriptor = {});
+  template <typename T> T declare_parameter(const std::string& name, const T& value) {
+    return declare_parameter(name, ParameterValue(value)).template get<T>();
+  }
+  CallbackGroup::SharedPtr create_callback_group(CallbackGroupType type, bool add_to_executor = true);
+  std::shared_ptr<node_interfaces::NodeBaseInterface> get_node_base_interface();
   template <typename M>
   typename Publisher<M>::SharedPtr create_publisher(const std::string& topic, const QoS& qos);
   template <typename M, typename Callback>
   typename Subscription<M>::SharedPtr create_subscription(const std::string& topic, const QoS& qos,
-                                                          Callback&& callback) {
+                                                          Callback&& callback,
+                                                          const SubscriptionOptions& = {}) {
     using ofSerialized = std::function<void(std::shared_ptr<const SerializedMessage>)>;
     using ofMessage = std::function<void(const M&)>;
     static_assert(std::is_constructible_v<ofSerialized, Callback> ||
@@ -86,7 +118,16 @@ class Node {
   }
 };
 void init(int argc, const char* const* argv);
-void spin(std::shared_ptr<Node> node);
+namespace executors {
+struct SingleThreadedExecutor {
+  void add_node(std::shared_ptr<Node> node);
+  void add_callback_group(CallbackGroup::SharedPtr group,
+                          std::shared_ptr<node_interfaces::NodeBaseInterface> node);
+  void spin_once(std::chrono::nanoseconds timeout);
+  void spin_all(std::chrono::nanoseconds longest);
+};
+}  // namespace executors
+bool ok();
 bool shutdown();
 }  // namespace rclcpp
 [[gnu::format(printf, 2, 3)]] void stub_log(const rclcpp::Logger& logger, const char* form, ...);

@@ -3,13 +3,14 @@
 cmake_minimum_required(VERSION 3.24)
 
 # The node of ROS 2, which Debian does not have: its syntax against the headers of SOURCE and those
-# that stub_headers.py writes. With a field renamed it must not compile.
+# that stub_headers.py writes. With a field renamed it must not compile. What reads its parameters is
+# run.
 
 set(node ${SOURCE}/ros/ros2/excavplan_ros/src/excavplan_node.cpp)
 function(compile file result)
   execute_process(
     COMMAND ${CXX} -std=c++17 -fsyntax-only -Wall -Wextra -Werror -isystem ${WORK}
-      -I ${SOURCE}/include -isystem ${EIGEN} ${file}
+      -I ${SOURCE}/include -I ${SOURCE}/ros/ros2/excavplan_ros/src -isystem ${EIGEN} ${file}
     RESULT_VARIABLE code ERROR_VARIABLE errors)
   set(${result} ${code} PARENT_SCOPE)
   set(errors "${errors}" PARENT_SCOPE)
@@ -28,6 +29,12 @@ compile(${WORK}/wrong.cpp result)
 if(result EQUAL 0)
   message(FATAL_ERROR "the stubs take a field that they do not have")
 endif()
+execute_process(
+  COMMAND ${CXX} -std=c++17 -Wall -Wextra -Werror -isystem ${WORK}
+    -I ${SOURCE}/ros/ros2/excavplan_ros/src ${SOURCE}/tests/ros/parameters_test.cpp
+    -o ${WORK}/parameters_test
+  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK}/parameters_test COMMAND_ERROR_IS_FATAL ANY)
 # Both packages offer the same services.
 foreach(service DigAndPlan Estimate Plan)
   file(READ ${SOURCE}/ros/ros1/excavplan_ros/srv/${service}.srv one)

@@ -6,10 +6,10 @@
 
 #include <excavplan/data_files.hpp>
 #include <excavplan/experiment/sensitivity.hpp>
+#include <excavplan/kit/kit_files.hpp>
 #include <excavplan/simulation/calibration.hpp>
 
 #include "base/text.hpp"
-#include "shared/kit_files.hpp"
 #include "shared/results.hpp"
 #include "shared/site.hpp"
 
@@ -87,7 +87,7 @@ ExperimentOptions options_of(const ExperimentInputs& inputs, const Machine& mach
   plan.search.objective = objective_of(inputs.goal, {machine});
   if (!inputs.library) {
     plan.library =
-        kit_library(inputs.machine, machine, soil.name, inputs.goal, plan.search.objective);
+        kit_library(inputs.machine, machine, soil.name, inputs.goal.numbers, plan.search.objective);
   }
   if (inputs.library || (!inputs.search && !plan.library)) {
     plan.library = std::make_shared<PathLibrary>(

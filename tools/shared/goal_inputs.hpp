@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
+#include <excavplan/kit/kit_files.hpp>
 #include <excavplan/planning/dig_goal.hpp>
 
 #include "shared/arguments.hpp"
@@ -15,9 +15,7 @@ namespace excavplan::tools {
 /// The goal of digs and its numbers, from the command line.
 struct GoalInputs {
   std::string goal = dig_goals().front().word;
-  /// One for each row of objective_parameters().
-  std::vector<std::optional<double>> numbers =
-      std::vector<std::optional<double>>(objective_parameters().size());
+  GoalNumbers numbers = GoalNumbers(objective_parameters().size());
 };
 
 void declare_goal(Arguments& arguments, GoalInputs& inputs);

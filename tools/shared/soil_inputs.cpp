@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/kit/kit_files.hpp>
 #include <excavplan/simulation/calibration.hpp>
 
 #include "base/text.hpp"
-#include "shared/kit_files.hpp"
 #include "shared/tool.hpp"
 
 namespace excavplan::tools {

@@ -18,13 +18,14 @@
 #include <system_error>
 
 #include <excavplan/data_files.hpp>
+#include <excavplan/kit/kit_files.hpp>
+#include <excavplan/machine/machine_file.hpp>
 #include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/simulation/simulators.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "shared/kit_files.hpp"
 #include "shared/report.hpp"
 #include "shared/settings_file.hpp"
 #include "shared/stack.hpp"
@@ -518,6 +519,17 @@ void print_outcome(const About& about, const Common& common, const Outcome& outc
   }
   if (outcome.output) std::cerr << text;
   print(outcome.output.value_or(text));
+}
+
+/// MachineFile::warnings of machines in a list.
+std::vector<Warning> machine_warnings(const std::string& list) {
+  std::vector<Warning> warnings;
+  for (const std::string& machine : split(list, ',')) {
+    for (Warning& each : load_machine_file(machine_path(machine)).warnings) {
+      warnings.push_back(std::move(each));
+    }
+  }
+  return warnings;
 }
 
 /// What the files of machines are not sure of, in every tool that has --machine.

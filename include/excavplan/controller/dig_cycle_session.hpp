@@ -48,9 +48,12 @@ struct CyclePlan {
   JointMotion motion;             ///< from where the joints stand; without points if there is none
   bool posture_known = false;     ///< of the machine; if not the motion begins above the dig
   bool trustworthy = true;        ///< false after a warning that ends trust
-  /// Of the plan, of the ground, and previous_density (the last estimate was not trustworthy),
-  /// level_ground (no scan yet), posture_unknown (the motion begins above the dig), search_stopped
-  /// (by its time), no_motion * (the ground is in the way, or a joint stands beyond its limits).
+  /// Of the settings, of the plan, of the ground, and previous_density (the last estimate failed or
+  /// was not trustworthy), level_ground * (no scan yet, unless DigCycleSettings::level_ground),
+  /// ground_before_dig * (no scan since the last dig began), posture_unknown (the motion begins
+  /// above the dig), not_standing * (a joint turned within the last half second, or its states do
+  /// not reach back so far), search_stopped (by its time), no_motion * (the ground is in the way,
+  /// or a joint stands beyond its limits), and start_left * of confirm_start().
   std::vector<Warning> warnings;
 };
 
@@ -59,8 +62,7 @@ class DigCycleSession {
  public:
   static constexpr std::size_t most_scans = 100;  ///< of DigCycleSettings::scans; ours
 
-  /// @throws Error (bad_input) if `scans` is out of range or a number of the matrix not finite;
-  /// further settings are checked when they are used
+  /// @throws Error (bad_input) as check(DigCycleSettings)
   explicit DigCycleSession(DigCycleSettings settings);
   ~DigCycleSession();
   DigCycleSession(DigCycleSession&&) noexcept;             ///< the other may only be destroyed then
@@ -92,8 +94,14 @@ class DigCycleSession {
   /// transform leads to a scan
   CycleEstimate estimate();
   /// The next dig for density(), on the ground as last scanned.
+  /// @param time  now, by the clock of the marks [ns], for the age of joint states; nothing: that
+  /// of the newest message
   /// @throws Error as plan_dig() and terrain_from_scan()
-  CyclePlan plan();
+  CyclePlan plan(std::optional<std::int64_t> time = {});
+  /// To be called when the messages that came while the session planned have been taken, before
+  /// the motion is sent: adds start_left * if the machine may not stand where it begins.
+  /// @param time  as of plan()
+  void confirm_start(CyclePlan& plan, std::optional<std::int64_t> time = {});
 
  private:
   struct State;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -43,8 +44,8 @@ struct DigCycleSettings {
   /// Points of boom, arm and bucket are left out, by the joint states; needs scans in the frame of
   /// the machine.
   bool machine_in_view = false;
-  /// A joint state that is older than this where it is needed is unknown: against the time at which
-  /// the newest message of any kind came, or the stamp of the points [s]; above 0.
+  /// A joint state that is older than this where it is needed is unknown: against the time of the
+  /// plan, or the stamp of the points [s]; above 0.
   double oldest_joints = 1.0;
   /// The dig that is scanned is the last plan of the session, if there is one, whose path corrects
   /// for the soil that fell back.
@@ -52,14 +53,35 @@ struct DigCycleSettings {
   DensityOptions estimate = {};  ///< `dug_path` is set by the session
   PlanOptions plan = {};         ///< how the next dig is planned; its cycle is that of the motion
   double search_seconds = std::numeric_limits<double>::infinity();  ///< a search ends then [s]; > 0
-  bool whole_cycle = false;   ///< as CycleWayOptions::whole_cycle
+  bool whole_cycle = false;   ///< as CycleWayOptions::whole_cycle; needs a name of the swing joint
   MotionOptions motion = {};  ///< of the trajectory that is sent
+  /// The ground before any scan is known to be level; if not, a plan on it is not trustworthy.
+  bool level_ground = false;
+  std::vector<Warning> warnings = {};  ///< of what the settings were made from; every plan has them
 };
 
-/// Settings of a machine in a soil by a law, each a shipped name or a file.
-/// @param law  empty: the shipped one of machine and soil
-/// @throws Error as shipped_or_file(), load_machine(), load_soil() and load_density_law()
-DigCycleSettings shipped_settings(const std::string& machine, const std::string& soil,
-                                  const std::string& law = "");
+/// @throws Error (bad_input) naming a member that is out of range, that does not suit the machine,
+/// or a library that is not of machine, soil and objective
+void check(const DigCycleSettings& settings);
+
+/// What settings are made from, in the words of the tools.
+struct CycleSources {
+  std::string machine = "zx120";  ///< shipped name, file, URDF, or folder of a kit
+  std::string soil = "loam";      ///< shipped name or file
+  std::string law = {};           ///< likewise; empty: of the machine's kit, else the shipped one
+  std::string library = {};       ///< file; empty: of the machine's kit, else the shipped one
+  std::string goal = dig_goals().front().word;  ///< as objective_named() takes it
+  // Numbers of the goal; nothing: those of the kit's library, else the usual ones.
+  std::optional<double> swing = {};        ///< as CycleOptions::swing [rad]
+  std::optional<double> dump_height = {};  ///< as CycleOptions::dump_height [m]
+  std::optional<double> min_fill = {};     ///< as DigObjective::min_fill
+  bool search = false;                     ///< search in place of a look-up
+};
+
+/// The usual dump height is lowered to what the machine reaches: warning dump_height_lowered.
+/// @throws Error as machine_path(), load_machine_file(), load_soil(), load_density_law(),
+/// load_path_library() and check(DigObjective); (bad_input) if neither a kit has the law or the
+/// library nor is one shipped
+DigCycleSettings cycle_settings(const CycleSources& sources = {});
 
 }  // namespace excavplan

@@ -2,74 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <excavplan/controller/dig_cycle_session.hpp>
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/controller/node_settings.hpp>
 
 /// @file
-/// What the nodes of ROS 1 and ROS 2 share, as templates of their parameters and messages
+/// What the nodes of ROS 1 and ROS 2 share besides their parameters, as templates of their messages
 /// (docs/ros.md).
 
 namespace excavplan {
-
-/// Settings of a node.
-struct NodeSettings {
-  DigCycleSettings session;    ///< of the dig cycle
-  bool send_doubtful = false;  ///< the trajectory is sent even if it is not a safe_motion()
-};
-
-/// The settings that parameters give (docs/ros.md#parameters).
-/// @param parameters  has `value(name, fallback)` for texts, numbers, flags, counts (int) and lists
-/// of texts
-/// @throws Error as shipped_settings() and read_frame(), or (bad_input) naming a parameter
-template <typename Parameters>
-NodeSettings settings_of(Parameters& parameters) {
-  const auto text = [&](const char* name, const std::string& usual) {
-    return parameters.value(name, usual);
-  };
-  NodeSettings node = {
-      shipped_settings(text("machine", "zx120"), text("soil", "loam"), text("law", ""))};
-  DigCycleSettings& settings = node.session;
-  const auto read = [&](const char* name, auto& value) { value = parameters.value(name, value); };
-  double percent = settings.density.percent, sd_percent = settings.density.sd_percent;
-  read("density_percent", percent);
-  read("density_sd_percent", sd_percent);
-  settings.density = {percent, sd_percent};
-  const int scans = parameters.value("scans", static_cast<int>(settings.scans));
-  settings.scans = scans > 0 ? static_cast<std::size_t>(scans) : 0;
-  read("site_frame", settings.site_frame);
-  const std::string frame_file = text("frame_file", "");
-  if (!frame_file.empty()) settings.site_from_scan = read_frame(frame_file);
-  RobotJoints& joints = settings.machine.robot_joints;
-  std::vector<std::string> names;
-  for (const RobotJoint& joint : joints) names.push_back(joint.name);
-  read("joint_names", names);
-  if (names.size() != joints.size()) {
-    throw Error(ErrorKind::bad_input, "parameter joint_names: has " + std::to_string(names.size()) +
-                                          " names, must have 4: boom, arm, bucket, swing");
-  }
-  for (std::size_t i = 0; i < joints.size(); ++i) joints[i].name = names[i];
-  read("machine_in_view", settings.machine_in_view);
-  read("digs_as_planned", settings.digs_as_planned);
-  read("joint_age_seconds", settings.oldest_joints);
-  if (parameters.value("search", false)) settings.plan.method = PlanMethod::search;
-  read("search_seconds", settings.search_seconds);
-  if (std::isfinite(settings.search_seconds) && settings.plan.method != PlanMethod::search) {
-    throw Error(ErrorKind::bad_input, "parameter search_seconds: has no effect without search");
-  }
-  read("whole_cycle", settings.whole_cycle);
-  read("rate_hz", settings.motion.rate);
-  read("max_jerk", settings.motion.max_jerk);
-  read("speed_fraction", settings.motion.speed_fraction);
-  settings.plan.trajectory.speed_fraction = settings.motion.speed_fraction;
-  read("send_doubtful", node.send_doubtful);
-  return node;
-}
 
 /// The motion that may go to a controller: without points unless the plan is to be trusted and
 /// begins where the machine stands.

@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -53,13 +54,23 @@ std::vector<std::string> told(const std::vector<Warning>& warnings) {
   return texts;
 }
 
-std::optional<std::int64_t> time_now() {
-  return excavplan::known_time(static_cast<std::int64_t>(ros::Time::now().toNSec()));
+std::optional<std::int64_t> known_time(const ros::Time& time) {
+  return excavplan::known_time(static_cast<std::int64_t>(time.toNSec()));
 }
+
+std::optional<std::int64_t> time_now() { return known_time(ros::Time::now()); }
 
 class Node {
  public:
   Node(ros::NodeHandle topics, const ros::NodeHandle& own) : Node(topics, own, settings_of(own)) {}
+
+  void spin() {
+    constexpr double longest_wait = 0.02;  // for joint states [s]; ours
+    while (ros::ok()) {
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(longest_wait));
+      joint_queue_.callAvailable();
+    }
+  }
 
  private:
   Node(ros::NodeHandle topics, const ros::NodeHandle& own, const excavplan::NodeSettings& settings)
@@ -70,7 +81,7 @@ class Node {
     listen<sensor_msgs::PointCloud2>("points", "sensor_msgs/msg/PointCloud2", 10);
     listen<tf2_msgs::TFMessage>("/tf", "tf2_msgs/msg/TFMessage", 1000);
     listen<tf2_msgs::TFMessage>("/tf_static", "tf2_msgs/msg/TFMessage", 1000);
-    listen<sensor_msgs::JointState>("joint_states", "sensor_msgs/msg/JointState", 10);
+    listen_to_joints();
     mark("start_dig", [this] { session_.start_dig(time_now()); });
     mark("end_dig", [this] { session_.end_dig(time_now()); });
     state_ = own_.advertise<std_msgs::String>("state", 1, true);
@@ -106,10 +117,27 @@ class Node {
     subscribers_.push_back(topics_.subscribe<Raw<Message>>(name, queue, take));
   }
 
+  /// In a queue of their own, so that they can be taken before and after a plan, within its call.
+  void listen_to_joints() {
+    using Event = ros::MessageEvent<const Raw<sensor_msgs::JointState>>;
+    const std::string name = topics_.resolveName("joint_states");
+    const boost::function<void(const Event&)> take = [this, name](const Event& event) {
+      error_of([&] {
+        session_.take({name, "sensor_msgs/msg/JointState", false, event.getConstMessage()->bytes,
+                       known_time(event.getReceiptTime())});
+      });
+    };
+    ros::SubscribeOptions options;
+    options.initByFullCallbackType<const Event&>(name, 100, take);
+    options.callback_queue = &joint_queue_;
+    subscribers_.push_back(topics_.subscribe(options));
+  }
+
   template <typename Work>
   void mark(const std::string& topic, const Work& work) {
     const boost::function<void(const std_msgs::Bool::ConstPtr&)> take =
         [this, work](const std_msgs::Bool::ConstPtr& message) {
+          joint_queue_.callAvailable();  // which were received before it
           if (message->data) error_of(work);
           tell_state();
         };
@@ -133,7 +161,10 @@ class Node {
   }
 
   CyclePlan make_plan() {
-    CyclePlan answer = session_.plan();
+    joint_queue_.callAvailable();
+    CyclePlan answer = session_.plan(time_now());
+    joint_queue_.callAvailable();
+    session_.confirm_start(answer, time_now());
     plan_.publish(text_message(to_json(answer)));
     trajectory_.publish(message_of(send_doubtful_ ? answer.motion : safe_motion(answer)));
     return answer;
@@ -179,6 +210,7 @@ class Node {
   excavplan::DigCycleSession session_;
   bool send_doubtful_;
   ros::NodeHandle topics_, own_;
+  ros::CallbackQueue joint_queue_;
   std::vector<ros::Subscriber> subscribers_;
   std::string told_state_;
   bool told_early_ = false;
@@ -193,7 +225,7 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "excavplan");
   try {
     excavplan_ros::Node node(ros::NodeHandle(), ros::NodeHandle("~"));
-    ros::spin();
+    node.spin();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "excavplan_node: error: %s\n", error.what());
     return 1;

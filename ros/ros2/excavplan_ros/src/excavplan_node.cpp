@@ -5,12 +5,11 @@
 /// The dig cycle as a node of ROS 2 (docs/ros.md): topics to DigCycleSession, its answers to topics
 /// and services. Checked for syntax only: Debian has no rclcpp.
 
-#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <optional>
-#include <type_traits>
 
 #include <excavplan/controller/robot_node.hpp>
 #include <rclcpp/rclcpp.hpp>
@@ -24,6 +23,8 @@
 #include <excavplan_ros/srv/dig_and_plan.hpp>
 #include <excavplan_ros/srv/estimate.hpp>
 #include <excavplan_ros/srv/plan.hpp>
+
+#include "parameters.hpp"
 
 namespace {
 
@@ -53,28 +54,8 @@ String text_message(const std::string& text) {
   return message;
 }
 
-/// Parameters by name, each of its type.
-class Parameters {
- public:
-  explicit Parameters(rclcpp::Node& node) : node_(node) {}
-
-  template <typename Value>
-  Value value(const std::string& name, const Value& fallback) {
-    if constexpr (std::is_same_v<Value, int>) {
-      constexpr std::int64_t most = std::numeric_limits<int>::max();
-      const auto count = node_.declare_parameter<std::int64_t>(name, fallback);
-      return static_cast<int>(std::clamp<std::int64_t>(count, -1, most));
-    } else {
-      return node_.declare_parameter<Value>(name, fallback);
-    }
-  }
-
- private:
-  rclcpp::Node& node_;
-};
-
 excavplan::NodeSettings settings_of(rclcpp::Node& node) {
-  Parameters parameters(node);
+  excavplan_ros::Parameters parameters(node);
   return excavplan::settings_of(parameters);
 }
 
@@ -91,8 +72,10 @@ class ExcavplanNode : public rclcpp::Node {
     listen<tf2_msgs::msg::TFMessage>("/tf", "tf2_msgs/msg/TFMessage", rclcpp::QoS(100));
     listen<tf2_msgs::msg::TFMessage>("/tf_static", "tf2_msgs/msg/TFMessage",
                                      rclcpp::QoS(100).transient_local());
+    joint_group_ = create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false);
+    joint_executor_.add_callback_group(joint_group_, get_node_base_interface());
     listen<sensor_msgs::msg::JointState>("joint_states", "sensor_msgs/msg/JointState",
-                                         rclcpp::SensorDataQoS());
+                                         rclcpp::SensorDataQoS(), joint_group_);
     mark("start_dig", [this] { session_.start_dig(time_now()); });
     mark("end_dig", [this] { session_.end_dig(time_now()); });
     serve<Estimate>("~/estimate", [this](Estimate::Response& answer) { fill(answer); });
@@ -100,6 +83,10 @@ class ExcavplanNode : public rclcpp::Node {
     serve<DigAndPlan>("~/dig_and_plan", [this](DigAndPlan::Response& answer) { fill(answer); });
     tell_state();
   }
+
+  /// Those that wait. They have an executor of their own, so that they can be taken before and
+  /// after a plan, within its call.
+  void take_joints() { joint_executor_.spin_all(std::chrono::milliseconds(100)); }
 
  private:
   std::optional<std::int64_t> time_now() const {
@@ -119,7 +106,8 @@ class ExcavplanNode : public rclcpp::Node {
   }
 
   template <typename Message>
-  void listen(const std::string& topic, const std::string& type, const rclcpp::QoS& qos) {
+  void listen(const std::string& topic, const std::string& type, const rclcpp::QoS& qos,
+              const rclcpp::CallbackGroup::SharedPtr& group = nullptr) {
     const auto take = [this, topic, type](std::shared_ptr<const rclcpp::SerializedMessage> raw) {
       const rcl_serialized_message_t& message = raw->get_rcl_serialized_message();
       const std::string_view bytes(reinterpret_cast<const char*>(message.buffer),
@@ -127,7 +115,9 @@ class ExcavplanNode : public rclcpp::Node {
       error_of([&] { session_.take({topic, type, true, bytes, time_now()}); });
       tell_state();
     };
-    subscriptions_.push_back(create_subscription<Message>(topic, qos, take));
+    rclcpp::SubscriptionOptions options;
+    options.callback_group = group;
+    subscriptions_.push_back(create_subscription<Message>(topic, qos, take, options));
   }
 
   template <typename Work>
@@ -192,7 +182,10 @@ class ExcavplanNode : public rclcpp::Node {
   void answer_plan(Response& response) {
     response.success = response.trustworthy = response.previous_density = false;
     const std::string error = error_of([&] {
-      const CyclePlan answer = session_.plan();
+      take_joints();
+      CyclePlan answer = session_.plan(time_now());
+      take_joints();
+      session_.confirm_start(answer, time_now());
       excavplan::fill_plan(answer, response);
       response.trajectory = message_of(answer.motion);
       tell(answer.warnings, response.warnings);
@@ -205,6 +198,8 @@ class ExcavplanNode : public rclcpp::Node {
 
   excavplan::NodeSettings settings_;
   excavplan::DigCycleSession session_;
+  rclcpp::CallbackGroup::SharedPtr joint_group_;
+  rclcpp::executors::SingleThreadedExecutor joint_executor_;
   std::string told_state_;
   bool told_early_ = false;
   rclcpp::Publisher<String>::SharedPtr state_, estimate_, plan_;
@@ -219,7 +214,14 @@ int main(int argc, char** argv) {
   rclcpp::init(argc, argv);
   int code = 0;
   try {
-    rclcpp::spin(std::make_shared<ExcavplanNode>());
+    constexpr std::chrono::milliseconds longest_wait(20);  // for joint states; ours
+    const auto node = std::make_shared<ExcavplanNode>();
+    rclcpp::executors::SingleThreadedExecutor executor;
+    executor.add_node(node);
+    while (rclcpp::ok()) {
+      executor.spin_once(longest_wait);
+      node->take_joints();
+    }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "excavplan_node: error: %s\n", error.what());
     code = 1;

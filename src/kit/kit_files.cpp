@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "shared/kit_files.hpp"
+#include <excavplan/kit/kit_files.hpp>
 
 #include <filesystem>
 #include <system_error>
@@ -8,9 +8,8 @@
 #include <excavplan/data_files.hpp>
 
 #include "base/files.hpp"
-#include "base/text.hpp"
 
-namespace excavplan::tools {
+namespace excavplan {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,20 +21,21 @@ bool is_folder(const std::string& path) {
 
 }  // namespace
 
-std::string machine_path(const std::string& machine) {
-  if (is_folder(machine)) return (fs::path(machine) / kit_machine).string();
-  return shipped_or_file("machines", machine);
+std::string machine_path(const std::string& machine_word) {
+  if (is_folder(machine_word)) return (fs::path(machine_word) / kit_machine).string();
+  return shipped_or_file("machines", machine_word);
 }
 
-std::string default_kit(const std::string& machine) {
-  const fs::path path(machine);
+std::string default_kit(const std::string& machine_word) {
+  const fs::path path(machine_word);
   return (path.parent_path() / path.stem()).string() + "-kit";
 }
 
-std::optional<std::string> kit_file(const std::string& machine, const std::string& relative_path) {
-  const fs::path path(machine);
-  fs::path folder = default_kit(machine);
-  if (is_folder(machine)) folder = path;
+std::optional<std::string> kit_file(const std::string& machine_word,
+                                    const std::string& relative_path) {
+  const fs::path path(machine_word);
+  fs::path folder = default_kit(machine_word);
+  if (is_folder(machine_word)) folder = path;
   if (path.filename() == kit_machine) folder = path.parent_path();
   std::error_code none;
   const fs::path file = folder / relative_path;
@@ -50,7 +50,7 @@ std::optional<std::string> kit_law(const std::string& machine_word, const Machin
 
 std::shared_ptr<const PathLibrary> kit_library(const std::string& machine_word,
                                                const Machine& machine, const std::string& soil,
-                                               const GoalInputs& given, DigObjective& objective) {
+                                               const GoalNumbers& given, DigObjective& objective) {
   PathLibrary wanted;
   wanted.machine = machine.name;
   wanted.soil = soil;
@@ -61,19 +61,10 @@ std::shared_ptr<const PathLibrary> kit_library(const std::string& machine_word,
   const auto& parameters = objective_parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto field = parameters[i].field;
-    if (!given.numbers[i]) objective.*field = library->objective.*field;
+    const bool told = given[i] || field == info_of(objective.goal).parameter;
+    if (!told) objective.*field = library->objective.*field;
   }
   return library;
 }
 
-std::vector<Warning> machine_warnings(const std::string& list) {
-  std::vector<Warning> warnings;
-  for (const std::string& machine : split(list, ',')) {
-    for (Warning& each : load_machine_file(machine_path(machine)).warnings) {
-      warnings.push_back(std::move(each));
-    }
-  }
-  return warnings;
-}
-
-}  // namespace excavplan::tools
+}  // namespace excavplan
