@@ -102,6 +102,12 @@ PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilK
   return options;
 }
 
+/// That the motion must be clear of: all around the machine, of which the dig's is a strip.
+Terrain ground_around(const Inputs& inputs, const Machine& machine) {
+  if (!inputs.terrain.cloud || !looks_around(inputs.motion)) return level_swing_ground(machine);
+  return make_site(inputs.terrain, swing_extent(machine), usual_cell(machine)).ground;
+}
+
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
   check(inputs.density);
@@ -137,7 +143,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
   write_maps(
       inputs.maps, [&] { return plan_maps(machine, plan, dug); }, outcome);
-  write_motion(inputs.motion, {machine, site.ground, plan, options.search.objective}, outcome);
+  write_motion(inputs.motion,
+               {machine, ground_around(inputs, machine), plan, options.search.objective}, outcome);
   return outcome;
 }
 

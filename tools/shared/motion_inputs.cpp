@@ -136,6 +136,10 @@ void check(const MotionInputs& inputs, const Machine& machine, const CycleOption
   });
 }
 
+bool looks_around(const MotionInputs& inputs) {
+  return inputs.file && (inputs.joints || inputs.whole_cycle);
+}
+
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan) {
   return time_way(machine, way_of(plan.path, plan.torques), inputs.options);
 }
@@ -144,6 +148,11 @@ void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outc
   if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;
   const Trajectory motion =
       naming_options(option_names, [&] { return motion_of(inputs, planned); });
+  for (const Warning& warning : motion.warnings) {
+    outcome.warnings.push_back(warning);
+    outcome.trustworthy = outcome.trustworthy && !warning.ends_trust;
+  }
+  outcome.json["trustworthy"] = outcome.trustworthy;
   const Format& format = format_of(inputs);
   const std::string text = format.text(motion);
   if (*inputs.file == "-") {

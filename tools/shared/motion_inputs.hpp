@@ -29,11 +29,13 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs);
 /// Checks made before the work. @throws Error (bad_input) naming the option
 void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle);
 
-/// A plan with the ground that it was made for and the objective that has its swing and dump
-/// height.
+/// Whether the motion goes off the dig, where the ground around matters.
+bool looks_around(const MotionInputs& inputs);
+
+/// A plan with the ground around the machine and the objective that has its swing and dump height.
 struct PlannedMotion {
   const Machine& machine;
-  const Terrain& ground;
+  const Terrain& ground;  ///< of swing_extent()
   const DigPlan& plan;
   const DigObjective& objective;
 };
@@ -42,7 +44,7 @@ struct PlannedMotion {
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan);
 
 /// Writes the motion, if it is asked for; one without poses if there is no dig, so that none of an
-/// earlier plan is driven. Sets key "trajectory" of the outcome.
+/// earlier plan is driven. Sets key "trajectory" of the outcome and adds the motion's warnings.
 /// @throws Error (bad_input) naming the option, also where the ground blocks the way
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome);
 
