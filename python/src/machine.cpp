@@ -53,6 +53,8 @@ void bind_machine_itself(py::module_& module) {
       .def_readonly("arm_length", &Machine::arm_length, "Arm pin to bucket pin [m].")
       .def_readonly("bucket_length", &Machine::bucket_length, "Bucket pin to tip [m].")
       .def_readonly("track_front", &Machine::track_front, "x of the front of the tracks [m].")
+      .def_property_readonly("undercarriage_width", &Machine::undercarriage_width,
+                             "Over both tracks [m].")
       .def_property_readonly(
           "limits",
           [](const Machine& m) {
@@ -205,6 +207,7 @@ void bind_trajectory(py::module_& module) {
   using Point = TrajectoryPoint;
   py::class_<Trajectory>(module, "Trajectory", "A timed dig path, or the motion of a plan.")
       .def_readonly("machine", &Trajectory::machine, "Its name.")
+      .def_readonly("warnings", &Trajectory::warnings, "Of plan_motion().")
       .def_property_readonly("duration", &Trajectory::duration, "Of all points [s].")
       .def_property_readonly("dig_duration", &Trajectory::dig_duration,
                              "Of penetrate, drag and scoop [s].")

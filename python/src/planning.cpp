@@ -304,8 +304,8 @@ std::variant<Trajectory, BlockedWay> motion_of(const Machine& machine, const Dig
   way.cycle.swing = swing;
   way.cycle.dump_height = dump_height;
   return call([&] {
-    return plan_motion(machine, terrain ? *terrain : level_planning_ground(machine), plan, way,
-                       motion);
+    return terrain ? plan_motion(machine, *terrain, plan, way, motion)
+                   : plan_motion(machine, plan, way, motion);
   });
 }
 
@@ -335,8 +335,9 @@ void bind_motion(py::module_& module) {
       arg("speed_fraction") = usual.speed_fraction,
       arg("corner_tolerance") = usual.corner_tolerance, arg("max_jerk") = usual.max_jerk,
       "The motion of a plan for a controller, or what blocks the way; it keeps the limits of the\n"
-      "machine between its points. terrain: the ground that it must be clear of, as given to\n"
-      "plan_dig(); None: level ground, nothing else that stands on the site is looked at;\n"
+      "machine between its points. terrain: the ground before the dig that it must be clear of,\n"
+      "of swing_extent(); where it is unknown or ends, Trajectory.warnings has unseen_way. None:\n"
+      "level ground, nothing else that stands on the site is looked at;\n"
       "start: boom, arm, bucket, swing [rad] from which it begins; whole_cycle: over swing, dump\n"
       "and back; swing [rad], dump_height [m]: as of DigObjective; rate: points per second;\n"
       "corner_tolerance [m]; max_jerk: of each joint [rad/s^3].");

@@ -61,6 +61,8 @@ void bind_terrain(py::module_& module) {
           "loose", [](const TerrainPatch& p) { return array(p.loose); },
           "Thickness of the loose soil, likewise [m].");
   module.def("planning_extent", &planning_extent, arg("machine"), "Ground that affects a dig.");
+  module.def("swing_extent", &swing_extent, arg("machine"),
+             "Ground that the front can pass over, swung all round: for plan_motion().");
   module.def("scene_extent", &scene_extent, arg("machine"), arg("dump_at") = default_dump_point(),
              "Ground for the digs of a machine and a heap at (x, y) [m].");
   module.def(

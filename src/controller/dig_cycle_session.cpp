@@ -64,6 +64,7 @@ struct DigCycleSession::State {
   Scan scan_of(Frames& frames, const char* which, bool& averaged);
   DensityOptions estimate_options() const;
   ScannedTerrain terrain();
+  Terrain ground_around();
   PlanOptions plan_options() const;
   std::optional<FrontJoints> start() const;
   void add_motion(const Terrain& ground, CyclePlan& answer) const;
@@ -297,6 +298,16 @@ ScannedTerrain DigCycleSession::State::terrain() {
   return ground;
 }
 
+/// The same as far as the machine reaches, of which terrain() is a strip.
+Terrain DigCycleSession::State::ground_around() {
+  Frames& seen = stage == CycleStage::digging || recent.empty() ? before : recent;
+  if (seen.empty()) return level_swing_ground(settings.machine);
+  bool averaged = true;
+  return terrain_from_scan(scan_of(seen, "of the ground", averaged), swing_extent(settings.machine),
+                           usual_cell(settings.machine))
+      .terrain;
+}
+
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
   const CycleWayOptions way = {start(), settings.whole_cycle, settings.plan.search.objective};
   answer.posture_known = way.start.has_value();
@@ -315,7 +326,9 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
     if (const auto* blocked = std::get_if<BlockedWay>(&motion)) {
       refuse("the ground is in the way: " + blocked->message);
     } else {
-      answer.motion = joint_motion(std::get<Trajectory>(motion));
+      const Trajectory& timed = std::get<Trajectory>(motion);
+      answer.motion = joint_motion(timed);
+      answer.warnings.insert(answer.warnings.end(), timed.warnings.begin(), timed.warnings.end());
     }
   } catch (const Error& error) {
     refuse(error.what());
@@ -498,7 +511,7 @@ CyclePlan DigCycleSession::plan(Time time) {
     answer.warnings.push_back({"search_stopped", stopped + ": there may be a better dig"});
     if (!answer.plan.dig) answer.plan.reason = stopped + " that could not be done";
   }
-  if (answer.plan.dig) state.add_motion(ground.terrain, answer);
+  if (answer.plan.dig) state.add_motion(state.ground_around(), answer);
   answer.trustworthy = answer.plan.trustworthy && answer.plan.dig &&
                        std::none_of(answer.warnings.begin(), answer.warnings.end(),
                                     [](const Warning& warning) { return warning.ends_trust; });

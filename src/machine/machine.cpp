@@ -50,6 +50,7 @@ void read_geometry(JsonObject file, Machine& machine) {
   machine.arm_length = positive(file, "arm_length_m", longest);
   machine.bucket_length = positive(file, "bucket_length_m", longest);
   machine.track_front = file.number("track_front_m", -longest, longest);
+  if (file.has("track_width_m")) machine.track_width = positive(file, "track_width_m", longest);
   file.ignore("sources");
   file.done();
 }
@@ -269,6 +270,11 @@ double Machine::beta() const {
           static_cast<double>(bucket.profile.size()), "at least 2");
   const Vector2d floor = bucket.profile[1] - bucket.profile[0];
   return std::atan2(floor.y(), -floor.x());
+}
+
+double Machine::undercarriage_width() const {
+  constexpr double of_zx120 = 2.6 / 1.8;
+  return track_width.value_or(of_zx120 * std::max(0.0, track_front));
 }
 
 Machine read_machine(JsonObject file) {

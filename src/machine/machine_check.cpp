@@ -236,6 +236,7 @@ void require_machine(const Machine& machine) {
   rules.positive("", "arm_length", machine.arm_length, longest);
   rules.positive("", "bucket_length", machine.bucket_length, longest);
   rules.in("", "track_front", machine.track_front, -longest, longest);
+  if (machine.track_width) rules.positive("", "track_width", *machine.track_width, longest);
   for (const Joint joint : {Joint::boom, Joint::arm, Joint::bucket}) {
     const auto i = static_cast<std::size_t>(joint);
     check_joint(rules, joint, machine.limits[i], machine.links[i]);

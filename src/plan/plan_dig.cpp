@@ -472,12 +472,11 @@ void add_trajectory(const Task& task, DigPlan& plan) {
   } else {
     plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
   }
-  DigOptions unsettled;  // what slides afterwards loads no joint
-  unsettled.settle = false;
   const auto simulator =
       make_simulator(task.options.simulator, task.machine, task.soil, task.density.percent);
-  const DigResult dig = checked_dig(*simulator, task.machine, task.ground, plan.path, unsettled);
+  const DigResult dig = checked_dig(*simulator, task.machine, task.ground, plan.path, {});
   plan.torques = dig.torques;
+  plan.ground_after = dig.after(task.ground).surface();
   plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, plan.torques);
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/plan/plan_motion.hpp>
 
+#include <excavplan/simulation/dig_ground.hpp>
+
 #include "base/check.hpp"
 #include "base/text.hpp"
 
@@ -14,10 +16,18 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const T
   require(plan.trajectory.machine == machine.name,
           "motion: the plan is of the machine " + excavplan::quoted(plan.trajectory.machine) +
               ", not of " + excavplan::quoted(machine.name));
-  const auto laid =
-      way_of_cycle(machine, ground, plan.path, {plan.torques, plan.dig->payload_mass}, way);
+  const DigLoad load = {plan.torques, plan.dig->payload_mass, plan.ground_after};
+  const auto laid = way_of_cycle(machine, ground, plan.path, load, way);
   if (const auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
-  return time_way(machine, std::get<Way>(laid), motion);
+  Trajectory timed = time_way(machine, std::get<Way>(laid), motion);
+  timed.warnings = std::get<Way>(laid).warnings;
+  return timed;
+}
+
+std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const DigPlan& plan,
+                                                 const CycleWayOptions& way,
+                                                 const MotionOptions& motion) {
+  return plan_motion(machine, level_swing_ground(machine), plan, way, motion);
 }
 
 }  // namespace excavplan

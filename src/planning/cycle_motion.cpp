@@ -4,95 +4,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/text.hpp"
+#include "ground/map_check.hpp"
 #include "planning/front_load.hpp"
+#include "planning/surroundings.hpp"
 #include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-
 // Ours:
-constexpr double safe = 0.1;        // above the ground, off the dig [m]
 constexpr double deepest = 0.1;     // of the bucket in the ground at the start [m]
-constexpr double slack = 0.01;      // of the way off and onto the ground [m]
-constexpr double under_link = 0.1;  // of a link's body below its line from pin to pin [m]
-constexpr double apart = 0.15;      // between the places of the machine that are looked at [m]
-constexpr double step = 0.05;       // of the joints, likewise [rad]
+constexpr double step = 0.05;       // of the joints from pose to pose [rad]
 constexpr double rise = 0.1;        // of the boom, by which it tries to pass higher [rad]
+constexpr double tips = pi / 18.0;  // of a full bucket, from which it loses soil [rad]
 constexpr double most_swing = 2.0 * pi;
-
-/// How far the machine is above the ground, and where that is least.
-struct Clearance {
-  double height = std::numeric_limits<double>::infinity();  ///< [m]
-  Vector3d place = Vector3d::Zero();                        ///< of the ground [m]
-};
-
-class Surroundings {
- public:
-  Surroundings(const Machine& machine, const Terrain& ground)
-      : machine_(machine), surface_(ground.surface()) {}
-
-  Clearance at(const FrontJoints& joints) const {
-    const LinkPositions links = link_positions(machine_, joints.head<3>());
-    const Vector2d ahead(std::cos(joints[3]), std::sin(joints[3]));
-    Clearance least;
-    look(machine_.boom_pin, links.arm_pin, under_link, ahead, least);
-    look(links.arm_pin, links.bucket_pin, under_link, ahead, least);
-    const std::vector<Vector2d>& profile = machine_.bucket.profile;
-    for (std::size_t i = 0; i < profile.size(); ++i) {
-      const Vector2d from = bucket_point(links, profile[i]);
-      const Vector2d to = bucket_point(links, profile[(i + 1) % profile.size()]);
-      look(from, to, 0.0, ahead, least);
-    }
-    return least;
-  }
-
- private:
-  /// Along a line of the boom plane and beside it, within the width of the bucket.
-  void look(const Vector2d& from, const Vector2d& to, double below, const Vector2d& ahead,
-            Clearance& least) const {
-    const double parts = std::max(1.0, std::ceil((to - from).norm() / apart));
-    for (double i = 0.0; i <= parts; ++i) {
-      const Vector2d at = from + i / parts * (to - from);
-      for (const double side : {-0.5, 0.0, 0.5}) {
-        const double aside = side * machine_.bucket.width_outside;
-        const Vector2d place = at.x() * ahead + aside * Vector2d(-ahead.y(), ahead.x());
-        const double ground = height_at(place);
-        if (at.y() - below - ground >= least.height) continue;
-        least = {at.y() - below - ground, {place.x(), place.y(), ground}};
-      }
-    }
-  }
-
-  double height_at(const Vector2d& place) const {
-    const Vector2d cell = ((place - surface_.origin) / surface_.cell_size).array().floor();
-    const bool inside = cell.x() >= 0.0 && cell.x() < static_cast<double>(surface_.z.cols()) &&
-                        cell.y() >= 0.0 && cell.y() < static_cast<double>(surface_.z.rows());
-    if (!inside) return 0.0;
-    const double z =
-        surface_.z(static_cast<Eigen::Index>(cell.y()), static_cast<Eigen::Index>(cell.x()));
-    return std::isfinite(z) ? z : 0.0;
-  }
-
-  const Machine& machine_;
-  HeightMap surface_;
-};
 
 /// Adds the parts of a cycle to a way.
 class CycleWay {
  public:
-  CycleWay(const Machine& machine, const Terrain& ground, double payload)
+  CycleWay(const Machine& machine, const HeightMap& ground, const DigLoad& load)
       : machine_(machine),
+        load_(load),
         surroundings_(machine, ground),
         empty_(machine),
-        loaded_(machine, payload) {}
+        loaded_(machine, load.payload_mass) {}
 
   void start_at(const FrontJoints& joints) {
     way_.poses.push_back({DigPhase::approach, joints, JointAngles::Zero()});
@@ -103,21 +43,26 @@ class CycleWay {
     way_.poses.insert(way_.poses.end(), dig.poses.begin(), dig.poses.end());
   }
 
+  /// From here on the ground is the one after it.
+  void dig_is_done() {
+    if (load_.ground_after.z.size() > 0) surroundings_.replace(load_.ground_after);
+  }
+
   /// To these joints, straight or above what is in the way. @return what blocks every such way
   std::optional<BlockedWay> go(DigPhase phase, const FrontJoints& to, bool loaded) {
-    const FrontJoints from = way_.poses.back().joints;
-    const Clearance first = surroundings_.at(from), last = surroundings_.at(to);
+    const FrontJoints from = joints();
+    const Clearance first = surroundings_.standing(from);
     if (first.height < -deepest) return blocked(phase, first, "where the way begins");
-    const auto straight = obstacle(from, to, safe);
+    const auto straight = surroundings_.obstacle(from, to);
     if (!straight) {
       add(phase, {to}, loaded);
       return std::nullopt;
     }
     for (double up = rise;; up += rise) {
-      const FrontJoints over_from = lifted(from, up), over_to = lifted(to, up);
-      if (!obstacle(from, over_from, std::min(safe, first.height) - slack) &&
-          !obstacle(over_from, over_to, safe) &&
-          !obstacle(over_to, to, std::min(safe, last.height) - slack)) {
+      const FrontJoints over_from = lifted(from, up, loaded), over_to = lifted(to, up, loaded);
+      if (!surroundings_.obstacle(over_from, over_to) &&
+          !surroundings_.obstacle_leaving(from, over_from) &&
+          !surroundings_.obstacle_leaving(to, over_to)) {
         add(phase, {over_from, over_to, to}, loaded);
         return std::nullopt;
       }
@@ -129,38 +74,54 @@ class CycleWay {
 
   const FrontJoints& joints() const { return way_.poses.back().joints; }
 
-  /// As far as the swing can accelerate all along.
   Way take(bool swings) {
-    double inertia = 0.0;
-    for (const WayPose& pose : way_.poses) {
-      if (!swings) break;
-      inertia = std::max(inertia, loaded_.inertia(pose.joints.head<3>()));
+    if (swings) way_.swing_acceleration = swing_acceleration();
+    if (unseen_.area > 0.0) {
+      way_.warnings.push_back(
+          {"unseen_way",
+           readable(unseen_.area, 2) +
+               " m2 of the ground that arm and bucket pass over off the dig were not seen, first "
+               "at x = " +
+               readable(unseen_.first.x(), 2) + " m, y = " + readable(unseen_.first.y(), 2) +
+               " m; it is taken to lie as high as the tracks",
+           true});
     }
-    if (swings) way_.swing_acceleration = machine_.swing->torque / inertia;
+    if (tipped_ > tips) {
+      way_.warnings.push_back({"payload_tips",
+                               "the full bucket cannot keep its attitude off the dig: it tips by " +
+                                   readable(tipped_ * 180.0 / pi, 2) +
+                                   " degrees, as its joint ends, and loses soil",
+                               true});
+    }
     return std::move(way_);
   }
 
  private:
-  FrontJoints lifted(FrontJoints joints, double up) const {
-    joints[0] = std::max(joints[0] - up, std::min(joints[0], machine_.limits[0].lower));
-    return joints;
+  /// As far as the swing can do all along.
+  double swing_acceleration() const {
+    double inertia = 0.0;
+    for (const WayPose& pose : way_.poses) {
+      inertia = std::max(inertia, loaded_.inertia(pose.joints.head<3>()));
+    }
+    return machine_.swing->torque / inertia;
   }
 
-  /// Where the machine comes nearer to the ground than this on a straight way.
-  std::optional<Clearance> obstacle(const FrontJoints& from, const FrontJoints& to,
-                                    double least) const {
-    const double parts = std::max(1.0, std::ceil((to - from).norm() / step));
-    for (double i = 0.0; i <= parts; ++i) {
-      const Clearance there = surroundings_.at(from + i / parts * (to - from));
-      if (there.height < least) return there;
-    }
-    return std::nullopt;
+  /// With the boom higher; a full bucket keeps its attitude as far as its joint can.
+  FrontJoints lifted(FrontJoints joints, double up, bool loaded) const {
+    const double boom = std::max(joints[0] - up, std::min(joints[0], machine_.limits[0].lower));
+    const double level = joints[2] + joints[0] - boom;
+    if (loaded) joints[2] = std::min(level, std::max(joints[2], machine_.limits[2].upper));
+    joints[0] = boom;
+    return joints;
   }
 
   void add(DigPhase phase, const std::vector<FrontJoints>& places, bool loaded) {
     const FrontLoad& load = loaded ? loaded_ : empty_;
+    const double attitude = joints().head<3>().sum();
     for (const FrontJoints& to : places) {
       const FrontJoints from = joints();
+      surroundings_.pass(from, to, unseen_);
+      if (loaded) tipped_ = std::max(tipped_, std::abs(to.head<3>().sum() - attitude));
       const double parts = std::ceil((to - from).norm() / step);
       for (double i = 1.0; i <= parts; ++i) {
         const FrontJoints at = from + i / parts * (to - from);
@@ -170,7 +131,9 @@ class CycleWay {
     }
   }
 
-  static BlockedWay blocked(DigPhase phase, const Clearance& at, const std::string& when) {
+  BlockedWay blocked(DigPhase phase, const Clearance& at, const std::string& when) const {
+    const bool own = surroundings_.on_undercarriage(at.place.x(), at.place.y());
+    const std::string what = own ? "undercarriage" : "ground";
     BlockedWay stop;
     stop.phase = phase;
     stop.place = at.place;
@@ -179,14 +142,17 @@ class CycleWay {
                               " m, y = " + readable(at.place.y(), 2) + " m, where it is " +
                               readable(at.place.z(), 2) + " m high";
     stop.message = std::string(name(phase)) + ": the machine would be " +
-                   (at.height < 0.0 ? readable(-at.height, 2) + " m in the ground"
-                                    : "only " + readable(at.height, 2) + " m above the ground") +
+                   (at.height < 0.0 ? readable(-at.height, 2) + " m in the " + what
+                                    : "only " + readable(at.height, 2) + " m above the " + what) +
                    where + ", " + when;
     return stop;
   }
 
   const Machine& machine_;
+  const DigLoad& load_;
   Surroundings surroundings_;
+  UnseenGround unseen_;
+  double tipped_ = 0.0;  ///< most of a full bucket [rad]
   FrontLoad empty_, loaded_;
   Way way_;
 };
@@ -226,14 +192,16 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
   require_terrain(ground, "ground of the motion");
   check(machine, options);
   require_in("payload_mass of the dig [kg]", load.payload_mass, 0.0, 1e9);
+  if (load.ground_after.z.size() > 0) require_grid(load.ground_after, "ground after the dig");
   const Way dig = way_of(path, load.torques);
-  CycleWay way(machine, ground, load.payload_mass);
+  CycleWay way(machine, ground.surface(), load);
   if (options.start) {
     way.start_at(*options.start);
     if (auto stop = way.go(DigPhase::approach, dig.poses.front().joints, false)) return *stop;
   }
   way.add_dig(dig);
   if (options.whole_cycle) {
+    way.dig_is_done();
     const JointAngles clear = way.joints().head<3>();
     const double height = std::max(options.cycle.dump_height, pin_height(machine, clear));
     const JointAngles full = raised(machine, clear, height), open = opened(machine, full);

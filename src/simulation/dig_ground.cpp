@@ -72,6 +72,18 @@ Terrain level_planning_ground(const Machine& machine, double cell_size) {
   return undisturbed(flat_ground(planning_extent(machine), cell_size));
 }
 
+Rectangle swing_extent(const Machine& machine) {
+  require_machine(machine);
+  const double reach = std::hypot(std::abs(machine.boom_pin.x()) + machine.full_length(),
+                                  0.5 * machine.bucket.width_outside);
+  const double far = reach + 0.5;  // as planning_extent()
+  return {-far, -far, far, far};
+}
+
+Terrain level_swing_ground(const Machine& machine) {
+  return undisturbed(flat_ground(swing_extent(machine), usual_cell(machine)));
+}
+
 GroundProfile boom_plane_profile(const HeightMap& surface) {
   require_grid(surface, "ground profile");
   const BoomPlaneRows rows = rows_at_boom_plane(surface);

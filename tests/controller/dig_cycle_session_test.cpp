@@ -301,6 +301,29 @@ TEST(DigCycleSession, MotionBeginsWhereTheJointsStand) {
   EXPECT_EQ(plan.motion.points.front().accelerations.size(), 4U);
 }
 
+/// The swing leaves the strip that is planned on.
+TEST(DigCycleSession, MotionIsClearOfAllScannedGround) {
+  DigCycleSettings settings = settings_of();
+  settings.whole_cycle = true;
+  const auto planned_on = [&](double half_width, double wall) {
+    Points points;
+    for (double x = 1.0; x < 9.5; x += 0.1) {
+      for (double y = -half_width; y < half_width; y += 0.1) {
+        points.emplace_back(x, y, x > 2.0 && x < 4.0 && y > 2.5 && y < 3.5 ? wall : 0.0);
+      }
+    }
+    DigCycleSession session(settings);
+    send(session, cloud_bytes(now, "site", points));
+    return session.plan();
+  };
+  const CyclePlan strip = planned_on(1.5, 0.0);
+  EXPECT_TRUE(has(strip.warnings, "unseen_way"));
+  EXPECT_FALSE(strip.trustworthy);
+  EXPECT_FALSE(strip.motion.points.empty());
+  EXPECT_TRUE(has(planned_on(9.5, 9.0).warnings, "no_motion"));
+  EXPECT_FALSE(has(planned_on(9.5, 0.0).warnings, "no_motion"));
+}
+
 TEST(DigCycleSession, SaysWhyThereIsNoMotion) {
   DigCycleSettings settings = settings_of();
   const JointLimits& boom = settings.machine.limits[0];

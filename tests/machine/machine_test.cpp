@@ -432,6 +432,22 @@ TEST(MachineFile, NamesKeyValueAndRuleOfWhatItRefuses) {
   EXPECT_EQ(complaint_about([](json& f) { f["links"].erase("boom"); }), "links.boom: is missing");
 }
 
+TEST(MachineFile, MayStateTheWidthOfTheTracks) {
+  const Machine stated = zx120();
+  EXPECT_EQ(stated.undercarriage_width(), 2.6);
+  json file = shipped_json();
+  file["geometry"].erase("track_width_m");
+  const std::string path = testing::TempDir() + "tracks_" + std::to_string(::getpid()) + ".json";
+  std::ofstream(path) << file;
+  const Machine silent = load_machine(path);
+  EXPECT_FALSE(silent.track_width);
+  EXPECT_EQ(fingerprint(silent), fingerprint(stated)) << "it affects no dig";
+  EXPECT_EQ(set("/geometry/track_width_m", 2.4), "no error");
+  EXPECT_EQ(set("/geometry/track_width_m", 0.0),
+            "geometry.track_width_m: is 0, must be above 0 and at most 100");
+  std::remove(path.c_str());
+}
+
 TEST(MachineFile, MayNameSomeOfTheRobotsJoints) {
   json file = shipped_json();
   file["robot_joints"] = {{"boom", {{"name", "b"}}}, {"arm", {{"sign", -1}}}};

@@ -84,6 +84,34 @@ TEST_F(Tools, TrajectoryBeginsAtThePresentJointsAndGoesOverTheCycle) {
   EXPECT_EQ(result["trajectory"]["duration_s"], motion.duration());
 }
 
+/// The swing leaves the strip that is planned on.
+TEST_F(Tools, TrajectoryIsClearOfAllScannedGround) {
+  const auto words = [&](double half_width, double wall) {
+    std::ostringstream points;
+    for (double x = -9.4; x < 9.45; x += 0.1) {
+      for (double y = -half_width; y < half_width; y += 0.1) {
+        points << x << ' ' << y << ' ' << (x > 2.0 && x < 4.0 && y > 2.5 && y < 3.5 ? wall : 0.0)
+               << '\n';
+      }
+    }
+    return Words{"--density",
+                 "40",
+                 "--whole-cycle",
+                 "--terrain",
+                 folder.write("ground.xyz", points.str()),
+                 "--trajectory",
+                 folder.file("m.json")};
+  };
+  const json seen = answer("plan-path", words(9.4, 0.0));
+  EXPECT_FALSE(warns(seen, "unseen_way"));
+  EXPECT_TRUE(seen.at("trustworthy"));
+  const json strip = answer("plan-path", words(1.5, 0.0));
+  EXPECT_TRUE(warns(strip, "unseen_way"));
+  EXPECT_FALSE(strip.at("trustworthy"));
+  const ProgramResult blocked = run_program("plan-path", words(9.4, 9.0));
+  EXPECT_TRUE(contains(blocked.out + blocked.err, "swing: the machine would be ")) << blocked.err;
+}
+
 TEST_F(Tools, TrajectoryIsAMessageByItsEndingOrItsFormat) {
   const std::string yaml = folder.file("dig.YML"), other = folder.file("dig.csv");
   answer("plan-path", {"--density", "40", "--trajectory", yaml});

@@ -127,17 +127,16 @@ std::string names_of(const Trajectory& motion) {
 }
 
 /// Without points, and a warning, where the ground is in the way: the plan is worth having still.
-Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {
+Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   auto motion = plan_motion(
       planned.machine, planned.ground, planned.plan,
       {joints_of(inputs, planned.machine), inputs.whole_cycle, planned.objective}, inputs.options);
   const auto* stop = std::get_if<BlockedWay>(&motion);
   if (stop == nullptr) return std::get<Trajectory>(std::move(motion));
-  outcome.warnings.push_back(
-      {"no_motion", "the plan has no motion: the ground is in the way: " + stop->message, true});
-  outcome.trustworthy = false;
-  outcome.json["trustworthy"] = false;
-  return {planned.machine.name, {}, planned.machine.robot_joints};
+  Trajectory none = {planned.machine.name, {}, planned.machine.robot_joints};
+  none.warnings = {
+      {"no_motion", "the plan has no motion: the ground is in the way: " + stop->message, true}};
+  return none;
 }
 
 }  // namespace
@@ -185,6 +184,10 @@ void check(const MotionInputs& inputs, const Machine& machine, const CycleOption
   });
 }
 
+bool looks_around(const MotionInputs& inputs) {
+  return inputs.file && (inputs.joints || inputs.whole_cycle);
+}
+
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan) {
   return time_way(machine, way_of(plan.path, plan.torques), inputs.options);
 }
@@ -192,7 +195,12 @@ Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const 
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome) {
   if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;
   const Trajectory motion =
-      naming_options(option_names, [&] { return motion_of(inputs, planned, outcome); });
+      naming_options(option_names, [&] { return motion_of(inputs, planned); });
+  for (const Warning& warning : motion.warnings) {
+    outcome.warnings.push_back(warning);
+    outcome.trustworthy = outcome.trustworthy && !warning.ends_trust;
+  }
+  outcome.json["trustworthy"] = outcome.trustworthy;
   const Format& format = format_of(inputs);
   const std::string text = format.text(motion);
   if (*inputs.file == "-") {

@@ -29,11 +29,13 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs);
 /// Checks made before the work. @throws Error (bad_input) naming the option
 void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle);
 
-/// A plan with the ground that it was made for and the objective that has its swing and dump
-/// height.
+/// Whether the motion goes off the dig, where the ground around matters.
+bool looks_around(const MotionInputs& inputs);
+
+/// A plan with the ground around the machine and the objective that has its swing and dump height.
 struct PlannedMotion {
   const Machine& machine;
-  const Terrain& ground;
+  const Terrain& ground;  ///< of swing_extent()
   const DigPlan& plan;
   const DigObjective& objective;
 };
@@ -43,7 +45,7 @@ Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const 
 
 /// Writes the motion, if it is asked for; one without points if there is no dig, or the ground is
 /// in the way (warning no_motion), so that none of an earlier plan is driven. Sets key "trajectory"
-/// of the outcome. @throws Error (bad_input) naming the option
+/// of the outcome and adds the motion's warnings. @throws Error (bad_input) naming the option
 void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outcome& outcome);
 
 }  // namespace excavplan::tools

@@ -114,9 +114,13 @@ struct Machine {
   std::optional<Swing> swing;            ///< nothing if the file does not state it
   std::optional<Engine> engine;          ///< nothing: its power sets no limit
   RobotJoints robot_joints = {{{"boom"}, {"arm"}, {"bucket"}, {"swing"}}};  ///< of its controller
+  std::optional<double> track_width;  ///< over both tracks [m]; nothing: undercarriage_width()
 
   /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }
+  /// Over both tracks [m]: track_width, without it as the zx120's in proportion to track_front;
+  /// ours.
+  double undercarriage_width() const;
   /// Angle between bucket floor and the line from tip to bucket pin [rad]; Error without a profile.
   double beta() const;
 };

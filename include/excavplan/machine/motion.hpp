@@ -31,8 +31,9 @@ struct WayPose {
 
 /// Where the joints go, in straight lines of the joint space from pose to pose.
 struct Way {
-  std::vector<WayPose> poses;       ///< in the order in which they are visited
-  double swing_acceleration = 0.0;  ///< that the swing can do anywhere [rad/s^2]; 0: it rests
+  std::vector<WayPose> poses;          ///< in the order in which they are visited
+  double swing_acceleration = 0.0;     ///< that the swing can do anywhere [rad/s^2]; 0: it rests
+  std::vector<Warning> warnings = {};  ///< of way_of_cycle()
 };
 
 /// The way of a dig: approach, penetrate, drag, scoop and lift.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/error.hpp>
 #include <excavplan/machine/dig_path.hpp>
 
 namespace excavplan {
@@ -39,6 +40,7 @@ struct Trajectory {
   std::vector<TrajectoryPoint> points;  ///< in the order of time
   /// Machine::robot_joints; time_way() leaves the name of one that is not there empty.
   RobotJoints robot_joints = Machine{}.robot_joints;
+  std::vector<Warning> warnings = {};  ///< of plan_motion(): Way::warnings; files do not hold them
   /// Of all points [s].
   double duration() const { return points.empty() ? 0.0 : points.back().time; }
   double dig_duration() const;  ///< of penetrate, drag and scoop [s]

@@ -17,10 +17,11 @@
 
 namespace excavplan {
 
-/// What loads the joints along a dig.
+/// What a dig loads the joints with, and what it leaves.
 struct DigLoad {
   std::vector<JointAngles> torques;  ///< DigResult::torques [N m]
   double payload_mass = 0.0;         ///< after it [kg], >= 0
+  HeightMap ground_after = {};       ///< its surface where the dig may have changed it; empty: none
 };
 
 /// What a way holds besides the dig.
@@ -31,7 +32,7 @@ struct CycleWayOptions {
   CycleOptions cycle = {};   ///< swing, to the left, and dump height, if it does
 };
 
-/// Ground in the way of the machine.
+/// Ground, or its own undercarriage, in the way of the machine.
 struct BlockedWay {
   DigPhase phase = DigPhase::approach;              ///< in which
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the ground there [m]
@@ -43,15 +44,22 @@ struct BlockedWay {
 void check(const Machine& machine, const CycleWayOptions& options);
 
 /// Lays out the way of a cycle. Off the path of the dig the joints go straight to where they have
-/// to be; where that leads within 0.1 m of the ground, the boom rises first and comes down last.
-/// Ground that is unknown or off the map counts as the plane of the tracks.
+/// to be; where that leads within 0.1 m of the ground or of the undercarriage, the boom rises first
+/// and comes down last, and a full bucket keeps its attitude. From the dig on, the ground is that
+/// after it. Behind the front of the tracks and within the circle through their corners stands the
+/// machine itself: no ground is looked at there.
 ///
-/// @param ground  before the dig
+/// Ground that is unknown or off the map counts as the plane of the tracks. Warnings, both of which
+/// end trust: unseen_way where arm and bucket pass over such ground, payload_tips where a full
+/// bucket cannot keep its attitude, as its joint ends.
+///
+/// @param ground  before the dig: all that the machine can pass over, swing_extent()
 /// @return the way, or what blocks it
 /// @throws Error (bad_input) as require_machine(), require_terrain() and way_of(); if a joint of
 /// the
-///         start is not finite or beyond its limits, the payload is negative or not finite, an
-///         option of the cycle is out of range, or the machine does not state its swing but has to
+///         start is not finite or beyond its limits, the payload is negative or not finite, the
+///         ground after is no grid, an option of the cycle is out of range, or the machine does not
+///         state its swing but has to
 std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain& ground,
                                            const DigPath& path, const DigLoad& load,
                                            const CycleWayOptions& options);

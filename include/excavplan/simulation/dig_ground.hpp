@@ -41,6 +41,12 @@ double usual_cell(const Machine& machine);
 Terrain level_planning_ground(const Machine& machine, double cell_size);
 Terrain level_planning_ground(const Machine& machine);  ///< in cells of usual_cell()
 
+/// Ground that the front can pass over: the square around the circle of its reach, swung all round.
+Rectangle swing_extent(const Machine& machine);
+
+/// swing_extent() as level ground, in cells of usual_cell().
+Terrain level_swing_ground(const Machine& machine);
+
 /// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the rows
 /// of cells that it needs.
 GroundProfile boom_plane_profile(const HeightMap& surface);

@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "planning/surroundings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace excavplan {
+namespace {
+
+using Eigen::ArrayXXd;
+using Eigen::Index;
+using Eigen::Vector2d;
+
+// Ours:
+constexpr double margin = 0.1;      // to the ground, below and to every side [m]
+constexpr double slack = 0.01;      // of the way off and onto the ground [m]
+constexpr double under_link = 0.1;  // of a link's body below its line from pin to pin [m]
+constexpr double cells_in_reach = 200.0;
+constexpr double track_height = 0.5;  // of the undercarriage, over track_front: 0.9 m of a zx120
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double reach_of(const Machine& machine) {
+  return std::hypot(std::abs(machine.boom_pin.x()) + machine.full_length(),
+                    0.5 * machine.bucket.width_outside);
+}
+
+/// Unknown cells over the reach; where they are as large as those of the ground, they are the same.
+HeightMap grid_over(const Machine& machine, const HeightMap& ground) {
+  const double reach = reach_of(machine);
+  HeightMap grid;
+  grid.cell_size = std::max(ground.cell_size, reach / cells_in_reach);
+  const Vector2d corner = Vector2d::Constant(-reach);
+  const Vector2d before = ((corner - ground.origin) / grid.cell_size).array().floor();
+  grid.origin = ground.origin + grid.cell_size * before;
+  const auto cells = static_cast<Index>(std::ceil(2.0 * reach / grid.cell_size)) + 2;
+  grid.z = ArrayXXd::Constant(cells, cells, std::nan(""));
+  return grid;
+}
+
+struct Cell {
+  Index row, col;
+};
+
+std::optional<Cell> cell_at(const HeightMap& grid, const Vector2d& place) {
+  const Vector2d cell = ((place - grid.origin) / grid.cell_size).array().floor();
+  const bool inside = cell.x() >= 0.0 && cell.x() < static_cast<double>(grid.z.cols()) &&
+                      cell.y() >= 0.0 && cell.y() < static_cast<double>(grid.z.rows());
+  if (!inside) return std::nullopt;
+  return Cell{static_cast<Index>(cell.y()), static_cast<Index>(cell.x())};
+}
+
+/// A run of cells along an axis.
+struct Run {
+  Index first, count;
+};
+
+/// Those with their centres in a cell of a map at x, and the one with its centre.
+Run covered(double x, double map_cell, double origin, double cell, Index cells) {
+  const auto last_before = [&](double edge) {
+    return std::ceil((edge - origin) / cell - 0.5) - 1.0;
+  };
+  const double own = std::floor((x - origin) / cell), end = static_cast<double>(cells - 1);
+  const double first = std::max(0.0, std::min(own, last_before(x - 0.5 * map_cell) + 1.0));
+  const double last = std::min(end, std::max(own, last_before(x + 0.5 * map_cell)));
+  if (!(first <= last)) return {0, 0};
+  return {static_cast<Index>(first), static_cast<Index>(last - first) + 1};
+}
+
+/// Where a map is known it takes the place of the grid's heights, the highest of each cell.
+void enter(const HeightMap& map, HeightMap& grid) {
+  ArrayXXd entered = ArrayXXd::Constant(grid.z.rows(), grid.z.cols(), -infinity);
+  const double cell = grid.cell_size;
+  for (Index col = 0; col < map.z.cols(); ++col) {
+    const Run cols = covered(map.x(col), map.cell_size, grid.origin.x(), cell, grid.z.cols());
+    for (Index row = 0; row < map.z.rows() && cols.count > 0; ++row) {
+      const double z = map.z(row, col);
+      const Run rows = covered(map.y(row), map.cell_size, grid.origin.y(), cell, grid.z.rows());
+      if (!std::isfinite(z) || rows.count == 0) continue;
+      auto place = entered.block(rows.first, cols.first, rows.count, cols.count);
+      place = place.max(z);
+    }
+  }
+  grid.z = (entered == -infinity).select(grid.z, entered);
+}
+
+/// The highest of each cell and those up to so many cells away along both axes.
+ArrayXXd highest_within(const ArrayXXd& z, Index cells) {
+  ArrayXXd rows = z;
+  for (Index shift = 1; shift <= std::min(cells, z.rows() - 1); ++shift) {
+    const Index n = z.rows() - shift;
+    rows.topRows(n) = rows.topRows(n).max(z.bottomRows(n));
+    rows.bottomRows(n) = rows.bottomRows(n).max(z.topRows(n));
+  }
+  ArrayXXd both = rows;
+  for (Index shift = 1; shift <= std::min(cells, z.cols() - 1); ++shift) {
+    const Index n = z.cols() - shift;
+    both.leftCols(n) = both.leftCols(n).max(rows.rightCols(n));
+    both.rightCols(n) = both.rightCols(n).max(rows.leftCols(n));
+  }
+  return both;
+}
+
+ArrayXXd lowest_beside(const ArrayXXd& z) {
+  const ArrayXXd known = z.isNaN().select(ArrayXXd::Constant(z.rows(), z.cols(), infinity), z);
+  const ArrayXXd low = -highest_within(-known, 1);
+  return (low == infinity).select(-infinity, low);
+}
+
+}  // namespace
+
+Surroundings::Surroundings(const Machine& machine, const HeightMap& ground)
+    : machine_(machine), seen_(grid_over(machine, ground)) {
+  const double front = std::max(0.0, machine.track_front);
+  const double half = 0.5 * machine.undercarriage_width();
+  undercarriage_ = {-front, -half, front, half};
+  own_radius_ = std::hypot(front, half);
+  const double cell = seen_.cell_size;
+  cells_of_margin_ = std::max(1.0, std::ceil(margin / cell - 1e-9));
+  // A place between points is at most spacing (sqrt(1/2) + 1/2) from one: beside it on the machine,
+  // and half a step of the motion away.
+  near_ = 0.8 * cells_of_margin_ * cell;
+  fine_ = 0.7 * cell;  // a square of it holds one of the points of a square grid
+  replace(ground);
+}
+
+void Surroundings::replace(const HeightMap& by) {
+  enter(by, seen_);
+  put_undercarriage();
+  const auto cells = static_cast<Index>(std::min(cells_of_margin_, 2.0 * cells_in_reach));
+  highest_ = highest_within(seen_.z.isNaN().select(0.0, seen_.z), cells);
+  lowest_ = lowest_beside(seen_.z);
+  top_ = highest_.maxCoeff();
+}
+
+void Surroundings::put_undercarriage() {
+  const double top = track_height * undercarriage_.x_max;
+  for (Index col = 0; col < seen_.z.cols(); ++col) {
+    for (Index row = 0; row < seen_.z.rows(); ++row) {
+      const double x = seen_.x(col), y = seen_.y(row);
+      if (x >= undercarriage_.x_max || std::hypot(x, y) > own_radius_) continue;
+      seen_.z(row, col) = undercarriage_.contains(x, y) ? top : 0.0;
+    }
+  }
+}
+
+/// Points of the machine that are not too high, which a visit may change, over the width of the
+/// bucket: visit(place, height of its lower side, whether of arm or bucket).
+template <typename Visit>
+void Surroundings::visit(const FrontJoints& joints, double spacing, const double& too_high,
+                         Visit visit) const {
+  const LinkPositions links = link_positions(machine_, joints.head<3>());
+  const Vector2d ahead(std::cos(joints[3]), std::sin(joints[3]));
+  const double width = machine_.bucket.width_outside;
+  const double strips = std::max(1.0, std::ceil(width / spacing));
+  const auto look = [&](const Vector2d& from, const Vector2d& to, double below, bool is_boom) {
+    const double steps = std::max(1.0, std::ceil((to - from).norm() / spacing));
+    for (double i = 0.0; i <= steps; ++i) {
+      const Vector2d at = from + i / steps * (to - from);
+      if (is_boom && std::abs(at.x()) <= own_radius_) continue;  // its foot is on the machine
+      for (double strip = 0.0; strip <= strips; ++strip) {
+        if (at.y() - below >= too_high) break;
+        const double aside = (strip / strips - 0.5) * width;
+        visit(Vector2d(at.x() * ahead + aside * Vector2d(-ahead.y(), ahead.x())), at.y() - below,
+              !is_boom);
+      }
+    }
+  };
+  look(machine_.boom_pin, links.arm_pin, under_link, true);
+  look(links.arm_pin, links.bucket_pin, under_link, false);
+  const std::vector<Vector2d>& profile = machine_.bucket.profile;
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    look(bucket_point(links, profile[i]), bucket_point(links, profile[(i + 1) % profile.size()]),
+         0.0, false);
+  }
+}
+
+template <typename Height>
+Clearance Surroundings::least(const FrontJoints& joints, double spacing, Height height_of) const {
+  Clearance found;
+  double too_high = infinity;
+  visit(joints, spacing, too_high, [&](const Vector2d& place, double bottom, bool) {
+    const auto cell = cell_at(seen_, place);
+    const double ground = cell ? height_of(cell->row, cell->col) : 0.0;
+    if (bottom - ground >= found.height) return;
+    found = {bottom - ground, {place.x(), place.y(), ground}};
+    too_high = top_ + found.height;
+  });
+  return found;
+}
+
+Clearance Surroundings::margin_at(const FrontJoints& joints) const {
+  return least(joints, near_, [this](Index row, Index col) { return highest_(row, col); });
+}
+
+Clearance Surroundings::standing(const FrontJoints& joints) const {
+  return least(joints, fine_, [this](Index row, Index col) { return lowest_(row, col); });
+}
+
+/// Into which a straight way is divided, so that no point of the machine goes further in one.
+double Surroundings::parts(const FrontJoints& from, const FrontJoints& to, double spacing) const {
+  const FrontJoints turn = (to - from).cwiseAbs();
+  const double hand = machine_.arm_length + machine_.bucket_length;
+  const double most = turn[0] * machine_.full_length() + turn[1] * hand +
+                      turn[2] * machine_.bucket_length + turn[3] * reach_of(machine_);
+  return std::max(1.0, std::ceil(most / spacing));
+}
+
+std::optional<Clearance> Surroundings::obstacle(const FrontJoints& from,
+                                                const FrontJoints& to) const {
+  const double count = parts(from, to, near_);
+  for (double i = 0.0; i <= count; ++i) {
+    const Clearance there = margin_at(from + i / count * (to - from));
+    if (there.height < margin) return there;
+  }
+  return std::nullopt;
+}
+
+std::optional<Clearance> Surroundings::obstacle_leaving(const FrontJoints& from,
+                                                        const FrontJoints& to) const {
+  UnseenGround::Cells stands = UnseenGround::Cells::Constant(seen_.z.rows(), seen_.z.cols(), false);
+  visit(from, fine_, infinity, [&](const Vector2d& place, double, bool) {
+    const auto cell = cell_at(seen_, place);
+    if (!cell) return;
+    const Index row = std::max<Index>(0, cell->row - 1), col = std::max<Index>(0, cell->col - 1);
+    stands.block(row, col, std::min<Index>(3, stands.rows() - row),
+                 std::min<Index>(3, stands.cols() - col)) = true;
+  });
+  const auto height_of = [&](Index row, Index col) {
+    const double z = seen_.z(row, col);
+    return stands(row, col) || std::isnan(z) ? lowest_(row, col) : z;
+  };
+  const double deepest = std::min(margin, standing(from).height) - slack;
+  const double count = parts(from, to, fine_);
+  bool clear = false;
+  for (double i = 0.0; i <= count; ++i) {
+    const FrontJoints at = from + i / count * (to - from);
+    const Clearance there = margin_at(at);
+    if (there.height >= margin) clear = true;
+    if (there.height >= margin) continue;
+    if (clear) return there;
+    const Clearance close = least(at, fine_, height_of);
+    if (close.height < deepest) return close;
+  }
+  return std::nullopt;
+}
+
+void Surroundings::pass(const FrontJoints& from, const FrontJoints& to,
+                        UnseenGround& unseen) const {
+  if (!seen_.z.isNaN().any()) return;
+  if (unseen.cells.size() == 0) {
+    unseen.cells = UnseenGround::Cells::Constant(seen_.z.rows(), seen_.z.cols(), false);
+  }
+  const double count = parts(from, to, near_);
+  for (double i = 0.0; i <= count; ++i) {
+    const FrontJoints at = from + i / count * (to - from);
+    visit(at, fine_, infinity, [&](const Vector2d& place, double, bool is_low) {
+      const auto cell = cell_at(seen_, place);
+      if (!is_low || !cell || !std::isnan(seen_.z(cell->row, cell->col))) return;
+      bool& passed = unseen.cells(cell->row, cell->col);
+      if (passed) return;
+      passed = true;
+      if (unseen.area == 0.0) unseen.first = place;
+      unseen.area += seen_.cell_size * seen_.cell_size;
+    });
+  }
+}
+
+}  // namespace excavplan
