@@ -102,12 +102,6 @@ PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilK
   return options;
 }
 
-/// That the motion must be clear of: all around the machine, of which the dig's is a strip.
-Terrain ground_around(const Inputs& inputs, const Machine& machine) {
-  if (!inputs.terrain.cloud || !looks_around(inputs.motion)) return level_swing_ground(machine);
-  return make_site(inputs.terrain, swing_extent(machine), usual_cell(machine)).ground;
-}
-
 Outcome work(const Inputs& inputs, Console& console) {
   const Stopwatch watch;
   check(inputs.density);
@@ -139,8 +133,7 @@ Outcome work(const Inputs& inputs, Console& console) {
                        {"wall_time_s", watch.seconds()}});
   if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
   const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
-  write_motion(inputs.motion,
-               {machine, ground_around(inputs, machine), plan, options.search.objective}, outcome);
+  write_motion(inputs.motion, {machine, inputs.terrain, plan, options.search.objective}, outcome);
   if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);
   draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
   write_maps(

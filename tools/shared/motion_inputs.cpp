@@ -10,6 +10,7 @@
 
 #include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/plan/plan_motion.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
@@ -126,10 +127,18 @@ std::string names_of(const Trajectory& motion) {
   return text;
 }
 
+/// That the motion must be clear of, where it leaves the dig.
+Terrain ground_around(const MotionInputs& inputs, const PlannedMotion& planned) {
+  const bool leaves = inputs.joints || inputs.whole_cycle;
+  if (!planned.terrain.cloud || !leaves) return level_swing_ground(planned.machine);
+  return make_site(planned.terrain, swing_extent(planned.machine), usual_cell(planned.machine))
+      .ground;
+}
+
 /// Without points, and a warning, where the ground is in the way: the plan is worth having still.
 Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   auto motion = plan_motion(
-      planned.machine, planned.ground, planned.plan,
+      planned.machine, ground_around(inputs, planned), planned.plan,
       {joints_of(inputs, planned.machine), inputs.whole_cycle, planned.objective}, inputs.options);
   const auto* stop = std::get_if<BlockedWay>(&motion);
   if (stop == nullptr) return std::get<Trajectory>(std::move(motion));
@@ -182,10 +191,6 @@ void check(const MotionInputs& inputs, const Machine& machine, const CycleOption
     excavplan::check(machine,
                      CycleWayOptions{joints_of(inputs, machine), inputs.whole_cycle, cycle});
   });
-}
-
-bool looks_around(const MotionInputs& inputs) {
-  return inputs.file && (inputs.joints || inputs.whole_cycle);
 }
 
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan) {

@@ -9,6 +9,7 @@
 #include <excavplan/planning/cycle_motion.hpp>
 
 #include "shared/arguments.hpp"
+#include "shared/site.hpp"
 #include "shared/tool.hpp"
 
 /// @file
@@ -29,13 +30,11 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs);
 /// Checks made before the work. @throws Error (bad_input) naming the option
 void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle);
 
-/// Whether the motion goes off the dig, where the ground around matters.
-bool looks_around(const MotionInputs& inputs);
-
-/// A plan with the ground around the machine and the objective that has its swing and dump height.
+/// A plan with the ground on which the machine stands and the objective that has its swing and dump
+/// height.
 struct PlannedMotion {
   const Machine& machine;
-  const Terrain& ground;  ///< of swing_extent()
+  const TerrainInput& terrain;  ///< all of it: the dig's ground is a strip
   const DigPlan& plan;
   const DigObjective& objective;
 };
