@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace excavplan {
 namespace {
@@ -43,11 +44,12 @@ struct Cell {
 };
 
 std::optional<Cell> cell_at(const HeightMap& grid, const Vector2d& place) {
-  const Vector2d cell = ((place - grid.origin) / grid.cell_size).array().floor();
-  const bool inside = cell.x() >= 0.0 && cell.x() < static_cast<double>(grid.z.cols()) &&
-                      cell.y() >= 0.0 && cell.y() < static_cast<double>(grid.z.rows());
+  const double col = (place.x() - grid.origin.x()) / grid.cell_size;
+  const double row = (place.y() - grid.origin.y()) / grid.cell_size;
+  const bool inside = col >= 0.0 && col < static_cast<double>(grid.z.cols()) && row >= 0.0 &&
+                      row < static_cast<double>(grid.z.rows());
   if (!inside) return std::nullopt;
-  return Cell{static_cast<Index>(cell.y()), static_cast<Index>(cell.x())};
+  return Cell{static_cast<Index>(row), static_cast<Index>(col)};
 }
 
 /// A run of cells along an axis.
@@ -71,14 +73,17 @@ Run covered(double x, double map_cell, double origin, double cell, Index cells) 
 void enter(const HeightMap& map, HeightMap& grid) {
   ArrayXXd entered = ArrayXXd::Constant(grid.z.rows(), grid.z.cols(), -infinity);
   const double cell = grid.cell_size;
+  std::vector<Run> rows;
+  for (Index row = 0; row < map.z.rows(); ++row) {
+    rows.push_back(covered(map.y(row), map.cell_size, grid.origin.y(), cell, grid.z.rows()));
+  }
   for (Index col = 0; col < map.z.cols(); ++col) {
     const Run cols = covered(map.x(col), map.cell_size, grid.origin.x(), cell, grid.z.cols());
     for (Index row = 0; row < map.z.rows() && cols.count > 0; ++row) {
-      const double z = map.z(row, col);
-      const Run rows = covered(map.y(row), map.cell_size, grid.origin.y(), cell, grid.z.rows());
-      if (!std::isfinite(z) || rows.count == 0) continue;
-      auto place = entered.block(rows.first, cols.first, rows.count, cols.count);
-      place = place.max(z);
+      const Run& run = rows[static_cast<std::size_t>(row)];
+      if (!std::isfinite(map.z(row, col)) || run.count == 0) continue;
+      auto place = entered.block(run.first, cols.first, run.count, cols.count);
+      place = place.max(map.z(row, col));
     }
   }
   grid.z = (entered == -infinity).select(grid.z, entered);
@@ -138,7 +143,7 @@ void Surroundings::put_undercarriage() {
   for (Index col = 0; col < seen_.z.cols(); ++col) {
     for (Index row = 0; row < seen_.z.rows(); ++row) {
       const double x = seen_.x(col), y = seen_.y(row);
-      if (x >= undercarriage_.x_max || std::hypot(x, y) > own_radius_) continue;
+      if (x >= undercarriage_.x_max || x * x + y * y > own_radius_ * own_radius_) continue;
       seen_.z(row, col) = undercarriage_.contains(x, y) ? top : 0.0;
     }
   }
@@ -175,10 +180,13 @@ void Surroundings::visit(const FrontJoints& joints, double spacing, const double
   }
 }
 
+/// @param most  that is of interest [m]; the clearance is never more
 template <typename Height>
-Clearance Surroundings::least(const FrontJoints& joints, double spacing, Height height_of) const {
+Clearance Surroundings::least(const FrontJoints& joints, double spacing, double most,
+                              Height height_of) const {
   Clearance found;
-  double too_high = infinity;
+  found.height = most;
+  double too_high = top_ + most;
   visit(joints, spacing, too_high, [&](const Vector2d& place, double bottom, bool) {
     const auto cell = cell_at(seen_, place);
     const double ground = cell ? height_of(cell->row, cell->col) : 0.0;
@@ -190,11 +198,11 @@ Clearance Surroundings::least(const FrontJoints& joints, double spacing, Height 
 }
 
 Clearance Surroundings::margin_at(const FrontJoints& joints) const {
-  return least(joints, near_, [this](Index row, Index col) { return highest_(row, col); });
+  return least(joints, near_, margin, [this](Index row, Index col) { return highest_(row, col); });
 }
 
 Clearance Surroundings::standing(const FrontJoints& joints) const {
-  return least(joints, fine_, [this](Index row, Index col) { return lowest_(row, col); });
+  return least(joints, fine_, infinity, [this](Index row, Index col) { return lowest_(row, col); });
 }
 
 /// Into which a straight way is divided, so that no point of the machine goes further in one.
@@ -239,7 +247,7 @@ std::optional<Clearance> Surroundings::obstacle_leaving(const FrontJoints& from,
     if (there.height >= margin) clear = true;
     if (there.height >= margin) continue;
     if (clear) return there;
-    const Clearance close = least(at, fine_, height_of);
+    const Clearance close = least(at, fine_, margin, height_of);
     if (close.height < deepest) return close;
   }
   return std::nullopt;

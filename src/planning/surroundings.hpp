@@ -67,7 +67,7 @@ class Surroundings {
   template <typename Visit>
   void visit(const FrontJoints& joints, double spacing, const double& too_high, Visit visit) const;
   template <typename Height>
-  Clearance least(const FrontJoints& joints, double spacing, Height height_of) const;
+  Clearance least(const FrontJoints& joints, double spacing, double most, Height height_of) const;
 
   const Machine& machine_;
   Rectangle undercarriage_;
