@@ -286,7 +286,10 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
     if (const auto* blocked = std::get_if<BlockedWay>(&motion)) {
       refuse("the ground is in the way: " + blocked->message);
     } else {
-      answer.motion = joint_motion(std::get<Trajectory>(motion));
+      const auto& planned = std::get<Trajectory>(motion);
+      answer.motion = joint_motion(planned);
+      answer.warnings.insert(answer.warnings.end(), planned.warnings.begin(),
+                             planned.warnings.end());
     }
   } catch (const Error& error) {
     refuse(error.what());

@@ -4,6 +4,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "planning/motion_load.hpp"
 
 namespace excavplan {
 
@@ -17,7 +18,9 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const T
   const auto laid =
       way_of_cycle(machine, ground, plan.path, {plan.torques, plan.dig->payload_mass}, way);
   if (const auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
-  return time_way(machine, std::get<Way>(laid), motion);
+  Trajectory timed = time_way(machine, std::get<Way>(laid), motion);
+  timed.warnings = load_warnings(machine, std::get<Way>(laid));
+  return timed;
 }
 
 }  // namespace excavplan

@@ -9,6 +9,7 @@
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "machine/front_check.hpp"
 #include "planning/front_load.hpp"
 #include "simulation/terrain_check.hpp"
 
@@ -26,7 +27,7 @@ constexpr double under_link = 0.1;  // of a link's body below its line from pin 
 constexpr double apart = 0.15;      // between the places of the machine that are looked at [m]
 constexpr double step = 0.05;       // of the joints, likewise [rad]
 constexpr double rise = 0.1;        // of the boom, by which it tries to pass higher [rad]
-constexpr double most_swing = 2.0 * pi;
+constexpr double widest_swing = 2.0 * pi;  // from dig to dump [rad]
 
 /// How far the machine is above the ground, and where that is least.
 struct Clearance {
@@ -85,6 +86,13 @@ class Surroundings {
   HeightMap surface_;
 };
 
+/// That hold the front on the way between two places: of each joint that which takes more power.
+JointAngles heavier(const FrontLoad& load, const FrontJoints& from, const FrontJoints& to) {
+  const JointAngles first = load.torque(from.head<3>()), last = load.torque(to.head<3>());
+  const JointAngles move = to.head<3>() - from.head<3>();
+  return ((last - first).array() * move.array() > 0.0).select(last, first);
+}
+
 /// Adds the parts of a cycle to a way.
 class CycleWay {
  public:
@@ -98,8 +106,13 @@ class CycleWay {
     way_.poses.push_back({DigPhase::approach, joints, JointAngles::Zero()});
   }
 
-  /// The way of a dig in the boom plane y = 0.
-  void add_dig(const Way& dig) {
+  /// The way of a dig.
+  void add_dig(Way dig) {
+    for (std::size_t i = 1; i < dig.poses.size(); ++i) {
+      WayPose& pose = dig.poses[i];
+      if (pose.phase != DigPhase::approach) break;
+      pose.torque = heavier(empty_, dig.poses[i - 1].joints, pose.joints);
+    }
     way_.poses.insert(way_.poses.end(), dig.poses.begin(), dig.poses.end());
   }
 
@@ -108,6 +121,8 @@ class CycleWay {
     const FrontJoints from = way_.poses.back().joints;
     const Clearance first = surroundings_.at(from), last = surroundings_.at(to);
     if (first.height < -deepest) return blocked(phase, first, "where the way begins");
+    const bool dumps = phase == DigPhase::swing || phase == DigPhase::dump;
+    if (dumps && last.height < 0.0) return blocked(phase, last, "where it dumps");
     const auto straight = obstacle(from, to, safe);
     if (!straight) {
       add(phase, {to}, loaded);
@@ -129,14 +144,11 @@ class CycleWay {
 
   const FrontJoints& joints() const { return way_.poses.back().joints; }
 
-  /// As far as the swing can accelerate all along.
-  Way take(bool swings) {
-    double inertia = 0.0;
-    for (const WayPose& pose : way_.poses) {
-      if (!swings) break;
-      inertia = std::max(inertia, loaded_.inertia(pose.joints.head<3>()));
+  Way take(double payload) {
+    for (WayPose& pose : way_.poses) {
+      const bool full = pose.phase == DigPhase::lift || pose.phase == DigPhase::swing;
+      pose.payload = full ? payload : 0.0;
     }
-    if (swings) way_.swing_acceleration = machine_.swing->torque / inertia;
     return std::move(way_);
   }
 
@@ -164,8 +176,7 @@ class CycleWay {
       const double parts = std::ceil((to - from).norm() / step);
       for (double i = 1.0; i <= parts; ++i) {
         const FrontJoints at = from + i / parts * (to - from);
-        const FrontJoints middle = 0.5 * (at + joints());
-        way_.poses.push_back({phase, at, load.torque(middle.head<3>())});
+        way_.poses.push_back({phase, at, heavier(load, joints(), at)});
       }
     }
   }
@@ -191,13 +202,11 @@ class CycleWay {
   Way way_;
 };
 
-void check_start(const Machine& machine, const FrontJoints& start) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const JointLimits& limits = machine.limits[i];
-    require_in(std::string("joints at the start: ") + name(static_cast<Joint>(i)) + " [rad]",
-               start[static_cast<Eigen::Index>(i)], limits.lower, limits.upper);
-  }
-  require_in("joints at the start: swing [rad]", start[3], -most_swing, most_swing);
+/// Whole turns of a machine that turns round and round, to the plane of the dig nearest to where it
+/// stands [rad].
+double turns_to(const Machine& machine, const CycleWayOptions& options) {
+  if (!options.start || !machine.swing || !machine.swing->turns_round()) return 0.0;
+  return 2.0 * pi * std::round((*options.start)[3] / (2.0 * pi));
 }
 
 FrontJoints with_swing(const JointAngles& joints, double swing) {
@@ -209,9 +218,11 @@ FrontJoints with_swing(const JointAngles& joints, double swing) {
 }  // namespace
 
 void check(const Machine& machine, const CycleWayOptions& options) {
-  if (options.start) check_start(machine, *options.start);
+  if (options.start) check_joints(machine, *options.start, "joints at the start");
   if (options.whole_cycle) {
-    require_in("cycle: swing [rad]", options.cycle.swing, 0.0, most_swing);
+    const Swing swing = machine.swing.value_or(Swing{});
+    require_in("cycle: swing [rad]", options.cycle.swing, std::max(-widest_swing, swing.lower),
+               std::min(widest_swing, swing.upper));
     require_in("cycle: dump_height [m]", options.cycle.dump_height, 0.0, 1e9);
   }
   const bool swings = options.whole_cycle || (options.start && (*options.start)[3] != 0.0);
@@ -226,7 +237,9 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
   require_terrain(ground, "ground of the motion");
   check(machine, options);
   require_in("payload_mass of the dig [kg]", load.payload_mass, 0.0, 1e9);
-  const Way dig = way_of(path, load.torques);
+  Way dig = way_of(path, load.torques);
+  const double ahead = turns_to(machine, options);
+  for (WayPose& pose : dig.poses) pose.joints[3] = ahead;
   CycleWay way(machine, ground, load.payload_mass);
   if (options.start) {
     way.start_at(*options.start);
@@ -237,12 +250,12 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
     const JointAngles clear = way.joints().head<3>();
     const double height = std::max(options.cycle.dump_height, pin_height(machine, clear));
     const JointAngles full = raised(machine, clear, height), open = opened(machine, full);
-    const double swing = options.cycle.swing;
+    const double swing = ahead + options.cycle.swing;
     if (auto stop = way.go(DigPhase::swing, with_swing(full, swing), true)) return *stop;
     if (auto stop = way.go(DigPhase::dump, with_swing(open, swing), false)) return *stop;
     if (auto stop = way.go(DigPhase::back, dig.poses.front().joints, false)) return *stop;
   }
-  return way.take(options.whole_cycle || (options.start && (*options.start)[3] != 0.0));
+  return way.take(load.payload_mass);
 }
 
 }  // namespace excavplan

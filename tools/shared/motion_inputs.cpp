@@ -73,6 +73,7 @@ FrontJoints parse_joints(const std::string& text) {
 }
 
 const OptionNames option_names = {{"joints at the start", "--joints"},
+                                  {"cycle: swing", "--swing"},
                                   {"MotionOptions::rate", "--rate"},
                                   {"MotionOptions::max_jerk", "--max-jerk"}};
 
@@ -151,6 +152,11 @@ void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outc
   } else {
     write_file(*inputs.file, text);
   }
+  for (const Warning& each : motion.warnings) {
+    outcome.trustworthy = outcome.trustworthy && !each.ends_trust;
+    outcome.warnings.push_back(each);
+  }
+  outcome.json["trustworthy"] = outcome.trustworthy;
   if (motion.points.empty()) return;
   outcome.json["trajectory"] = {{"format", format.word},
                                 {"points", motion.points.size()},

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <excavplan/machine/cylinders.hpp>
 #include <excavplan/machine/robot_joint.hpp>
@@ -89,6 +91,14 @@ struct Swing {
   double speed = 0.0;    ///< highest rate [rad/s]
   double torque = 0.0;   ///< [N m]
   double inertia = 0.0;  ///< of the upper structure without its front, about the axis [kg m^2]
+  /// Range, to the left of the plane of the dig; infinite: it turns round and round [rad].
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();  ///< likewise [rad]
+  /// Highest acceleration, where the torque would allow more [rad/s^2].
+  double acceleration = std::numeric_limits<double>::infinity();
+
+  /// Whether whole turns make no difference.
+  bool turns_round() const { return lower == -std::numeric_limits<double>::infinity(); }
 };
 
 /// What drives the cylinders.
@@ -114,6 +124,9 @@ struct Machine {
   std::optional<Swing> swing;            ///< nothing if the file does not state it
   std::optional<Engine> engine;          ///< nothing: its power sets no limit
   RobotJoints robot_joints = {{{"boom"}, {"arm"}, {"bucket"}, {"swing"}}};  ///< of its controller
+  /// Takes points from the root frame of the robot's URDF to the site frame: a shift and a turn
+  /// about z. Affects no dig.
+  Eigen::Isometry3d site_from_root = Eigen::Isometry3d::Identity();
 
   /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }

@@ -10,7 +10,8 @@
 namespace excavplan {
 
 /// The motion of a planned dig for a controller: way_of_cycle() of its path, with its torques and
-/// payload, timed by time_way().
+/// payload, timed by time_way(). Its warnings say where off the dig a joint lacks torque for links
+/// and payload (motion_overload) or the machine tips (motion_tips).
 /// @param ground  before the dig
 /// @return the motion, without points if the plan has no dig; or what blocks the way
 /// @throws Error (bad_input) as way_of_cycle() and time_way(), or if the plan is of another machine
