@@ -86,9 +86,9 @@ TEST_F(Tools, TrajectoryBeginsAtThePresentJointsAndGoesOverTheCycle) {
 
 TEST_F(Tools, TrajectoryDumpsToTheRightIfTheSwingIsBelowZero) {
   const std::string file = folder.file("right.json");
-  const json right = answer("plan-path", {"--density", "40", "--swing", "-90deg", "--joints",
-                                          "-40deg,90deg,40deg,6.1", "--whole-cycle", "--rate",
-                                          "50Hz", "--trajectory", file});
+  const json right = answer(
+      "plan-path", {"--density", "40", "--swing", "-90deg", "--joints", "-40deg,90deg,40deg,6.1",
+                    "--whole-cycle", "--rate", "50Hz", "--trajectory", file});
   const json left = answer("plan-path", {"--density", "40", "--swing", "90deg"});
   EXPECT_EQ(right["path"], left["path"]);
   EXPECT_EQ(right["cycle"], left["cycle"]);
