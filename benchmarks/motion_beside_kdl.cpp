@@ -25,12 +25,13 @@ Machine plain_machine() {
   Machine machine = load_machine(find_data_file("machines/zx120.json"));
   machine.hydraulics.reset();
   machine.engine.reset();
+  machine.swing->acceleration = 0.35;
+  machine.swing->torque = 1e9;
   return machine;
 }
 
 Way any_move(const Machine& machine, Random& random) {
   Way way;
-  way.swing_acceleration = 0.35;
   for (int pose = 0; pose < 2; ++pose) {
     FrontJoints joints;
     for (int i = 0; i < 3; ++i) {
@@ -47,7 +48,7 @@ Way any_move(const Machine& machine, Random& random) {
 Trajectory by_kdl(const Machine& machine, const Way& way, double step) {
   const FrontJoints from = way.poses[0].joints, move = way.poses[1].joints - from;
   double speed = machine.swing->speed / std::abs(move[3]);
-  double acceleration = way.swing_acceleration / std::abs(move[3]);
+  double acceleration = machine.swing->acceleration / std::abs(move[3]);
   for (int i = 0; i < 3; ++i) {
     const JointLimits& limits = machine.limits[static_cast<std::size_t>(i)];
     speed = std::min(speed, limits.speed / std::abs(move[i]));

@@ -30,6 +30,8 @@ class DriveLimits {
   }
 
   const JointAngles& acceleration() const { return acceleration_; }
+  /// One over the highest power [1/W]; 0: it sets no limit.
+  double per_power() const { return per_power_; }
 
   /// Largest ratio of these joint rates to their limits of speed.
   double load(const JointAngles& rates) const {
@@ -57,17 +59,21 @@ class DriveLimits {
     return highest * per_power_;
   }
 
+  /// The same of the pump flow alone, for cylinders that grow this fast; 0 if it is not known.
+  double flow_load(const Eigen::Vector3d& growth) const {
+    double flow = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      flow += std::abs(growth[i]) * (growth[i] < 0.0 ? per_shrinking_[i] : per_growth_[i]);
+    }
+    return flow;
+  }
+
   /// The same of cylinder speed and pump flow for cylinders that grow this fast at this pressure();
   /// 0 if neither is known.
   double cylinder_load(const Eigen::Vector3d& growth, double pressure) const {
     if (!states_oil_) return 0.0;
-    double flow = 0.0, fastest = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      const double speed = std::abs(growth[i]);
-      fastest = std::max(fastest, speed * per_piston_speed_[i]);
-      flow += speed * (growth[i] < 0.0 ? per_shrinking_[i] : per_growth_[i]);
-    }
-    return std::max(fastest, flow * std::max(1.0, pressure));
+    const double fastest = growth.cwiseAbs().cwiseProduct(per_piston_speed_).maxCoeff();
+    return std::max(fastest, flow_load(growth) * std::max(1.0, pressure));
   }
 
  private:

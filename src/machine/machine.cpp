@@ -20,7 +20,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double longest = 100.0;  // a larger length is an error of units [m]
+constexpr double longest = 100.0;        // a larger length is an error of units [m]
+constexpr double most_swing = 4.0 * pi;  // of a range; a larger one is none
 constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
 double double_area(const std::vector<Vector2d>& polygon) {
@@ -237,9 +238,36 @@ Swing read_swing(JsonObject file) {
   swing.speed = positive(file, "speed_rad_per_s", 100.0);
   swing.torque = positive(file, "torque_n_m", 1e9);
   swing.inertia = positive(file, "inertia_kg_m2", 1e9);
+  if (file.has("acceleration_rad_per_s2")) {
+    swing.acceleration = positive(file, "acceleration_rad_per_s2", 1e4);
+  }
+  if (file.has("lower_rad") || file.has("upper_rad")) {
+    swing.lower = file.number("lower_rad", -most_swing, most_swing);
+    swing.upper = file.number("upper_rad", -most_swing, most_swing);
+    if (swing.upper <= swing.lower) {
+      file.fail("upper_rad", "is " + number_text(swing.upper) +
+                                 ", must be above lower_rad = " + number_text(swing.lower));
+    }
+  }
   file.ignore("sources");
   file.done();
   return swing;
+}
+
+Eigen::Isometry3d read_root(JsonObject file) {
+  const std::vector<double> at = file.numbers("position_m", 3);
+  for (const double number : at) {
+    if (std::abs(number) > longest) {
+      file.fail("position_m", "is further than " + number_text(longest) + " m from the origin");
+    }
+  }
+  Eigen::Isometry3d site_from_root = Eigen::Isometry3d::Identity();
+  site_from_root.translation() = Eigen::Vector3d(at[0], at[1], at[2]);
+  site_from_root.rotate(
+      Eigen::AngleAxisd(file.number_or("yaw_rad", 0.0, -pi, pi), Eigen::Vector3d::UnitZ()));
+  file.ignore("sources");
+  file.done();
+  return site_from_root;
 }
 
 Engine read_engine(JsonObject file) {
@@ -294,6 +322,7 @@ Machine read_machine(JsonObject file) {
   if (file.has("body")) machine.body = read_body(file.object("body"), machine.track_front);
   if (file.has("swing")) machine.swing = read_swing(file.object("swing"));
   if (file.has("engine")) machine.engine = read_engine(file.object("engine"));
+  if (file.has("robot_root")) machine.site_from_root = read_root(file.object("robot_root"));
   if (file.has("robot_joints")) {
     JsonObject robot = file.object("robot_joints");
     machine.robot_joints = read_robot_joints(robot);

@@ -113,6 +113,9 @@ void check_rest(const Rules& rules, const Machine& machine) {
     rules.positive("swing.", "speed", swing->speed, 100.0);
     rules.positive("swing.", "torque", swing->torque, 1e9);
     rules.positive("swing.", "inertia", swing->inertia, 1e9);
+    rules.positive("swing.", "acceleration", swing->acceleration, infinity);
+    rules.in("swing.", "lower", swing->lower, -infinity, infinity);
+    rules.below("swing.", "lower", swing->lower, swing->upper);
   }
   if (const auto& engine = machine.engine) {
     rules.positive("engine.", "power", engine->power, 1e8);
@@ -173,6 +176,10 @@ std::vector<UnitRule> unit_rules(const Machine& machine) {
     rules.push_back(
         {"swing.inertia_kg_m2", swing->inertia, swing->inertia / (front * length * length),
          "of boom, arm and bucket at the length of both", 0.002, 20.0, "is it in t m2?"});
+    if (std::isfinite(swing->acceleration)) {
+      rules.push_back({"swing.acceleration_rad_per_s2", swing->acceleration, swing->acceleration,
+                       "", 0.01, 5.0, if_degrees});
+    }
   }
   if (const auto& engine = machine.engine) {
     rules.push_back({"engine.power_w", engine->power, engine->power / front,

@@ -56,7 +56,10 @@ void add_body_and_drive(const Machine& machine, Numbers& numbers) {
     numbers << body->mass << body->centre << body->rear_edge << body->front_edge
             << body->track_friction;
   }
-  if (const auto& swing = machine.swing) numbers << swing->speed << swing->torque << swing->inertia;
+  if (const auto& swing = machine.swing) {
+    numbers << swing->speed << swing->torque << swing->inertia;
+    if (std::isfinite(swing->acceleration)) numbers << swing->acceleration;
+  }
   if (const auto& engine = machine.engine) numbers << engine->power << engine->idle_power;
 }
 

@@ -5,31 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/machine/kinematics.hpp>
+#include "machine/corner_rules.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double standstill = 1e-9;     // poses closer than this count as one [rad]
-constexpr double sharpest_turn = -0.5;  // cosine of the turn beyond which the machine stops
 // Ours:
-constexpr double corner_turn = 0.2;      // a smaller turn within a phase is no corner [rad]
-constexpr double least_rounded = 1e-3;   // at what is no corner [m]
-constexpr double shortest_reach = 1e-5;  // of a rounding; a shorter one gains nothing [rad]
-constexpr double longest_cell = 0.01;    // [rad]
-
-/// Tip travel per joint motion [m/rad], or that of the attitude times the length of the bucket if
-/// it is larger.
-double bucket_motion(const Machine& machine, const FrontJoints& joints, const FrontJoints& motion) {
-  const LinkPositions at = link_positions(machine, joints.head<3>());
-  const auto about = [&](const Eigen::Vector2d& pin) -> Eigen::Vector2d {
-    return {at.tip.y() - pin.y(), pin.x() - at.tip.x()};
-  };
-  const Eigen::Vector2d tip = motion[0] * about(machine.boom_pin) + motion[1] * about(at.arm_pin) +
-                              motion[2] * about(at.bucket_pin);
-  return std::max(std::hypot(tip.norm(), motion[3] * at.tip.x()),
-                  std::abs(motion.head<3>().sum()) * machine.bucket_length);
-}
+constexpr double corner_turn = 0.2;     // a smaller turn within a phase is no corner [rad]
+constexpr double least_rounded = 1e-3;  // at what is no corner [m]
+constexpr double longest_cell = 0.01;   // [rad]
 
 class Layout {
  public:
@@ -83,7 +67,7 @@ class Layout {
   void add(const WayPose& to, const FrontJoints& begin, const FrontJoints& slope,
            const FrontJoints& bend, double length) {
     const double cells = std::max(2.0, std::ceil(length / longest_cell));
-    PathCell cell = {length / cells, begin, slope, bend, to.phase, to.torque};
+    PathCell cell = {length / cells, begin, slope, bend, to.phase, to.torque, to.payload};
     for (double i = 0.0; i < cells; ++i) {
       path_.cells.push_back(cell);
       cell.begin = cell.at(cell.length);
@@ -100,7 +84,9 @@ class Layout {
     const double tolerance = corner ? tolerance_ : std::max(tolerance_, least_rounded);
     const double room = 0.5 * std::min((poses_[pose].joints - poses_[pose - 1].joints).norm(),
                                        (poses_[pose + 1].joints - poses_[pose].joints).norm());
-    const double deviation = 0.25 * bucket_motion(machine_, poses_[pose].joints, after - before);
+    const FrontJoints turn = after - before;
+    const double deviation =
+        0.25 * bucket_motion(machine_, poses_[pose].joints.head<3>(), turn.head<3>(), turn[3]);
     const double reach = deviation > 0.0 ? std::min(room, tolerance / deviation) : room;
     return reach < std::min(shortest_reach, room) ? 0.0 : reach;
   }

@@ -18,6 +18,7 @@ struct PathCell {
   FrontJoints bend = FrontJoints::Zero();   ///< d²q/ds² [1/rad]
   DigPhase phase = DigPhase::approach;
   JointAngles torque = JointAngles::Zero();  ///< [N m]
+  double payload = 0.0;                      ///< [kg]
 
   /// dq/ds at its end.
   FrontJoints last_slope() const { return slope + length * bend; }

@@ -11,19 +11,16 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "machine/corner_rules.hpp"
 #include "machine/drive_limits.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double standstill = 1e-9;         // poses closer than this count as one [rad]
-constexpr double largest_tolerance = 0.01;  // [m]
 // Ours, of the rounding of a corner, along the joint path to either side [rad]:
-constexpr double shortest_reach = 1e-5;  // a shorter one gains nothing over a stop
 constexpr double longest_reach = 0.02;
 constexpr int steps_a_side = 4;
-constexpr double room_share = 0.4;      // of a phase that the rounding of one corner may take
-constexpr double sharpest_turn = -0.5;  // cosine of the turn beyond which the machine stops
+constexpr double room_share = 0.4;  // of a phase that the rounding of one corner may take
 
 /// Larger angles and torques are not those of a machine and could overflow; ours.
 constexpr double largest_angle = 100.0;  // [rad]
@@ -39,15 +36,8 @@ std::string excess(const JointAngles& values, const std::string& largest) {
 
 void check(const DigPath& path, const TrajectoryOptions& options,
            const std::vector<JointAngles>& torques) {
-  require(options.speed_fraction > 0.0 && options.speed_fraction <= 1.0,
-          "TrajectoryOptions::speed_fraction", options.speed_fraction, "above 0 and at most 1");
-  require(options.corner_tolerance >= 0.0 && options.corner_tolerance <= largest_tolerance,
-          "TrajectoryOptions::corner_tolerance", options.corner_tolerance,
-          "in 0 .. " + number_text(largest_tolerance) + " m");
-  if (path.poses.size() < 2) {
-    throw Error(ErrorKind::bad_input, "the dig path has " + std::to_string(path.poses.size()) +
-                                          " poses, must have at least 2");
-  }
+  check_timing("TrajectoryOptions", options.speed_fraction, options.corner_tolerance);
+  check_torques(path, torques.size());
   const auto check_finite = [](const std::vector<DigPose>& poses, const char* of_what) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       if (within(poses[i].joints, largest_angle)) continue;
@@ -57,11 +47,6 @@ void check(const DigPath& path, const TrajectoryOptions& options,
   };
   check_finite(path.approach, "approach");
   check_finite(path.poses, "dig path");
-  if (torques.size() >= path.poses.size()) {
-    throw Error(ErrorKind::bad_input, "there are " + std::to_string(torques.size()) +
-                                          " torques between " + std::to_string(path.poses.size()) +
-                                          " poses, must be fewer");
-  }
   for (std::size_t i = 0; i < torques.size(); ++i) {
     if (within(torques[i], largest_torque)) continue;
     refuse("torque " + std::to_string(i) + " is " +
@@ -101,18 +86,6 @@ std::vector<LoadedPose> moving_poses(const DigPath& path, const std::vector<Join
   }
   if (poses.size() > 1) poses.front().phase = poses[1].phase;
   return poses;
-}
-
-/// Tip travel per joint motion [m/rad], or that of the attitude times the length of the bucket if
-/// it is larger.
-double bucket_motion(const Machine& machine, const JointAngles& joints, const JointAngles& motion) {
-  const LinkPositions at = link_positions(machine, joints);
-  const auto about = [&](const Eigen::Vector2d& pin) -> Eigen::Vector2d {
-    return {at.tip.y() - pin.y(), pin.x() - at.tip.x()};
-  };
-  const Eigen::Vector2d tip = motion[0] * about(machine.boom_pin) + motion[1] * about(at.arm_pin) +
-                              motion[2] * about(at.bucket_pin);
-  return std::max(tip.norm(), std::abs(motion.sum()) * machine.bucket_length);
 }
 
 /// The pose between two phases, at the length `along` of the joint path.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include <excavplan/error.hpp>
 
@@ -40,10 +42,10 @@ class Front {
     UrdfFront front;
     front.boom_pin = {(parts_[0].pin - swing_.pin).dot(forward_),
                       parts_[0].pin.z() - names_.ground};
-    if (swing_.joint) {
-      front.swing = swing_.joint->limits;
-      front.swing_angle = {swing_.joint->name, swing_.axis.z() > 0.0 ? 1.0 : -1.0};
-    }
+    front.swing_x = swing_.pin.x();
+    front.swing_y = swing_.pin.y();
+    front.ahead = std::atan2(forward_.y(), forward_.x());
+    if (swing_.joint) add_swing(front);
     for (std::size_t i = 0; i < 3; ++i) front.parts[i] = part(i);
     add_masses(front);
     return front;
@@ -146,6 +148,21 @@ class Front {
       ahead += part(i).length * std::cos(angle);
     }
     if (ahead < 0.0) forward_ = -forward_;
+  }
+
+  void add_swing(UrdfFront& front) const {
+    constexpr double most = 4.0 * pi;  // a wider range is none; ours
+    const double sign = swing_.axis.z() > 0.0 ? 1.0 : -1.0;
+    front.swing_angle = {swing_.joint->name, sign};
+    front.swing = swing_.joint->limits;
+    auto& [lower, upper, velocity, effort] = front.swing;
+    const bool limited = swing_.joint->type == "revolute" && lower && upper && *lower < *upper &&
+                         *lower >= -most && *upper <= most;
+    if (!limited) {
+      lower = upper = std::nullopt;
+    } else if (sign < 0.0) {
+      std::tie(lower, upper) = std::pair(-*upper, -*lower);
+    }
   }
 
   Vector2d in_plane(const Vector3d& point) const { return {point.dot(forward_), point.z()}; }

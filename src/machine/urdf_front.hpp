@@ -33,8 +33,10 @@ struct UrdfPart {
 struct UrdfFront {
   Eigen::Vector2d boom_pin;       ///< x from the swing axis, z above the ground [m]
   std::array<UrdfPart, 3> parts;  ///< boom, arm, bucket
-  UrdfLimits swing;
+  UrdfLimits swing;               ///< its range as of a Machine; none: it turns round and round
   RobotJoint swing_angle;
+  double swing_x = 0.0, swing_y = 0.0;  ///< of the swing axis in the frame of the root [m]
+  double ahead = 0.0;  ///< direction of the boom from x in the frame of the root [rad]
 };
 
 /// @throws Error (bad_file) if a joint is missing or of a wrong kind, the order differs, or the

@@ -8,6 +8,7 @@
 
 #include <excavplan/data_files.hpp>
 
+#include "base/angles.hpp"
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "machine/machine_reading.hpp"
@@ -103,7 +104,7 @@ class FromUrdf {
  public:
   FromUrdf(const UrdfFront& front, json usual) : front_(front), usual_(std::move(usual)) {}
 
-  Said said() {
+  Said said(double ground) {
     json& geometry = said_.numbers["geometry"];
     geometry = {{"boom_pin_m", {front_.boom_pin.x(), front_.boom_pin.y()}},
                 {"boom_length_m", front_.parts[0].length},
@@ -112,12 +113,26 @@ class FromUrdf {
     for (std::size_t i = 0; i < 3; ++i) add_part(front_.parts[i], words[i]);
     add("swing.speed_rad_per_s", front_.swing.velocity);
     add("swing.torque_n_m", front_.swing.effort);
+    if (front_.swing.lower) {
+      said_.numbers["swing"]["lower_rad"] = *front_.swing.lower;
+      said_.numbers["swing"]["upper_rad"] = *front_.swing.upper;
+    }
+    add_root(ground);
     said_.numbers["robot_joints"] = robot_joints_json(RobotJoints{
         front_.parts[0].angle, front_.parts[1].angle, front_.parts[2].angle, front_.swing_angle});
     return std::move(said_);
   }
 
  private:
+  /// Of the root in the site frame: the inverse of that of the boom's plane at zero of the swing.
+  void add_root(double ground) {
+    const double c = std::cos(front_.ahead), s = std::sin(front_.ahead);
+    const double x = front_.swing_x, y = front_.swing_y;
+    const double yaw = std::abs(front_.ahead) > pi - 1e-9 ? pi : 0.0 - front_.ahead;
+    said_.numbers["robot_root"] = {
+        {"position_m", {0.0 - c * x - s * y, 0.0 + s * x - c * y, 0.0 - ground}}, {"yaw_rad", yaw}};
+  }
+
   void add_part(const UrdfPart& part, const string& word) {
     const string joint = "joints." + word + '.';
     const string link = "links." + word + '.';
@@ -220,17 +235,34 @@ std::set<string> without(std::set<string> keys, const std::set<string>& others) 
 
 void warn_of_angles(const UrdfFront& front, std::vector<Warning>& warnings) {
   string text;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const RobotJoint& angle = front.parts[i].angle;
-    if (angle.sign > 0.0 && std::abs(angle.zero) < 1e-9) continue;
-    text += (text.empty() ? "" : ", ") + string(words[i]) + " = " + (angle.sign < 0.0 ? "-" : "") +
-            angle.name + (angle.zero < 0.0 ? " - " : " + ") + readable(std::abs(angle.zero), 6);
-  }
+  const auto add = [&](const string& word, const RobotJoint& angle) {
+    if (angle.sign > 0.0 && std::abs(angle.zero) < 1e-9) return;
+    text += (text.empty() ? "" : ", ") + word + " = " + (angle.sign < 0.0 ? "-" : "") + angle.name;
+    if (angle.zero == 0.0) return;
+    text += (angle.zero < 0.0 ? " - " : " + ") + readable(std::abs(angle.zero), 6);
+  };
+  for (std::size_t i = 0; i < 3; ++i) add(words[i], front.parts[i].angle);
+  add("swing", front.swing_angle);
   if (text.empty()) return;
   warnings.push_back(
       {"urdf_angles",
        "the angles of excavplan are not those of the URDF: " + text +
            " rad; of trajectories .yaml and .com3 are in the latter, all else in the former"});
+}
+
+void warn_of_root(const json& machine, std::vector<Warning>& warnings) {
+  const json& root = machine["robot_root"];
+  const auto at = root["position_m"].get<std::vector<double>>();
+  const double yaw = root.value("yaw_rad", 0.0);
+  if (std::abs(at[0]) + std::abs(at[1]) + std::abs(at[2]) + std::abs(yaw) < 1e-6) return;
+  warnings.push_back(
+      {"urdf_frame",
+       "the root frame of the URDF is not the site frame, which has its origin on the "
+       "swing axis at the ground and x along the boom: in the site frame the root is "
+       "at (" +
+           readable(at[0], 6) + ", " + readable(at[1], 6) + ", " + readable(at[2], 6) +
+           ") m, turned about z by " + readable(yaw, 6) +
+           " rad; scans in the root frame need this transform"});
 }
 
 }  // namespace
@@ -240,7 +272,7 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
   const Side side = side_of(path);
   const UrdfFront front = front_of(tree, side.names);
   json machine = usual_machine(front);
-  const Said said = FromUrdf(front, machine).said();
+  const Said said = FromUrdf(front, machine).said(side.names.ground);
   refuse_doubles(said.numbers, side);
 
   const std::set<string> of_side = keys_of(side.numbers);
@@ -285,6 +317,7 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
                                  safe_text(said.placeholders, 400)});
   }
   warn_of_angles(front, draft.warnings);
+  warn_of_root(machine, draft.warnings);
   draft.json = std::move(machine);
   draft.beside = side.file;
   return draft;

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/plan/plan_motion.hpp>
 
+#include <utility>
+
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "planning/motion_load.hpp"
 
 namespace excavplan {
 
@@ -21,6 +24,9 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const T
   if (const auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
   Trajectory timed = time_way(machine, std::get<Way>(laid), motion);
   timed.warnings = std::get<Way>(laid).warnings;
+  for (Warning& each : load_warnings(machine, std::get<Way>(laid))) {
+    timed.warnings.push_back(std::move(each));
+  }
   return timed;
 }
 

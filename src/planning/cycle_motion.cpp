@@ -10,6 +10,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
+#include "machine/front_check.hpp"
 #include "planning/front_load.hpp"
 #include "planning/surroundings.hpp"
 #include "simulation/terrain_check.hpp"
@@ -18,11 +19,18 @@ namespace excavplan {
 namespace {
 
 // Ours:
-constexpr double deepest = 0.1;     // of the bucket in the ground at the start [m]
-constexpr double step = 0.05;       // of the joints from pose to pose [rad]
-constexpr double rise = 0.1;        // of the boom, by which it tries to pass higher [rad]
-constexpr double tips = pi / 18.0;  // of a full bucket, from which it loses soil [rad]
-constexpr double most_swing = 2.0 * pi;
+constexpr double deepest = 0.1;            // of the bucket in the ground at the start [m]
+constexpr double step = 0.05;              // of the joints from pose to pose [rad]
+constexpr double rise = 0.1;               // of the boom, by which it tries to pass higher [rad]
+constexpr double tips = pi / 18.0;         // of a full bucket, from which it loses soil [rad]
+constexpr double widest_swing = 2.0 * pi;  // from dig to dump [rad]
+
+/// That hold the front on the way between two places: of each joint that which takes more power.
+JointAngles heavier(const FrontLoad& load, const FrontJoints& from, const FrontJoints& to) {
+  const JointAngles first = load.torque(from.head<3>()), last = load.torque(to.head<3>());
+  const JointAngles move = to.head<3>() - from.head<3>();
+  return ((last - first).array() * move.array() > 0.0).select(last, first);
+}
 
 /// Adds the parts of a cycle to a way.
 class CycleWay {
@@ -38,8 +46,13 @@ class CycleWay {
     way_.poses.push_back({DigPhase::approach, joints, JointAngles::Zero()});
   }
 
-  /// The way of a dig in the boom plane y = 0.
-  void add_dig(const Way& dig) {
+  /// The way of a dig.
+  void add_dig(Way dig) {
+    for (std::size_t i = 1; i < dig.poses.size(); ++i) {
+      WayPose& pose = dig.poses[i];
+      if (pose.phase != DigPhase::approach) break;
+      pose.torque = heavier(empty_, dig.poses[i - 1].joints, pose.joints);
+    }
     way_.poses.insert(way_.poses.end(), dig.poses.begin(), dig.poses.end());
   }
 
@@ -53,6 +66,9 @@ class CycleWay {
     const FrontJoints from = joints();
     const Clearance first = surroundings_.standing(from);
     if (first.height < -deepest) return blocked(phase, first, "where the way begins");
+    const bool dumps = phase == DigPhase::swing || phase == DigPhase::dump;
+    const Clearance last = surroundings_.standing(to);
+    if (dumps && last.height < 0.0) return blocked(phase, last, "where it dumps");
     const auto straight = surroundings_.obstacle(from, to);
     if (!straight) {
       add(phase, {to}, loaded);
@@ -74,8 +90,11 @@ class CycleWay {
 
   const FrontJoints& joints() const { return way_.poses.back().joints; }
 
-  Way take(bool swings) {
-    if (swings) way_.swing_acceleration = swing_acceleration();
+  Way take() {
+    for (WayPose& pose : way_.poses) {
+      const bool full = pose.phase == DigPhase::lift || pose.phase == DigPhase::swing;
+      pose.payload = full ? load_.payload_mass : 0.0;
+    }
     if (unseen_.area > 0.0) {
       way_.warnings.push_back(
           {"unseen_way",
@@ -97,15 +116,6 @@ class CycleWay {
   }
 
  private:
-  /// As far as the swing can do all along.
-  double swing_acceleration() const {
-    double inertia = 0.0;
-    for (const WayPose& pose : way_.poses) {
-      inertia = std::max(inertia, loaded_.inertia(pose.joints.head<3>()));
-    }
-    return machine_.swing->torque / inertia;
-  }
-
   /// With the boom higher; a full bucket keeps its attitude as far as its joint can.
   FrontJoints lifted(FrontJoints joints, double up, bool loaded) const {
     const double boom = std::max(joints[0] - up, std::min(joints[0], machine_.limits[0].lower));
@@ -125,8 +135,7 @@ class CycleWay {
       const double parts = std::ceil((to - from).norm() / step);
       for (double i = 1.0; i <= parts; ++i) {
         const FrontJoints at = from + i / parts * (to - from);
-        const FrontJoints middle = 0.5 * (at + joints());
-        way_.poses.push_back({phase, at, load.torque(middle.head<3>())});
+        way_.poses.push_back({phase, at, heavier(load, joints(), at)});
       }
     }
   }
@@ -157,13 +166,11 @@ class CycleWay {
   Way way_;
 };
 
-void check_start(const Machine& machine, const FrontJoints& start) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const JointLimits& limits = machine.limits[i];
-    require_in(std::string("joints at the start: ") + name(static_cast<Joint>(i)) + " [rad]",
-               start[static_cast<Eigen::Index>(i)], limits.lower, limits.upper);
-  }
-  require_in("joints at the start: swing [rad]", start[3], -most_swing, most_swing);
+/// Whole turns of a machine that turns round and round, to the plane of the dig nearest to where it
+/// stands [rad].
+double turns_to(const Machine& machine, const CycleWayOptions& options) {
+  if (!options.start || !machine.swing || !machine.swing->turns_round()) return 0.0;
+  return 2.0 * pi * std::round((*options.start)[3] / (2.0 * pi));
 }
 
 FrontJoints with_swing(const JointAngles& joints, double swing) {
@@ -175,9 +182,11 @@ FrontJoints with_swing(const JointAngles& joints, double swing) {
 }  // namespace
 
 void check(const Machine& machine, const CycleWayOptions& options) {
-  if (options.start) check_start(machine, *options.start);
+  if (options.start) check_joints(machine, *options.start, "joints at the start");
   if (options.whole_cycle) {
-    require_in("cycle: swing [rad]", options.cycle.swing, 0.0, most_swing);
+    const Swing swing = machine.swing.value_or(Swing{});
+    require_in("cycle: swing [rad]", options.cycle.swing, std::max(-widest_swing, swing.lower),
+               std::min(widest_swing, swing.upper));
     require_in("cycle: dump_height [m]", options.cycle.dump_height, 0.0, 1e9);
   }
   const bool swings = options.whole_cycle || (options.start && (*options.start)[3] != 0.0);
@@ -193,7 +202,9 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
   check(machine, options);
   require_in("payload_mass of the dig [kg]", load.payload_mass, 0.0, 1e9);
   if (load.ground_after.z.size() > 0) require_grid(load.ground_after, "ground after the dig");
-  const Way dig = way_of(path, load.torques);
+  Way dig = way_of(path, load.torques);
+  const double ahead = turns_to(machine, options);
+  for (WayPose& pose : dig.poses) pose.joints[3] = ahead;
   CycleWay way(machine, ground.surface(), load);
   if (options.start) {
     way.start_at(*options.start);
@@ -205,12 +216,12 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
     const JointAngles clear = way.joints().head<3>();
     const double height = std::max(options.cycle.dump_height, pin_height(machine, clear));
     const JointAngles full = raised(machine, clear, height), open = opened(machine, full);
-    const double swing = options.cycle.swing;
+    const double swing = ahead + options.cycle.swing;
     if (auto stop = way.go(DigPhase::swing, with_swing(full, swing), true)) return *stop;
     if (auto stop = way.go(DigPhase::dump, with_swing(open, swing), false)) return *stop;
     if (auto stop = way.go(DigPhase::back, dig.poses.front().joints, false)) return *stop;
   }
-  return way.take(options.whole_cycle || (options.start && (*options.start)[3] != 0.0));
+  return way.take();
 }
 
 }  // namespace excavplan

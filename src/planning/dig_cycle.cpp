@@ -57,9 +57,10 @@ CycleShare move(const FrontLoad& front, const JointAngles& from, const JointAngl
   return move(front, way, timed(front.machine(), way));
 }
 
-/// By a trapezoid of the rate; braking costs nothing and gives nothing back.
-CycleShare swing_by(const Swing& swing, double inertia, double angle) {
-  const double acceleration = swing.torque / inertia;
+/// To either side, by a trapezoid of the rate; braking costs nothing and gives nothing back.
+CycleShare swing_by(const Swing& swing, double inertia, double either) {
+  const double angle = std::abs(either);
+  const double acceleration = std::min(swing.torque / inertia, swing.acceleration);
   const double rate = std::min(swing.speed, std::sqrt(angle * acceleration));
   if (rate == 0.0) return {};
   return {0.5 * inertia * rate * rate, angle / rate + rate / acceleration};
@@ -79,7 +80,7 @@ void check(const DigPath& path, const PlannedDig& dig, const CycleOptions& optio
   require_in("cycle: payload_mass of the dig [kg]", dig.payload_mass, 0.0, most);
   require_in("cycle: energy of the dig [J]", dig.energy, 0.0, 1e3 * most);
   require_in("cycle: duration of the dig [s]", dig.duration, 0.0, most);
-  require_in("cycle: swing [rad]", options.swing, 0.0, 2.0 * pi);
+  require_in("cycle: swing [rad]", options.swing, -2.0 * pi, 2.0 * pi);
   require_in("cycle: dump_height [m]", options.dump_height, 0.0, most);
   require_in("cycle: rest_of_cycle [s]", options.rest_of_cycle, 0.0, most);
 }

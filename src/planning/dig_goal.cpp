@@ -84,7 +84,8 @@ const std::vector<DigObjectiveParameter>& objective_parameters() {
       {"time_price_w", "W", "price of time", "", &DigObjective::time_price},
       {"min_fill", "-", "smallest fill of the bucket, as a fraction of its heaped capacity",
        "min-fill", &DigObjective::min_fill, 1.0},
-      {"swing_rad", "rad", "swing from dig to dump", "swing", &DigObjective::swing, 2.0 * pi},
+      {"swing_rad", "rad", "swing from dig to dump (to the right: below 0)", "swing",
+       &DigObjective::swing, 2.0 * pi, -2.0 * pi},
       {"dump_height_m", "m", "height of the bucket pin at which it dumps", "dump-height",
        &DigObjective::dump_height},
       {"rest_of_cycle_s", "s", "waiting time of a cycle", "rest-of-cycle",
@@ -111,7 +112,8 @@ std::string describe(const DigObjective& objective) {
   std::string text = goal.word;
   for (const DigObjectiveParameter& parameter : objective_parameters()) {
     if (!parameter.matters_to(goal)) continue;
-    text += std::string(", ") + parameter.name + " " + number_text(objective.*parameter.field);
+    text += std::string(", ") + parameter.name + " " +
+            number_text(std::abs(objective.*parameter.field));
   }
   return text;
 }
@@ -121,8 +123,9 @@ void check(const DigObjective& objective, const Machine& machine) {
     const double value = objective.*parameter.field;
     const std::string unit =
         parameter.unit == std::string("-") ? "" : std::string(" ") + parameter.unit;
-    require(value >= 0.0 && value <= parameter.highest, std::string("the ") + parameter.text, value,
-            "in 0 .. " + number_text(parameter.highest) + unit);
+    require(value >= parameter.lowest && value <= parameter.highest,
+            std::string("the ") + parameter.text, value,
+            "in " + number_text(parameter.lowest) + " .. " + number_text(parameter.highest) + unit);
   }
   if (info_of(objective.goal).of_cycle) require_cycle(machine, objective);
 }

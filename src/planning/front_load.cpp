@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <excavplan/soil/soil.hpp>
 
 #include "base/angles.hpp"
+#include "machine/front_mass.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -18,20 +18,6 @@ using Eigen::Vector2d;
 
 // Fall of the bucket's floor towards the tip once it is open, steeper than soil stands; ours.
 constexpr double open_floor = 0.25 * pi;
-
-/// Centre of the bucket's cavity in the bucket frame, where the payload is taken to be.
-Vector2d cavity_centre(const Bucket& bucket) {
-  const std::vector<Vector2d>& corners = bucket.profile;
-  Vector2d sum = Vector2d::Zero();
-  double area = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vector2d& next = corners[(i + 1) % corners.size()];
-    const double twice = cross(corners[i], next);
-    sum += twice / 3.0 * (corners[i] + next);
-    area += twice;
-  }
-  return sum / area;
-}
 
 /// Of a path from elsewhere a joint may lie beyond its limits: then the lower bound counts.
 double within(double value, double lowest, double highest) {
@@ -50,16 +36,7 @@ JointAngles FrontLoad::torque(const JointAngles& joints) const {
 }
 
 double FrontLoad::inertia(const JointAngles& joints) const {
-  const LinkPositions at = link_positions(machine_, joints);
-  const double pins[] = {machine_.boom_pin.x(), at.arm_pin.x(), at.bucket_pin.x()};
-  const double angles[] = {at.phi1, at.phi2, at.phi3};
-  double sum = machine_.swing->inertia + payload_ * std::pow(bucket_point(at, centre_).x(), 2);
-  for (std::size_t i = 0; i < machine_.links.size(); ++i) {
-    const LinkMass& link = machine_.links[i];
-    const double x = pins[i] + link.along * std::cos(angles[i]) - link.across * std::sin(angles[i]);
-    sum += link.mass * x * x;
-  }
-  return sum;
+  return swing_inertia(machine_, centre_, joints, payload_);
 }
 
 double pin_height(const Machine& machine, const JointAngles& joints) {

@@ -75,7 +75,7 @@ nlohmann::ordered_json goal_json(const DigObjective& objective) {
   nlohmann::ordered_json json = {{"goal", goal.word}};
   for (const DigObjectiveParameter& parameter : objective_parameters()) {
     if (!parameter.matters_to(goal)) continue;
-    json["goal_parameters"][parameter.name] = objective.*parameter.field;
+    json["goal_parameters"][parameter.name] = std::abs(objective.*parameter.field);
   }
   return json;
 }

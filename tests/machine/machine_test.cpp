@@ -503,6 +503,49 @@ TEST(MachineFile, NamesKeyValueAndRuleOfTeethItRefuses) {
             "bucket.teeth.length_m: is missing");
 }
 
+TEST(MachineFile, MayLimitTheSwing) {
+  json file = shipped_json();
+  file["swing"].update({{"lower_rad", -1.0}, {"upper_rad", 2.0}, {"acceleration_rad_per_s2", 0.5}});
+  const std::string path = testing::TempDir() + "swing_" + std::to_string(::getpid()) + ".json";
+  std::ofstream(path) << file;
+  const Machine machine = load_machine(path);
+  std::remove(path.c_str());
+  EXPECT_EQ(machine.swing->lower, -1.0);
+  EXPECT_EQ(machine.swing->upper, 2.0);
+  EXPECT_EQ(machine.swing->acceleration, 0.5);
+  EXPECT_FALSE(machine.swing->turns_round());
+  EXPECT_TRUE(zx120().swing->turns_round());
+  EXPECT_NE(fingerprint(machine), fingerprint(zx120())) << "a cycle takes longer";
+  EXPECT_EQ(set("/swing/lower_rad", -1.0), "swing.upper_rad: is missing");
+  EXPECT_EQ(set("/swing/acceleration_rad_per_s2", 0.0),
+            "swing.acceleration_rad_per_s2: is 0, must be above 0 and at most 10000");
+  EXPECT_EQ(
+      set("/swing/acceleration_rad_per_s2", 20.0),
+      "swing.acceleration_rad_per_s2: is 20, must be in 0.01 .. 5: is it in degrees or turns?");
+  EXPECT_EQ(complaint_about([](json& f) {
+              f["swing"].update({{"lower_rad", 1.0}, {"upper_rad", -1.0}});
+            }),
+            "swing.upper_rad: is -1, must be above lower_rad = 1");
+}
+
+TEST(MachineFile, OfTheZx200HasThePublishedAccelerationOfItsSwing) {
+  EXPECT_EQ(load_machine(find_data_file("machines/zx200.json")).swing->acceleration, 0.35);
+}
+
+TEST(MachineFile, MayPlaceTheRootOfTheRobot) {
+  json file = shipped_json();
+  file["robot_root"] = {{"position_m", {0.5, -1.0, 0.25}}, {"yaw_rad", pi / 2.0}};
+  const std::string path = testing::TempDir() + "root_" + std::to_string(::getpid()) + ".json";
+  std::ofstream(path) << file;
+  const Machine machine = load_machine(path);
+  std::remove(path.c_str());
+  const Eigen::Vector3d moved = machine.site_from_root * Eigen::Vector3d(2.0, 0.0, 0.0);
+  EXPECT_LT((moved - Eigen::Vector3d(0.5, 1.0, 0.25)).norm(), 1e-12);
+  EXPECT_EQ(fingerprint(machine), fingerprint(zx120()));
+  EXPECT_EQ(set("/robot_root/position_m", json::array({0, 0, 1e3})),
+            "robot_root.position_m: is further than 100 m from the origin");
+}
+
 TEST(MachineFile, MayLeaveOutBodySwingAndEngine) {
   json file = shipped_json();
   for (const char* key : {"body", "swing", "engine"}) file.erase(key);

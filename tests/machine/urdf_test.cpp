@@ -176,7 +176,7 @@ TEST_F(Urdf, ReachesWhereUrdfdomDoesForDrawnMachinesAndJoints) {
     const auto model = urdf::parseURDF(text);
     ASSERT_TRUE(model);
     const auto& swing = model->getJoint("s")->parent_to_joint_origin_transform.position;
-    std::set<double> sides;
+    std::set<double> sides, lateral;
     for (int posture = 0; posture < 20; ++posture) {
       JointAngles joints;
       std::map<std::string, double> angles;
@@ -189,6 +189,16 @@ TEST_F(Urdf, ReachesWhereUrdfdomDoesForDrawnMachinesAndJoints) {
         EXPECT_GE(angles[angle.name], own.lower - 1e-9);
         EXPECT_LE(angles[angle.name], own.upper + 1e-9);
       }
+      const RobotJoint& swing_angle = file.machine.robot_joints[3];
+      const double swung = random.uniform(file.machine.swing->lower, file.machine.swing->upper);
+      angles["s"] = swing_angle.from_ours(swung);
+      const Eigen::Vector3d in_site =
+          file.machine.site_from_root * tip_by_urdfdom(*model, angles, "lt");
+      const Eigen::Vector3d in_plane =
+          Eigen::AngleAxisd(-swung, Eigen::Vector3d::UnitZ()) * in_site;
+      EXPECT_NEAR(in_plane.x(), link_positions(file.machine, joints).tip.x(), 1e-8);
+      EXPECT_NEAR(in_plane.z(), link_positions(file.machine, joints).tip.y(), 1e-8);
+      lateral.insert(in_plane.y());
       const Eigen::Vector3d tip = tip_by_urdfdom(*model, angles, "lt");
       const Vector2d ours = link_positions(file.machine, joints).tip;
       EXPECT_NEAR(ours.y(), tip.z(), 1e-9);
@@ -198,6 +208,7 @@ TEST_F(Urdf, ReachesWhereUrdfdomDoesForDrawnMachinesAndJoints) {
       sides.insert(flat.squaredNorm() - ours.x() * ours.x());
     }
     EXPECT_LE(*sides.rbegin() - *sides.begin(), 1e-8);
+    EXPECT_LE(*lateral.rbegin() - *lateral.begin(), 1e-8) << "the offset of the boom";
   }
 }
 #endif
@@ -218,6 +229,51 @@ TEST_F(Urdf, SignsAndZerosFollowTheAxes) {
   EXPECT_NEAR(file.machine.limits[0].lower, -1.2217 - 0.7853981633974483, 1e-12);
   EXPECT_NEAR(file.machine.limits[0].upper, 0.7679 - 0.7853981633974483, 1e-12);
   EXPECT_EQ(codes(file).count("urdf_angles"), 1U);
+}
+
+TEST_F(Urdf, LimitsTheSwingToo) {
+  auto joints = zx120_joints();
+  EXPECT_TRUE(read(urdf_of(joints)).machine.swing->turns_round());
+  joints[0].type = "revolute";
+  joints[0].limit = "lower=\"-1.2\" upper=\"0.8\" effort=\"34000\" velocity=\"1\"";
+  EXPECT_EQ(read(urdf_of(joints)).machine.swing->lower, -1.2);
+  EXPECT_EQ(read(urdf_of(joints)).machine.swing->upper, 0.8);
+  joints[0].axis = "0 0 -1";
+  const MachineFile turned = read(urdf_of(joints));
+  EXPECT_EQ(turned.machine.swing->lower, -0.8);
+  EXPECT_EQ(turned.machine.swing->upper, 1.2);
+  EXPECT_EQ(codes(turned).count("urdf_angles"), 1U);
+  for (const Warning& warning : turned.warnings) {
+    if (warning.code != "urdf_angles") continue;
+    EXPECT_NE(warning.message.find("swing = -swing_joint rad"), std::string::npos)
+        << warning.message;
+  }
+  for (const std::string none : {"lower=\"0\" upper=\"0\"", "lower=\"-1000\" upper=\"1000\""}) {
+    joints[0].limit = none + " effort=\"34000\" velocity=\"1\"";
+    EXPECT_TRUE(read(urdf_of(joints)).machine.swing->turns_round()) << none;
+  }
+}
+
+// The axis is 0.3 m ahead of the root and 0.1 m to its left, the boom points to the left at zero.
+TEST_F(Urdf, KeepsWhereTheRootIs) {
+  auto joints = zx120_joints();
+  joints[0].xyz = "0.3 0.1 1.5";
+  joints[0].rpy = "0 0 1.5707963267948966";
+  const json beside = {
+      {"format", "excavplan-machine"}, {"version", 1}, {"urdf", {{"ground_z_m", 0.5}}}};
+  const MachineFile file = read(urdf_of(joints), beside);
+  const Eigen::Vector3d ahead = file.machine.site_from_root * Eigen::Vector3d(0.3, 5.1, 0.5);
+  EXPECT_LT((ahead - Eigen::Vector3d(5.0, 0.0, 0.0)).norm(), 1e-12);
+  ASSERT_EQ(codes(file).count("urdf_frame"), 1U);
+  for (const Warning& warning : file.warnings) {
+    if (warning.code != "urdf_frame") continue;
+    EXPECT_NE(warning.message.find(
+                  "at (-0.100000, 0.300000, -0.500000) m, turned about z by -1.57080 rad"),
+              std::string::npos)
+        << warning.message;
+  }
+  const MachineFile again = load_machine_file(folder.write("again.json", file.text));
+  EXPECT_TRUE(again.machine.site_from_root.isApprox(file.machine.site_from_root, 1e-12));
 }
 
 // ---- what it does not hold ----------------------------------------------------------------------

@@ -113,6 +113,18 @@ TEST_F(Cycle, SwingThatDoesNotReachItsRateAcceleratesHalfTheWay) {
   EXPECT_EQ(cycle(0.0, by_angle(0.0)).swing.time, 0.0);
 }
 
+TEST_F(Cycle, SwingToTheRightCostsAsMuch) {
+  const DigCycle left = cycle(300.0, by_angle(1.2)), right = cycle(300.0, by_angle(-1.2));
+  EXPECT_EQ(right.total.energy, left.total.energy);
+  EXPECT_EQ(right.total.time, left.total.time);
+  EXPECT_NE(cycle(300.0, by_angle(1.3)).total.time, left.total.time);
+}
+
+TEST_F(Cycle, SwingKeepsItsOwnAcceleration) {
+  bare_.swing->acceleration = 0.4;  // the torque alone gives 2.3 rad/s^2
+  EXPECT_NEAR(cycle(0.0, by_angle(0.5)).swing.time, 2.0 * std::sqrt(0.5 / 0.4), 1e-9);
+}
+
 TEST_F(Cycle, LinksCountInTheInertia) {
   bare_.links[0] = {1000.0, 0.0, 0.0};  // at the boom pin, 0.14 m from the axis
   const double inertia = 15e3 + 1000.0 * std::pow(bare_.boom_pin.x(), 2);

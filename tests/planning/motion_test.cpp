@@ -18,9 +18,10 @@
 
 #include "base/yaml.hpp"
 
+#include "planning/motion_load.hpp"
 #include "support/cases.hpp"
 #include "support/errors.hpp"
-#include "support/motion_check.hpp"
+#include "support/motion_cases.hpp"
 #include "support/run_program.hpp"
 
 namespace excavplan::test {
@@ -41,6 +42,7 @@ void expect_kept(const UsedLimits& used) {
   EXPECT_LE(used.rate, 1.0 + 1e-6);
   EXPECT_LE(used.acceleration, 1.0 + 1e-6);
   EXPECT_LE(used.jerk, 1.0 + 1e-6);
+  EXPECT_LE(used.swing_torque, 1.0 + 1e-6);
   EXPECT_LE(used.cylinder_speed, 1.0 + 1e-6);
   EXPECT_LE(used.flow, 1.0 + 1e-6);
   EXPECT_LE(used.power, 1.0 + 1e-6);
@@ -51,7 +53,7 @@ TEST(Motion, KeepsEveryLimitBetweenItsPointsOverRandomDigs) {
   int timed = 0;
   for_cases(
       [&](Random& random) {
-        const auto made = any_motion(zx120(), level(), random);
+        const auto made = any_motion(random);
         if (!made) return;
         ++timed;
         const Trajectory motion = time_way(made->machine, made->way, made->options);
@@ -68,8 +70,7 @@ FrontJoints front(double boom, double arm, double bucket, double swing = 0.0) {
 
 Way straight(const FrontJoints& from, const FrontJoints& to) {
   return {{{DigPhase::approach, from, JointAngles::Zero()},
-           {DigPhase::approach, to, JointAngles::Zero()}},
-          0.35};
+           {DigPhase::approach, to, JointAngles::Zero()}}};
 }
 
 DigPath fixed_path() {
@@ -91,9 +92,90 @@ TEST(Motion, OfOneJointIsTheTextbookTrapezoid) {
     EXPECT_GE(motion.duration(), expected);
     EXPECT_LE(motion.duration(), 1.001 * expected + 0.03);
   }
-  const Trajectory swing =
-      time_way(zx120(), straight(front(-0.3, 1.5, 0.0), front(-0.3, 1.5, 0.0, 1.0)), options);
-  EXPECT_NEAR(swing.duration(), 2.0 * std::sqrt(1.0 / 0.35), 0.035);
+  const Way swing = straight(front(-0.3, 1.5, 0.0), front(-0.3, 1.5, 0.0, 1.0));
+  const double inertia = inertia_of(zx120(), {-0.3, 1.5, 0.0}, 0.0).value;
+  EXPECT_NEAR(time_way(zx120(), swing, options).duration(),
+              2.0 * std::sqrt(inertia / zx120().swing->torque), 0.035);
+  Machine slow = zx120();
+  slow.swing->acceleration = 0.2;
+  EXPECT_NEAR(time_way(slow, swing, options).duration(), 2.0 * std::sqrt(1.0 / 0.2), 0.035);
+}
+
+/// A motion of one pose to another and what it uses.
+UsedLimits used_by(const Machine& machine, const Way& way, double* duration = nullptr) {
+  MotionCase made;
+  made.machine = machine;
+  made.way = way;
+  made.options.speed_fraction = 1.0;
+  const Trajectory motion = time_way(machine, way, made.options);
+  if (duration) *duration = motion.duration();
+  return used_between(made, motion, quintic);
+}
+
+// At 2 rad/s^2 until that takes all of the power P, then with the torque P / w to its rate.
+TEST(Motion, SwingAloneKeepsThePowerOfTheEngine) {
+  Machine machine = zx120();
+  machine.swing->torque = 1e6;
+  machine.swing->acceleration = 2.0;
+  machine.engine->power = 30e3;
+  double duration = 0.0;
+  const UsedLimits used =
+      used_by(machine, straight(front(-0.3, 1.5, 0.0), front(-0.3, 1.5, 0.0, 6.0)), &duration);
+  EXPECT_LE(used.power, 1.0 + 1e-6);
+  EXPECT_GE(used.power, 0.99);
+  const double inertia = inertia_of(machine, {-0.3, 1.5, 0.0}, 0.0).value;
+  const double rate = machine.swing->speed;
+  double way = 0.0, at = 0.0;  // of the begin, by steps
+  for (double time = 0.0; at < rate; time += 1e-4) {
+    at += 1e-4 * std::min(2.0, 30e3 / (inertia * std::max(at, 1e-9)));
+    way += 1e-4 * at;
+    duration -= 1e-4;
+  }
+  const double braking = rate / 2.0;
+  EXPECT_NEAR(duration, braking + (6.0 - way - 0.5 * rate * braking) / rate, 0.05);
+}
+
+TEST(Motion, SwingAndCylindersShareThePower) {
+  const Way both = [] {
+    Way way = straight(front(0.3, 1.2, 0.5), front(-0.8, 1.2, 0.5, 1.8));
+    for (WayPose& pose : way.poses) pose.torque = {-120e3, 0.0, 0.0};
+    return way;
+  }();
+  MotionCase made;
+  made.machine = zx120();
+  made.way = both;
+  made.options.speed_fraction = 1.0;
+  const Trajectory motion = time_way(made.machine, both, made.options);
+  double most = 0.0, swing = 0.0, boom = 0.0;
+  for (std::size_t k = 1; k < motion.points.size(); ++k) {
+    const TrajectoryPoint& at = motion.points[k];
+    const TurnedInertia turned = inertia_of(made.machine, at.joints, 0.0);
+    const double torque =
+        turned.value * at.swing.acceleration + turned.slope.dot(at.rates) * at.swing.rate;
+    const double of_swing = std::max(0.0, torque * at.swing.rate);
+    const double of_boom = std::max(0.0, -120e3 * at.rates[0]);
+    most = std::max(most, of_swing + of_boom);
+    swing = std::max(swing, of_swing);
+    boom = std::max(boom, of_boom);
+  }
+  const double power = zx120().engine->power;
+  EXPECT_LE(most, power * (1.0 + 1e-6));
+  EXPECT_GE(most, 0.95 * power);
+  EXPECT_GT(swing, 0.1 * power);
+  EXPECT_GT(boom, 0.3 * power);
+}
+
+// A front that reaches out while it swings slows the swing: the torque is the change of J w.
+TEST(Motion, SwingKeepsItsTorqueWhileTheFrontMovesOut) {
+  Machine machine = zx120();
+  machine.swing->torque = 15e3;
+  machine.engine.reset();
+  for (const double arm : {0.6, 2.4}) {
+    const UsedLimits used =
+        used_by(machine, straight(front(-0.3, 3.0 - arm, 0.0), front(-0.3, arm, 0.0, 1.5)));
+    EXPECT_LE(used.swing_torque, 1.0 + 1e-6);
+    EXPECT_GE(used.swing_torque, 0.99);
+  }
 }
 
 TEST(Motion, BeginsAndEndsAtRestWhereItsWayDoesAtTheRate) {
@@ -197,14 +279,149 @@ TEST(Motion, RefusesWhatNoControllerCanRun) {
       "pose 1 of the way: its phase is before the last one's");
 }
 
-/// The way of the whole cycle around the paper's fixed path.
-std::variant<Way, BlockedWay> cycle_from(const FrontJoints& start, const Terrain& ground) {
+CycleWayOptions cycle_options(const FrontJoints& start, double swing = 1.2) {
   CycleWayOptions options;
   options.start = start;
   options.whole_cycle = true;
-  options.cycle.swing = 1.2;
+  options.cycle.swing = swing;
   options.cycle.dump_height = 3.0;
-  return way_of_cycle(zx120(), ground, fixed_path(), {{}, 500.0}, options);
+  return options;
+}
+
+/// The way of the whole cycle around the paper's fixed path.
+std::variant<Way, BlockedWay> cycle_from(const FrontJoints& start, const Terrain& ground) {
+  return way_of_cycle(zx120(), ground, fixed_path(), {{}, 500.0}, cycle_options(start));
+}
+
+/// Swings of its poses in a phase, all or the extreme one.
+std::vector<double> swings_in(const Way& way, DigPhase phase) {
+  std::vector<double> swings;
+  for (const WayPose& pose : way.poses) {
+    if (pose.phase == phase) swings.push_back(pose.joints[3]);
+  }
+  return swings;
+}
+
+TEST(CycleWay, DoesNotDumpIntoAHeap) {
+  Terrain heap = level();
+  for (Eigen::Index col = 0; col < heap.bank.z.cols(); ++col) {
+    if (heap.bank.x(col) > 2.5) heap.bank.z.col(col) = 0.2;
+  }
+  CycleWayOptions options = cycle_options(front(-0.5, 1.5, 0.5), 0.0);
+  options.start.reset();
+  options.cycle.dump_height = 0.0;
+  const auto laid = way_of_cycle(zx120(), heap, fixed_path(), {{}, 500.0}, options);
+  const auto* stop = std::get_if<BlockedWay>(&laid);
+  ASSERT_NE(stop, nullptr);
+  EXPECT_EQ(stop->phase, DigPhase::dump);
+  EXPECT_NE(stop->message.find("where it dumps"), std::string::npos) << stop->message;
+}
+
+TEST(CycleWay, DumpsOnEitherSide) {
+  for (const double swing : {-1.4, 0.7}) {
+    const Way way = std::get<Way>(way_of_cycle(zx120(), level(), fixed_path(), {{}, 500.0},
+                                               cycle_options(front(-0.5, 1.5, 0.5), swing)));
+    for (const double at : swings_in(way, DigPhase::dump)) EXPECT_EQ(at, swing);
+    EXPECT_EQ(way.poses.back().joints[3], 0.0);
+  }
+}
+
+// An encoder that counts turns: 6.1 rad is 0.18 rad to the right of the dig, not a turn to its
+// left.
+TEST(CycleWay, GoesToTheNearestTurnOfASwingThatTurnsRound) {
+  const double turn = 6.283185307179586;
+  for (const auto& [start, ahead] : {std::pair{6.1, turn},
+                                     {6.4, turn},
+                                     {-13.0, -2.0 * turn},
+                                     {3.0, 0.0},
+                                     {-100.0, -16.0 * turn}}) {
+    const Way way = std::get<Way>(way_of_cycle(zx120(), level(), fixed_path(), {{}, 500.0},
+                                               cycle_options(front(-0.5, 1.5, 0.5, start))));
+    EXPECT_EQ(way.poses.front().joints[3], start);
+    for (const double at : swings_in(way, DigPhase::drag)) EXPECT_NEAR(at, ahead, 1e-9);
+    for (const double at : swings_in(way, DigPhase::dump)) EXPECT_NEAR(at, ahead + 1.2, 1e-9);
+    const Trajectory motion = time_way(zx120(), way);
+    EXPECT_EQ(motion.points.front().swing.angle, start);
+  }
+}
+
+TEST(CycleWay, KeepsTheRangeOfTheSwing) {
+  Machine machine = zx120();
+  machine.swing->lower = -1.0;
+  machine.swing->upper = 1.0;
+  const auto complaint = [&](const CycleWayOptions& options) {
+    return error_of([&] { way_of_cycle(machine, level(), fixed_path(), {{}, 500.0}, options); });
+  };
+  EXPECT_EQ(complaint(cycle_options(front(-0.5, 1.5, 0.5))),
+            "cycle: swing [rad] is 1.2, must be in -1 .. 1");
+  EXPECT_EQ(complaint(cycle_options(front(-0.5, 1.5, 0.5, 1.1), 0.5)),
+            "joints at the start: swing [rad] is 1.1, must be in -1 .. 1");
+  EXPECT_EQ(complaint(cycle_options(front(-0.5, 1.5, 0.5, 0.9), -0.5)), "no error");
+  EXPECT_EQ(error_of([&] {
+              time_way(machine, straight(front(-0.3, 1.5, 0.0), front(-0.3, 1.5, 0.0, 1.3)));
+            }),
+            "pose 1 of the way: swing [rad] is 1.3, must be in -1 .. 1");
+}
+
+std::vector<std::string> codes_of(const Machine& machine, double payload) {
+  const Way way = std::get<Way>(way_of_cycle(machine, level(), fixed_path(), {{}, payload},
+                                             cycle_options(front(-0.5, 1.5, 0.5), 1.5)));
+  std::vector<std::string> codes;
+  for (const Warning& warning : load_warnings(machine, way)) {
+    EXPECT_TRUE(warning.ends_trust);
+    codes.push_back(warning.code);
+  }
+  return codes;
+}
+
+TEST(CycleWay, WarnsOfWhatTheMachineCannotHold) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(codes_of(zx120(), 500.0), Words{});
+  EXPECT_EQ(codes_of(zx120(), 12000.0), Words({"motion_overload", "motion_tips"}));
+  Machine weak = zx120();
+  weak.limits[0].torque *= 0.1;
+  EXPECT_EQ(codes_of(weak, 500.0), Words({"motion_overload"}));
+  Machine light = zx120();
+  light.body->mass *= 0.1;
+  EXPECT_EQ(codes_of(light, 500.0), Words({"motion_tips"}));
+}
+
+TEST(CycleWay, AllShippedMachinesHoldAFullBucketToEitherSide) {
+  for (const char* name : {"zx120", "zx200", "generic-20t", "generic-mini"}) {
+    const Machine machine = shipped(name);
+    const double size = machine.full_length() / zx120().full_length();
+    DigParameters dig = paper_fixed_path();
+    dig.penetration_length *= size;
+    dig.drag_length *= size;
+    const auto path = make_dig_path(machine, dig, 6.0 * size, [](double) { return 0.0; });
+    for (const double swing : {-1.57, 0.0, 1.57}) {
+      CycleWayOptions options;
+      options.whole_cycle = true;
+      options.cycle.swing = swing;
+      options.cycle.dump_height = 0.45 * machine.full_length();
+      const auto laid =
+          way_of_cycle(machine, level_planning_ground(machine), std::get<DigPath>(path),
+                       {{}, 1800.0 * heaped_capacity(machine)}, options);
+      EXPECT_TRUE(load_warnings(machine, std::get<Way>(laid)).empty()) << name << ' ' << swing;
+    }
+  }
+}
+
+// By hand: at 1.5 rad the edge is 0.69 of 1.44 m away, and the bucket's load some 6.5 m.
+TEST(CycleWay, TipsWhereTheMomentsSay) {
+  Machine bare = zx120();
+  for (LinkMass& link : bare.links) link.mass = 0.0;
+  bare.body->centre.x() = 0.0;
+  Way way = {{{DigPhase::swing, front(-0.3, 1.5, 1.0, 1.5707963267948966), JointAngles::Zero()}}};
+  const LinkPositions at = link_positions(bare, {-0.3, 1.5, 1.0});
+  const double reach = bucket_point(at, centroid(bare.bucket.profile)).x();
+  const double edge = 0.69 * bare.body->front_edge;
+  const double most = bare.body->mass * edge / (reach - edge);
+  way.poses[0].payload = 0.999 * most;
+  for (auto& limits : bare.limits) limits.torque = 1e9;
+  EXPECT_TRUE(load_warnings(bare, way).empty());
+  way.poses[0].payload = 1.001 * most;
+  EXPECT_EQ(load_warnings(bare, way).at(0).code, "motion_tips");
 }
 
 TEST(CycleWay, GoesFromThePresentJointsOverTheCycleBackAboveTheCut) {

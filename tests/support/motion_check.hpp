@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <variant>
+#include <functional>
+#include <limits>
 #include <vector>
 
 #include <excavplan/planning/cycle_motion.hpp>
 
-#include "base/random.hpp"
+#include "planning/front_load.hpp"
 
 /// @file
-/// What a controller makes of the points of a motion, and random motions.
+/// What a controller makes of the points of a motion.
 
 namespace excavplan::test {
 
@@ -59,13 +59,17 @@ inline Polynomial quintic(const JointState& a, const JointState& b, double h) {
 }
 
 /// Largest shares of the limits that a motion uses between its points, every millisecond or ten
-/// times a step, and how far a joint is beyond its range [rad].
+/// times a step, how far a joint is beyond its range [rad], and how near the bucket comes to the
+/// ground off the dig, or to the depth in it at which it begins [m].
 struct UsedLimits {
-  double rate = 0.0, acceleration = 0.0, jerk = 0.0;
+  double rate = 0.0, acceleration = 0.0, jerk = 0.0, swing_torque = 0.0;
   double cylinder_speed = 0.0, flow = 0.0, power = 0.0;
   double beyond = -1.0;
+  double clearance = std::numeric_limits<double>::infinity();
 
-  double most() const { return std::max({rate, acceleration, jerk, cylinder_speed, flow, power}); }
+  double most() const {
+    return std::max({rate, acceleration, jerk, swing_torque, cylinder_speed, flow, power});
+  }
 };
 
 /// A motion and what it was made with.
@@ -75,136 +79,204 @@ struct MotionCase {
   MotionOptions options;
   JointAngles torque = JointAngles::Zero();  ///< of penetrate, drag, scoop and lift [N m]
   DigPath path;
+  double payload = 0.0;  ///< in the bucket after the dig [kg]
+  /// Height of the ground before it [m]; nothing: it is not looked at.
+  std::function<double(double x, double y)> height = {};
 };
 
-/// Of all four joints at one time.
+/// Of all four joints at one time, and what moves them.
 struct FrontState {
-  FrontJoints angles, rates;
+  FrontJoints angles, rates, accelerations;
+  JointAngles torque = JointAngles::Zero();  ///< of boom, arm, bucket [N m]
+  double swing_torque = 0.0;                 ///< [N m]
 };
 
 constexpr double at_rest = 1e-9;  ///< a slower joint moves by rounding [rad/s]
 
-inline void use_drive(const MotionCase& made, const FrontState& at, bool digs, UsedLimits& used) {
-  if (!made.machine.hydraulics) return;
-  const Hydraulics& oil = *made.machine.hydraulics;
-  double flow = 0.0, pressure = 0.0;
+inline bool digs(DigPhase phase) { return phase >= DigPhase::penetrate && phase <= DigPhase::lift; }
+
+/// About the swing axis, of points at the centres of the links and of the cavity [kg m^2], and its
+/// change per angle of boom, arm and bucket: a second way to it than the library's.
+struct TurnedInertia {
+  double value = 0.0;
+  JointAngles slope = JointAngles::Zero();
+};
+
+inline Eigen::Vector2d centroid(const std::vector<Eigen::Vector2d>& corners) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double all = 0.0;
+  for (std::size_t i = 2; i < corners.size(); ++i) {  // triangles from the first corner
+    const Eigen::Vector2d a = corners[i - 1] - corners[0], b = corners[i] - corners[0];
+    const double area = a.x() * b.y() - a.y() * b.x();
+    sum += area * (corners[0] + (a + b) / 3.0);
+    all += area;
+  }
+  return sum / all;
+}
+
+inline TurnedInertia inertia_of(const Machine& machine, const JointAngles& joints, double payload) {
+  TurnedInertia sum = {machine.swing->inertia, JointAngles::Zero()};
+  const double lengths[] = {machine.boom_length, machine.arm_length, 0.0};
+  double pin = machine.boom_pin.x(), angle = 0.0;
+  JointAngles pin_slope = JointAngles::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    angle += joints[i];  // downwards
+    const auto add = [&](double mass, double along, double across) {
+      const double x = pin + along * std::cos(angle) + across * std::sin(angle);
+      JointAngles slope = pin_slope;
+      slope.head(i + 1).array() += across * std::cos(angle) - along * std::sin(angle);
+      sum.value += mass * x * x;
+      sum.slope += 2.0 * mass * x * slope;
+    };
+    const LinkMass& link = machine.links[static_cast<std::size_t>(i)];
+    add(link.mass, link.along, link.across);
+    if (i == 2) {
+      const Eigen::Vector2d soil = centroid(machine.bucket.profile);
+      add(payload, soil.x(), soil.y());
+    }
+    pin += lengths[i] * std::cos(angle);
+    pin_slope.head(i + 1).array() -= lengths[i] * std::sin(angle);
+  }
+  return sum;
+}
+
+/// Cylinders, flow and power; the torque of the swing.
+inline void use_drive(const MotionCase& made, const FrontState& at, UsedLimits& used) {
+  const Machine& machine = made.machine;
+  double power = std::max(0.0, at.swing_torque * at.rates[3]);
+  if (machine.swing) {
+    used.swing_torque =
+        std::max(used.swing_torque, std::abs(at.swing_torque) / machine.swing->torque);
+  }
+  double flow = 0.0, pressure = 0.0, work = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
     if (std::abs(at.rates[joint]) < at_rest) continue;
-    const Cylinder& cylinder = (*made.machine.cylinders)[i];
+    const double own = at.torque[joint] * at.rates[joint];
+    work += std::max(0.0, own);
+    if (!machine.hydraulics) continue;
+    const Cylinder& cylinder = (*machine.cylinders)[i];
     const double speed = cylinder.at(at.angles[joint]).lever * at.rates[joint];
-    const Piston& piston = oil.pistons[i];
+    const Piston& piston = machine.hydraulics->pistons[i];
     const double rod = speed < 0.0 ? piston.rod_diameter : 0.0;
     const double area = 0.25 * 3.141592653589793 * (std::pow(piston.diameter, 2) - rod * rod);
     used.cylinder_speed = std::max(used.cylinder_speed, std::abs(speed) / piston.speed);
     flow += cylinder.count() * area * std::abs(speed);
-    if (made.torque[joint] * at.rates[joint] <= 0.0) continue;
-    const double force = std::abs(cylinder.force(at.angles[joint], made.torque[joint]));
+    if (own <= 0.0) continue;
+    const double force = std::abs(cylinder.force(at.angles[joint], at.torque[joint]));
     pressure = std::max(pressure, force / area);
   }
-  used.flow = std::max(used.flow, flow / oil.pump_flow);
-  if (digs) used.power = std::max(used.power, pressure * flow / made.machine.engine->power);
+  if (machine.hydraulics) used.flow = std::max(used.flow, flow / machine.hydraulics->pump_flow);
+  power += machine.hydraulics ? pressure * flow : work;
+  if (machine.engine) used.power = std::max(used.power, power / machine.engine->power);
 }
+
+/// Height of the bucket's corners above the ground, at both sides and in the middle.
+inline double height_above(const MotionCase& made, const FrontJoints& joints) {
+  const LinkPositions at = link_positions(made.machine, joints.head<3>());
+  const double c = std::cos(joints[3]), s = std::sin(joints[3]);
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& corner : made.machine.bucket.profile) {
+    const Eigen::Vector2d point = bucket_point(at, corner);
+    for (const double share : {-0.5, 0.0, 0.5}) {
+      const double y = share * made.machine.bucket.width_outside;
+      least =
+          std::min(least, point.y() - made.height(point.x() * c - y * s, point.x() * s + y * c));
+    }
+  }
+  return least;
+}
+
+/// All of a motion.
+class MotionUse {
+ public:
+  explicit MotionUse(const MotionCase& made) : made_(made), empty_(made.machine) {}
+
+  /// @param through  cubic or quintic
+  template <typename Through>
+  UsedLimits between(const Trajectory& motion, const Through& through) {
+    if (made_.height) begin(motion.points.front());
+    for (std::size_t k = 1; k < motion.points.size(); ++k) {
+      const TrajectoryPoint &from = motion.points[k - 1], &to = motion.points[k];
+      const double h = to.time - from.time;
+      std::array<Polynomial, 4> joints;
+      for (Eigen::Index j = 0; j < 4; ++j) {
+        joints[static_cast<std::size_t>(j)] = through(state_of(from, j), state_of(to, j), h);
+      }
+      const int parts = std::max(10, static_cast<int>(std::ceil(1000.0 * h)));
+      for (int part = 0; part <= parts; ++part) see(joints, h * part / parts, from.phase, to.phase);
+    }
+    const double fraction = made_.options.speed_fraction;
+    for (double* share : {&used_.rate, &used_.acceleration, &used_.swing_torque,
+                          &used_.cylinder_speed, &used_.flow, &used_.power}) {
+      *share /= fraction;
+    }
+    return used_;
+  }
+
+ private:
+  void begin(const TrajectoryPoint& point) {
+    FrontJoints joints;
+    joints << point.joints, point.swing.angle;
+    depth_ = std::min(0.0, height_above(made_, joints));
+  }
+
+  void see(const std::array<Polynomial, 4>& joints, double t, DigPhase from, DigPhase to) {
+    FrontState at;
+    for (std::size_t j = 0; j < 4; ++j) {
+      const auto joint = static_cast<Eigen::Index>(j);
+      at.angles[joint] = joints[j].at(t);
+      at.rates[joint] = joints[j].at(t, 1);
+      at.accelerations[joint] = joints[j].at(t, 2);
+      used_.jerk = std::max(used_.jerk, std::abs(joints[j].at(t, 3)) / made_.options.max_jerk);
+    }
+    see_joints(at);
+    if (from == to || (digs(from) && digs(to))) see_loads(at, to);
+    if (made_.height && !digs(from) && !digs(to)) {
+      used_.clearance = std::min(used_.clearance, height_above(made_, at.angles) - depth_);
+    }
+  }
+
+  void see_joints(const FrontState& at) {
+    const Machine& machine = made_.machine;
+    for (std::size_t j = 0; j < 4; ++j) {
+      const auto joint = static_cast<Eigen::Index>(j);
+      if (j == 3 && !machine.swing) continue;
+      const JointLimits limits =
+          j < 3 ? machine.limits[j]
+                : JointLimits{machine.swing->lower, machine.swing->upper, machine.swing->speed,
+                              machine.swing->acceleration, machine.swing->torque};
+      used_.rate = std::max(used_.rate, std::abs(at.rates[joint]) / limits.speed);
+      used_.acceleration =
+          std::max(used_.acceleration, std::abs(at.accelerations[joint]) / limits.acceleration);
+      used_.beyond = std::max(
+          {used_.beyond, at.angles[joint] - limits.upper, limits.lower - at.angles[joint]});
+    }
+  }
+
+  void see_loads(FrontState at, DigPhase phase) {
+    const bool full = phase == DigPhase::lift || phase == DigPhase::swing;
+    const double payload = full ? made_.payload : 0.0;
+    const FrontLoad load(made_.machine, payload);
+    at.torque = digs(phase) ? made_.torque : (full ? load : empty_).torque(at.angles.head<3>());
+    if (made_.machine.swing) {
+      const TurnedInertia turned = inertia_of(made_.machine, at.angles.head<3>(), payload);
+      at.swing_torque =
+          turned.value * at.accelerations[3] + turned.slope.dot(at.rates.head<3>()) * at.rates[3];
+    }
+    use_drive(made_, at, used_);
+  }
+
+  const MotionCase& made_;
+  FrontLoad empty_;
+  UsedLimits used_;
+  double depth_ = 0.0;  // at which it begins [m], <= 0
+};
 
 /// @param through  cubic or quintic
 template <typename Through>
 UsedLimits used_between(const MotionCase& made, const Trajectory& motion, const Through& through) {
-  UsedLimits used;
-  const Machine& machine = made.machine;
-  const auto digs = [](const TrajectoryPoint& point) {
-    return point.phase >= DigPhase::penetrate && point.phase <= DigPhase::lift;
-  };
-  for (std::size_t k = 1; k < motion.points.size(); ++k) {
-    const TrajectoryPoint &from = motion.points[k - 1], &to = motion.points[k];
-    const double h = to.time - from.time;
-    std::array<Polynomial, 4> joints;
-    for (Eigen::Index j = 0; j < 4; ++j) {
-      joints[static_cast<std::size_t>(j)] = through(state_of(from, j), state_of(to, j), h);
-    }
-    const int parts = std::max(10, static_cast<int>(std::ceil(1000.0 * h)));
-    for (int part = 0; part <= parts; ++part) {
-      const double t = h * part / parts;
-      FrontState at;
-      for (std::size_t j = 0; j < 4; ++j) {
-        const auto joint = static_cast<Eigen::Index>(j);
-        const bool swing = j == 3;
-        at.angles[joint] = joints[j].at(t);
-        at.rates[joint] = joints[j].at(t, 1);
-        const double bend = std::abs(joints[j].at(t, 2)), jerk = std::abs(joints[j].at(t, 3));
-        used.jerk = std::max(used.jerk, jerk / made.options.max_jerk);
-        if (swing && made.way.swing_acceleration == 0.0) continue;
-        const double speed = swing ? machine.swing->speed : machine.limits[j].speed;
-        const double most = swing ? made.way.swing_acceleration : machine.limits[j].acceleration;
-        used.rate = std::max(used.rate, std::abs(at.rates[joint]) / speed);
-        used.acceleration = std::max(used.acceleration, bend / most);
-        if (swing) continue;
-        const JointLimits& limits = machine.limits[j];
-        used.beyond = std::max(
-            {used.beyond, at.angles[joint] - limits.upper, limits.lower - at.angles[joint]});
-      }
-      use_drive(made, at, digs(from) && digs(to), used);
-    }
-  }
-  const double fraction = made.options.speed_fraction;
-  for (double* share :
-       {&used.rate, &used.acceleration, &used.cylinder_speed, &used.flow, &used.power}) {
-    *share /= fraction;
-  }
-  return used;
-}
-
-/// A dig anywhere on level ground, by a machine with other limits than the one given, from a random
-/// posture or none, with or without the rest of the cycle. Nothing if it cannot be driven.
-inline std::optional<MotionCase> any_motion(const Machine& machine, const Terrain& ground,
-                                            Random& random) {
-  MotionCase made{machine, {}, {}, JointAngles::Zero(), {}};
-  const auto times = [&](double& number) { number *= std::exp(random.uniform(-0.9, 0.9)); };
-  for (JointLimits& limits : made.machine.limits) {
-    times(limits.speed);
-    times(limits.acceleration);
-  }
-  times(made.machine.hydraulics->pump_flow);
-  times(made.machine.engine->power);
-  for (Piston& piston : made.machine.hydraulics->pistons) {
-    if (random.uniform() < 0.5) piston.speed = random.uniform(0.1, 0.6);
-  }
-  const double rates[] = {20.0, 50.0, 100.0, 100.0, 125.0, 250.0};
-  made.options.rate = rates[random.index(6)];
-  made.options.speed_fraction = random.uniform(0.2, 1.0);
-  made.options.corner_tolerance = random.uniform() < 0.2 ? 0.0 : random.uniform(0.0, 0.01);
-  if (random.uniform() < 0.3) made.options.max_jerk = std::exp(random.uniform(0.0, 5.0));
-  DigParameters dig;
-  dig.penetration_angle = random.uniform(0.2, 1.4);
-  dig.penetration_length = random.uniform(0.1, 0.9);
-  dig.drag_length = random.uniform(0.3, 3.0);
-  DigPathOptions rules;
-  rules.step = random.uniform(0.01, 0.1);
-  const auto level = [](double) { return 0.0; };
-  auto path = make_dig_path(made.machine, dig, random.uniform(4.0, 7.5), level, rules);
-  if (!std::holds_alternative<DigPath>(path)) return std::nullopt;
-  made.path = std::get<DigPath>(std::move(path));
-  auto down = way_down(made.machine, made.path, level);
-  if (auto* poses = std::get_if<std::vector<DigPose>>(&down)) made.path.approach = *poses;
-  DigLoad load;
-  for (Eigen::Index i = 0; i < 3; ++i) made.torque[i] = random.uniform(-1e5, 2e5);
-  load.torques.assign(made.path.poses.size() - 1, made.torque);
-  load.payload_mass = random.uniform(0.0, 800.0);
-  CycleWayOptions options;
-  options.whole_cycle = random.uniform() < 0.5;
-  options.cycle.swing = random.uniform(0.0, 3.1);
-  options.cycle.dump_height = random.uniform(0.0, 4.0);
-  if (random.uniform() < 0.8) {
-    options.start.emplace();
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const JointLimits& limits = made.machine.limits[static_cast<std::size_t>(i)];
-      (*options.start)[i] = random.uniform(limits.lower, limits.upper);
-    }
-    (*options.start)[3] = random.uniform() < 0.5 ? 0.0 : random.uniform(-3.1, 3.1);
-  }
-  auto way = way_of_cycle(made.machine, ground, made.path, load, options);
-  if (!std::holds_alternative<Way>(way)) return std::nullopt;
-  made.way = std::get<Way>(std::move(way));
-  return made;
+  return MotionUse(made).between(motion, through);
 }
 
 }  // namespace excavplan::test

@@ -112,6 +112,36 @@ TEST_F(Tools, TrajectoryIsClearOfAllScannedGround) {
   EXPECT_TRUE(contains(blocked.out + blocked.err, "swing: the machine would be ")) << blocked.err;
 }
 
+TEST_F(Tools, TrajectoryDumpsToTheRightIfTheSwingIsBelowZero) {
+  const std::string file = folder.file("right.json");
+  const json right = answer(
+      "plan-path", {"--density", "40", "--swing", "-90deg", "--joints", "-40deg,90deg,40deg,6.1",
+                    "--whole-cycle", "--rate", "50Hz", "--trajectory", file});
+  const json left = answer("plan-path", {"--density", "40", "--swing", "90deg"});
+  EXPECT_EQ(right["path"], left["path"]);
+  EXPECT_EQ(right["cycle"], left["cycle"]);
+  EXPECT_EQ(right["goal_parameters"], left["goal_parameters"]);
+  const Trajectory motion = load_trajectory(file);
+  EXPECT_EQ(motion.points.front().swing.angle, 6.1);
+  double least = 10.0;
+  for (const TrajectoryPoint& point : motion.points) least = std::min(least, point.swing.angle);
+  EXPECT_NEAR(least, 1.5 * 3.141592653589793, 1e-9);
+  EXPECT_NE(run_program("plan-path", {"--density", "40", "--swing", "-400deg"})
+                .err.find("--swing: the swing from dig to dump (to the right: below 0) is -6.98"),
+            std::string::npos);
+}
+
+TEST_F(Tools, TrajectoryOfAMachineThatTipsIsNotTrusted) {
+  json machine = json::parse(std::ifstream(find_data_file("machines/zx120.json")));
+  machine["body"]["mass_kg"] = 4500;
+  const std::string own = folder.write("light.json", machine.dump());
+  const json result = answer("plan-path", {"--density", "40", "--machine", own, "--goal", "energy",
+                                           "--search", "--evaluations", "40", "--whole-cycle",
+                                           "--trajectory", folder.file("tips.csv")});
+  EXPECT_FALSE(result["trustworthy"]);
+  EXPECT_NE(result["warnings"].dump().find("motion_tips"), std::string::npos);
+}
+
 TEST_F(Tools, TrajectoryIsAMessageByItsEndingOrItsFormat) {
   const std::string yaml = folder.file("dig.YML"), other = folder.file("dig.csv");
   answer("plan-path", {"--density", "40", "--trajectory", yaml});

@@ -35,9 +35,9 @@ std::string usual_text(const DigObjectiveParameter& parameter) {
 
 /// As the library does, which does not know the option. @throws Error (bad_input)
 double in_range(const std::string& option, const DigObjectiveParameter& parameter, double value) {
-  if (value >= 0.0 && value <= parameter.highest) return value;
-  usage_error(option + ": the " + parameter.text + " is " + number_text(value) +
-              ", must be in 0 .. " + number_text(parameter.highest) +
+  if (value >= parameter.lowest && value <= parameter.highest) return value;
+  usage_error(option + ": the " + parameter.text + " is " + number_text(value) + ", must be in " +
+              number_text(parameter.lowest) + " .. " + number_text(parameter.highest) +
               (parameter.unit == std::string("-") ? "" : std::string(" ") + parameter.unit));
 }
 

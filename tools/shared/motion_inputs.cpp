@@ -116,6 +116,7 @@ std::optional<FrontJoints> joints_of(const MotionInputs& inputs, const Machine& 
 }
 
 const OptionNames option_names = {{"joints at the start", joints_option},
+                                  {"cycle: swing", "--swing"},
                                   {"MotionOptions::rate", "--rate"},
                                   {"MotionOptions::max_jerk", "--max-jerk"}};
 

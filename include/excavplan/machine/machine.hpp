@@ -8,7 +8,9 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
+#include <excavplan/machine/body_and_drive.hpp>
 #include <excavplan/machine/cylinders.hpp>
 #include <excavplan/machine/robot_joint.hpp>
 
@@ -75,28 +77,6 @@ struct Bucket {
   std::optional<Teeth> teeth;   ///< nothing: a plain lip
 };
 
-/// What stands on the ground: the machine without boom, arm and bucket.
-struct Body {
-  double mass = 0.0;                                 ///< [kg]
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its mass: x, z [m]
-  double rear_edge = 0.0;       ///< x about which it tips backwards, below its centre's [m]
-  double front_edge = 0.0;      ///< x about which it tips forwards, above its centre's [m]
-  double track_friction = 0.0;  ///< largest force along the ground over weight on it [-]
-};
-
-/// What turns the upper structure.
-struct Swing {
-  double speed = 0.0;    ///< highest rate [rad/s]
-  double torque = 0.0;   ///< [N m]
-  double inertia = 0.0;  ///< of the upper structure without its front, about the axis [kg m^2]
-};
-
-/// What drives the cylinders.
-struct Engine {
-  double power = 0.0;       ///< that the pumps can deliver to the cylinders [W]
-  double idle_power = 0.0;  ///< of the shaft, drawn all the time, working or not [W]
-};
-
 /// A machine read from a file; immutable after that.
 struct Machine {
   std::string name;                                    ///< "zx120"
@@ -115,6 +95,9 @@ struct Machine {
   std::optional<Engine> engine;          ///< nothing: its power sets no limit
   RobotJoints robot_joints = {{{"boom"}, {"arm"}, {"bucket"}, {"swing"}}};  ///< of its controller
   std::optional<double> track_width;  ///< over both tracks [m]; nothing: undercarriage_width()
+  /// Takes points from the root frame of the robot's URDF to the site frame: a shift and a turn
+  /// about z. Affects no dig.
+  Eigen::Isometry3d site_from_root = Eigen::Isometry3d::Identity();
 
   /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }

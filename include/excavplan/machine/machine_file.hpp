@@ -33,7 +33,8 @@ struct MachineFile {
   std::string text;      ///< of a machine file of ours that gives the same machine
   /// Of a URDF: urdf_scaled (numbers that neither it nor the JSON beside it states are those of the
   /// zx120, scaled), urdf_placeholder (numbers of it that no machine of this size has, and that
-  /// were replaced), urdf_angles (its angles are not those of ours).
+  /// were replaced), urdf_angles (its angles are not those of ours), urdf_frame (its root frame is
+  /// not the site frame).
   std::vector<Warning> warnings = {};
 };
 

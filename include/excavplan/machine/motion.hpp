@@ -19,7 +19,7 @@
 
 namespace excavplan {
 
-/// (boom, arm, bucket, swing) [rad]; the swing as SwingState::angle.
+/// (boom, arm, bucket, swing) [rad]; the swing as SwingState::angle, within 10^4 rad.
 using FrontJoints = Eigen::Vector4d;
 
 /// The joints at one place of a way.
@@ -27,12 +27,12 @@ struct WayPose {
   DigPhase phase = DigPhase::approach;       ///< that leads here
   FrontJoints joints = FrontJoints::Zero();  ///< [rad]
   JointAngles torque = JointAngles::Zero();  ///< of boom, arm, bucket on the way here [N m]
+  double payload = 0.0;                      ///< in the bucket on the way here [kg], >= 0
 };
 
 /// Where the joints go, in straight lines of the joint space from pose to pose.
 struct Way {
   std::vector<WayPose> poses;          ///< in the order in which they are visited
-  double swing_acceleration = 0.0;     ///< that the swing can do anywhere [rad/s^2]; 0: it rests
   std::vector<Warning> warnings = {};  ///< of way_of_cycle()
 };
 
@@ -56,16 +56,17 @@ void check(const MotionOptions& options);
 
 /// Times a way as fast as the limits allow, from rest to rest. At every time, between the points
 /// too, the joints are within the range of the way's poses, and their rates and accelerations
-/// within the limits times the speed fraction, but for rounding; so are cylinder speeds, pump flow
-/// and power, checked every millisecond.
+/// within the limits times the speed fraction, but for rounding; so are cylinder speeds, pump flow,
+/// the torque of the swing and the power of cylinders and swing together, checked every
+/// millisecond.
 ///
 /// Corners are rounded by the corner tolerance; the machine stops where the way turns by more than
 /// 120 degrees. Besides, the tip leaves the way by some 2 mm for each joint at most.
 ///
 /// @throws Error (bad_input) as require_machine(); if an option is out of range, the way has fewer
 ///         than two poses that differ, a number that is not finite, a joint beyond its limits (by
-///         more than 1e-9 rad), phases out of order, or swings without a swing in the machine or
-///         a swing_acceleration above 0
+///         more than 1e-9 rad), a payload below 0, phases out of order, or swings without a swing
+///         in the machine
 Trajectory time_way(const Machine& machine, const Way& way, const MotionOptions& options = {});
 
 }  // namespace excavplan

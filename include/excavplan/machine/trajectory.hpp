@@ -11,7 +11,8 @@
 
 namespace excavplan {
 
-/// Of the upper structure, about z, positive to the left; 0 where the boom plane is y = 0.
+/// Of the upper structure, about z, positive to the left; 0 where the boom plane is y = 0, and so
+/// is every whole turn of a machine that turns round and round.
 struct SwingState {
   double angle = 0.0;         ///< [rad]
   double rate = 0.0;          ///< [rad/s]
@@ -40,7 +41,8 @@ struct Trajectory {
   std::vector<TrajectoryPoint> points;  ///< in the order of time
   /// Machine::robot_joints; time_way() leaves the name of one that is not there empty.
   RobotJoints robot_joints = Machine{}.robot_joints;
-  std::vector<Warning> warnings = {};  ///< of plan_motion(): Way::warnings; files do not hold them
+  /// Of plan_motion(): Way::warnings, motion_overload, motion_tips. Not in files.
+  std::vector<Warning> warnings = {};
   /// Of all points [s].
   double duration() const { return points.empty() ? 0.0 : points.back().time; }
   double dig_duration() const;  ///< of penetrate, drag and scoop [s]

@@ -29,7 +29,7 @@ struct CycleWayOptions {
   /// Joints from which it begins [rad]; nothing: it begins where the path does.
   std::optional<FrontJoints> start;
   bool whole_cycle = false;  ///< whether it goes on over swing, dump and back
-  CycleOptions cycle = {};   ///< swing, to the left, and dump height, if it does
+  CycleOptions cycle = {};   ///< swing and dump height, if it does
 };
 
 /// Ground, or its own undercarriage, in the way of the machine.

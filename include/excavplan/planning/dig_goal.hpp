@@ -65,14 +65,16 @@ struct DigObjectiveParameter {
   const char* text;             ///< readable
   const char* option;           ///< on the command line, "swing"; empty: follows the goal's word
   double DigObjective::*field;  ///< where it is kept
-  double highest = 1e9;         ///< the lowest is 0
+  double highest = 1e9;         ///< that it may be
+  double lowest = 0.0;          ///< likewise; the cost depends on its size alone
 
   /// Whether the worth by this goal depends on it.
   bool matters_to(const DigGoalInfo& goal) const;
 };
 const std::vector<DigObjectiveParameter>& objective_parameters();
 
-/// The goal and all parameters that matter to it: "cycle, min_fill 0.8, swing_rad 1.57, ...".
+/// The goal and the sizes of all parameters that matter to it: "cycle, min_fill 0.8, swing_rad
+/// 1.57, ...".
 std::string describe(const DigObjective& objective);
 
 /// @throws Error (bad_input) if a parameter breaks its rule, or as require_cycle() if the goal

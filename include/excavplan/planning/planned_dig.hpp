@@ -14,7 +14,9 @@ namespace excavplan {
 
 /// What follows a dig before the next one begins.
 struct CycleOptions {
-  double swing = 1.5707963267948966;  ///< from dig to dump, 90 deg as in production tables [rad]
+  /// From dig to dump, to the left, or below 0 to the right, which costs as much; 90 deg as in
+  /// production tables [rad].
+  double swing = 1.5707963267948966;
   /// Of the bucket pin when it dumps, above the ground under the machine, or that at which the
   /// bucket is clear of the ground if that is more: over a truck's side of 2.3-2.6 m; ours [m].
   double dump_height = 3.0;
