@@ -286,10 +286,9 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
     if (const auto* blocked = std::get_if<BlockedWay>(&motion)) {
       refuse("the ground is in the way: " + blocked->message);
     } else {
-      const auto& planned = std::get<Trajectory>(motion);
-      answer.motion = joint_motion(planned);
-      answer.warnings.insert(answer.warnings.end(), planned.warnings.begin(),
-                             planned.warnings.end());
+      const auto& timed = std::get<Trajectory>(motion);
+      answer.motion = joint_motion(timed);
+      answer.warnings.insert(answer.warnings.end(), timed.warnings.begin(), timed.warnings.end());
     }
   } catch (const Error& error) {
     refuse(error.what());
