@@ -127,7 +127,7 @@ class Settings {
     for (const Arguments::Entry& entry : entries_) {
       if (!entry.positional) names.push_back(entry.name);
     }
-    refuse(value, quoted(name) + " is no option of " + tool_ + meant(name, names));
+    refuse(value, excavplan::quoted(name) + " is no option of " + tool_ + meant(name, names));
   }
 
   static std::string meant(const std::string& name, const std::vector<std::string>& names) {
