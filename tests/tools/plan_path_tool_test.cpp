@@ -132,7 +132,7 @@ TEST_F(Tools, TrajectoryDumpsToTheRightIfTheSwingIsBelowZero) {
 }
 
 TEST_F(Tools, TrajectoryOfAMachineThatTipsIsNotTrusted) {
-  json machine = json::parse(std::ifstream(find_data_file("machines/zx120.json")));
+  json machine = json::parse(std::ifstream(shipped("machines/zx120.json")));
   machine["body"]["mass_kg"] = 4500;
   const std::string own = folder.write("light.json", machine.dump());
   const json result = answer("plan-path", {"--density", "40", "--machine", own, "--goal", "energy",
