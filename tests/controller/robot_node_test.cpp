@@ -84,7 +84,8 @@ TEST(RobotNode, NamesTheParameterThatIsWrong) {
         << text;
   }
   EXPECT_NE(error("dump_height", 30.0).find("the dump height is 30 m"), std::string::npos);
-  EXPECT_NE(error("swing", -9.0).find("the swing from dig to dump is -9"), std::string::npos);
+  EXPECT_NE(error("swing", -9.0).find("the swing from dig to dump (to the right: below 0) is -9"),
+            std::string::npos);
   EXPECT_EQ(error("goal", std::string("gold")),
             "the goal 'gold' is none of cycle, energy, time, priced:WATT");
   EXPECT_NE(error("machine", std::string("zx9")).find("'zx9' is neither"), std::string::npos);
