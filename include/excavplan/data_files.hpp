@@ -20,7 +20,7 @@ constexpr const char* data_folder_of_package = EXCAVPLAN_DATA_DIR;
 ///
 /// The first of these folders that holds the file gives it:
 ///  1. the folder named by the environment variable EXCAVPLAN_DATA;
-///  2. share/excavplan beside the shared library, or of the installation that it is loaded from;
+///  2. share/excavplan of the installation that the shared library is loaded from;
 ///  3. `package_folder`: programs compiled with the CMake or the pkg-config package know it;
 ///  4. share/excavplan of the installation that the running program is in (bin/..).
 ///

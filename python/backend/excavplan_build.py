@@ -73,8 +73,9 @@ def staged(settings):
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
     run("cmake", "-S", ROOT, "-B", build, *generator,
         "-D", "CMAKE_BUILD_TYPE=Release", "-D", "BUILD_SHARED_LIBS=OFF",
-        "-D", "EXCAVPLAN_PYTHON=ON", "-D", "EXCAVPLAN_PYTHON_DIR=.",
-        "-D", "EXCAVPLAN_TOOLS=OFF", "-D", "EXCAVPLAN_TESTS=OFF",
+        "-D", "EXCAVPLAN_PYTHON=ON", "-D", "EXCAVPLAN_TOOLS=OFF", "-D", "EXCAVPLAN_TESTS=OFF",
+        # Where the library finds its data: share/excavplan beside the module.
+        "-D", f"CMAKE_INSTALL_LIBDIR={NAME}", "-D", f"CMAKE_INSTALL_DATADIR={NAME}/share",
         "-D", f"Python_EXECUTABLE={sys.executable}", *cmake_arguments(settings))
     jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count() or 1))
     run("cmake", "--build", build, "--target", "excavplan_python", "--parallel", jobs)

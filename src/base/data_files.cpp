@@ -55,7 +55,6 @@ std::vector<fs::path> data_folders(const std::string& package_folder) {
   std::vector<fs::path> folders;
   if (const fs::path named = named_folder(); !named.empty()) folders.push_back(named);
   if (const fs::path library = shared_library_file(); !library.empty()) {
-    folders.push_back(library.parent_path() / "share/excavplan");  // the Python package
     folders.push_back(library.parent_path() / EXCAVPLAN_DATA_FROM_LIBRARY);
     const fs::path of_module = library.parent_path() / EXCAVPLAN_DATA_FROM_MODULE;
     if (of_module != folders.back()) folders.push_back(of_module);
