@@ -18,16 +18,24 @@ struct Buffer {
   Shape shape;
 };
 
+py::object import_numpy() {
+  try {
+    return py::module_::import("numpy");
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ImportError)) throw;
+    return py::none();
+  }
+}
+
+/// NumPy, or None where it is not installed. The import lends the lock of the interpreter to other
+/// threads, which may come here meanwhile: nothing of ours is locked, and the first to end counts.
 py::object numpy() {
-  static const auto* const module = [] {
-    try {
-      return new py::object(py::module_::import("numpy"));
-    } catch (py::error_already_set& error) {
-      if (!error.matches(PyExc_ImportError)) throw;
-      return new py::object(py::none());
-    }
-  }();
-  return *module;
+  static PyObject* module = nullptr;  // only touched with the lock
+  if (module == nullptr) {
+    py::object imported = import_numpy();
+    if (module == nullptr) module = imported.release().ptr();
+  }
+  return py::reinterpret_borrow<py::object>(module);
 }
 
 template <typename Number>
@@ -156,8 +164,8 @@ py::ssize_t size_of(const py::handle& list) {
 /// A list of numbers, or of lists of as many numbers each.
 Numbers of_lists(const std::string& what, const py::object& object) {
   if (!is_list(object)) {
-    refuse(what, "an object of the type " + std::string(Py_TYPE(object.ptr())->tp_name),
-           "an array or a sequence of numbers");
+    throw py::type_error(what + ": found an object of the type " + Py_TYPE(object.ptr())->tp_name +
+                         ", expected an array or a sequence of numbers");
   }
   const py::ssize_t rows = size_of(object);
   Numbers numbers{{}, {rows}};

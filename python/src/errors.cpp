@@ -7,7 +7,9 @@
 #include <excavplan/survey/scan_surface.hpp>
 
 #include "calls.hpp"
+#include "paths.hpp"
 #include "rooms.hpp"
+#include "texts.hpp"
 
 namespace excavplan::python {
 namespace {
@@ -68,13 +70,15 @@ void bind_errors(py::module_& module) {
 
   py::class_<Warning>(module, "ResultWarning", "A doubt about a result that is given all the same.")
       .def_readonly("code", &Warning::code, "Stable, for programs: 'density_above_range'.")
-      .def_readonly("message", &Warning::message, "What was found, its value and its meaning.")
+      .def_property_readonly(
+          "message", [](const Warning& warning) { return text(warning.message); },
+          "What was found, its value and its meaning.")
       .def_readonly("ends_trust", &Warning::ends_trust,
                     "True: a careful surveyor would not sign for the result.")
       .def("__repr__",
-           [](const Warning& warning) { return warning.code + ": " + warning.message; });
+           [](const Warning& warning) { return text(warning.code + ": " + warning.message); });
   module.def(
-      "data_file", [](const std::string& path) { return find_data_file(path); },
+      "data_file", [](const std::string& path) { return File{find_data_file(path)}; },
       py::arg("relative_path"),
       "Full path of a file that excavplan ships, such as 'machines/zx120.json'.");
 }

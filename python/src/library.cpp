@@ -7,6 +7,7 @@
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "paths.hpp"
 #include "rooms.hpp"
 #include "simulators.hpp"
 
@@ -20,7 +21,7 @@ std::optional<PathLibrary> built(const Machine& machine, const SoilKind& soil,
                                  const std::vector<double>& slopes,
                                  const std::optional<DigObjective>& objective, double cell_size,
                                  std::uint64_t seed, const py::object& simulator, unsigned threads,
-                                 const std::string& folder, const py::object& progress) {
+                                 const File& folder, const py::object& progress) {
   const auto own = std::make_shared<Call>();
   LibraryBuildOptions options;
   options.search.objective = objective.value_or(options.search.objective);
@@ -28,7 +29,7 @@ std::optional<PathLibrary> built(const Machine& machine, const SoilKind& soil,
   options.search.seed = seed;
   options.search.simulator = simulator_kind(simulator, own);
   options.threads = threads_with(simulator, threads);
-  options.folder = folder;
+  options.folder = folder.path;
   options.progress = [own, callback = shared(progress)](const LibraryProgress& state) {
     return !own->failed() && goes_on(*own, *callback, state);
   };
@@ -57,7 +58,9 @@ void bind_library(py::module_& module) {
       .def_readonly("cell_size", &PathLibrary::cell_size, "Of its ground [m].")
       .def_readonly("objective", &PathLibrary::objective, "That the digs are best for.")
       .def_readonly("entries", &PathLibrary::entries, "Slope rising, then density.")
-      .def_readonly("file", &PathLibrary::file, "That it was read from; empty: none.")
+      .def_property_readonly(
+          "file", [](const PathLibrary& library) { return File{library.file}; },
+          "That it was read from; empty: none.")
       .def(
           "look_up",
           [](const PathLibrary& library, double density, double slope) {
@@ -76,7 +79,7 @@ void bind_library(py::module_& module) {
           "The text of a library file.");
   module.def(
       "load_path_library",
-      [](const std::string& name) { return load_path_library(shipped_or_file("libraries", name)); },
+      [](const File& name) { return load_path_library(shipped_or_file("libraries", name.path)); },
       arg("name_or_file"), "'zx120-loam-cycle', ... or a library file.");
   module.def(
       "shipped_library",

@@ -9,6 +9,7 @@
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "paths.hpp"
 #include "rooms.hpp"
 #include "texts.hpp"
 #include "words.hpp"
@@ -95,7 +96,7 @@ void bind_machine_itself(py::module_& module) {
       .def("__repr__", [](const Machine& m) { return "<Machine " + m.name + ">"; });
   module.def(
       "load_machine",
-      [](const std::string& name) { return load_machine(shipped_or_file("machines", name)); },
+      [](const File& name) { return load_machine(shipped_or_file("machines", name.path)); },
       arg("name_or_file"), "'zx120' or a machine file.");
 }
 
@@ -310,7 +311,9 @@ void bind_trajectory(py::module_& module) {
       .def("__len__", [](const JointMotion& m) { return m.points.size(); });
   module.def("joint_motion", &joint_motion, arg("trajectory"),
              "A trajectory in the names and angles of the robot.");
-  module.def("load_trajectory", &load_trajectory, arg("file"), "Reads what to_json() writes.");
+  module.def(
+      "load_trajectory", [](const File& file) { return load_trajectory(file.path); }, arg("file"),
+      "Reads what to_json() writes.");
 }
 
 }  // namespace

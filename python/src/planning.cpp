@@ -7,6 +7,7 @@
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "paths.hpp"
 #include "rooms.hpp"
 #include "simulators.hpp"
 #include "texts.hpp"
@@ -37,15 +38,18 @@ DigObjective objective_of(const std::string& word, const std::optional<double>& 
   throw Error(ErrorKind::bad_input, "the goal: '" + word + "' is none of " + known);
 }
 
-/// A word, a place or nothing.
-StartRule start_rule_of(const py::object& start, const StartRule& usual) {
-  if (start.is_none()) return usual;
-  if (!py::isinstance<py::str>(start)) return py::cast<double>(start);
-  if (const auto rule = start_rule_of_word(start.cast<std::string>())) return *rule;
+/// A word, a place [m] or nothing.
+using Start = std::optional<std::variant<std::string, double>>;
+
+StartRule start_rule_of(const Start& start, const StartRule& usual) {
+  if (!start) return usual;
+  if (const double* const x = std::get_if<double>(&*start)) return *x;
+  const auto& word = std::get<std::string>(*start);
+  if (const auto rule = start_rule_of_word(word)) return *rule;
   std::string known;
   for (const StartRuleInfo& info : start_rules()) known += ", " + info.word;
-  throw Error(ErrorKind::bad_input, "the start rule: '" + start.cast<std::string>() +
-                                        "' is none of" + known.substr(1) + " and no x in metres");
+  throw Error(ErrorKind::bad_input, "the start rule: '" + word + "' is none of" + known.substr(1) +
+                                        " and no x in metres");
 }
 
 /// With the callback, which only the thread of Python may touch.
@@ -56,9 +60,8 @@ struct SearchOptionsInPython {
 
 SearchOptionsInPython made_options(const std::optional<DigObjective>& objective, int evaluations,
                                    double seconds, std::uint64_t seed, unsigned threads,
-                                   const std::vector<DigParameters>& start,
-                                   const py::object& start_rule, const std::string& method,
-                                   const std::string& checkpoint, bool resume,
+                                   const std::vector<DigParameters>& start, const Start& start_rule,
+                                   const std::string& method, const File& checkpoint, bool resume,
                                    const py::object& progress) {
   SearchOptionsInPython made;
   DigSearchOptions& options = made.options;
@@ -73,7 +76,7 @@ SearchOptionsInPython made_options(const std::optional<DigObjective>& objective,
     options.start_rule = StartRule::Kind::least_work;
   }
   options.start_rule = start_rule_of(start_rule, options.start_rule);
-  options.checkpoint = checkpoint;
+  options.checkpoint = checkpoint.path;
   options.resume = resume;
   if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0) {
     throw py::type_error("progress: expected a function or None");
@@ -187,7 +190,7 @@ void bind_digs(py::module_& module) {
 using Evaluated = std::variant<PlannedDig, Infeasible, Stall>;
 
 Evaluated evaluated(const Machine& machine, const py::object& simulator, const Terrain& terrain,
-                    const DigParameters& parameters, const py::object& start) {
+                    const DigParameters& parameters, const Start& start) {
   const auto own = std::make_shared<Call>();
   const SimulatorInCall digger(simulator, own);
   const StartRule rule = start_rule_of(start, StartRule{});
@@ -202,8 +205,8 @@ Searched searched(const Machine& machine, const py::object& simulator, const Ter
                   const std::optional<SearchOptionsInPython>& given) {
   const auto own = std::make_shared<Call>();
   const SimulatorInCall digger(simulator, own);
-  DigSearchOptions options =
-      options_in(own, given, is_in_python(simulator) ? simulator : py::none());
+  DigSearchOptions options = options_in(
+      own, given, is_in_python(simulator.cast<const SoilSimulator&>()) ? simulator : py::none());
   if (options.stop.evaluations == 0) {
     options.stop.evaluations = evaluation_budget(false, !options.start.empty());
   }

@@ -243,14 +243,20 @@ void bind_simulators(py::module_& module) {
           "dig",
           [](const SoilSimulator& simulator, const Terrain& terrain, const DigPath& path,
              const std::optional<DigOptions>& options) {
+            if (is_in_python(simulator)) refuse_missing_dig();  // called as super().dig()
             return call(
                 [&] { return simulator.dig(terrain, path, options.value_or(DigOptions{})); });
           },
           arg("terrain"), arg("path"), arg("options") = py::none(), "Digs along the path.")
-      .def("identity", &SoilSimulator::identity,
-           "All that determines a dig besides its arguments, as text.");
-  py::class_<HeightMapSimulator, SoilSimulator>(module, "HeightMapSimulator",
-                                                "The built-in simulator.")
+      .def(
+          "identity",
+          [](const SoilSimulator& simulator) {
+            return is_in_python(simulator) ? std::string() : simulator.identity();
+          },
+          "All that determines a dig besides its arguments, as text.");
+  py::class_<HeightMapSimulator, SoilSimulator>(
+      module, "HeightMapSimulator", py::is_final(),
+      "The built-in simulator. A simulator of your own that changes its digs has one as a member.")
       .def(py::init<const Machine&, const SoilKind&, double>(), arg("machine"), arg("soil"),
            arg("density_percent"))
       .def_property_readonly("bank", &HeightMapSimulator::bank, "Of the undisturbed soil.")

@@ -14,7 +14,7 @@ auto asked(Call& call, const Ask& ask) -> decltype(ask()) {
   try {
     return ask();
   } catch (const py::error_already_set& error) {
-    const py::gil_scoped_acquire acquire;
+    const Locked locked;
     if (is_error(error)) throw error_of(error);
     call.fail(std::current_exception());
     throw std::runtime_error("its code in Python raised an exception");
@@ -26,12 +26,18 @@ auto asked(Call& call, const Ask& ask) -> decltype(ask()) {
 
 }  // namespace
 
+void refuse_missing_dig() {
+  throw py::type_error(
+      "a SoilSimulator must define dig(self, terrain, path, options); SoilSimulator itself has no "
+      "digs");
+}
+
 DigResult SimulatorInPython::dig(const Terrain& terrain, const DigPath& path,
                                  const DigOptions& options) const {
-  const py::gil_scoped_acquire acquire;
+  const Locked locked;
   const py::function own = py::get_override(static_cast<const SoilSimulator*>(this), "dig");
-  if (!own) throw py::type_error("a SoilSimulator must define dig(self, terrain, path, options)");
-  const py::object result = own(terrain, path, options);
+  if (!own) refuse_missing_dig();
+  const py::object result = called(own, terrain, path, options);
   if (!py::isinstance<DigResult>(result)) {
     throw py::type_error("SoilSimulator.dig() must return a DigResult, not " +
                          std::string(Py_TYPE(result.ptr())->tp_name));
@@ -40,9 +46,9 @@ DigResult SimulatorInPython::dig(const Terrain& terrain, const DigPath& path,
 }
 
 std::string SimulatorInPython::identity() const {
-  const py::gil_scoped_acquire acquire;
+  const Locked locked;
   const py::function own = py::get_override(static_cast<const SoilSimulator*>(this), "identity");
-  return own ? std::string(py::str(own())) : std::string();
+  return own ? std::string(py::str(called(own))) : std::string();
 }
 
 SimulatorInCall::SimulatorInCall(py::object simulator, std::shared_ptr<Call> call)
@@ -55,7 +61,7 @@ SimulatorInCall::SimulatorInCall(py::object simulator, std::shared_ptr<Call> cal
 }
 
 SimulatorInCall::~SimulatorInCall() {
-  const py::gil_scoped_acquire acquire;
+  const Locked locked;
   object_ = py::object();
 }
 
@@ -81,17 +87,16 @@ SimulatorKind simulator_kind(const py::object& simulator, const std::shared_ptr<
   const auto make = [call, maker = shared(simulator)](
                         const Machine& machine, const SoilKind& soil,
                         double density) -> std::unique_ptr<const SoilSimulator> {
-    const py::gil_scoped_acquire acquire;
+    const Locked locked;
     return asked(*call, [&] {
-      return std::make_unique<SimulatorInCall>((*maker)(machine, soil, density), call);
+      return std::make_unique<SimulatorInCall>(called(*maker, machine, soil, density), call);
     });
   };
   return {name, name, make};
 }
 
-bool is_in_python(const py::object& simulator) {
-  const auto* const own = simulator.cast<const SoilSimulator*>();
-  return dynamic_cast<const SimulatorInPython*>(own) != nullptr;
+bool is_in_python(const SoilSimulator& simulator) {
+  return dynamic_cast<const SimulatorInPython*>(&simulator) != nullptr;
 }
 
 unsigned threads_with(const py::object& simulator, unsigned threads) {

@@ -47,8 +47,10 @@ class SimulatorInCall : public SoilSimulator {
 /// The kind that an argument means: None, a word, or a class in Python that is called with machine,
 /// soil and density.
 SimulatorKind simulator_kind(const py::object& simulator, const std::shared_ptr<Call>& call);
-/// Whether a SoilSimulator is of a class in Python.
-bool is_in_python(const py::object& simulator);
+/// Whether it is of a class in Python.
+bool is_in_python(const SoilSimulator& simulator);
+/// @throws TypeError that tells to define dig()
+[[noreturn]] void refuse_missing_dig();
 /// The threads of a call with such a simulator: one where it is in Python, as its digs would wait
 /// for each other and an object with a state of its own would be dug with by several at once.
 unsigned threads_with(const py::object& simulator, unsigned threads);

@@ -8,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "paths.hpp"
 #include "rooms.hpp"
 #include "texts.hpp"
 
@@ -65,8 +66,7 @@ void bind_soil_kind(py::module_& module) {
           arg("density_percent"), "Bulking factor if all soil goes to the loose state [-].")
       .def("__repr__", [](const SoilKind& soil) { return "<SoilKind " + soil.name + ">"; });
   module.def(
-      "load_soil",
-      [](const std::string& name) { return load_soil(shipped_or_file("soils", name)); },
+      "load_soil", [](const File& name) { return load_soil(shipped_or_file("soils", name.path)); },
       arg("name_or_file"), "'loam', 'sand', 'clay', 'gravel' or a soil file.");
 }
 
@@ -96,7 +96,6 @@ void bind_density(py::module_& module) {
            arg("percent"), arg("sd_percent") = 0.0, arg("trustworthy") = true, arg("soil") = "",
            "percent: 0 .. 100; sd_percent: standard deviation [points], 0: taken as known;\n"
            "soil: name of the soil whose law gave it.")
-      .def(py::init([](double percent) { return GroundDensity(percent); }), arg("percent"))
       .def_readonly("percent", &GroundDensity::percent, "0 .. 100 [%]")
       .def_readonly("sd_percent", &GroundDensity::sd_percent, "Standard deviation [points].")
       .def_readonly("trustworthy", &GroundDensity::trustworthy,
@@ -142,7 +141,7 @@ void bind_law(py::module_& module) {
       .def("__repr__", [](const DensityLaw& law) { return "<DensityLaw " + law.name + ">"; });
   module.def(
       "load_density_law",
-      [](const std::string& name) { return load_density_law(shipped_or_file("laws", name)); },
+      [](const File& name) { return load_density_law(shipped_or_file("laws", name.path)); },
       arg("name_or_file"), "'zx120-loam', ..., 'paper' or a law file.");
   module.def("density_law_of", &density_law_of, arg("soil"),
              "The law that conservation of solids gives a soil, without fallback and clods.");

@@ -9,6 +9,7 @@
 
 #include "arrays.hpp"
 #include "calls.hpp"
+#include "paths.hpp"
 #include "rooms.hpp"
 #include "texts.hpp"
 #include "words.hpp"
@@ -28,17 +29,19 @@ Cloud made_cloud(const ArrayLike& points, const std::optional<Eigen::Vector3d>& 
   return cloud;
 }
 
-std::string path_of(const py::object& file) {
-  return py::str(py::module_::import("os").attr("fspath")(file));
-}
-
-bool is_path(const py::object& object) {
-  return py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__");
+/// Whether it is a sequence of files or clouds, not of numbers.
+bool is_several(const py::object& source) {
+  if (PySequence_Check(source.ptr()) == 0 || PyObject_CheckBuffer(source.ptr()) != 0 ||
+      is_file(source) || py::len(source) == 0) {
+    return false;
+  }
+  const py::object first = source[py::int_(0)];
+  return is_file(first) || py::isinstance<Cloud>(first);
 }
 
 void add_source(const py::object& source, Scan& scan) {
-  if (is_path(source)) {
-    scan.files.push_back(path_of(source));
+  if (is_file(source)) {
+    scan.files.push_back(file_of(source).path);
   } else if (py::isinstance<Cloud>(source)) {
     scan.clouds.push_back(std::make_shared<Cloud>(source.cast<Cloud>()));
   } else {
@@ -51,9 +54,7 @@ Scan made_scan(const py::object& source, const std::optional<ArrayLike>& site_fr
                const std::optional<Eigen::Vector3d>& sensor_origin, bool z_is_up,
                const std::string& name) {
   Scan scan;
-  const bool several = py::isinstance<py::list>(source) && py::len(source) > 0 &&
-                       (is_path(source[py::int_(0)]) || py::isinstance<Cloud>(source[py::int_(0)]));
-  if (several) {
+  if (is_several(source)) {
     for (const py::handle each : source) add_source(py::reinterpret_borrow<py::object>(each), scan);
   } else {
     add_source(source, scan);
@@ -70,7 +71,7 @@ Scan made_scan(const py::object& source, const std::optional<ArrayLike>& site_fr
 /// What an argument means: a Scan, or what one is made from.
 Scan scan_of(const py::object& source, const char* name) {
   if (py::isinstance<Scan>(source)) return source.cast<Scan>();
-  const bool named = is_path(source);
+  const bool named = is_file(source);
   return made_scan(source, std::nullopt, std::nullopt, 1.0, std::nullopt, false, named ? "" : name);
 }
 
@@ -107,22 +108,17 @@ void bind_clouds(py::module_& module) {
       .def_readonly("density", &CloudSummary::density, "Points per m^2 of occupied ground.")
       .def_readonly("frame_guess", &CloudSummary::frame_guess);
   module.def(
-      "read_cloud",
-      [](const py::object& file) {
-        const std::string path = path_of(file);
-        return call([&] { return read_cloud(path); });
-      },
+      "read_cloud", [](const File& file) { return call([&] { return read_cloud(file.path); }); },
       arg("file"), "Reads PCD, PLY, LAS or XYZ, told by the content.");
   module.def(
       "write_cloud",
-      [](const py::object& file, const Cloud& cloud) {
-        const std::string path = path_of(file);
-        write_cloud(path, cloud, cloud_format_of_name(path));
+      [](const File& file, const Cloud& cloud) {
+        write_cloud(file.path, cloud, cloud_format_of_name(file.path));
       },
       arg("file"), arg("cloud"), "Writes .pcd or .ply (binary), .xyz, .txt or .asc.");
   module.def(
-      "read_frame", [](const py::object& file) { return array(read_frame(path_of(file))); },
-      arg("file"), "What transforms a scan into the site frame, shape (4, 4).");
+      "read_frame", [](const File& file) { return array(read_frame(file.path)); }, arg("file"),
+      "What transforms a scan into the site frame, shape (4, 4).");
   module.def(
       "summarise", [](const Cloud& cloud) { return summarise(cloud); }, arg("cloud"),
       "Number, extent and frame of the points.");
@@ -148,11 +144,16 @@ void bind_scans(py::module_& module) {
           py::init(&made_scan), arg("source"), py::kw_only(), arg("site_from_scan") = py::none(),
           arg("area") = py::none(), arg("unit") = 1.0, arg("sensor_origin") = py::none(),
           arg("z_is_up") = false, arg("name") = "",
-          "source: a file, a Cloud, points of shape (N, 3), or a list of files or clouds;\n"
+          "source: a file, a Cloud, points of shape (N, 3), or a sequence of files or clouds;\n"
           "site_from_scan: a rigid motion, shape (4, 4), in metres; area: points outside of it\n"
           "are left out; unit: length of a unit of the coordinates [m]; sensor_origin: in frame\n"
           "and unit of the source; z_is_up: no frame of a camera is suspected; name: for messages.")
-      .def_readonly("files", &Scan::files)
+      .def_property_readonly("files",
+                             [](const Scan& scan) {
+                               std::vector<File> files;
+                               for (const std::string& path : scan.files) files.push_back({path});
+                               return files;
+                             })
       .def_readonly("name", &Scan::name)
       .def_property_readonly(
           "site_from_scan", [](const Scan& scan) { return array(scan.site_from_scan); },
@@ -260,19 +261,22 @@ void bind_estimate(py::module_& module) {
       });
 }
 
+/// A kind, its name or file, "unknown" or nothing.
+using Soil = std::optional<std::variant<SoilKind, File>>;
+
 /// Sets what is known of the soil. @return the law to use, by the rules of estimate-density
-DensityLaw law_for(const py::object& soil, const std::optional<DensityLaw>& given,
-                   const Machine& machine, SoilKnowledge& known) {
-  const bool by_word = py::isinstance<py::str>(soil);
+DensityLaw law_for(const Soil& soil, const std::optional<DensityLaw>& given, const Machine& machine,
+                   SoilKnowledge& known) {
+  const File* const named = soil ? std::get_if<File>(&*soil) : nullptr;
   known.possible = shipped_soil_laws();
-  known.unknown = by_word && soil.cast<std::string>() == "unknown";
+  known.unknown = named != nullptr && named->path == "unknown";
   if (known.unknown && given) {
     throw Error(ErrorKind::bad_input, "soil 'unknown' takes the laws of all shipped soils, no law");
   }
-  if (by_word && !known.unknown) {
-    known.kind = load_soil(shipped_or_file("soils", soil.cast<std::string>()));
-  } else if (!by_word && !soil.is_none()) {
-    known.kind = soil.cast<SoilKind>();
+  if (named != nullptr && !known.unknown) {
+    known.kind = load_soil(shipped_or_file("soils", named->path));
+  } else if (soil && named == nullptr) {
+    known.kind = std::get<SoilKind>(*soil);
   }
   if (given) {
     if (known.kind && !given->soil.empty() && given->soil != known.kind->name) {
@@ -284,12 +288,12 @@ DensityLaw law_for(const py::object& soil, const std::optional<DensityLaw>& give
     }
     return *given;
   }
-  known.assumed = soil.is_none();
+  known.assumed = !soil;
   if (!known.kind) known.kind = load_soil(find_data_file("soils/loam.json"));
   return call([&] { return usual_law(machine, *known.kind, known.possible); });
 }
 
-DensityEstimate estimated(const py::object& before, const py::object& after, const py::object& soil,
+DensityEstimate estimated(const py::object& before, const py::object& after, const Soil& soil,
                           const std::optional<DensityLaw>& law,
                           const std::optional<std::pair<py::object, py::object>>& dump,
                           const std::string& method, const std::optional<double>& cell_size,

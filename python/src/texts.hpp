@@ -9,9 +9,17 @@
 #include <pybind11/pybind11.h>
 
 /// @file
-/// What repr() says.
+/// Texts for people.
 
 namespace excavplan::python {
+
+/// For people: what is not UTF-8, such as a part of a file's name, is shown as "\xff".
+inline pybind11::str text(const std::string& message) {
+  auto decoded = pybind11::reinterpret_steal<pybind11::str>(PyUnicode_DecodeUTF8(
+      message.data(), static_cast<pybind11::ssize_t>(message.size()), "backslashreplace"));
+  if (!decoded) throw pybind11::error_already_set();
+  return decoded;
+}
 
 /// As Python writes it.
 inline std::string number(double value) {

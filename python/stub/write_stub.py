@@ -17,7 +17,7 @@ HEAD = '''# SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
 # Written by python/stub/write_stub.py from the module.
 import os
-from typing import Any, Callable, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, List, Optional, Sequence, Tuple, Union, final, overload
 
 __version__: str
 __all__: List[str]
@@ -27,30 +27,30 @@ ArrayLike = Any  # whatever has the buffer protocol, or nested sequences of numb
 Vector2 = Tuple[float, float]
 Vector3 = Tuple[float, float, float]
 Vector4 = Tuple[float, float, float, float]
-File = Union[str, "os.PathLike[str]"]
-Start = Union[str, float, None]
+File = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 '''
 
 # Arguments that the module itself tells apart, by function and name.
 ARGUMENTS = {
-    "file": "File",
     "source": "Union[File, Cloud, ArrayLike, Sequence[Union[File, Cloud]]]",
     "before": "Union[Scan, File, Cloud, ArrayLike]",
     "after": "Union[Scan, File, Cloud, ArrayLike]",
     "scan": "Union[Scan, File, Cloud, ArrayLike]",
-    "soil": "Union[SoilKind, str, None]",
     "dump": "Optional[Tuple[Any, Any]]",
-    "start": "Start",
-    "start_rule": "Start",
 }
+MAY_BE_DERIVED_FROM = 1 << 10  # Py_TPFLAGS_BASETYPE
 SIMULATOR_KIND = "Union[str, Callable[[Machine, SoilKind, float], SoilSimulator], None]"
 
 
 def type_of(text):
-    """A type as the stub has it."""
+    """A type as the stub has it, of an argument or a result."""
     text = re.sub(r"\bexcavplan\.", "", text)
     text = re.sub(r"([Ll])ist\[float\[(\d+)\]\]", lambda m: "List[float]", text)
     return re.sub(r"\bobject\b", "Any", text)
+
+
+def result_type(text):
+    return re.sub(r"\bFile\b", "str", type_of(text))
 
 
 def argument_type(function, name, text):
@@ -63,7 +63,7 @@ def argument_type(function, name, text):
     if text == "object" and name in ARGUMENTS:
         return ARGUMENTS[name]
     text = type_of(text)
-    text = re.sub(r"\bVector[23]\b", "Sequence[float]", text)
+    text = re.sub(r"\bVector[234]\b", "Sequence[float]", text)
     text = re.sub(r"\bList\[", "Sequence[", text)
     text = re.sub(r"\bGroundDensity\b", "Union[GroundDensity, float]", text)
     if function == "dig":  # which simulators override
@@ -100,20 +100,24 @@ def signatures(function):
     name = function.__name__
     found = re.findall(rf"^(?:\d+\. )?{re.escape(name)}\((.*)\) -> (.*)$", function.__doc__,
                        re.MULTILINE)
-    return [([argument(name, part) for part in split(arguments)], type_of(result))
+    return [([argument(name, part) for part in split(arguments)], result_type(result))
             for arguments, result in found]
 
 
 def lines_of(name, function, indent=""):
-    # Of several constructors one takes all that the others do.
-    arguments, result = max(signatures(function), key=lambda overload: len(overload[0]))
-    if indent:
-        arguments[0] = "self"
-    return [f"{indent}def {name}({', '.join(arguments)}) -> {result}: ..."]
+    lines = []
+    found = signatures(function)
+    for arguments, result in found:
+        if indent:
+            arguments[0] = "self"
+        lines += [f"{indent}@overload"] * (len(found) > 1)
+        lines.append(f"{indent}def {name}({', '.join(arguments)}) -> {result}: ...")
+    return lines
 
 
 def property_lines(name, member):
-    kind = type_of(re.search(r"-> (.*)$", member.fget.__doc__.strip().splitlines()[0]).group(1))
+    first_line = member.fget.__doc__.strip().splitlines()[0]
+    kind = result_type(re.search(r"-> (.*)$", first_line).group(1))
     if member.fset is not None:
         return [f"    {name}: {kind}"]
     return ["    @property", f"    def {name}(self) -> {kind}: ..."]
@@ -125,6 +129,8 @@ def class_lines(name, kind):
         return [f"class {name}({base}):", "    kind: str"]
     base = kind.__base__.__name__
     lines = [f"class {name}({base}):" if hasattr(excavplan, base) else f"class {name}:"]
+    if not kind.__flags__ & MAY_BE_DERIVED_FROM:
+        lines.insert(0, "@final")
     for member_name, member in sorted(vars(kind).items()):
         if isinstance(member, property):
             lines += property_lines(member_name, member)
@@ -133,7 +139,7 @@ def class_lines(name, kind):
                                                                    "__bool__")):
             if signatures(member):
                 lines += lines_of(member_name, member, "    ")
-    return lines if len(lines) > 1 else [lines[0], "    ..."]
+    return lines if lines[-1].startswith(" ") else [*lines, "    ..."]
 
 
 def stub():

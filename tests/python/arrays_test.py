@@ -75,6 +75,19 @@ class Arrays(unittest.TestCase):
         self.assertEqual(z.tolist(), whole[::2, ::-2].tolist())
         self.assertEqual(ex.HeightMap(numpy.asfortranarray(whole)).z.tolist(), whole.tolist())
 
+    @unittest.skipUnless(numpy, "NumPy is not installed")
+    def test_the_first_arrays_may_be_asked_for_by_several_threads(self):
+        program = ("import sys, threading; import excavplan as ex\n"
+                   "sys.setswitchinterval(1e-6)\n"
+                   "heights = ex.HeightMap([[1.0]])\n"
+                   "threads = [threading.Thread(target=lambda: heights.z) for _ in range(8)]\n"
+                   "for thread in threads: thread.start()\n"
+                   "for thread in threads: thread.join()\n"
+                   "print(type(heights.z).__name__)")
+        done = subprocess.run([sys.executable, "-c", program], check=True, timeout=60,
+                              stdout=subprocess.PIPE, text=True)
+        self.assertEqual(done.stdout, "ndarray\n")
+
     def test_the_import_is_fast_and_leaves_numpy_out(self):
         program = ("import time; start = time.perf_counter(); import excavplan, sys\n"
                    "assert 'numpy' not in sys.modules\n"

@@ -112,6 +112,41 @@ class Clouds(unittest.TestCase):
         self.assertEqual(again.sensor_origin, (1.0, 2.0, 3.0))
         self.assertEqual(ex.summarise(again).finite_points, 2)
 
+    def test_files_are_named_as_for_open(self):
+        for name in (BEFORE, os.fsencode(BEFORE), pathlib.Path(BEFORE)):
+            self.assertGreater(len(ex.read_cloud(name)), 1000)
+            self.assertEqual(ex.Scan(name).files, [BEFORE])
+        for several in ([BEFORE, AFTER], (os.fsencode(BEFORE), pathlib.Path(AFTER))):
+            self.assertEqual(ex.Scan(several).files, [BEFORE, AFTER])
+        soil = pathlib.Path(ex.data_file("soils/loam.json"))
+        self.assertEqual(ex.load_soil(soil).fingerprint(), ex.load_soil("loam").fingerprint())
+        for load, name in ((ex.load_machine, "machines/zx120.json"),
+                           (ex.load_density_law, "laws/zx120-loam.json"),
+                           (ex.load_path_library, "libraries/zx120-loam-cycle.json")):
+            file = ex.data_file(name)
+            for same in (file, os.fsencode(file), pathlib.Path(file)):
+                load(same)
+        self.assertEqual(ex.load_path_library(pathlib.Path(file)).file, file)
+        estimate = ex.estimate_density(BEFORE, AFTER, soil=soil)
+        self.assertEqual(estimate.density.percent,
+                         ex.estimate_density(BEFORE, AFTER, soil="loam").density.percent)
+
+    def test_names_that_are_no_text(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(os.fsencode(folder), b"\xff.xyz")
+            ex.write_cloud(file, ex.Cloud([[1, 2, 3]]))
+            self.assertEqual(len(ex.read_cloud(os.fsdecode(file))), 1)
+            self.assertEqual(ex.Scan(file).files, [os.fsdecode(file)])
+            os.remove(file)
+            with self.assertRaisesRegex(ex.Error, r"\?.xyz"):
+                ex.read_cloud(file)
+            ex.write_cloud(file, ex.read_cloud(BEFORE))
+            ground = ex.terrain_from_scan(file, ex.Rectangle(0, -6, 20, 6))
+            self.assertIn("\\xff.xyz", ground.warnings[0].message)
+            self.assertIn("\\xff.xyz", repr(ground.warnings[0]))
+        with self.assertRaisesRegex(ValueError, "null byte"):
+            ex.read_cloud("a\0b")
+
     def test_rasterised(self):
         cloud = ex.read_cloud(BEFORE)
         heights = ex.rasterise(cloud, cell_size=0.1)

@@ -67,6 +67,67 @@ sys.exit(5)
 """], check=False, stderr=subprocess.PIPE, timeout=120)
             self.assertEqual((ended.returncode, ended.stderr), (5, b""))
 
+    def test_the_interpreter_may_end_amid_digs_of_a_simulator_in_python(self):
+        inner = "return self.inner.dig(terrain, path, options)"
+        busy = "while True: sum(range(100))"
+        for turn in range(10):
+            ended = subprocess.run([sys.executable, "-c", f"""
+import sys, threading, time
+import excavplan as ex
+machine, loam = ex.load_machine("zx120"), ex.load_soil("loam")
+digging = threading.Event()
+
+class Own(ex.SoilSimulator):
+    def __init__(self, *given):
+        super().__init__()
+        self.inner = ex.HeightMapSimulator(*given)
+
+    def dig(self, terrain, path, options):
+        digging.set()
+        {busy if turn % 2 else inner}
+
+search = ex.DigSearchOptions(evaluations=100000)
+for _ in range(3):
+    threading.Thread(daemon=True, target=lambda: ex.plan_dig(
+        machine, loam, 40, method="search", search=search, simulator=Own)).start()
+digging.wait()
+time.sleep({0.01 * turn})
+sys.exit(5)
+"""], check=False, stderr=subprocess.PIPE, timeout=120)
+            self.assertEqual((ended.returncode, ended.stderr), (5, b""), turn)
+
+    def test_a_call_while_the_interpreter_ends_is_refused(self):
+        ended = subprocess.run([sys.executable, "-c", """
+import excavplan as ex
+
+class Last:
+    machine, loam = ex.load_machine("zx120"), ex.load_soil("loam")
+
+    def __del__(self, plan_dig=ex.plan_dig):
+        plan_dig(self.machine, self.loam, 40)
+
+last = Last()
+"""], check=False, stderr=subprocess.PIPE, timeout=60, text=True)
+        self.assertEqual(ended.returncode, 0)
+        self.assertIn("RuntimeError: excavplan cannot be called while Python is ending",
+                      ended.stderr)
+
+    def test_a_wrong_type_is_a_type_error(self):
+        points = [[0, 0, 0]]
+        for wrong in (lambda: ex.estimate_density(points, points, soil=5),
+                      lambda: ex.estimate_density(points, points, soil=[1]),
+                      lambda: ex.estimate_density(3, points, soil="loam"),
+                      lambda: ex.estimate_density(None, points),
+                      lambda: ex.Scan(3), lambda: ex.Scan(["before.pcd", 3]), lambda: ex.Cloud(3),
+                      lambda: ex.DigSearchOptions(start_rule=[1]),
+                      lambda: ex.DigSearchOptions(checkpoint=3),
+                      lambda: ex.evaluate_dig(MACHINE, ex.HeightMapSimulator(MACHINE, LOAM, 40),
+                                              ex.level_planning_ground(MACHINE),
+                                              ex.paper_fixed_path(), start={}),
+                      lambda: ex.load_machine(3), lambda: ex.read_cloud(None)):
+            with self.assertRaises(TypeError):
+                wrong()
+
     def test_a_plan_of_another_machine_has_no_motion(self):
         plan = ex.plan_dig(MACHINE, LOAM, 40)
         with self.assertRaisesRegex(ex.Error, "of the machine 'zx120', not of 'zx200'"):

@@ -1,13 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The excavplan authors
 # SPDX-License-Identifier: Apache-2.0
-"""The notebook runs from top to bottom, without Jupyter, and holds no outputs; so do the examples of
+"""The notebook runs from top to bottom, without Jupyter, and holds no outputs; so do all examples of
 docs/python.md, whose tables name what there is."""
 
 import contextlib
 import io
 import json
+import os
 import pathlib
 import re
+import shutil
+import tempfile
 import unittest
 
 import excavplan
@@ -32,10 +35,19 @@ class Notebook(unittest.TestCase):
 
     def test_the_examples_of_the_guide_run(self):
         examples = re.findall(r"```python\n(.*?)```", GUIDE, re.DOTALL)
-        names = {}
-        with contextlib.redirect_stdout(io.StringIO()):
-            exec(examples[0], names)  # noqa: S102: our own
-            exec(next(each for each in examples if "class Halved" in each), names)  # noqa: S102
+        self.assertEqual(len(examples), GUIDE.count("```python"))
+        after = excavplan.read_cloud(excavplan.data_file("quickstart/after.pcd"))
+        names = {"points": after.points}  # what a reader has: points, and the files below
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            self.addCleanup(os.chdir, os.getcwd())
+            os.chdir(folder)
+            shutil.copy(excavplan.data_file("quickstart/after.pcd"), "after.pcd")
+            pathlib.Path("frame.txt").write_text("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n",
+                                                 encoding="ascii")
+            for example in examples:
+                exec(example, names)  # noqa: S102: our own
+        self.assertIsInstance(names["scan"], excavplan.Scan)
+        self.assertGreater(names["sent"].positions.shape[0], 10)
         self.assertGreater(names["plan"].dig.efficiency, 0.02)
 
     def test_the_tables_of_the_guide_name_what_there_is(self):

@@ -153,6 +153,29 @@ class OwnSimulator(unittest.TestCase):
         with self.assertRaises(ex.Error):
             ex.plan_dig(MACHINE, LOAM, 40, method="search", simulator="sand-box")
 
+    def test_the_base_has_no_digs(self):
+        class Super(Own):
+            def dig(self, terrain, path, options):
+                return ex.SoilSimulator.dig(self, terrain, path, options)
+
+            def identity(self):
+                return "super of '" + ex.SoilSimulator.identity(self) + "'"
+
+        simulator = Super(MACHINE, LOAM, 40)
+        self.assertEqual(simulator.identity(), "super of ''")
+        path = ex.make_dig_path(MACHINE, ex.paper_fixed_path())
+        threads = threading.active_count()
+        for dig in (lambda: simulator.dig(GROUND, path, None),
+                    lambda: ex.evaluate_dig(MACHINE, simulator, GROUND, ex.paper_fixed_path()),
+                    lambda: ex.simulate_dig(MACHINE, LOAM, 40, simulator=Super)):
+            with self.assertRaisesRegex(TypeError, "must define dig"):
+                dig()
+        self.assertEqual(threading.active_count(), threads)
+
+    def test_the_built_in_one_is_no_base(self):
+        with self.assertRaisesRegex(TypeError, "base type"):
+            type("Derived", (ex.HeightMapSimulator,), {"dig": lambda *given: ex.DigResult()})
+
     def test_nothing_is_left_behind(self):
         alive = []
 
