@@ -131,17 +131,6 @@ TEST_F(Tools, TrajectoryDumpsToTheRightIfTheSwingIsBelowZero) {
             std::string::npos);
 }
 
-TEST_F(Tools, TrajectoryOfAMachineThatTipsIsNotTrusted) {
-  json machine = json::parse(std::ifstream(shipped("machines/zx120.json")));
-  machine["body"]["mass_kg"] = 4500;
-  const std::string own = folder.write("light.json", machine.dump());
-  const json result = answer("plan-path", {"--density", "40", "--machine", own, "--goal", "energy",
-                                           "--search", "--evaluations", "40", "--whole-cycle",
-                                           "--trajectory", folder.file("tips.csv")});
-  EXPECT_FALSE(result["trustworthy"]);
-  EXPECT_NE(result["warnings"].dump().find("motion_tips"), std::string::npos);
-}
-
 TEST_F(Tools, TrajectoryIsAMessageByItsEndingOrItsFormat) {
   const std::string yaml = folder.file("dig.YML"), other = folder.file("dig.csv");
   answer("plan-path", {"--density", "40", "--trajectory", yaml});
