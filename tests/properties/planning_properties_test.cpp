@@ -211,8 +211,9 @@ TEST(PlanningProperties, GoalsWithNumbersOutOfRangeAreRefused) {
     DigObjective objective(DigObjective::Goal::priced);
     EXPECT_NO_THROW(check(objective, machine));
     const DigObjectiveParameter& parameter = parameters[random.index(parameters.size())];
-    objective.*parameter.field =
-        random.uniform() < 0.5 ? random.uniform(-1.0, -1e-9) : 1.001 * parameter.highest;
+    objective.*parameter.field = random.uniform() < 0.5
+                                     ? parameter.lowest - random.uniform(1e-9, 1.0)
+                                     : 1.001 * parameter.highest;
     EXPECT_THROW(check(objective, machine), Error);
   });
 }
