@@ -63,8 +63,10 @@ struct DigCycleSession::State {
   std::vector<Warning> scan_warnings(bool averaged) const;
   Scan scan_of(Frames& frames, const char* which, bool& averaged);
   DensityOptions estimate_options() const;
-  ScannedTerrain terrain();
-  Terrain ground_around();
+  bool is_outdated() const;
+  std::optional<Scan> last_scan();
+  ScannedTerrain terrain(const std::optional<Scan>& scan) const;
+  Terrain ground_around(const std::optional<Scan>& scan) const;
   PlanOptions plan_options() const;
   std::optional<FrontJoints> start() const;
   void add_motion(const Terrain& ground, CyclePlan& answer) const;
@@ -275,21 +277,28 @@ DensityOptions DigCycleSession::State::estimate_options() const {
   return options;
 }
 
-/// As the last scan shows it, level without one.
-ScannedTerrain DigCycleSession::State::terrain() {
-  const bool is_outdated =
-      stage == CycleStage::digging || (stage == CycleStage::after && recent.empty());
-  Frames& seen = is_outdated ? before : recent;
+/// Whether the last scan shows the ground as it was before the last dig.
+bool DigCycleSession::State::is_outdated() const {
+  return stage == CycleStage::digging || (stage == CycleStage::after && recent.empty());
+}
+
+/// The last one of the ground; nothing if none came yet.
+std::optional<Scan> DigCycleSession::State::last_scan() {
+  Frames& seen = is_outdated() ? before : recent;
+  bool averaged = true;
+  return seen.empty() ? std::nullopt : std::optional(scan_of(seen, "of the ground", averaged));
+}
+
+/// As a scan shows it, level without one.
+ScannedTerrain DigCycleSession::State::terrain(const std::optional<Scan>& scan) const {
   const double cell = settings.plan.cell_size.value_or(usual_cell(settings.machine));
-  if (seen.empty()) {
+  if (!scan) {
     return {level_planning_ground(settings.machine, cell),
             {{"level_ground", "no scan came yet: the ground is taken to be level",
               !settings.level_ground}}};
   }
-  bool averaged = true;
-  ScannedTerrain ground = terrain_from_scan(scan_of(seen, "of the ground", averaged),
-                                            planning_extent(settings.machine), cell);
-  if (is_outdated) {
+  ScannedTerrain ground = terrain_from_scan(*scan, planning_extent(settings.machine), cell);
+  if (is_outdated()) {
     ground.warnings.push_back({"ground_before_dig",
                                "no scan came since the last dig began: the ground is taken to be "
                                "as it was before it",
@@ -299,13 +308,10 @@ ScannedTerrain DigCycleSession::State::terrain() {
 }
 
 /// The same as far as the machine reaches, of which terrain() is a strip.
-Terrain DigCycleSession::State::ground_around() {
-  Frames& seen = stage == CycleStage::digging || recent.empty() ? before : recent;
-  if (seen.empty()) return level_swing_ground(settings.machine);
-  bool averaged = true;
-  return terrain_from_scan(scan_of(seen, "of the ground", averaged), swing_extent(settings.machine),
-                           usual_cell(settings.machine))
-      .terrain;
+Terrain DigCycleSession::State::ground_around(const std::optional<Scan>& scan) const {
+  const Machine& machine = settings.machine;
+  if (!scan) return level_swing_ground(machine);
+  return terrain_from_scan(*scan, swing_extent(machine), usual_cell(machine)).terrain;
 }
 
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
@@ -487,7 +493,8 @@ PlanOptions DigCycleSession::State::plan_options() const {
 CyclePlan DigCycleSession::plan(Time time) {
   State& state = *state_;
   if (time) state.now = time;
-  ScannedTerrain ground = state.terrain();
+  const std::optional<Scan> scan = state.last_scan();
+  ScannedTerrain ground = state.terrain(scan);
   const DigCycleSettings& settings = state.settings;
   CyclePlan answer;
   answer.plan = plan_dig(settings.machine, settings.soil, state.density, ground.terrain,
@@ -511,7 +518,7 @@ CyclePlan DigCycleSession::plan(Time time) {
     answer.warnings.push_back({"search_stopped", stopped + ": there may be a better dig"});
     if (!answer.plan.dig) answer.plan.reason = stopped + " that could not be done";
   }
-  if (answer.plan.dig) state.add_motion(state.ground_around(), answer);
+  if (answer.plan.dig) state.add_motion(state.ground_around(scan), answer);
   answer.trustworthy = answer.plan.trustworthy && answer.plan.dig &&
                        std::none_of(answer.warnings.begin(), answer.warnings.end(),
                                     [](const Warning& warning) { return warning.ends_trust; });
