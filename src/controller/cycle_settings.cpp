@@ -11,6 +11,7 @@
 
 #include "base/check.hpp"
 #include "base/files.hpp"
+#include "machine/corner_rules.hpp"
 
 namespace excavplan {
 namespace {
@@ -38,22 +39,12 @@ DigObjective objective_of(const CycleSources& sources, const Machine& machine,
   return objective;
 }
 
-std::vector<Warning> height_warnings(const CycleSources& sources, const DigObjective& objective) {
-  const double usual = CycleOptions{}.dump_height;
-  if (sources.dump_height || objective.dump_height == usual) return {};
-  if (!info_of(objective.goal).of_cycle) return {};
-  return {{"dump_height_lowered", "the dump height is " + readable(objective.dump_height) +
-                                      " m, not the usual " + plain_number(usual) +
-                                      " m, to which the bucket pin hardly rises, if at all"}};
-}
-
 DensityLaw law_of(const CycleSources& sources, const Machine& machine, const SoilKind& soil) {
   if (!sources.law.empty()) return load_density_law(shipped_or_file("laws", sources.law));
   if (const auto kit = kit_law(sources.machine, machine, soil.name)) return load_density_law(*kit);
   std::string file;
   try {
-    file = find_data_file("laws/" + file_name_part(machine.name) + "-" + file_name_part(soil.name) +
-                          ".json");
+    file = find_data_file(law_file(machine.name, soil.name));
   } catch (const Error&) {
     if (!has_data_folder("laws")) throw;
     refuse("no density law of " + machine.name + " in " + soil.name +
@@ -91,9 +82,8 @@ void check(const DigCycleSettings& settings) {
   require(!settings.whole_cycle || !joints[3].name.empty(),
           "whole_cycle: the swing joint has no name, so the machine would dump without swinging");
   check(settings.motion);
-  const double fraction = settings.plan.trajectory.speed_fraction;
-  require(fraction > 0.0 && fraction <= 1.0, "TrajectoryOptions::speed_fraction", fraction,
-          "above 0 and at most 1");
+  const TrajectoryOptions& timing = settings.plan.trajectory;
+  check_timing("TrajectoryOptions", timing.speed_fraction, timing.corner_tolerance);
   const DigObjective& objective = settings.plan.search.objective;
   check(objective, settings.machine);
   check(settings.machine, CycleWayOptions{{}, settings.whole_cycle, objective});
@@ -115,8 +105,10 @@ DigCycleSettings cycle_settings(const CycleSources& sources) {
   if (sources.search) plan.method = PlanMethod::search;
   const GoalNumbers numbers = numbers_of(sources);
   plan.search.objective = objective_of(sources, settings.machine, numbers);
-  for (Warning& each : height_warnings(sources, plan.search.objective)) {
-    settings.warnings.push_back(std::move(each));
+  if (!sources.dump_height) {
+    for (Warning& each : lowered_height_warnings(plan.search.objective)) {
+      settings.warnings.push_back(std::move(each));
+    }
   }
   plan.library =
       library_of(sources, settings.machine, settings.soil, numbers, plan.search.objective);

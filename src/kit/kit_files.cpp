@@ -42,10 +42,13 @@ std::optional<std::string> kit_file(const std::string& machine_word,
   return fs::is_regular_file(file, none) ? std::optional(file.string()) : std::nullopt;
 }
 
+std::string law_file(const std::string& machine, const std::string& soil) {
+  return "laws/" + file_name_part(machine) + "-" + file_name_part(soil) + ".json";
+}
+
 std::optional<std::string> kit_law(const std::string& machine_word, const Machine& machine,
                                    const std::string& soil) {
-  return kit_file(machine_word,
-                  "laws/" + file_name_part(machine.name) + "-" + file_name_part(soil) + ".json");
+  return kit_file(machine_word, law_file(machine.name, soil));
 }
 
 std::shared_ptr<const PathLibrary> kit_library(const std::string& machine_word,

@@ -37,6 +37,14 @@ DigObjective feasible_objective(const Machine& machine, DigObjective objective) 
   return objective;
 }
 
+std::vector<Warning> lowered_height_warnings(const DigObjective& objective) {
+  const double usual = CycleOptions{}.dump_height;
+  if (objective.dump_height == usual || !info_of(objective.goal).of_cycle) return {};
+  return {{"dump_height_lowered", "the dump height is " + readable(objective.dump_height) +
+                                      " m, not the usual " + number_text(usual) +
+                                      " m, to which the bucket pin hardly rises, if at all"}};
+}
+
 KitSoil make_kit(const Machine& machine, const SoilKind& soil, const KitOptions& options) {
   require(machine.bucket_length >= shortest_bucket, "machine kit: the length of the bucket [m]",
           machine.bucket_length, "at least " + number_text(shortest_bucket));

@@ -105,14 +105,10 @@ DigObjective objective_of(const GoalInputs& inputs, const std::vector<Machine>& 
 }
 
 std::vector<Warning> goal_warnings(const GoalInputs& inputs, const std::vector<Machine>& machines) {
-  const DigObjective usual = objective_of(inputs);
-  const double height = objective_of(inputs, machines).dump_height;
-  const auto& parameter = objective_parameters()[row_of(&DigObjective::dump_height)];
-  if (height == usual.dump_height || !parameter.matters_to(info_of(usual.goal))) return {};
-  return {{"dump_height_lowered",
-           "the dump height is " + readable(height) + " m, not the usual " +
-               number_text(usual.dump_height) +
-               " m, to which the bucket pin hardly rises, if at all; --dump-height sets it"}};
+  if (inputs.numbers[row_of(&DigObjective::dump_height)]) return {};
+  std::vector<Warning> warnings = lowered_height_warnings(objective_of(inputs, machines));
+  for (Warning& each : warnings) each.message += "; --dump-height sets it";
+  return warnings;
 }
 
 std::string worth_text(const DigObjective& objective, double worth) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include <excavplan/kit/kit_files.hpp>
 #include <excavplan/kit/workspace.hpp>
 
 #include "base/files.hpp"
@@ -70,8 +71,7 @@ std::vector<SoilKind> soils_named(const std::string& list) {
 
 void add_kit(const KitSoil& kit, const Machine& machine, const SoilKind& soil,
              const std::string& folder, Outcome& outcome) {
-  const std::string law =
-      "laws/" + file_name_part(machine.name) + "-" + file_name_part(soil.name) + ".json";
+  const std::string law = law_file(machine.name, soil.name);
   make_folder(folder + "/laws");
   write_file(folder + "/" + law, to_json(kit.law));
   nlohmann::ordered_json json = {{"soil", soil.name}, {"law", law}, {"library", nullptr}};

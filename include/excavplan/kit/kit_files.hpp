@@ -33,7 +33,10 @@ std::string default_kit(const std::string& machine_word);
 std::optional<std::string> kit_file(const std::string& machine_word,
                                     const std::string& relative_path);
 
-/// The file laws/MACHINE-SOIL.json of a kit, if it is there.
+/// "laws/MACHINE-SOIL.json": of a density law in a kit, and among the shipped files.
+std::string law_file(const std::string& machine, const std::string& soil);
+
+/// The law_file() of a kit, if it is there.
 std::optional<std::string> kit_law(const std::string& machine_word, const Machine& machine,
                                    const std::string& soil);
 

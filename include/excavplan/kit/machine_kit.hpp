@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/error.hpp>
 #include <excavplan/library/path_library.hpp>
 #include <excavplan/soil/density_fit.hpp>
 
@@ -43,6 +44,10 @@ struct KitSoil {
 /// The goal with what the machine cannot do taken back: a dump height of at most nine tenths of
 /// what its bucket pin reaches.
 DigObjective feasible_objective(const Machine& machine, DigObjective objective);
+
+/// dump_height_lowered, if the goal of a feasible_objective() has a dump height and it is not the
+/// usual one.
+std::vector<Warning> lowered_height_warnings(const DigObjective& objective);
 
 /// @throws Error (bad_input) as calibrate_density() and build_path_libraries(), and if the bucket
 /// is shorter than 0.2 m: its digs would take millions of cells
