@@ -20,8 +20,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double longest = 100.0;        // a larger length is an error of units [m]
-constexpr double most_swing = 4.0 * pi;  // of a range; a larger one is none
+constexpr double longest = 100.0;  // a larger length is an error of units [m]
 constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
 double double_area(const std::vector<Vector2d>& polygon) {
@@ -242,8 +241,8 @@ Swing read_swing(JsonObject file) {
     swing.acceleration = positive(file, "acceleration_rad_per_s2", 1e4);
   }
   if (file.has("lower_rad") || file.has("upper_rad")) {
-    swing.lower = file.number("lower_rad", -most_swing, most_swing);
-    swing.upper = file.number("upper_rad", -most_swing, most_swing);
+    swing.lower = file.number("lower_rad", -widest_swing_range, widest_swing_range);
+    swing.upper = file.number("upper_rad", -widest_swing_range, widest_swing_range);
     if (swing.upper <= swing.lower) {
       file.fail("upper_rad", "is " + number_text(swing.upper) +
                                  ", must be above lower_rad = " + number_text(swing.lower));
@@ -298,6 +297,10 @@ double Machine::beta() const {
           static_cast<double>(bucket.profile.size()), "at least 2");
   const Vector2d floor = bucket.profile[1] - bucket.profile[0];
   return std::atan2(floor.y(), -floor.x());
+}
+
+double Machine::swing_reach() const {
+  return std::hypot(std::abs(boom_pin.x()) + full_length(), 0.5 * bucket.width_outside);
 }
 
 double Machine::undercarriage_width() const {

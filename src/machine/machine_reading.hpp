@@ -4,11 +4,15 @@
 
 #include <excavplan/machine/machine.hpp>
 
+#include "base/angles.hpp"
 #include "base/json.hpp"
 
 /// @file Private to the project.
 
 namespace excavplan {
+
+/// To one side; a swing that goes further has no range; ours [rad].
+constexpr double widest_swing_range = 4.0 * pi;
 
 /// The machine of a file whose format was checked. @throws Error (bad_file)
 Machine read_machine(JsonObject file);

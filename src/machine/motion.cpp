@@ -171,14 +171,16 @@ std::vector<CellLimits> limits_of(const Machine& machine, const SmoothPath& path
 /// largest of these that the power allows, forwards (Pham and Pham 2018).
 class Profile {
  public:
-  Profile(const SmoothPath& path, const FrontJoints& acceleration, double per_power)
+  /// @param limits  as they are at each run()
+  Profile(const SmoothPath& path, const std::vector<CellLimits>& limits,
+          const FrontJoints& acceleration, double per_power)
       : path_(path),
+        limits_(limits),
         acceleration_(acceleration),
         per_power_(per_power),
         squared_(path.cells.size() + 1) {}
 
-  void run(const std::vector<CellLimits>& limits) {
-    limits_ = &limits;
+  void run() {
     std::fill(squared_.begin(), squared_.end(), 0.0);
     for (std::size_t i = 1; i < path_.stops.size(); ++i) {
       run(path_.stops[i - 1], path_.stops[i]);
@@ -200,14 +202,14 @@ class Profile {
   };
 
   Momentum momentum(std::size_t k) const {
-    const CellLimits& limits = (*limits_)[k];
+    const CellLimits& limits = limits_[k];
     const PathCell& cell = path_.cells[k];
     return {limits.inertia * cell.slope[3], limits.last_inertia * cell.last_slope()[3]};
   }
 
   void run(std::size_t first, std::size_t last) {
     for (std::size_t k = last - 1; k > first; --k) {
-      const double most = std::min((*limits_)[k - 1].squared, (*limits_)[k].squared);
+      const double most = std::min(limits_[k - 1].squared, limits_[k].squared);
       squared_[k] = largest_before(k, squared_[k + 1], most);
     }
     for (std::size_t k = first; k + 1 < last; ++k) {
@@ -225,7 +227,7 @@ class Profile {
       narrow(after, before, {cell.slope[i], last[i]}, cell, acceleration_[i]);
     }
     const Momentum swing = momentum(k);
-    narrow(after, before, swing, cell, (*limits_)[k].swing_torque);
+    narrow(after, before, swing, cell, limits_[k].swing_torque);
     return after;
   }
 
@@ -270,7 +272,7 @@ class Profile {
     const auto share = [&](double squared, double momentum, double slope) {
       const double torque = momentum * growth + bend * squared;
       return std::sqrt(std::max(0.0, squared)) *
-             ((*limits_)[k].power + per_power_ * std::max(0.0, torque * slope));
+             (limits_[k].power + per_power_ * std::max(0.0, torque * slope));
     };
     return std::max(share(before, swing.first, cell.slope[3]),
                     share(after, swing.last, cell.last_slope()[3]));
@@ -287,9 +289,9 @@ class Profile {
   }
 
   const SmoothPath& path_;
+  const std::vector<CellLimits>& limits_;
   FrontJoints acceleration_;
   double per_power_;  // [1/W]
-  const std::vector<CellLimits>* limits_ = nullptr;
   std::vector<double> squared_;
 };
 
@@ -558,10 +560,10 @@ Trajectory time_way(const Machine& machine, const Way& way, const MotionOptions&
   const DriveLimits drive(machine, options.speed_fraction * (1.0 - spare_drive));
   const Smoothing smoothing(machine, options, limits.acceleration);
   std::vector<CellLimits> cells = limits_of(machine, path, limits, drive, swing);
-  Profile profile(path, smoothing.acceleration, drive.per_power());
+  Profile profile(path, cells, smoothing.acceleration, drive.per_power());
   const MotionCheck check(machine, drive, swing, limits.swing_torque);
   for (int round = 0; round < most_rounds; ++round) {
-    profile.run(cells);
+    profile.run();
     const TimedPath timed(path, profile.squared());
     constexpr double longest = 3600.0;  // ours [s]
     require(timed.duration() <= longest, "duration of the motion [s]", timed.duration(),

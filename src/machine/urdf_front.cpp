@@ -12,6 +12,7 @@
 
 #include "base/angles.hpp"
 #include "base/text.hpp"
+#include "machine/machine_reading.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -151,13 +152,12 @@ class Front {
   }
 
   void add_swing(UrdfFront& front) const {
-    constexpr double most = 4.0 * pi;  // a wider range is none; ours
     const double sign = swing_.axis.z() > 0.0 ? 1.0 : -1.0;
     front.swing_angle = {swing_.joint->name, sign};
     front.swing = swing_.joint->limits;
     auto& [lower, upper, velocity, effort] = front.swing;
     const bool limited = swing_.joint->type == "revolute" && lower && upper && *lower < *upper &&
-                         *lower >= -most && *upper <= most;
+                         *lower >= -widest_swing_range && *upper <= widest_swing_range;
     if (!limited) {
       lower = upper = std::nullopt;
     } else if (sign < 0.0) {

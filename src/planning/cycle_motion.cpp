@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/angles.hpp"
@@ -35,12 +36,11 @@ JointAngles heavier(const FrontLoad& load, const FrontJoints& from, const FrontJ
 /// Adds the parts of a cycle to a way.
 class CycleWay {
  public:
-  CycleWay(const Machine& machine, const HeightMap& ground, const DigLoad& load)
-      : machine_(machine),
-        load_(load),
-        surroundings_(machine, ground),
-        empty_(machine),
-        loaded_(machine, load.payload_mass) {}
+  CycleWay(const Machine& machine, const DigLoad& load)
+      : machine_(machine), load_(load), empty_(machine), loaded_(machine, load.payload_mass) {}
+
+  /// Needed by go().
+  void stand_on(const HeightMap& ground) { surroundings_.emplace(machine_, ground); }
 
   void start_at(const FrontJoints& joints) {
     way_.poses.push_back({DigPhase::approach, joints, JointAngles::Zero()});
@@ -58,27 +58,27 @@ class CycleWay {
 
   /// From here on the ground is the one after it.
   void dig_is_done() {
-    if (load_.ground_after.z.size() > 0) surroundings_.replace(load_.ground_after);
+    if (load_.ground_after.z.size() > 0) surroundings_->replace(load_.ground_after);
   }
 
   /// To these joints, straight or above what is in the way. @return what blocks every such way
   std::optional<BlockedWay> go(DigPhase phase, const FrontJoints& to, bool loaded) {
     const FrontJoints from = joints();
-    const Clearance first = surroundings_.standing(from);
+    const Clearance first = surroundings_->standing(from);
     if (first.height < -deepest) return blocked(phase, first, "where the way begins");
     const bool dumps = phase == DigPhase::swing || phase == DigPhase::dump;
-    const Clearance last = surroundings_.standing(to);
+    const Clearance last = surroundings_->standing(to);
     if (dumps && last.height < 0.0) return blocked(phase, last, "where it dumps");
-    const auto straight = surroundings_.obstacle(from, to);
+    const auto straight = surroundings_->obstacle(from, to);
     if (!straight) {
       add(phase, {to}, loaded);
       return std::nullopt;
     }
     for (double up = rise;; up += rise) {
       const FrontJoints over_from = lifted(from, up, loaded), over_to = lifted(to, up, loaded);
-      if (!surroundings_.obstacle(over_from, over_to) &&
-          !surroundings_.obstacle_leaving(from, over_from) &&
-          !surroundings_.obstacle_leaving(to, over_to)) {
+      if (!surroundings_->obstacle(over_from, over_to) &&
+          !surroundings_->obstacle_leaving(from, over_from) &&
+          !surroundings_->obstacle_leaving(to, over_to)) {
         add(phase, {over_from, over_to, to}, loaded);
         return std::nullopt;
       }
@@ -130,7 +130,7 @@ class CycleWay {
     const double attitude = joints().head<3>().sum();
     for (const FrontJoints& to : places) {
       const FrontJoints from = joints();
-      surroundings_.pass(from, to, unseen_);
+      surroundings_->pass(from, to, unseen_);
       if (loaded) tipped_ = std::max(tipped_, std::abs(to.head<3>().sum() - attitude));
       const double parts = std::ceil((to - from).norm() / step);
       for (double i = 1.0; i <= parts; ++i) {
@@ -141,7 +141,7 @@ class CycleWay {
   }
 
   BlockedWay blocked(DigPhase phase, const Clearance& at, const std::string& when) const {
-    const bool own = surroundings_.on_undercarriage(at.place.x(), at.place.y());
+    const bool own = surroundings_->on_undercarriage(at.place.x(), at.place.y());
     const std::string what = own ? "undercarriage" : "ground";
     BlockedWay stop;
     stop.phase = phase;
@@ -159,7 +159,7 @@ class CycleWay {
 
   const Machine& machine_;
   const DigLoad& load_;
-  Surroundings surroundings_;
+  std::optional<Surroundings> surroundings_;
   UnseenGround unseen_;
   double tipped_ = 0.0;  ///< most of a full bucket [rad]
   FrontLoad empty_, loaded_;
@@ -205,7 +205,8 @@ std::variant<Way, BlockedWay> way_of_cycle(const Machine& machine, const Terrain
   Way dig = way_of(path, load.torques);
   const double ahead = turns_to(machine, options);
   for (WayPose& pose : dig.poses) pose.joints[3] = ahead;
-  CycleWay way(machine, ground.surface(), load);
+  CycleWay way(machine, load);
+  if (options.start || options.whole_cycle) way.stand_on(ground.surface());
   if (options.start) {
     way.start_at(*options.start);
     if (auto stop = way.go(DigPhase::approach, dig.poses.front().joints, false)) return *stop;

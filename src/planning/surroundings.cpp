@@ -21,14 +21,9 @@ constexpr double cells_in_reach = 200.0;
 constexpr double track_height = 0.5;  // of the undercarriage, over track_front: 0.9 m of a zx120
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double reach_of(const Machine& machine) {
-  return std::hypot(std::abs(machine.boom_pin.x()) + machine.full_length(),
-                    0.5 * machine.bucket.width_outside);
-}
-
 /// Unknown cells over the reach; where they are as large as those of the ground, they are the same.
 HeightMap grid_over(const Machine& machine, const HeightMap& ground) {
-  const double reach = reach_of(machine);
+  const double reach = machine.swing_reach();
   HeightMap grid;
   grid.cell_size = std::max(ground.cell_size, reach / cells_in_reach);
   const Vector2d corner = Vector2d::Constant(-reach);
@@ -210,7 +205,7 @@ double Surroundings::parts(const FrontJoints& from, const FrontJoints& to, doubl
   const FrontJoints turn = (to - from).cwiseAbs();
   const double hand = machine_.arm_length + machine_.bucket_length;
   const double most = turn[0] * machine_.full_length() + turn[1] * hand +
-                      turn[2] * machine_.bucket_length + turn[3] * reach_of(machine_);
+                      turn[2] * machine_.bucket_length + turn[3] * machine_.swing_reach();
   return std::max(1.0, std::ceil(most / spacing));
 }
 
@@ -244,8 +239,10 @@ std::optional<Clearance> Surroundings::obstacle_leaving(const FrontJoints& from,
   for (double i = 0.0; i <= count; ++i) {
     const FrontJoints at = from + i / count * (to - from);
     const Clearance there = margin_at(at);
-    if (there.height >= margin) clear = true;
-    if (there.height >= margin) continue;
+    if (there.height >= margin) {
+      clear = true;
+      continue;
+    }
     if (clear) return there;
     const Clearance close = least(at, fine_, margin, height_of);
     if (close.height < deepest) return close;

@@ -74,9 +74,7 @@ Terrain level_planning_ground(const Machine& machine, double cell_size) {
 
 Rectangle swing_extent(const Machine& machine) {
   require_machine(machine);
-  const double reach = std::hypot(std::abs(machine.boom_pin.x()) + machine.full_length(),
-                                  0.5 * machine.bucket.width_outside);
-  const double far = reach + 0.5;  // as planning_extent()
+  const double far = machine.swing_reach() + 0.5;  // as planning_extent()
   return {-far, -far, far, far};
 }
 

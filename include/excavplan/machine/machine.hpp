@@ -101,6 +101,8 @@ struct Machine {
 
   /// Boom pin to tip with all links in one line, the longest reach [m].
   double full_length() const { return boom_length + arm_length + bucket_length; }
+  /// From the swing axis to the corner of the bucket furthest from it [m]; rounded up.
+  double swing_reach() const;
   /// Over both tracks [m]: track_width, without it as the zx120's in proportion to track_front;
   /// ours.
   double undercarriage_width() const;
