@@ -175,7 +175,7 @@ void ChildProcess::start(const std::vector<std::string>& words) {
   while ((got = ::read(failure.ends[0], &error, sizeof error)) < 0 && errno == EINTR) {
   }
   if (got == sizeof error) {
-    throw ChildFailure("the program " + excavplan::quoted(words.front()) +
+    throw ChildFailure("the program " + in_quotes(words.front()) +
                        " cannot be started: " + reason(error));
   }
 }
@@ -225,8 +225,7 @@ std::string ChildProcess::ask(const std::string& line, std::chrono::duration<dou
   const std::string request = line + '\n';
   if (pipes_[input] < 0 || !read_some(output, read_)) throw ChildEnded(how_it_ended());
   if (!read_.empty()) {
-    throw ChildFailure("it wrote to its standard output without being asked: " +
-                       excavplan::quoted(read_));
+    throw ChildFailure("it wrote to its standard output without being asked: " + in_quotes(read_));
   }
   std::size_t written = 0;
   std::size_t looked_at = 0;

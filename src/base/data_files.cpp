@@ -48,7 +48,7 @@ fs::path named_folder() {
   std::error_code none;
   if (fs::is_directory(named, none)) return named;
   throw Error(ErrorKind::bad_file, "the environment variable EXCAVPLAN_DATA: found " +
-                                       excavplan::quoted(named) + ", expected a folder");
+                                       in_quotes(named) + ", expected a folder");
 }
 
 std::vector<fs::path> data_folders(const std::string& package_folder) {
@@ -72,7 +72,7 @@ std::string find_data_file(const std::string& relative_path, const std::string& 
   const fs::path relative = relative_path;
   if (relative.is_absolute() || std::count(relative.begin(), relative.end(), "..") > 0) {
     throw Error(ErrorKind::bad_input,
-                excavplan::quoted(relative_path) +
+                in_quotes(relative_path) +
                     ": found a path out of the folder of the data, expected one in it");
   }
   std::string searched;

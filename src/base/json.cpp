@@ -42,7 +42,7 @@ class Builder : public nlohmann::json_sax<Json> {
   bool end_array() override { return close(); }
   bool key(std::string& name) override {
     const auto [place, is_new] = open_.back()->emplace(name, nullptr);
-    if (!is_new) refuse(name_, "key " + excavplan::quoted(name) + " appears twice");
+    if (!is_new) refuse(name_, "key " + in_quotes(name) + " appears twice");
     place_ = &*place;
     return true;
   }
@@ -179,7 +179,7 @@ JsonObject JsonObject::result_of(const std::string& tool, const std::string& pat
 
 void JsonObject::require_format(const std::string& format, int version) {
   if (const std::string found = text("format"); found != format) {
-    fail("format", "is " + excavplan::quoted(found) + ", expected '" + format + "'");
+    fail("format", "is " + in_quotes(found) + ", expected '" + format + "'");
   }
   if (const double found = number("version"); found != version) {
     fail("version",
@@ -296,7 +296,7 @@ void require_storable(const nlohmann::ordered_json& json, const std::string& wha
   const nlohmann::ordered_json flat = json.flatten();
   for (const auto& [place, value] : flat.items()) {
     const auto refuse = [&, &key = place](const std::string& found) {
-      throw Error(ErrorKind::bad_input, what + ": " + excavplan::quoted(key) + " is " + found);
+      throw Error(ErrorKind::bad_input, what + ": " + in_quotes(key) + " is " + found);
     };
     if (value.is_number_float() && !std::isfinite(value.get<double>())) {
       refuse(number_text(value.get<double>()) + ", must be finite");

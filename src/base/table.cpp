@@ -68,7 +68,7 @@ void Table::add_names(const std::vector<string_view>& names, std::size_t line) {
   }
   for (const string_view name : names) {
     if (!name.empty() && index(name)) {
-      refuse_line(path_, line, "column " + excavplan::quoted(name) + " appears twice");
+      refuse_line(path_, line, "column " + in_quotes(name) + " appears twice");
     }
     names_.emplace_back(name);
   }
@@ -86,7 +86,7 @@ void Table::add_row(const std::vector<string_view>& fields, std::size_t line) {
     const auto value = number_of(fields[i], *dialect_.decimal_mark);
     if (!value && !column.bad_field) {
       column.bad_row = rows();
-      column.bad_field = excavplan::quoted(fields[i]);
+      column.bad_field = in_quotes(fields[i]);
     }
     if (!column.bad_field) column.values.push_back(*value);
   }
@@ -114,7 +114,7 @@ std::vector<std::string> Table::texts(const std::string& name) const {
 
 std::size_t Table::index_of(const std::string& name) const {
   if (const auto at = index(name)) return *at;
-  throw Error(ErrorKind::bad_file, path_ + ": has no column " + excavplan::quoted(name) +
+  throw Error(ErrorKind::bad_file, path_ + ": has no column " + in_quotes(name) +
                                        ", its columns are: " + listed_names());
 }
 

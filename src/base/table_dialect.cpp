@@ -169,8 +169,8 @@ char find_decimal_mark(const std::string& path, string_view text, char delimiter
       auto& known = marked->mark == '.' ? point : comma;
       if (known && (known->is_proof || !marked->is_proof)) continue;
       const std::string name = i < names.size() ? safe_text(names[i], 40) : "a field";
-      known = {quoted(fields[i]), "line " + std::to_string(records.line()) + ": " + name + " is ",
-               marked->is_proof};
+      known = {in_quotes(fields[i]),
+               "line " + std::to_string(records.line()) + ": " + name + " is ", marked->is_proof};
     }
   }
   // A comma between fields is none in numbers.

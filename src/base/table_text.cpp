@@ -187,7 +187,7 @@ string_view TableRecords::quoted_field() {
   skip_blanks();
   if (at_ < text_.size() && text_[at_] != delimiter_ && text_[at_] != '#' &&
       !ends_line(text_[at_])) {
-    refuse_line(path_, next_line_, "found text behind the quotes of " + quoted(field));
+    refuse_line(path_, next_line_, "found text behind the quotes of " + in_quotes(field));
   }
   return trimmed(field);
 }

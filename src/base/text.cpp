@@ -162,7 +162,7 @@ std::string safe_text(std::string_view text, std::size_t most) {
          safe(text.substr(text.size() - end));
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   if (text.size() <= longest) return "'" + safe(text) + "'";
   return "'" + safe(whole_characters(text, longest)) + "...'";
@@ -175,7 +175,7 @@ std::optional<std::string> fault_of_line(std::string_view text, std::size_t most
   }
   if (first_not_utf8(text)) return "not UTF-8";
   if (safe(text) == text) return std::nullopt;
-  return quoted(text) + ", expected a text on one line without control characters";
+  return in_quotes(text) + ", expected a text on one line without control characters";
 }
 
 std::string small_letters(std::string_view text) {

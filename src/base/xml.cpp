@@ -77,7 +77,7 @@ class Reader {
   string shown() const {
     if (at_ >= text_.size()) return "the end of the file";
     const string_view rest = text_.substr(at_);
-    return excavplan::quoted(rest.substr(0, std::min<std::size_t>(rest.find('\n'), 100)));
+    return in_quotes(rest.substr(0, std::min<std::size_t>(rest.find('\n'), 100)));
   }
   bool starts(string_view with) const { return text_.substr(at_, with.size()) == with; }
 
@@ -91,7 +91,7 @@ class Reader {
 
   void skip_past(string_view end, const string& what) {
     const std::size_t found = text_.find(end, at_);
-    if (found == text_.npos) refuse(what + " without an end", excavplan::quoted(end));
+    if (found == text_.npos) refuse(what + " without an end", in_quotes(end));
     move_to(found + end.size());
   }
 
@@ -147,7 +147,7 @@ class Reader {
       const std::size_t end = std::min(raw.find(';', at), raw.size());
       const string text = replacement_of(raw.substr(at + 1, end - at - 1));
       if (end == raw.size() || text.empty()) {
-        refuse(excavplan::quoted(raw.substr(at)), "one of the entities of XML, such as '&amp;'");
+        refuse(in_quotes(raw.substr(at)), "one of the entities of XML, such as '&amp;'");
       }
       plain += text;
       at = end;
@@ -171,8 +171,7 @@ class Reader {
         return true;
       }
       string key = word();
-      if (element.attribute(key))
-        refuse("the attribute " + excavplan::quoted(key) + " twice", "it once");
+      if (element.attribute(key)) refuse("the attribute " + in_quotes(key) + " twice", "it once");
       if (element.attributes.size() == most_xml_attributes) {
         refuse("more than " + std::to_string(most_xml_attributes) + " attributes", "at most that");
       }
@@ -189,7 +188,7 @@ class Reader {
     const string name = word();
     skip_blanks();
     if (name != of || !starts(">")) {
-      refuse("the end of " + excavplan::quoted(name), "the end of " + excavplan::quoted(of));
+      refuse("the end of " + in_quotes(name), "the end of " + in_quotes(of));
     }
     ++at_;
   }
@@ -215,7 +214,7 @@ class Reader {
         close(open);
       }
       if (at_ == text_.size())
-        refuse("the end of the file", "the end of " + excavplan::quoted(open.back().name));
+        refuse("the end of the file", "the end of " + in_quotes(open.back().name));
     } while (true);
     return std::move(open.front());
   }

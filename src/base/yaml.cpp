@@ -30,7 +30,7 @@ struct Line {
 [[noreturn]] void refuse(const std::string& name, std::size_t line, string_view found,
                          const std::string& expected) {
   throw Error(ErrorKind::bad_file, name + ": line " + std::to_string(line) + ": found " +
-                                       excavplan::quoted(found) + ", expected " + expected);
+                                       in_quotes(found) + ", expected " + expected);
 }
 
 string_view trimmed(string_view text) {

@@ -44,8 +44,7 @@ void require_name(const std::string& name, const std::string& what) {
   const bool is_name =
       !name.empty() && name.size() <= longest_text &&
       name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
-  require(is_name,
-          what + " " + excavplan::quoted(name) + ": a name has small letters, digits and _");
+  require(is_name, what + " " + in_quotes(name) + ": a name has small letters, digits and _");
 }
 
 void require_layers(const LayeredMap& map) {

@@ -415,7 +415,7 @@ void require_buildable(const LibraryGrid& grid, const LibrarySearch& search) {
   for (const SoilKind& soil : grid.soils) require_soil(soil);
   require_name("simulator", search.simulator.name);
   if (!search.simulator.make) {
-    refuse("library: simulator " + excavplan::quoted(search.simulator.name) +
+    refuse("library: simulator " + in_quotes(search.simulator.name) +
            " has no function that makes one");
   }
   const double entries = static_cast<double>(grid.machines.size() * grid.soils.size()) *

@@ -138,7 +138,7 @@ LibraryTask read_task(const LibraryJob& job, const std::string& text) {
     try {
       return value_of<LibraryTask>("task", parse_json("task", text));
     } catch (const Error&) {
-      refuse("library worker: " + excavplan::quoted(text) + " is no task of a build");
+      refuse("library worker: " + in_quotes(text) + " is no task of a build");
     }
   };
   const LibraryTask task = read();

@@ -43,7 +43,7 @@ Between between_of(JsonObject& object, const std::string& key) {
   for (std::size_t i = 0; i < between_words.size(); ++i) {
     if (word == between_words[i]) return static_cast<Between>(i);
   }
-  object.fail(key, "is " + excavplan::quoted(word) + ", must be mix, nearest, lower or upper");
+  object.fail(key, "is " + in_quotes(word) + ", must be mix, nearest, lower or upper");
 }
 
 void add(nlohmann::ordered_json& json, const std::string& to, const Interpolation& between) {

@@ -38,12 +38,12 @@ class Rules {
     require(false, place(of, member), value, "below " + number_text(limit));
   }
   void holds(bool what, const char* text) const {
-    if (!what) refuse("machine " + excavplan::quoted(machine_.name) + ": " + text);
+    if (!what) refuse("machine " + in_quotes(machine_.name) + ": " + text);
   }
 
  private:
   std::string place(const char* of, const char* member) const {
-    return "machine " + excavplan::quoted(machine_.name) + ": " + of + member;
+    return "machine " + in_quotes(machine_.name) + ": " + of + member;
   }
 
   const Machine& machine_;

@@ -26,8 +26,7 @@ RobotJoints read_robot_joints(JsonObject file) {
     if (file.has(words[i])) joints[i] = read_robot_joint(file.object(words[i]), joints[i]);
     for (std::size_t other = 0; other < i; ++other) {
       if (joints[i].name.empty() || joints[i].name != joints[other].name) continue;
-      file.fail(words[i],
-                "has the name " + excavplan::quoted(joints[i].name) + " of " + words[other]);
+      file.fail(words[i], "has the name " + in_quotes(joints[i].name) + " of " + words[other]);
     }
   }
   file.ignore("sources");

@@ -44,7 +44,7 @@ DigPhase read_phase(JsonObject& object) {
         DigPhase::swing, DigPhase::dump, DigPhase::back}) {
     if (text == name(phase)) return phase;
   }
-  object.fail("phase", "is " + excavplan::quoted(text) +
+  object.fail("phase", "is " + in_quotes(text) +
                            ", must be approach, penetrate, drag, scoop, lift, swing, dump or back");
 }
 

@@ -61,7 +61,7 @@ class Front {
       all += (all.empty() ? "" : ", ") + joint.name;
     }
     throw Error(ErrorKind::bad_file,
-                tree_.file + ": has no joint " + excavplan::quoted(name) + " (" + what +
+                tree_.file + ": has no joint " + in_quotes(name) + " (" + what +
                     "); its moving joints: " + (all.empty() ? "none" : all) +
                     "; say in the JSON beside it which is which, as {\"urdf\": {\"" + what +
                     "\": \"NAME\"}}");
@@ -90,15 +90,14 @@ class Front {
         **next = {joint, frame.translation(), frame.linear() * joint->axis};
         ++next;
       } else if (inside && joint->type != "fixed") {
-        tree_.refuse(*joint, "moves too, between " +
-                                 excavplan::quoted((*std::prev(next))->joint->name) + " and " +
-                                 excavplan::quoted((*next)->joint->name) +
+        tree_.refuse(*joint, "moves too, between " + in_quotes((*std::prev(next))->joint->name) +
+                                 " and " + in_quotes((*next)->joint->name) +
                                  ": only swing, boom, arm and bucket may");
       }
     }
     if (next != wanted.end()) {
-      tree_.refuse(*(*next)->joint, "does not lie on the way to the tip " +
-                                        excavplan::quoted(names_.tip) + " in its place");
+      tree_.refuse(*(*next)->joint,
+                   "does not lie on the way to the tip " + in_quotes(names_.tip) + " in its place");
     }
     tip_ = frame.translation();
   }
@@ -129,8 +128,7 @@ class Front {
       tree_.refuse(joint, "has a 'mimic', expected a joint that moves by itself");
     }
     if (joint.type == "revolute" || joint.type == "continuous") return;
-    tree_.refuse(joint,
-                 "is " + excavplan::quoted(joint.type) + ", expected 'revolute' or 'continuous'");
+    tree_.refuse(joint, "is " + in_quotes(joint.type) + ", expected 'revolute' or 'continuous'");
   }
 
   /// Forward is where the tip is with all joints in the middle of their ranges.

@@ -296,7 +296,7 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
 
   UrdfDraft draft;
   machine.merge_patch(said.numbers);
-  add_sources(of_urdf, "URDF " + excavplan::quoted(tree.name), machine);
+  add_sources(of_urdf, "URDF " + in_quotes(tree.name), machine);
   add_sources(scaled, "ours: the zx120, scaled to the length of boom and arm", machine);
   machine.merge_patch(side.numbers);
   if (!machine.contains("name")) machine["name"] = tree.name;

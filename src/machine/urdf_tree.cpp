@@ -27,8 +27,7 @@ class Parser {
 
   UrdfTree tree() {
     if (root_.name != "robot") {
-      refuse(root_,
-             "is " + excavplan::quoted(root_.name) + ", expected a URDF, whose element is 'robot'");
+      refuse(root_, "is " + in_quotes(root_.name) + ", expected a URDF, whose element is 'robot'");
     }
     refuse_xacro(root_);
     UrdfTree tree;
@@ -56,7 +55,7 @@ class Parser {
     const auto& attributes = element.attributes;
     if (element.name.rfind("xacro:", 0) == 0 ||
         std::any_of(attributes.begin(), attributes.end(), has_macro)) {
-      refuse(element, excavplan::quoted(element.name) +
+      refuse(element, in_quotes(element.name) +
                           " is a macro: this is a xacro, expand it first, with " +
                           "ROS: xacro FILE.urdf.xacro > machine.urdf");
     }
@@ -65,9 +64,9 @@ class Parser {
 
   string attribute(const XmlElement& of, const string& key) const {
     const string* value = of.attribute(key);
-    if (!value) refuse(of, excavplan::quoted(of.name) + " has no " + excavplan::quoted(key));
+    if (!value) refuse(of, in_quotes(of.name) + " has no " + in_quotes(key));
     if (const auto fault = fault_of_line(*value, 200)) {
-      refuse(of, key + " of " + excavplan::quoted(of.name) + " is " + *fault);
+      refuse(of, key + " of " + in_quotes(of.name) + " is " + *fault);
     }
     return *value;
   }
@@ -78,8 +77,8 @@ class Parser {
     for (const XmlElement& each : of.children) {
       if (each.name != key || &each == first) continue;
       const string* name = of.attribute("name");
-      refuse(each, of.name + (name ? " " + excavplan::quoted(*name) : "") + " has a second " +
-                       excavplan::quoted(key) + ", expected one at most");
+      refuse(each, of.name + (name ? " " + in_quotes(*name) : "") + " has a second " +
+                       in_quotes(key) + ", expected one at most");
     }
     return first;
   }
@@ -101,7 +100,7 @@ class Parser {
       const bool is_number = error == std::errc() && std::abs(value) <= largest &&
                              !(has_plus && *at == '-') && (next == end || is_blank(*next));
       if (!is_number || found.size() == 3) {
-        refuse(of, key + " of " + excavplan::quoted(of.name) + " is " + excavplan::quoted(text) +
+        refuse(of, key + " of " + in_quotes(of.name) + " is " + in_quotes(text) +
                        ", expected numbers of at most " + number_text(largest) +
                        " with blanks between them");
       }
@@ -114,8 +113,7 @@ class Parser {
   std::optional<double> number(const XmlElement* of, const string& key) const {
     if (!of || !of->attribute(key)) return std::nullopt;
     const auto found = numbers(*of, key);
-    if (found.size() != 1)
-      refuse(*of, key + " of " + excavplan::quoted(of->name) + " is not one number");
+    if (found.size() != 1) refuse(*of, key + " of " + in_quotes(of->name) + " is not one number");
     return found[0];
   }
 
@@ -124,7 +122,7 @@ class Parser {
     if (!of || !of->attribute(key)) return otherwise;
     const auto found = numbers(*of, key);
     if (found.size() != 3)
-      refuse(*of, key + " of " + excavplan::quoted(of->name) + " is not three numbers");
+      refuse(*of, key + " of " + in_quotes(of->name) + " is not three numbers");
     return {found[0], found[1], found[2]};
   }
 
@@ -156,16 +154,13 @@ class Parser {
     joint.line = element.line;
     for (const auto& [key, value] : {std::pair("parent", &joint.parent), {"child", &joint.child}}) {
       const XmlElement* end = only(element, key);
-      if (!end)
-        refuse(element,
-               "joint " + excavplan::quoted(joint.name) + " has no " + excavplan::quoted(key));
+      if (!end) refuse(element, "joint " + in_quotes(joint.name) + " has no " + in_quotes(key));
       *value = attribute(*end, "link");
     }
     joint.origin = pose(only(element, "origin"));
     const Eigen::Vector3d axis = vector(only(element, "axis"), "xyz", Eigen::Vector3d::UnitX());
     if (!(axis.norm() > 1e-6)) {
-      refuse(element,
-             "joint " + excavplan::quoted(joint.name) + " has an axis without a direction");
+      refuse(element, "joint " + in_quotes(joint.name) + " has an axis without a direction");
     }
     joint.axis = axis.normalized();
     const XmlElement* limit = only(element, "limit");
@@ -188,14 +183,14 @@ void require_names(const UrdfTree& tree) {
   for (const UrdfLink& link : tree.links) {
     if (links.insert(link.name).second) continue;
     throw Error(ErrorKind::bad_file,
-                tree.file + ": link " + excavplan::quoted(link.name) + " appears twice");
+                tree.file + ": link " + in_quotes(link.name) + " appears twice");
   }
   std::set<string> joints;
   for (const UrdfJoint& joint : tree.joints) {
     if (!joints.insert(joint.name).second) tree.refuse(joint, "appears twice");
     for (const string& link : {joint.parent, joint.child}) {
       if (links.count(link) == 0) {
-        tree.refuse(joint, "joins link " + excavplan::quoted(link) + ", which the file lacks");
+        tree.refuse(joint, "joins link " + in_quotes(link) + ", which the file lacks");
       }
     }
   }
@@ -206,7 +201,7 @@ void require_tree(const UrdfTree& tree) {
   std::map<string, const UrdfJoint*> above;
   for (const UrdfJoint& joint : tree.joints) {
     if (above.emplace(joint.child, &joint).second) continue;
-    tree.refuse(joint, "is the second that leads to link " + excavplan::quoted(joint.child));
+    tree.refuse(joint, "is the second that leads to link " + in_quotes(joint.child));
   }
   std::set<string> good;
   string root;
@@ -218,8 +213,8 @@ void require_tree(const UrdfTree& tree) {
       if (!way.insert(at).second) tree.refuse(*joint->second, "is part of a circle");
       if (joint == above.end()) {
         if (!root.empty()) {
-          throw Error(ErrorKind::bad_file, tree.file + ": links " + excavplan::quoted(root) +
-                                               " and " + excavplan::quoted(at) +
+          throw Error(ErrorKind::bad_file, tree.file + ": links " + in_quotes(root) + " and " +
+                                               in_quotes(at) +
                                                " hang on nothing, expected one root");
         }
         root = at;
@@ -259,7 +254,7 @@ std::vector<const UrdfJoint*> UrdfTree::chain_to(const string& link_name) const 
 
 void UrdfTree::refuse(const UrdfJoint& of, const string& what) const {
   throw Error(ErrorKind::bad_file, file + ": line " + std::to_string(of.line) + ": joint " +
-                                       excavplan::quoted(of.name) + " " + what);
+                                       in_quotes(of.name) + " " + what);
 }
 
 UrdfTree parse_urdf(const string& path, const string& content) {

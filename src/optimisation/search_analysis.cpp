@@ -142,7 +142,7 @@ void check(const SearchBox& box, const SearchResult& result) {
   if (!holds) refuse("explain: box, best point and history must be finite and of one dimension");
 }
 
-std::string in_quotes(const std::string& text) {
+std::string csv_field(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
   return result + "\"";
@@ -213,7 +213,7 @@ std::string to_csv(const SearchResult& result) {
            "," + std::to_string(record.polish) + "," + parents + "," + name(record.source) + "," +
            name(record.outcome.status) + "," +
            (record.outcome.ok() ? number_text(record.outcome.fitness) : "") + "," +
-           number_text(record.outcome.violation) + "," + in_quotes(record.outcome.reason);
+           number_text(record.outcome.violation) + "," + csv_field(record.outcome.reason);
     for (const double number : record.point) csv += "," + number_text(number);
     csv += "\n";
   }

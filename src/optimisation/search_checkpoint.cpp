@@ -72,7 +72,7 @@ Evaluation read_outcome(JsonObject& entry) {
   if (status == name(Status::failed)) return Evaluation::failed(reason);
   if (status == name(Status::timed_out)) return Evaluation::timed_out(reason);
   entry.fail("status",
-             "is " + excavplan::quoted(status) + ", expected ok, infeasible, failed or timed out");
+             "is " + in_quotes(status) + ", expected ok, infeasible, failed or timed out");
 }
 
 std::string described(const Evaluation& outcome) {

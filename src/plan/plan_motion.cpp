@@ -16,9 +16,9 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const T
                                                  const DigPlan& plan, const CycleWayOptions& way,
                                                  const MotionOptions& motion) {
   if (!plan.dig) return Trajectory{machine.name, {}, machine.robot_joints};
-  require(plan.trajectory.machine == machine.name,
-          "motion: the plan is of the machine " + excavplan::quoted(plan.trajectory.machine) +
-              ", not of " + excavplan::quoted(machine.name));
+  require(plan.trajectory.machine == machine.name, "motion: the plan is of the machine " +
+                                                       in_quotes(plan.trajectory.machine) +
+                                                       ", not of " + in_quotes(machine.name));
   const DigLoad load = {plan.torques, plan.dig->payload_mass, plan.ground_after};
   const auto laid = way_of_cycle(machine, ground, plan.path, load, way);
   if (const auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;

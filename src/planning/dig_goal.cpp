@@ -76,7 +76,7 @@ DigObjective objective_named(const std::string& text) {
     const auto [after, error] = read_double(text.data() + word_end, end, number);
     if (error == std::errc() && after == end) return objective;
   }
-  refuse("the goal " + quoted(text) + " is none of " + known);
+  refuse("the goal " + in_quotes(text) + " is none of " + known);
 }
 
 const std::vector<DigObjectiveParameter>& objective_parameters() {

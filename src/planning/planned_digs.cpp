@@ -85,8 +85,7 @@ DigObjective read_goal(JsonObject& object) {
   const auto& goals = dig_goals();
   const auto goal = std::find_if(goals.begin(), goals.end(),
                                  [&](const DigGoalInfo& info) { return info.word == word; });
-  if (goal == goals.end())
-    object.fail("goal", "is " + excavplan::quoted(word) + ", which is no goal");
+  if (goal == goals.end()) object.fail("goal", "is " + in_quotes(word) + ", which is no goal");
   DigObjective objective(goal->goal);
   JsonObject numbers = object.object("goal_parameters");
   for (const DigObjectiveParameter& parameter : objective_parameters()) {

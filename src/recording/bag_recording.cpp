@@ -34,7 +34,7 @@ class Fields {
       ByteReader field = reader.part("field of a header");
       const std::string_view text = field.take(field.left(), "field");
       const std::size_t equals = text.find('=');
-      if (equals == text.npos) reader.fail("the field " + excavplan::quoted(text), "one with '='");
+      if (equals == text.npos) reader.fail("the field " + in_quotes(text), "one with '='");
       values_.emplace_back(text.substr(0, equals), text.substr(equals + 1));
       if (values_.size() > most_fields) before_.fail("a header of more fields", "at most 100");
     }
@@ -43,13 +43,13 @@ class Fields {
   bool has(std::string_view name) const { return find(name).has_value(); }
   std::string_view text(std::string_view name) const {
     const auto value = find(name);
-    if (!value) before_.fail("a header without " + excavplan::quoted(name), "one with it");
+    if (!value) before_.fail("a header without " + in_quotes(name), "one with it");
     return *value;
   }
   std::uint64_t number(std::string_view name, std::size_t size) const {
     const std::string_view value = text(name);
     if (value.size() != size) {
-      before_.fail(excavplan::quoted(name) + " of " + std::to_string(value.size()) + " bytes",
+      before_.fail(in_quotes(name) + " of " + std::to_string(value.size()) + " bytes",
                    std::to_string(size));
     }
     std::uint64_t out = 0;
@@ -123,7 +123,7 @@ class BagRecording : public ChunkedContainer {
 void BagRecording::read_bag_header() {
   const Bytes start = file_.read(0, std::min<std::uint64_t>(file_.size(), magic.size()), "magic");
   if (start.view() != magic) {
-    file_.fail(0, excavplan::quoted(start.view()),
+    file_.fail(0, in_quotes(start.view()),
                "'#ROSBAG V2.0'; 'rosbag fix' converts bags of earlier versions");
   }
   const Bytes bytes = header_at(magic.size());
@@ -135,7 +135,7 @@ void BagRecording::read_bag_header() {
                  file_.path() + "'");
   }
   if (fields.has("encryptor") && !fields.text("encryptor").empty()) {
-    file_.refuse("is encrypted by " + excavplan::quoted(fields.text("encryptor")) +
+    file_.refuse("is encrypted by " + in_quotes(fields.text("encryptor")) +
                  ", which is not supported");
   }
   read_index(index, fields.u32("conn_count"), fields.u32("chunk_count"));
@@ -271,7 +271,7 @@ Bytes BagRecording::load(const RecordedChunk& chunk) const {
                         "byte " + std::to_string(head.data)});
   } else if (head.compression != "none" || head.length != head.uncompressed) {
     file_.fail(chunk.offset,
-               "a chunk of compression " + excavplan::quoted(head.compression) + ", " +
+               "a chunk of compression " + in_quotes(head.compression) + ", " +
                    std::to_string(head.length) + " bytes and " + std::to_string(head.uncompressed) +
                    " uncompressed",
                "compression lz4, bz2, or none and as many bytes");

@@ -115,8 +115,8 @@ void ChunkedContainer::add_channel(RecordedChannel channel, const ByteReader& re
   }
   const RecordedChannel& known = channels_[entry->second];
   if (known.topic != channel.topic || known.type != channel.type) {
-    reader.fail("channel " + std::to_string(channel.id) + " of " +
-                    excavplan::quoted(channel.topic) + " and of " + excavplan::quoted(known.topic),
+    reader.fail("channel " + std::to_string(channel.id) + " of " + in_quotes(channel.topic) +
+                    " and of " + in_quotes(known.topic),
                 "one topic and one type a channel");
   }
 }
@@ -163,8 +163,8 @@ void ChunkedContainer::make_topics() {
     RecordedTopic& topic = topics_[channel.topic_index];
     topic.messages += channel.messages;
     if (topic.type != channel.type) {
-      channel.unreadable = "found messages of " + excavplan::quoted(channel.type) + " and of " +
-                           excavplan::quoted(topic.type) + ", expected one type";
+      channel.unreadable = "found messages of " + in_quotes(channel.type) + " and of " +
+                           in_quotes(topic.type) + ", expected one type";
     }
   }
 }

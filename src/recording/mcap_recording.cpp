@@ -113,8 +113,7 @@ class McapRecording : public ChunkedContainer {
 std::uint64_t McapRecording::read_header() {
   const Bytes start = file_.read(0, std::min<std::uint64_t>(file_.size(), magic.size()), "magic");
   if (start.view() != magic) {
-    file_.fail(0, excavplan::quoted(start.view()),
-               "the magic of MCAP version 0, '\\x89MCAP0\\r\\n'");
+    file_.fail(0, in_quotes(start.view()), "the magic of MCAP version 0, '\\x89MCAP0\\r\\n'");
   }
   const std::uint64_t end = magic.size() + record_head +
                             content_length(magic.size(), file_.size(), Opcode::header, "header");
@@ -210,8 +209,8 @@ void McapRecording::read_schema(ByteReader record) {
   const std::string name(record.text("name of a schema"));
   const auto [entry, is_new] = schemas_.try_emplace(id, name);
   if (!is_new && entry->second != name) {
-    record.fail("schema " + std::to_string(id) + " of " + excavplan::quoted(name) + " and of " +
-                    excavplan::quoted(entry->second),
+    record.fail("schema " + std::to_string(id) + " of " + in_quotes(name) + " and of " +
+                    in_quotes(entry->second),
                 "one");
   }
 }
@@ -233,7 +232,7 @@ void McapRecording::read_channel(ByteReader record) {
   if (encoding == "ros1") {
     channel.serialization = Serialization::ros1;
   } else if (encoding != "cdr") {
-    channel.unreadable = "found messages in the encoding " + excavplan::quoted(encoding) +
+    channel.unreadable = "found messages in the encoding " + in_quotes(encoding) +
                          ", expected 'cdr' (ROS 2) or 'ros1'";
   }
   add_channel(std::move(channel), record);
@@ -351,8 +350,7 @@ Bytes McapRecording::load(std::uint64_t offset, std::uint64_t length) const {
     const auto compression = head.compression == "lz4" ? Compression::lz4 : Compression::zstd;
     bytes = decompress({compression, bytes.view(), head.uncompressed, file_.path(), place});
   } else if (!head.compression.empty()) {
-    file_.fail(offset, "a chunk compressed by " + excavplan::quoted(head.compression),
-               "lz4, zstd or none");
+    file_.fail(offset, "a chunk compressed by " + in_quotes(head.compression), "lz4, zstd or none");
   } else if (head.length != head.uncompressed) {
     file_.fail(offset, "a chunk of " + std::to_string(head.length) + " bytes",
                std::to_string(head.uncompressed) + ", as it says");

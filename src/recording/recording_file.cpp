@@ -56,7 +56,7 @@ std::unique_ptr<Container> open_file(const std::string& path) {
                                          ": is compressed as a whole; uncompress it by 'zstd -d " +
                                          path + "' and name the file or folder again");
   }
-  fail_at(path, "byte 0", excavplan::quoted(start),
+  fail_at(path, "byte 0", in_quotes(start),
           "the start of a rosbag2 SQLite file, an MCAP file or a ROS 1 bag");
 }
 
@@ -157,7 +157,7 @@ void Recording::add(const std::string& file, std::unique_ptr<Container> containe
 std::size_t Recording::add_topic(const std::string& file, const RecordedTopic& topic) {
   for (const std::string& name : {topic.name, topic.type}) {
     if (name.size() <= longest_name && safe_text(name, longest_name) == name) continue;
-    fail_at(file, "a topic's name or type", excavplan::quoted(name),
+    fail_at(file, "a topic's name or type", in_quotes(name),
             "at most " + std::to_string(longest_name) + " bytes without control characters");
   }
   const auto [entry, is_new] = topic_of_name_.try_emplace(topic.name, topics_.size());
@@ -167,8 +167,8 @@ std::size_t Recording::add_topic(const std::string& file, const RecordedTopic& t
   }
   RecordedTopic& whole = topics_[entry->second];
   if (whole.type != topic.type) {
-    fail_at(file, "topic " + topic.name, "the type " + excavplan::quoted(topic.type),
-            excavplan::quoted(whole.type) + ", as before");
+    fail_at(file, "topic " + topic.name, "the type " + in_quotes(topic.type),
+            in_quotes(whole.type) + ", as before");
   }
   if (topic.messages == 0) return entry->second;
   whole.first = whole.messages == 0 ? topic.first : std::min(whole.first, topic.first);

@@ -332,7 +332,7 @@ DepthMessage decode_depths(const std::string& file, const RecordedMessage& messa
   const std::string encoding = reader.name();
   const bool is_float = encoding == "32FC1";
   if (!is_float && encoding != "16UC1" && encoding != "mono16") {
-    reader.fail("an image of encoding " + quoted(encoding), "depths as 16UC1, mono16 or 32FC1");
+    reader.fail("an image of encoding " + in_quotes(encoding), "depths as 16UC1, mono16 or 32FC1");
   }
   grid.step = is_float ? sizeof(float) : sizeof(std::uint16_t);
   const bool swapped = reader.number<std::uint8_t>() != 0;

@@ -197,7 +197,7 @@ bool SqliteRecording::step(sqlite3_stmt* statement) {
 void SqliteRecording::fail(const std::string& what) {
   const int code = sqlite3_errcode(connection_.get());
   const char* const text = connection_ ? sqlite3_errmsg(connection_.get()) : "out of memory";
-  fail_at(path_, what, excavplan::quoted(text) + " (SQLite " + std::to_string(code) + ")",
+  fail_at(path_, what, in_quotes(text) + " (SQLite " + std::to_string(code) + ")",
           "a whole file of rosbag2");
 }
 
@@ -207,7 +207,7 @@ std::int64_t SqliteRecording::integer(sqlite3_stmt* statement, int column,
   if (sqlite3_column_type(statement, column) == SQLITE_INTEGER && value >= 0) return value;
   const auto* const found = sqlite3_column_text(statement, column);
   fail_at(path_, "column " + name,
-          found == nullptr ? "nothing" : excavplan::quoted(reinterpret_cast<const char*>(found)),
+          found == nullptr ? "nothing" : in_quotes(reinterpret_cast<const char*>(found)),
           "a whole number of at least 0");
 }
 
@@ -278,7 +278,7 @@ void SqliteRecording::count_messages() {
 void SqliteRecording::require_readable(std::size_t topic) const {
   if (formats_[topic] == "cdr") return;
   fail_at(path_, "topic " + topics_[topic].name,
-          "messages in the format " + excavplan::quoted(formats_[topic]), "'cdr'");
+          "messages in the format " + in_quotes(formats_[topic]), "'cdr'");
 }
 
 std::unique_ptr<MessageCursor> SqliteRecording::messages(const std::vector<std::size_t>& topics,

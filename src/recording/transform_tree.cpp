@@ -124,20 +124,20 @@ TransformTree::Climb TransformTree::climb(const std::string& frame,
     const auto link = links_.find(path.end);
     if (link == links_.end()) break;
     if (!link->second.other_parent.empty()) {
-      path.problem = "found transforms of " + quoted(link->first) + " in " +
-                     quoted(link->second.parent) + " and in " + quoted(link->second.other_parent) +
-                     ", expected one parent of each frame";
+      path.problem = "found transforms of " + in_quotes(link->first) + " in " +
+                     in_quotes(link->second.parent) + " and in " +
+                     in_quotes(link->second.other_parent) + ", expected one parent of each frame";
       break;
     }
     if (link->second.is_disputed) {
-      path.problem = "found transforms of " + quoted(link->first) + " in " +
-                     quoted(link->second.parent) +
+      path.problem = "found transforms of " + in_quotes(link->first) + " in " +
+                     in_quotes(link->second.parent) +
                      " that differ at one time, as of two publishers, expected one of each frame";
       break;
     }
     if (path.links.size() == longest_chain) {
       path.problem = "found more than " + std::to_string(longest_chain) + " frames above " +
-                     quoted(frame) + ", expected a tree without a cycle";
+                     in_quotes(frame) + ", expected a tree without a cycle";
       break;
     }
     path.links.push_back(link);
@@ -160,9 +160,10 @@ TransformTree::Chain TransformTree::chain(const std::string& target,
     for (const Climb* path : {&of_source, &of_target}) {
       if (!path->problem.empty()) refuse(path->problem);
     }
-    refuse("found no transforms that lead from " + quoted(source) + " to " + quoted(target) +
-           ": those of " + quoted(source) + " end at " + quoted(of_source.end) + ", those of " +
-           quoted(target) + " at " + quoted(of_target.end) + "; " + frame_list());
+    refuse("found no transforms that lead from " + in_quotes(source) + " to " + in_quotes(target) +
+           ": those of " + in_quotes(source) + " end at " + in_quotes(of_source.end) +
+           ", those of " + in_quotes(target) + " at " + in_quotes(of_target.end) + "; " +
+           frame_list());
   }
   of_source.links.resize(static_cast<std::size_t>(meeting - above.begin()));
   return {std::move(of_target.links), std::move(of_source.links)};
@@ -174,8 +175,8 @@ Eigen::Isometry3d TransformTree::pose(Links::const_iterator link, const Sample& 
     std::string found;
     for (int i = 0; i < 4; ++i) found += " " + number_text(sample.rotation[i]);
     for (int i = 0; i < 3; ++i) found += " " + number_text(sample.translation[i]);
-    refuse("transform of " + quoted(link->first) + " in " + quoted(link->second.parent) + " at " +
-           time_text(sample.stamp) + ": found the quaternion and translation" + found +
+    refuse("transform of " + in_quotes(link->first) + " in " + in_quotes(link->second.parent) +
+           " at " + time_text(sample.stamp) + ": found the quaternion and translation" + found +
            ", expected a quaternion of length 1 and a finite translation");
   }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -192,7 +193,7 @@ Eigen::Isometry3d TransformTree::pose(Links::const_iterator link, std::int64_t t
                        [](const Sample& sample, std::int64_t t) { return sample.stamp < t; });
   const auto before = after == samples.begin() ? after : std::prev(after);
   const std::string what =
-      "transform of " + quoted(link->first) + " in " + quoted(link->second.parent);
+      "transform of " + in_quotes(link->first) + " in " + in_quotes(link->second.parent);
   if (after == samples.begin() || after == samples.end()) {
     if (std::abs(before->stamp - time) <= longest_hold) return pose(link, *before);
     refuse(what + " at " + time_text(time) + ": found it from " + time_text(samples.front().stamp) +
@@ -257,7 +258,7 @@ std::string TransformTree::frame_list() const {
   const std::vector<std::string> names = frames();
   std::string text = "the frames there are:";
   for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
-    text += (i == 0 ? " " : ", ") + quoted(names[i]);
+    text += (i == 0 ? " " : ", ") + in_quotes(names[i]);
   }
   return text + (names.size() > most ? ", ..." : "");
 }
@@ -265,12 +266,12 @@ std::string TransformTree::frame_list() const {
 void TransformTree::require_frame(const std::string& frame) const {
   const std::vector<std::string> names = frames();
   if (names.empty()) {
-    refuse("found no transforms on /tf and /tf_static, expected those of " + quoted(frame));
+    refuse("found no transforms on /tf and /tf_static, expected those of " + in_quotes(frame));
   }
   if (std::binary_search(names.begin(), names.end(), frame)) return;
   const auto meant = nearest_word(frame, names);
-  refuse("found no transform of frame " + quoted(frame) +
-         (meant ? ", did you mean " + quoted(*meant) + "?" : ",") + " " + frame_list());
+  refuse("found no transform of frame " + in_quotes(frame) +
+         (meant ? ", did you mean " + in_quotes(*meant) + "?" : ",") + " " + frame_list());
 }
 
 void TransformTree::refuse(const std::string& why) const {

@@ -56,7 +56,7 @@ std::string name_of(const SoilSimulator& simulator) {
 }
 
 [[noreturn]] void blame(const std::string& name, const std::string& what) {
-  throw Error(ErrorKind::bad_input, "simulator " + excavplan::quoted(name) + ": " + what);
+  throw Error(ErrorKind::bad_input, "simulator " + in_quotes(name) + ": " + what);
 }
 
 /// What a call to a user's code gives. A lack of memory is not its fault.
@@ -67,7 +67,7 @@ auto asked(const Call& call, const Name& name) -> decltype(call()) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const Error& error) {
-    throw Error(error.kind(), "simulator " + excavplan::quoted(name()) + ": " + error.what());
+    throw Error(error.kind(), "simulator " + in_quotes(name()) + ": " + error.what());
   } catch (const std::exception& error) {
     blame(name(), std::string("it threw: ") + error.what());
   } catch (...) {

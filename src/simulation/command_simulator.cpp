@@ -101,8 +101,8 @@ class Programs {
       if (simulator_.name.empty()) simulator_ = simulator;
       if (simulator.name != simulator_.name ||
           simulator.mass_tolerance != simulator_.mass_tolerance) {
-        refuse("it says that it is " + excavplan::quoted(simulator.name) + ", and before " +
-               excavplan::quoted(simulator_.name));
+        refuse("it says that it is " + in_quotes(simulator.name) + ", and before " +
+               in_quotes(simulator_.name));
       }
     } catch (const ChildFailure& failure) {
       throw ChildFailure(failure.what() + last_words(*program));

@@ -94,7 +94,7 @@ ForeignModel::ForeignModel(const Machine& its_machine, const SoilKind& kind, dou
 std::optional<std::string> fault_of_name(const std::string& name) {
   constexpr std::size_t longest_name = 100;
   if (name.empty()) return "empty";
-  if (name.find(',') != name.npos) return excavplan::quoted(name) + ", must have no comma";
+  if (name.find(',') != name.npos) return in_quotes(name) + ", must have no comma";
   return fault_of_line(name, longest_name);
 }
 

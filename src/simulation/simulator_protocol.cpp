@@ -91,8 +91,8 @@ Json ground_json(const ForeignDig& dig) {
 /// An answer of this type, or what the program cannot do.
 std::variant<JsonObject, ForeignRefusal> opened(const std::string& line, const char* type) {
   const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorKind::bad_file, std::string(answer_name) + ": " + excavplan::quoted(line) +
-                                         " is " + why + "; notes belong on standard error");
+    throw Error(ErrorKind::bad_file, std::string(answer_name) + ": " + in_quotes(line) + " is " +
+                                         why + "; notes belong on standard error");
   };
   if (line.empty() || line.front() != '{') refuse("no JSON object");
   JsonObject answer = JsonObject::of_others(answer_name, line);
@@ -104,7 +104,7 @@ std::variant<JsonObject, ForeignRefusal> opened(const std::string& line, const c
     return refusal;
   }
   if (found != type) {
-    answer.fail("type", "is " + excavplan::quoted(found) + ", expected '" + type + "' or 'error'");
+    answer.fail("type", "is " + in_quotes(found) + ", expected '" + type + "' or 'error'");
   }
   return answer;
 }

@@ -107,7 +107,7 @@ DensityLaw load_density_law(const std::string& path) {
   }
   const auto used = forms.find(use);
   if (used == forms.end()) {
-    file.fail("use", "is " + excavplan::quoted(use) + ", must name a form in this file: " + found);
+    file.fail("use", "is " + in_quotes(use) + ", must name a form in this file: " + found);
   }
   law.form = used->second;
   const auto freed = forms.find(use.substr(0, use.find(as_measured)));

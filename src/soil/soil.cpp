@@ -63,7 +63,7 @@ void for_each_number(ConeIndexLaw law, const Visit& visit) {
 void read_cone_index(JsonObject law, SoilKind& soil) {
   const std::string name = law.text("law");
   if (name != "bulk_density" && name != "stress") {
-    law.fail("law", "is " + excavplan::quoted(name) + ", must be 'bulk_density' or 'stress'");
+    law.fail("law", "is " + in_quotes(name) + ", must be 'bulk_density' or 'stress'");
   }
   soil.cone_index_law = name == "stress" ? ConeIndexLaw::stress : ConeIndexLaw::bulk_density;
   for_each_number(soil.cone_index_law, [&](const SoilNumber& number) {
@@ -155,9 +155,7 @@ SoilKind load_soil(const std::string& path) {
 }
 
 void require_soil(const SoilKind& soil) {
-  const auto of = [&](const char* key) {
-    return "soil " + excavplan::quoted(soil.name) + ": " + key;
-  };
+  const auto of = [&](const char* key) { return "soil " + in_quotes(soil.name) + ": " + key; };
   const auto check = [&](const SoilNumber& number) {
     const double value = soil.*number.value;
     if (value >= number.lowest && value <= number.highest) return;

@@ -103,7 +103,7 @@ const CloudFileFormat& written_format(const std::string& path, const std::string
   });
   if (known != formats.end()) return *known;
   throw Error(ErrorKind::bad_input,
-              path + ": " + excavplan::quoted(name) + " is not a supported output format");
+              path + ": " + in_quotes(name) + " is not a supported output format");
 }
 
 std::string rows_of(const std::vector<Eigen::Vector3d>& points, Numbers numbers) {

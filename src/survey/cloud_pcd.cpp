@@ -66,7 +66,7 @@ void read_sizes(const Words& words, const LineReader& lines, Header& header) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::uint64_t bytes = count_of(words[i], lines);
     if (bytes != 1 && bytes != 2 && bytes != 4 && bytes != 8) {
-      lines.fail("SIZE " + quoted(words[i]), "1, 2, 4 or 8");
+      lines.fail("SIZE " + in_quotes(words[i]), "1, 2, 4 or 8");
     }
     header.fields[i].size = bytes;
   }
@@ -76,7 +76,7 @@ void read_types(const Words& words, const LineReader& lines, Header& header) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     Field& field = header.fields[i];
     if (words[i] != "I" && words[i] != "U" && words[i] != "F") {
-      lines.fail("TYPE " + quoted(words[i]), "I, U or F");
+      lines.fail("TYPE " + in_quotes(words[i]), "I, U or F");
     }
     field.type = words[i].front();
     if (field.type == 'F' && field.size < 4) {
@@ -89,13 +89,13 @@ void read_counts(const Words& words, const LineReader& lines, Header& header) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::uint64_t elements = count_of(words[i], lines);
     if (elements < 1 || elements > longest_row) {
-      lines.fail("COUNT " + quoted(words[i]), "1 .. " + std::to_string(longest_row));
+      lines.fail("COUNT " + in_quotes(words[i]), "1 .. " + std::to_string(longest_row));
     }
     header.fields[i].count = elements;
   }
   for (const std::size_t i : header.xyz) {
     if (header.fields[i].count != 1) {
-      lines.fail("COUNT " + quoted(words[i]) + " of field " + header.fields[i].name, "1");
+      lines.fail("COUNT " + in_quotes(words[i]) + " of field " + header.fields[i].name, "1");
     }
   }
 }
@@ -104,14 +104,14 @@ Encoding encoding_of(std::string_view word, const LineReader& lines) {
   if (word == "ascii") return Encoding::ascii;
   if (word == "binary") return Encoding::binary;
   if (word == "binary_compressed") return Encoding::compressed;
-  lines.fail("DATA " + quoted(word), "ascii, binary or binary_compressed");
+  lines.fail("DATA " + in_quotes(word), "ascii, binary or binary_compressed");
 }
 
 void read_version(std::string_view word, const LineReader& lines) {
   for (const auto known : {"0.7", ".7", "0.6", ".6", "0.5", ".5"}) {
     if (word == known) return;
   }
-  lines.fail("VERSION " + quoted(word), "0.5, 0.6 or 0.7");
+  lines.fail("VERSION " + in_quotes(word), "0.5, 0.6 or 0.7");
 }
 
 /// Place of the sensor in the frame of the points, from a translation and a quaternion. What all
@@ -173,7 +173,7 @@ std::size_t key_of(std::string_view word, std::size_t due, const LineReader& lin
   std::size_t needed = due;
   while (needed < key && may_be_left_out(needed)) ++needed;
   if (found == key_names.end() || key != needed) {
-    lines.fail(quoted(word), std::string(key_names[due]));
+    lines.fail(in_quotes(word), std::string(key_names[due]));
   }
   return key;
 }

@@ -69,7 +69,7 @@ ScalarType scalar_type(std::string_view name, const LineReader& lines) {
   for (const Name& known : names) {
     if (name == known.old_name || name == known.new_name) return known.type;
   }
-  lines.fail("type " + quoted(name), "char ... double or int8 ... float64");
+  lines.fail("type " + in_quotes(name), "char ... double or int8 ... float64");
 }
 
 using Words = std::vector<std::string_view>;
@@ -80,11 +80,12 @@ Encoding read_encoding(const Words& words, const LineReader& lines) {
     if (words[1] == "binary_little_endian") return Encoding::little_endian;
     if (words[1] == "binary_big_endian") return Encoding::big_endian;
   }
-  lines.fail(quoted(lines.line()), "format ascii, binary_little_endian or binary_big_endian 1.0");
+  lines.fail(in_quotes(lines.line()),
+             "format ascii, binary_little_endian or binary_big_endian 1.0");
 }
 
 Element read_element(const Words& words, const LineReader& lines) {
-  if (words.size() != 3) lines.fail(quoted(lines.line()), "element NAME COUNT");
+  if (words.size() != 3) lines.fail(in_quotes(lines.line()), "element NAME COUNT");
   return {std::string(words[1]), count_of(words[2], lines), {}};
 }
 
@@ -93,11 +94,11 @@ Property read_property(const Words& words, const LineReader& lines) {
     return {std::string(words[2]), scalar_type(words[1], lines), std::nullopt};
   }
   if (words.size() != 5 || words[1] != "list") {
-    lines.fail(quoted(lines.line()), "property TYPE NAME or property list TYPE TYPE NAME");
+    lines.fail(in_quotes(lines.line()), "property TYPE NAME or property list TYPE TYPE NAME");
   }
   const ScalarType length_type = scalar_type(words[2], lines);
   if (!is_integer(length_type)) {
-    lines.fail("a list length of type " + quoted(words[2]), "an integer type");
+    lines.fail("a list length of type " + in_quotes(words[2]), "an integer type");
   }
   return {std::string(words[4]), scalar_type(words[3], lines), length_type};
 }
@@ -107,7 +108,7 @@ void require_vertices(const Header& header, const LineReader& lines) {
   std::size_t vertices = 0;
   for (const Element& element : header.elements) {
     if (element.properties.empty()) {
-      lines.fail("element " + quoted(element.name) + " without a property", "one or more");
+      lines.fail("element " + in_quotes(element.name) + " without a property", "one or more");
     }
     if (element.name != "vertex") continue;
     ++vertices;
@@ -149,7 +150,7 @@ Header read_header(LineReader& lines) {
       header.elements.back().properties.push_back(read_property(words, lines));
       ++properties;
     } else {
-      lines.fail(quoted(words[0]), "element, property of an element or end_header");
+      lines.fail(in_quotes(words[0]), "element, property of an element or end_header");
     }
     if (properties > most_fields || header.elements.size() > most_fields) {
       lines.fail("more than " + std::to_string(most_fields) + " elements or properties", "fewer");
@@ -178,7 +179,7 @@ Eigen::Vector3d read_text_row(const Element& element, const LineReader& lines) {
     if (axis != no_axis) point[static_cast<Eigen::Index>(axis)] = value;
   }
   if (const std::string_view word = take_word(rest); !word.empty()) {
-    lines.fail(quoted(word), "the end of the row of element " + quoted(element.name));
+    lines.fail(in_quotes(word), "the end of the row of element " + in_quotes(element.name));
   }
   return point;
 }
@@ -194,14 +195,14 @@ void stream_text(FileStream& file, LineReader& lines, const Header& header, Poin
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (!lines.next_filled()) {
         lines.fail(
-            "the end after " + std::to_string(i) + " rows of element " + quoted(element.name),
+            "the end after " + std::to_string(i) + " rows of element " + in_quotes(element.name),
             std::to_string(element.count));
       }
       const Eigen::Vector3d point = read_text_row(element, lines);
       if (is_vertex) batch.add(point);
     }
   }
-  if (lines.next_filled()) lines.fail(quoted(lines.line()), "the end after the last element");
+  if (lines.next_filled()) lines.fail(in_quotes(lines.line()), "the end after the last element");
   batch.hand_on();
 }
 
@@ -231,7 +232,7 @@ class BinaryBody {
     if (count <= file_.left() / bytes) return;
     file_.fail_here(std::to_string(file_.left()) + " bytes of data",
                     std::to_string(count) + " times " + std::to_string(bytes) +
-                        " bytes of element " + quoted(element.name));
+                        " bytes of element " + in_quotes(element.name));
   }
 
   /// Of rows of fixed size.

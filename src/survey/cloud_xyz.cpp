@@ -83,7 +83,8 @@ CloudShape stream_xyz(FileStream& file, PointSink& sink) {
     split(lines.line(), separator, columns);
     if (is_first && !parse_number(columns[0])) {
       const auto named = columns_by_name(columns);
-      if (!named) lines.fail(quoted(lines.line()), "numbers, or names of columns with x, y and z");
+      if (!named)
+        lines.fail(in_quotes(lines.line()), "numbers, or names of columns with x, y and z");
       xyz = *named;
       continue;
     }

@@ -140,7 +140,7 @@ class PngFile {
       const bool is_header = name == "IHDR" && at == signature.size();
       const bool is_needed = name == "IDAT" || name == "IEND" || is_header;
       const bool is_extra = name[0] >= 'a' && name[0] <= 'z';
-      if (!is_needed && !is_extra) refuse("a chunk " + quoted(name));
+      if (!is_needed && !is_extra) refuse("a chunk " + in_quotes(name));
       if (is_needed) kept_.append(whole);
       if (name == "IDAT") pixels_.append(summed.substr(4));
       if (name == "IEND" && length > 0) refuse("an end with data");

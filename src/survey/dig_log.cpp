@@ -89,7 +89,7 @@ std::vector<double> read_clock(const LogTable& log, const std::string& name,
   ClockTimes times = clock_times(texts);
   if (times.fault.empty()) return std::move(times.seconds);
   refuse(log.source.file, at_line(log.table, times.bad_row) + safe_text(name, 40) + " is " +
-                              quoted(texts[times.bad_row]) + ", " + times.fault);
+                              in_quotes(texts[times.bad_row]) + ", " + times.fault);
 }
 
 void require_increasing(const LogTable& log, const std::vector<double>& time,

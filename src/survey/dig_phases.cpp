@@ -32,7 +32,7 @@ double half_way(const std::vector<double>& time, std::size_t row) {
 [[noreturn]] void refuse_phase(const Table& table, std::size_t row, const std::string& word) {
   throw Error(ErrorKind::bad_file,
               table.path() + ": line " + std::to_string(table.line(row)) + ": phase is " +
-                  quoted(word) +
+                  in_quotes(word) +
                   ", expected penetrate, drag, scoop, or one of approach, lift, swing, dump, "
                   "return, lower, idle, rest");
 }

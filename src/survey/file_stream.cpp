@@ -140,13 +140,13 @@ std::optional<std::uint64_t> parse_count(std::string_view word) {
 
 double number_of(std::string_view word, const LineReader& lines) {
   const auto value = parse_number(word);
-  if (!value) lines.fail(quoted(word), "a number");
+  if (!value) lines.fail(in_quotes(word), "a number");
   return *value;
 }
 
 std::uint64_t count_of(std::string_view word, const LineReader& lines) {
   const auto value = parse_count(word);
-  if (!value) lines.fail(quoted(word), "a whole number, not negative and below 2^64");
+  if (!value) lines.fail(in_quotes(word), "a whole number, not negative and below 2^64");
   return *value;
 }
 

@@ -92,7 +92,7 @@ std::vector<double> printed_numbers(const std::string& text, const std::string& 
   std::vector<double> numbers;
   for (const auto word : words_of(inner)) {
     const auto number = parse_number(word);
-    if (!number) file.fail("a frame", quoted(word), "a number");
+    if (!number) file.fail("a frame", in_quotes(word), "a number");
     numbers.push_back(*number);
   }
   return numbers;

@@ -143,7 +143,7 @@ ClockTimes in_order(const std::vector<WrittenTime>& times, const std::vector<std
     }
     const double seconds = midnight + times[i].seconds;
     if (i > 0 && seconds <= result.seconds.back()) {
-      return fault_at(i, "must be later than " + quoted(texts[i - 1]) + " of the row before");
+      return fault_at(i, "must be later than " + in_quotes(texts[i - 1]) + " of the row before");
     }
     result.seconds.push_back(seconds);
   }
@@ -171,7 +171,7 @@ ClockTimes clock_times(const std::vector<std::string>& texts) {
     if (!time) return fault_at(i, "expected a time as 13:05:59.250");
     times.push_back(*time);
     if (are_alike(times.front().date, time->date)) continue;
-    return fault_at(i, "expected a date or none as in " + quoted(texts.front()));
+    return fault_at(i, "expected a date or none as in " + in_quotes(texts.front()));
   }
   std::optional<ClockTimes> best;
   for (const Order order : orders_of(times.front().date)) {

@@ -132,12 +132,12 @@ std::optional<ColumnName> suffixed(string_view name) {
 /// Of the unit that the column's name says, or else of the stated one.
 double factor_in(const std::string& file, const std::string& name, Measure measure,
                  const std::string& stated) {
-  const std::string column = "column " + quoted(name);
+  const std::string column = "column " + in_quotes(name);
   const std::string own = column_name(name).unit.value_or("");
   const auto of_own = factor_of(own, measure);
   const auto of_stated = factor_of(stated, measure);
   if (of_own && !stated.empty() && of_own != of_stated) {
-    refuse(file, column + " is in " + quoted(own) + " by its name, but " + quoted(stated) +
+    refuse(file, column + " is in " + in_quotes(own) + " by its name, but " + in_quotes(stated) +
                      " is stated as its unit");
   }
   if (of_own) return *of_own;
@@ -147,7 +147,7 @@ double factor_in(const std::string& file, const std::string& name, Measure measu
                      usual_units(measure) + ": state the unit");
   }
   if (of_stated) return *of_stated;
-  refuse(file, column + " is in " + quoted(unit) + ", expected one of " + usual_units(measure));
+  refuse(file, column + " is in " + in_quotes(unit) + ", expected one of " + usual_units(measure));
 }
 
 }  // namespace

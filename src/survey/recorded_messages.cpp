@@ -119,7 +119,7 @@ std::string name_list(const std::vector<std::string>& names) {
   if (names.empty()) return "none";
   std::string text;
   for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
-    text += (i == 0 ? "" : ", ") + quoted(names[i]);
+    text += (i == 0 ? "" : ", ") + in_quotes(names[i]);
   }
   return text + (names.size() > most ? ", ..." : "");
 }
@@ -138,19 +138,19 @@ const RecordedTopic& scan_topic(const RecordingFile& recording, const std::strin
     std::vector<std::string> names;
     for (const RecordedTopic& known : recording.topics()) names.push_back(known.name);
     const auto meant = nearest_word(name, names);
-    refuse_recording(recording, "found no topic " + quoted(name) +
-                                    (meant ? ", did you mean " + quoted(*meant) + "? " : "; ") +
+    refuse_recording(recording, "found no topic " + in_quotes(name) +
+                                    (meant ? ", did you mean " + in_quotes(*meant) + "? " : "; ") +
                                     scan_topics_text(recording));
   }
   if (use_of(topic->type) == MessageUse::compressed) {
     refuse_recording(recording,
-                     quoted(name) +
+                     in_quotes(name) +
                          ": found compressed images, expected raw ones: record the raw topic, or "
                          "play the recording through image_transport's republish");
   }
   if (!holds_scans(*topic)) {
-    refuse_recording(recording, quoted(name) + ": found messages of type " + quoted(topic->type) +
-                                    "; " + scan_topics_text(recording));
+    refuse_recording(recording, in_quotes(name) + ": found messages of type " +
+                                    in_quotes(topic->type) + "; " + scan_topics_text(recording));
   }
   return *topic;
 }

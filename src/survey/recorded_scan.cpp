@@ -101,7 +101,7 @@ bool is_rectified(const std::string& topic) {
 
 std::string rectified_beside(const RecordingFile& recording, const std::string& folder) {
   for (const std::string& name : topics_for(recording, MessageUse::depth)) {
-    if (name.rfind(folder, 0) == 0 && is_rectified(name)) return "read " + quoted(name);
+    if (name.rfind(folder, 0) == 0 && is_rectified(name)) return "read " + in_quotes(name);
   }
   return "rectify it with image_proc before it is recorded";
 }
@@ -125,10 +125,10 @@ Pinhole read_pinhole(RecordingFile& recording, const RecordedTopic& image, std::
   const std::string folder = image.name.substr(0, image.name.rfind('/') + 1);
   const std::string topic = folder + "camera_info";
   if (find_topic(recording, topic) == nullptr) {
-    refuse_recording(
-        recording,
-        "found no topic " + quoted(topic) + ", expected the intrinsics of " + quoted(image.name) +
-            " there; camera infos: " + name_list(topics_for(recording, MessageUse::camera)));
+    refuse_recording(recording, "found no topic " + in_quotes(topic) +
+                                    ", expected the intrinsics of " + in_quotes(image.name) +
+                                    " there; camera infos: " +
+                                    name_list(topics_for(recording, MessageUse::camera)));
   }
   const CameraMessage camera = read_camera(recording, topic, time);
   const bool is_distorted = std::any_of(camera.distortion.begin(), camera.distortion.end(),
@@ -136,7 +136,7 @@ Pinhole read_pinhole(RecordingFile& recording, const RecordedTopic& image, std::
   const bool rectified = is_rectified(image.name);
   if (is_distorted && !rectified) {
     refuse_recording(recording,
-                     quoted(image.name) + ": found a raw image of a lens with distortion, " +
+                     in_quotes(image.name) + ": found a raw image of a lens with distortion, " +
                          "expected a rectified one: " + rectified_beside(recording, folder));
   }
   const auto& k = camera.intrinsics;
@@ -145,10 +145,10 @@ Pinhole read_pinhole(RecordingFile& recording, const RecordedTopic& image, std::
                                                    : Pinhole{camera.size, k[0], k[4], k[2], k[5]};
   if (!(pinhole.fx > 0.0 && pinhole.fy > 0.0 && std::isfinite(pinhole.fx + pinhole.fy) &&
         std::isfinite(pinhole.cx + pinhole.cy))) {
-    refuse_recording(recording, quoted(topic) + ": found focal lengths " + number_text(pinhole.fx) +
-                                    ", " + number_text(pinhole.fy) + " and centre " +
-                                    number_text(pinhole.cx) + ", " + number_text(pinhole.cy) +
-                                    ", expected those of a camera");
+    refuse_recording(recording, in_quotes(topic) + ": found focal lengths " +
+                                    number_text(pinhole.fx) + ", " + number_text(pinhole.fy) +
+                                    " and centre " + number_text(pinhole.cx) + ", " +
+                                    number_text(pinhole.cy) + ", expected those of a camera");
   }
   return pinhole;
 }
@@ -265,7 +265,7 @@ class ScanReader {
     if (one_frame && !moved()) return true;
     if (!target_.empty()) return false;
     refuse(recording_.path() + ": between " + time_text(recording_, first().time) + " and " +
-           time_text(recording_, heads_.back().time) + " frame " + quoted(first().header.frame) +
+           time_text(recording_, heads_.back().time) + " frame " + in_quotes(first().header.frame) +
            " of " + topic_.name + (one_frame ? " moved" : " became another") +
            ": name the frame into which the points are put, or a span in which it stood; frames: " +
            name_list(tree_.frames()));
@@ -292,7 +292,8 @@ class ScanReader {
       warnings.push_back({"clocks_differ",
                           which + "its stamps are " + decimals(seconds_of(lag_of(*misplaced)), 3) +
                               " s later than the clock of the transforms, and " +
-                              quoted(misplaced->header.frame) + " moved in " + quoted(target_) +
+                              in_quotes(misplaced->header.frame) + " moved in " +
+                              in_quotes(target_) +
                               " meanwhile: its points may be misplaced; set the clocks of sensor "
                               "and transforms alike, or take a time when it stood",
                           true});
@@ -301,7 +302,7 @@ class ScanReader {
         tree_.moved("", target_, first().header.stamp, heads_.back().header.stamp)) {
       warnings.push_back(
           {"frame_moved",
-           which + quoted(target_) + " moved in the root of its tree within the " +
+           which + in_quotes(target_) + " moved in the root of its tree within the " +
                "span, by which the ground in it is smeared: name a frame that stands "
                "on the ground, or a span in which it stood",
            true});

@@ -34,7 +34,7 @@ class SpecParser {
     if (is_address || is_drive) return std::nullopt;
     query.topic = take_until(rest, "@+");
     if (query.topic.size() == 1)
-      refuse("the topic " + excavplan::quoted(query.topic), "a name behind the /");
+      refuse("the topic " + in_quotes(query.topic), "a name behind the /");
     if (!rest.empty() && rest.front() == '@') {
       rest.remove_prefix(1);
       query.time = seconds_of(take_until(rest, "+"), "time");
@@ -53,7 +53,7 @@ class SpecParser {
     for (auto end = text_.find_first_of(":@+", 1); end != text_.npos;
          end = text_.find_first_of(":@+", end + 1)) {
       if (!is_recording(text_.substr(0, end))) continue;
-      refuse(excavplan::quoted(text_.substr(end)) + " behind a recording",
+      refuse(in_quotes(text_.substr(end)) + " behind a recording",
              "a topic that begins with /, which inspect-cloud " + text_.substr(0, end) + " lists");
     }
     return std::nullopt;
@@ -71,11 +71,11 @@ class SpecParser {
       const auto value = parse_number(word.substr(0, word.size() - unit.size()));
       if (!value) break;
       if (!(*value >= 0.0 && *value * factor <= longest)) {
-        refuse(what + " " + excavplan::quoted(word), "0 to 1e9 s");
+        refuse(what + " " + in_quotes(word), "0 to 1e9 s");
       }
       return *value * factor;
     }
-    refuse(what + " " + excavplan::quoted(word), "a number with s, ms or min");
+    refuse(what + " " + in_quotes(word), "a number with s, ms or min");
   }
 
   const std::string& text_;

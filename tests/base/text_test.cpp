@@ -63,11 +63,10 @@ TEST(SafeText, LongTextsLoseTheirMiddle) {
 }
 
 TEST(SafeText, QuotedShowsTheBeginning) {
-  EXPECT_EQ(excavplan::quoted("a\nb"), "'a?b'");
-  EXPECT_EQ(excavplan::quoted(string(40, 'a')), "'" + string(40, 'a') + "'");
-  EXPECT_EQ(excavplan::quoted(string(41, 'a')), "'" + string(40, 'a') + "...'");
-  EXPECT_EQ(excavplan::quoted(string(39, 'a') + "\xC3\xA4 and more"),
-            "'" + string(39, 'a') + "...'");
+  EXPECT_EQ(in_quotes("a\nb"), "'a?b'");
+  EXPECT_EQ(in_quotes(string(40, 'a')), "'" + string(40, 'a') + "'");
+  EXPECT_EQ(in_quotes(string(41, 'a')), "'" + string(40, 'a') + "...'");
+  EXPECT_EQ(in_quotes(string(39, 'a') + "\xC3\xA4 and more"), "'" + string(39, 'a') + "...'");
 }
 
 TEST(SafeText, ErrorsAreShortAndSafe) {
@@ -98,7 +97,7 @@ TEST(SafeText, Utf8IsWhatAnotherDecoderSays) {
     }
     ASSERT_EQ(!first_not_utf8(text), is_utf8(text));
     ASSERT_TRUE(is_utf8(safe_text(text, 100)));
-    ASSERT_TRUE(is_utf8(excavplan::quoted(text)));
+    ASSERT_TRUE(is_utf8(in_quotes(text)));
   }
 }
 

@@ -133,8 +133,8 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
     if (topic.messages > 0) {
       line += " at " + decimals(topic.first, 3) + " .. " + decimals(topic.last, 3) + " s";
     }
-    listing.lines.push_back(
-        line + (topic.frame.empty() ? "" : ", frame " + excavplan::quoted(topic.frame)));
+    listing.lines.push_back(line +
+                            (topic.frame.empty() ? "" : ", frame " + in_quotes(topic.frame)));
   }
   if (contents.is_cut_off) listing.lines.push_back("its end is missing");
   const auto is_scan = [](const RecordingTopic& topic) { return topic.is_scan; };

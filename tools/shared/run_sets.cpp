@@ -44,7 +44,7 @@ void require_known(const Table& table) {
     if (name.empty() || std::find(known.begin(), known.end(), name) != known.end()) continue;
     std::string all;
     for (const std::string& word : known) all += (all.empty() ? "" : ", ") + word;
-    throw Error(ErrorKind::bad_file, table.path() + ": column " + excavplan::quoted(name) +
+    throw Error(ErrorKind::bad_file, table.path() + ": column " + in_quotes(name) +
                                          " is none of a table of runs, expected of: " + all);
   }
 }

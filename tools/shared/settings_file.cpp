@@ -118,8 +118,7 @@ class Settings {
   void require_tool(const std::string& name, const toml::node& value) const {
     const std::vector<std::string> tools = split(EXCAVPLAN_TOOL_NAMES, ' ');
     if (name == tool_ || std::find(tools.begin(), tools.end(), name) != tools.end()) return;
-    refuse(value,
-           excavplan::quoted("[" + name + "]") + " is the name of no tool" + meant(name, tools));
+    refuse(value, in_quotes("[" + name + "]") + " is the name of no tool" + meant(name, tools));
   }
 
   [[noreturn]] void refuse_unknown(const std::string& name, const toml::node& value) const {
@@ -127,7 +126,7 @@ class Settings {
     for (const Arguments::Entry& entry : entries_) {
       if (!entry.positional) names.push_back(entry.name);
     }
-    refuse(value, excavplan::quoted(name) + " is no option of " + tool_ + meant(name, names));
+    refuse(value, in_quotes(name) + " is no option of " + tool_ + meant(name, names));
   }
 
   static std::string meant(const std::string& name, const std::vector<std::string>& names) {

@@ -29,7 +29,7 @@ void require_built_in(const std::string& text) {
     if (text == kind.word) return;
     words += (words.empty() ? "" : " or ") + kind.word;
   }
-  usage_error("--simulator: " + excavplan::quoted(text) + " in a file, expected " + words +
+  usage_error("--simulator: " + in_quotes(text) + " in a file, expected " + words +
               "; a shared library is named on the command line alone");
 }
 

@@ -603,7 +603,7 @@ bool is_of_users_simulator(const std::string& message) {
   if (begins("simulator command ")) return true;
   const std::vector<SimulatorKind>& own = simulator_kinds();
   return begins("simulator '") && std::none_of(own.begin(), own.end(), [&](const auto& kind) {
-           return begins("simulator " + excavplan::quoted(kind.name) + ":");
+           return begins("simulator " + in_quotes(kind.name) + ":");
          });
 }
 
