@@ -70,13 +70,17 @@ FrontJoints parse_list(const std::vector<std::string>& parts) {
   return joints;
 }
 
+std::string names_of(const RobotJoints& joints) {
+  std::string text;
+  for (const RobotJoint& joint : joints) {
+    if (!joint.name.empty()) text += (text.empty() ? "" : ", ") + joint.name;
+  }
+  return text;
+}
+
 /// @param parts  NAME=ANGLE, in any order, in the names and angles of the robot
 FrontJoints parse_named(const std::vector<std::string>& parts, const RobotJoints& robot) {
   std::array<std::optional<double>, 4> given;
-  std::string names;
-  for (const RobotJoint& joint : robot) {
-    if (!joint.name.empty()) names += (names.empty() ? "" : ", ") + joint.name;
-  }
   for (const std::string& part : parts) {
     const std::size_t equal = part.find('=');
     const std::string name = part.substr(0, equal);
@@ -85,7 +89,7 @@ FrontJoints parse_named(const std::vector<std::string>& parts, const RobotJoints
     });
     if (equal == std::string::npos || joint == robot.end()) {
       usage_error(joints_option + ": '" + part +
-                  "' is not NAME=ANGLE of a joint of the machine: " + names);
+                  "' is not NAME=ANGLE of a joint of the machine: " + names_of(robot));
     }
     auto& angle = given[static_cast<std::size_t>(joint - robot.begin())];
     if (angle) usage_error(joints_option + ": " + name + " is given twice");
@@ -119,14 +123,6 @@ const OptionNames option_names = {{"joints at the start", joints_option},
                                   {"cycle: swing", "--swing"},
                                   {"MotionOptions::rate", "--rate"},
                                   {"MotionOptions::max_jerk", "--max-jerk"}};
-
-std::string names_of(const Trajectory& motion) {
-  std::string text;
-  for (const RobotJoint& joint : motion.robot_joints) {
-    if (!joint.name.empty()) text += (text.empty() ? "" : ", ") + joint.name;
-  }
-  return text;
-}
 
 /// That the motion must be clear of, where it leaves the dig.
 Terrain ground_around(const MotionInputs& inputs, const PlannedMotion& planned) {
@@ -219,9 +215,10 @@ void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outc
                                 {"points", motion.points.size()},
                                 {"rate_hz", inputs.options.rate},
                                 {"duration_s", motion.duration()},
-                                {"joint_names", names_of(motion)}};
+                                {"joint_names", names_of(motion.robot_joints)}};
   outcome.lines.push_back("trajectory   " + readable(motion.duration()) + " s, " +
-                          std::to_string(motion.points.size()) + " points of " + names_of(motion));
+                          std::to_string(motion.points.size()) + " points of " +
+                          names_of(motion.robot_joints));
 }
 
 }  // namespace excavplan::tools
