@@ -44,6 +44,14 @@ void bind_machine_itself(py::module_& module) {
       .def_readonly("zero", &RobotJoint::zero, "[rad]")
       .def("to_ours", &RobotJoint::to_ours, arg("its"), "Angles [rad].")
       .def("from_ours", &RobotJoint::from_ours, arg("ours"), "Angles [rad].");
+  py::class_<Swing>(module, "Swing", "The drive of the upper structure.")
+      .def_readonly("speed", &Swing::speed, "Highest rate [rad/s].")
+      .def_readonly("torque", &Swing::torque, "[N m]")
+      .def_readonly("inertia", &Swing::inertia, "Of the upper structure without front [kg m^2].")
+      .def_readonly("lower", &Swing::lower, "Range, 0 is the plane of the dig; may be -inf [rad].")
+      .def_readonly("upper", &Swing::upper, "Likewise, to the left; may be inf [rad].")
+      .def_readonly("acceleration", &Swing::acceleration, "Highest; may be inf [rad/s^2].")
+      .def("turns_round", &Swing::turns_round, "Whether whole turns make no difference.");
   py::class_<Machine>(
       module, "Machine",
       "An excavator in its boom plane. Joints are boom, arm, bucket; positive turns\n"
@@ -56,6 +64,11 @@ void bind_machine_itself(py::module_& module) {
       .def_readonly("track_front", &Machine::track_front, "x of the front of the tracks [m].")
       .def_property_readonly("undercarriage_width", &Machine::undercarriage_width,
                              "Over both tracks [m].")
+      .def_readonly("swing", &Machine::swing, "None if its file does not state it.")
+      .def_property_readonly(
+          "site_from_root",
+          [](const Machine& m) { return array(Eigen::Matrix4d(m.site_from_root.matrix())); },
+          "Takes points from the root frame of its URDF to the site frame, shape (4, 4).")
       .def_property_readonly(
           "limits",
           [](const Machine& m) {

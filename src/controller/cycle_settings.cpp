@@ -74,6 +74,7 @@ void check(const DigCycleSettings& settings) {
   require(settings.search_seconds > 0.0, "search_seconds", settings.search_seconds, "above 0");
   require_density(settings.density);
   require_machine(settings.machine);
+  if (settings.surroundings) swing_ground(settings.machine, {}, settings.surroundings);
   require_soil(settings.soil);
   const RobotJoints& joints = settings.machine.robot_joints;
   const bool named = std::none_of(joints.begin(), joints.begin() + 3,

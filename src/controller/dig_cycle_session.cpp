@@ -310,8 +310,9 @@ ScannedTerrain DigCycleSession::State::terrain(const std::optional<Scan>& scan) 
 /// The same as far as the machine reaches, of which terrain() is a strip.
 Terrain DigCycleSession::State::ground_around(const std::optional<Scan>& scan) const {
   const Machine& machine = settings.machine;
-  if (!scan) return level_swing_ground(machine);
-  return terrain_from_scan(*scan, swing_extent(machine), usual_cell(machine)).terrain;
+  std::optional<Terrain> present;
+  if (scan) present = terrain_from_scan(*scan, swing_extent(machine), usual_cell(machine)).terrain;
+  return swing_ground(machine, present, settings.surroundings);
 }
 
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {

@@ -322,6 +322,13 @@ TEST(DigCycleSession, MotionIsClearOfAllScannedGround) {
   EXPECT_FALSE(strip.motion.points.empty());
   EXPECT_TRUE(has(planned_on(9.5, 9.0).warnings, "no_motion"));
   EXPECT_FALSE(has(planned_on(9.5, 0.0).warnings, "no_motion"));
+  settings.surroundings = level_swing_ground(settings.machine);
+  EXPECT_FALSE(has(planned_on(1.5, 0.0).warnings, "unseen_way"));
+  EXPECT_TRUE(has(planned_on(9.5, 9.0).warnings, "no_motion")) << "the present scan counts first";
+  settings.surroundings->bank.cell_size *= 2.0;
+  EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
+            "surroundings of a motion: must be on the cells of level_swing_ground() of machine "
+            "zx120");
 }
 
 TEST(DigCycleSession, SaysWhyThereIsNoMotion) {

@@ -57,6 +57,31 @@ TEST(RobotNode, ParametersAreTheSettings) {
             "parameter joint_names: has 1 names, must have 4: boom, arm, bucket, swing");
 }
 
+TEST(RobotNode, ReadsTheSurroundingsInTheFrameOfTheScans) {
+  const TemporaryFolder folder;
+  std::string points;
+  for (double x = 0.0; x < 1.0; x += 0.02) {
+    for (double y = 0.0; y < 1.0; y += 0.02) {
+      points += std::to_string(x) + " " + std::to_string(y) + " 0.5\n";
+    }
+  }
+  const std::string cloud = folder.write("around.xyz", points);
+  const std::string frame = folder.write("frame.txt", "1 0 0 -4\n0 1 0 3\n0 0 1 0.25\n0 0 0 1\n");
+  EXPECT_FALSE(settings_by({}).surroundings.has_value());
+  const DigCycleSettings settings = settings_by({{"surroundings", cloud}, {"frame_file", frame}});
+  const HeightMap& ground = settings.surroundings->bank;
+  const auto at = [&](double x, double y) {
+    return ground.z(static_cast<Eigen::Index>((y - ground.origin.y()) / ground.cell_size),
+                    static_cast<Eigen::Index>((x - ground.origin.x()) / ground.cell_size));
+  };
+  EXPECT_NEAR(at(-3.5, 3.5), 0.75, 1e-6);
+  EXPECT_TRUE(std::isnan(at(3.5, 3.5)));
+  EXPECT_EQ(error_of([&] {
+              settings_by({{"surroundings", folder.file("none.pcd")}});
+            }),
+            "parameter surroundings: " + folder.file("none.pcd") + ": no such file");
+}
+
 TEST(RobotNode, ATimeForTheSearchNeedsASearch) {
   EXPECT_EQ(settings_by({{"search", true}, {"search_seconds", 3.0}}).search_seconds, 3.0);
   EXPECT_EQ(error_of([] {

@@ -12,6 +12,7 @@ import pathlib
 import tarfile
 import tempfile
 import unittest
+import unittest.mock
 import zipfile
 
 import excavplan
@@ -31,6 +32,10 @@ class Packaging(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
+        clean = unittest.mock.patch.dict(os.environ)
+        clean.start()
+        self.addCleanup(clean.stop)
+        os.environ.pop("SOURCE_DATE_EPOCH", None)
 
     def test_the_version_is_that_of_the_library(self):
         self.assertEqual(backend.version(), excavplan.__version__)
@@ -55,7 +60,6 @@ class Packaging(unittest.TestCase):
 
     def test_its_time_is_that_of_the_source(self):
         os.environ["SOURCE_DATE_EPOCH"] = "1700000000"
-        self.addCleanup(os.environ.pop, "SOURCE_DATE_EPOCH")
         name = backend.write_wheel(self.folder, FILES)
         with zipfile.ZipFile(self.folder / name) as wheel:
             self.assertEqual(wheel.infolist()[0].date_time, (2023, 11, 14, 22, 13, 20))

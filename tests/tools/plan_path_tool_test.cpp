@@ -86,7 +86,7 @@ TEST_F(Tools, TrajectoryBeginsAtThePresentJointsAndGoesOverTheCycle) {
 
 /// The swing leaves the strip that is planned on.
 TEST_F(Tools, TrajectoryIsClearOfAllScannedGround) {
-  const auto words = [&](double half_width, double wall) {
+  const auto scan = [&](const std::string& name, double half_width, double wall) {
     std::ostringstream points;
     for (double x = -9.4; x < 9.45; x += 0.1) {
       for (double y = -half_width; y < half_width; y += 0.1) {
@@ -94,11 +94,14 @@ TEST_F(Tools, TrajectoryIsClearOfAllScannedGround) {
                << '\n';
       }
     }
+    return folder.write(name, points.str());
+  };
+  const auto words = [&](double half_width, double wall) {
     return Words{"--density",
                  "40",
                  "--whole-cycle",
                  "--terrain",
-                 folder.write("ground.xyz", points.str()),
+                 scan("ground.xyz", half_width, wall),
                  "--trajectory",
                  folder.file("m.json")};
   };
@@ -108,6 +111,13 @@ TEST_F(Tools, TrajectoryIsClearOfAllScannedGround) {
   const json strip = answer("plan-path", words(1.5, 0.0));
   EXPECT_TRUE(warns(strip, "unseen_way"));
   EXPECT_FALSE(strip.at("trustworthy"));
+  Words around = words(1.5, 0.0);
+  around.insert(around.end(), {"--surroundings", scan("around.xyz", 9.4, 0.0)});
+  const json both = answer("plan-path", around);
+  EXPECT_FALSE(warns(both, "unseen_way"));
+  EXPECT_TRUE(both.at("trustworthy"));
+  around.back() = scan("around.xyz", 9.4, 9.0);
+  EXPECT_TRUE(warns(answer("plan-path", around), "no_motion"));
   const ProgramResult blocked = run_program("plan-path", words(9.4, 9.0));
   EXPECT_TRUE(contains(blocked.out + blocked.err, "swing: the machine would be ")) << blocked.err;
 }

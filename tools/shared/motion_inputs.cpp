@@ -124,12 +124,19 @@ const OptionNames option_names = {{"joints at the start", joints_option},
                                   {"MotionOptions::rate", "--rate"},
                                   {"MotionOptions::max_jerk", "--max-jerk"}};
 
+bool leaves_the_dig(const MotionInputs& inputs) { return inputs.joints || inputs.whole_cycle; }
+
 /// That the motion must be clear of, where it leaves the dig.
 Terrain ground_around(const MotionInputs& inputs, const PlannedMotion& planned) {
-  const bool leaves = inputs.joints || inputs.whole_cycle;
-  if (!planned.terrain.cloud || !leaves) return level_swing_ground(planned.machine);
-  return make_site(planned.terrain, swing_extent(planned.machine), usual_cell(planned.machine))
-      .ground;
+  const Machine& machine = planned.machine;
+  if (!leaves_the_dig(inputs)) return level_swing_ground(machine);
+  const auto seen = [&](const TerrainInput& terrain) -> std::optional<Terrain> {
+    if (!terrain.cloud) return std::nullopt;
+    return make_site(terrain, swing_extent(machine), usual_cell(machine)).ground;
+  };
+  TerrainInput surroundings = planned.terrain;
+  surroundings.cloud = inputs.surroundings;
+  return swing_ground(machine, seen(planned.terrain), seen(surroundings));
 }
 
 /// Without points, and a warning, where the ground is in the way: the plan is worth having still.
@@ -168,6 +175,13 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs) {
         arguments.add(joints);
         arguments.flag("whole-cycle", inputs.whole_cycle,
                        "go on over swing, dump and back to above the dig");
+        arguments.only_if(
+            {[&inputs] { return leaves_the_dig(inputs); }, "the trajectory does not leave the dig"},
+            [&] {
+              arguments.file("surroundings", inputs.surroundings,
+                             "earlier cloud of the ground around the machine, for "
+                             "what --terrain does not see; in its frame and unit");
+            });
         arguments.option("rate", inputs.options.rate, Quantity::frequency,
                          "points of the trajectory per second, 10 .. 500");
         Arguments::Entry jerk;

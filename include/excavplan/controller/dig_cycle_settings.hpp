@@ -57,6 +57,9 @@ struct DigCycleSettings {
   MotionOptions motion = {};  ///< of the trajectory that is sent
   /// The ground before any scan is known to be level; if not, a plan on it is not trustworthy.
   bool level_ground = false;
+  /// Earlier scan of the ground around the machine, for motions where the present scan does not see
+  /// it, as swing_ground() takes it.
+  std::optional<Terrain> surroundings = {};
   std::vector<Warning> warnings = {};  ///< of what the settings were made from; every plan has them
 };
 
