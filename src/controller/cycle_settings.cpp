@@ -8,6 +8,7 @@
 #include <excavplan/kit/kit_files.hpp>
 #include <excavplan/kit/machine_kit.hpp>
 #include <excavplan/machine/machine_file.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/files.hpp"
