@@ -3,6 +3,7 @@
 #include <excavplan/controller/robot_node.hpp>
 
 #include <any>
+#include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -76,10 +77,13 @@ TEST(RobotNode, ReadsTheSurroundingsInTheFrameOfTheScans) {
   };
   EXPECT_NEAR(at(-3.5, 3.5), 0.75, 1e-6);
   EXPECT_TRUE(std::isnan(at(3.5, 3.5)));
-  EXPECT_EQ(error_of([&] {
-              settings_by({{"surroundings", folder.file("none.pcd")}});
-            }),
-            "parameter surroundings: " + folder.file("none.pcd") + ": no such file");
+  EXPECT_EQ(error_of(
+                [&] {
+                  settings_by({{"surroundings", folder.file("none.pcd")}});
+                },
+                ErrorKind::bad_file),
+            "parameter surroundings: " + folder.file("none.pcd") +
+                ": cannot be opened: No such file or directory");
 }
 
 TEST(RobotNode, ATimeForTheSearchNeedsASearch) {

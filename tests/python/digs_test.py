@@ -5,6 +5,7 @@
 import json
 import math
 import os
+import pathlib
 import tempfile
 import unittest
 
@@ -22,6 +23,23 @@ class Machines(unittest.TestCase):
         for one, other in zip(found, joints):
             self.assertAlmostEqual(one, other, 9)
         self.assertIsNone(MACHINE.inverse_kinematics(ex.BucketPose(30.0, 0.0, 0.0)))
+
+    def test_the_swing_and_the_root_of_a_machine(self):
+        swing = ex.load_machine("zx200").swing
+        self.assertEqual(swing.acceleration, 0.35)
+        self.assertTrue(swing.turns_round())
+        data = os.environ.get("EXCAVPLAN_DATA", pathlib.Path(__file__).parents[2] / "data")
+        file = json.loads((pathlib.Path(data) / "machines" / "zx120.json").read_text())
+        file["robot_root"] = {"position_m": [0.5, -1.0, 0.25], "yaw_rad": math.pi / 2}
+        file["swing"].update({"lower_rad": -1.0, "upper_rad": 2.0})
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as stream:
+            stream.write(json.dumps(file))
+            stream.flush()
+            machine = ex.load_machine(stream.name)
+        self.assertEqual((machine.swing.lower, machine.swing.upper), (-1.0, 2.0))
+        self.assertFalse(machine.swing.turns_round())
+        self.assertEqual([row[3] for row in machine.site_from_root.tolist()], [0.5, -1.0, 0.25, 1])
+        self.assertAlmostEqual(machine.site_from_root.tolist()[1][0], 1.0)
 
     def test_a_path_and_its_trajectory(self):
         path = ex.make_dig_path(MACHINE, ex.paper_fixed_path())
