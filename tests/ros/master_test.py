@@ -369,6 +369,21 @@ class Master(unittest.TestCase):
         self.assertIn("0 of 1 messages", answer.estimate_message)
         self.assertIn("ground_before_dig: ", " ".join(answer.warnings))
 
+    def test_an_earlier_scan_shows_where_the_machine_swings(self):
+        around = os.path.join(HOME.name, "around.xyz")
+        with open(around, "w", encoding="ascii") as file:
+            places = [0.1 * i - 9.5 for i in range(191)]
+            file.writelines(f"{x:.2f} {y:.2f} 0\n" for x in places for y in places)
+        for surroundings in ("", around):
+            with Node(scans=1, density_percent=40.0, density_sd_percent=2.0, whole_cycle=True,
+                      surroundings=surroundings) as node:
+                node.send_until("points", cloud(points_of("before")), "before 1 of 1")
+                node.stand([-0.6, 1.6, 0.5, 0.4])
+                answer = node.call("plan", Plan)
+            self.assertGreater(len(answer.trajectory.points), 10, answer.warnings)
+            self.assertEqual("unseen_way: " in " ".join(answer.warnings), not surroundings)
+            self.assertEqual(answer.trustworthy, bool(surroundings), answer.warnings)
+
     def test_a_machine_with_a_kit(self):
         kit = os.path.join(HOME.name, "zx200-kit")
         tool("machine-kit", "zx200", "--output", kit, "--soil", "loam", "--densities", "0,50,100",
