@@ -168,6 +168,12 @@ std::string in_quotes(std::string_view text) {
   return "'" + safe(whole_characters(text, longest)) + "...'";
 }
 
+std::string csv_field(std::string_view text) {
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + '"';
+}
+
 std::optional<std::string> fault_of_line(std::string_view text, std::size_t most) {
   if (text.size() > most) {
     return "a text of " + std::to_string(text.size()) + " bytes, expected at most " +

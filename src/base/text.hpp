@@ -42,6 +42,8 @@ std::optional<std::size_t> first_not_utf8(std::string_view text);
 std::string safe_text(std::string_view text, std::size_t most);
 /// The same in quotes, of which the first 40 bytes are shown.
 std::string in_quotes(std::string_view text);
+/// A field of CSV in quotes (RFC 4180).
+std::string csv_field(std::string_view text);
 /// Why a text is none that files of ours hold, as the end of "NAME is ..."; nothing if it is one:
 /// at most so many bytes of UTF-8, on one line, with nothing that safe_text() would change.
 std::optional<std::string> fault_of_line(std::string_view text, std::size_t most);

@@ -142,12 +142,6 @@ void check(const SearchBox& box, const SearchResult& result) {
   if (!holds) refuse("explain: box, best point and history must be finite and of one dimension");
 }
 
-std::string csv_field(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
 void average(RepeatedEvaluation& point, const Evaluation* outcomes) {
   double sum = 0.0;
   for (int i = 0; i < point.repeats; ++i) {

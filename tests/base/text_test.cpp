@@ -62,6 +62,8 @@ TEST(SafeText, LongTextsLoseTheirMiddle) {
   }
 }
 
+TEST(CsvField, DoublesItsQuotes) { EXPECT_EQ(csv_field("a \"b\", c"), "\"a \"\"b\"\", c\""); }
+
 TEST(SafeText, QuotedShowsTheBeginning) {
   EXPECT_EQ(in_quotes("a\nb"), "'a?b'");
   EXPECT_EQ(in_quotes(string(40, 'a')), "'" + string(40, 'a') + "'");

@@ -58,13 +58,8 @@ ordered_json condition_json(const StudyResult& result) {
           {"cycle", gains_json(result.cycle)}};
 }
 
-/// A cell of CSV: text in quotes, nothing for what is not known.
-std::string cell(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-std::string cell(double value) { return std::isnan(value) ? "" : number_text(value); }
+/// Empty where the value is not known.
+std::string csv_number(double value) { return std::isnan(value) ? "" : number_text(value); }
 
 /// Of a run, between density and failure; what is not known is not a number.
 std::vector<double> values_of(const StudyRun& run) {
@@ -92,11 +87,11 @@ std::string runs_csv(const std::vector<StudyResult>& results) {
   csv += ",failure,plan_failure\n";
   for (const StudyResult& result : results) {
     for (const StudyRun& run : result.runs) {
-      csv += cell(result.condition.factor) + "," + cell(result.condition.level) + "," +
-             cell(run.density_percent);
-      for (const double value : values_of(run)) csv += "," + cell(value);
+      csv += csv_field(result.condition.factor) + "," + csv_field(result.condition.level) + "," +
+             csv_number(run.density_percent);
+      for (const double value : values_of(run)) csv += "," + csv_number(value);
       for (const std::string& why : {run.failure, run.plan_failure}) {
-        csv += "," + (why.empty() ? "" : cell(why));
+        csv += "," + (why.empty() ? "" : csv_field(why));
       }
       csv += "\n";
     }
