@@ -178,6 +178,18 @@ void bind_scans(py::module_& module) {
       arg("scan"), arg("extent"), arg("cell_size") = 0.05,
       "The ground of `extent` (planning_extent()) on cells of cell_size [m], in the site\n"
       "frame; scan: a Scan, or what one is made from.");
+  module.def(
+      "swing_terrain_from_scan",
+      [](const py::object& scan, const Machine& machine) {
+        const Scan source = scan_of(scan, "the scan");
+        return call([&] { return swing_terrain_from_scan(source, machine); });
+      },
+      arg("scan"), arg("machine"),
+      "The ground of swing_extent(), which plan_motion() keeps clear of; only gaps of up to\n"
+      "0.5 m are filled.");
+  module.def("with_surroundings", &with_surroundings, arg("present"), arg("earlier"),
+             "The present ground, and where it is unknown an earlier one, both of\n"
+             "swing_terrain_from_scan(). Warning surroundings_differ if one is in a wrong frame.");
 }
 
 // ---- estimate -----------------------------------------------------------------------------------

@@ -75,7 +75,13 @@ void check(const DigCycleSettings& settings) {
   require(settings.search_seconds > 0.0, "search_seconds", settings.search_seconds, "above 0");
   require_density(settings.density);
   require_machine(settings.machine);
-  if (settings.surroundings) swing_ground(settings.machine, {}, settings.surroundings);
+  if (settings.surroundings) {
+    require(!settings.level_ground,
+            "level_ground: is not known where the surroundings were scanned");
+    require(
+        same_grid(settings.surroundings->bank, level_swing_ground(settings.machine).bank),
+        "surroundings: must be of swing_terrain_from_scan() of machine " + settings.machine.name);
+  }
   require_soil(settings.soil);
   const RobotJoints& joints = settings.machine.robot_joints;
   const bool named = std::none_of(joints.begin(), joints.begin() + 3,

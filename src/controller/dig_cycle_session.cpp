@@ -66,7 +66,7 @@ struct DigCycleSession::State {
   bool is_outdated() const;
   std::optional<Scan> last_scan();
   ScannedTerrain terrain(const std::optional<Scan>& scan) const;
-  Terrain ground_around(const std::optional<Scan>& scan) const;
+  ScannedTerrain ground_around(const std::optional<Scan>& scan) const;
   PlanOptions plan_options() const;
   std::optional<FrontJoints> start() const;
   void add_motion(const Terrain& ground, CyclePlan& answer) const;
@@ -307,12 +307,13 @@ ScannedTerrain DigCycleSession::State::terrain(const std::optional<Scan>& scan) 
   return ground;
 }
 
-/// The same as far as the machine reaches, of which terrain() is a strip.
-Terrain DigCycleSession::State::ground_around(const std::optional<Scan>& scan) const {
-  const Machine& machine = settings.machine;
-  std::optional<Terrain> present;
-  if (scan) present = terrain_from_scan(*scan, swing_extent(machine), usual_cell(machine)).terrain;
-  return swing_ground(machine, present, settings.surroundings);
+/// The same as far as the machine reaches, of which terrain() is a strip; warnings of its own
+/// alone.
+ScannedTerrain DigCycleSession::State::ground_around(const std::optional<Scan>& scan) const {
+  if (!scan) return {level_swing_ground(settings.machine), {}};
+  Terrain present = swing_terrain_from_scan(*scan, settings.machine).terrain;
+  if (!settings.surroundings) return {std::move(present), {}};
+  return with_surroundings(present, *settings.surroundings);
 }
 
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
@@ -519,7 +520,11 @@ CyclePlan DigCycleSession::plan(Time time) {
     answer.warnings.push_back({"search_stopped", stopped + ": there may be a better dig"});
     if (!answer.plan.dig) answer.plan.reason = stopped + " that could not be done";
   }
-  if (answer.plan.dig) state.add_motion(state.ground_around(scan), answer);
+  if (answer.plan.dig) {
+    const ScannedTerrain around = state.ground_around(scan);
+    answer.warnings.insert(answer.warnings.end(), around.warnings.begin(), around.warnings.end());
+    state.add_motion(around.terrain, answer);
+  }
   answer.trustworthy = answer.plan.trustworthy && answer.plan.dig &&
                        std::none_of(answer.warnings.begin(), answer.warnings.end(),
                                     [](const Warning& warning) { return warning.ends_trust; });

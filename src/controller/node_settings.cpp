@@ -6,7 +6,6 @@
 #include <optional>
 
 #include <excavplan/controller/dig_cycle_session.hpp>
-#include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/survey/cloud.hpp>
 #include <excavplan/survey/scan_terrain.hpp>
 
@@ -62,14 +61,14 @@ CycleSources sources_of(const NodeParameters& given) {
   return sources;
 }
 
-/// Nothing of no file.
-std::optional<Terrain> surroundings_of(const std::string& file, const DigCycleSettings& settings) {
-  if (file.empty()) return std::nullopt;
-  const Machine& machine = settings.machine;
+void set_surroundings(const std::string& file, DigCycleSettings& settings) {
+  if (file.empty()) return;
   Scan scan;
   scan.files = {file};
   scan.site_from_scan = settings.site_from_scan;
-  return terrain_from_scan(scan, swing_extent(machine), usual_cell(machine)).terrain;
+  ScannedTerrain seen = swing_terrain_from_scan(scan, settings.machine);
+  settings.surroundings = std::move(seen.terrain);
+  settings.warnings.insert(settings.warnings.end(), seen.warnings.begin(), seen.warnings.end());
 }
 
 void name_joints(const std::vector<std::string>& names, RobotJoints& joints) {
@@ -97,8 +96,7 @@ NodeSettings node_settings(const NodeParameters& given) {
   settings.machine_in_view = given.machine_in_view;
   settings.digs_as_planned = given.digs_as_planned;
   settings.level_ground = given.level_ground;
-  naming("surroundings",
-         [&] { settings.surroundings = surroundings_of(given.surroundings, settings); });
+  naming("surroundings", [&] { set_surroundings(given.surroundings, settings); });
   settings.oldest_joints = given.joint_age_seconds;
   if (const auto seconds = known(given.search_seconds)) settings.search_seconds = *seconds;
   settings.whole_cycle = given.whole_cycle;

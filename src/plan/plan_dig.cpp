@@ -477,6 +477,8 @@ void add_trajectory(const Task& task, DigPlan& plan) {
   const DigResult dig = checked_dig(*simulator, task.machine, task.ground, plan.path, {});
   plan.torques = dig.torques;
   plan.ground_after = dig.after(task.ground).surface();
+  Eigen::ArrayXXd& after = plan.ground_after.z;
+  after = (after == task.ground.surface().z).select(std::nan(""), after).eval();
   plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, plan.torques);
 }
 

@@ -82,22 +82,6 @@ Terrain level_swing_ground(const Machine& machine) {
   return undisturbed(flat_ground(swing_extent(machine), usual_cell(machine)));
 }
 
-Terrain swing_ground(const Machine& machine, const std::optional<Terrain>& present,
-                     const std::optional<Terrain>& earlier) {
-  const Terrain level = level_swing_ground(machine);
-  HeightMap ground = level.bank;
-  ground.z.setConstant(std::nan(""));
-  const auto fill_from = [&](const Terrain& terrain, const std::string& what) {
-    require(same_grid(terrain.bank, ground),
-            what + ": must be on the cells of level_swing_ground() of machine " + machine.name);
-    ground.z = ground.z.isNaN().select(terrain.surface().z, ground.z);
-  };
-  if (present) fill_from(*present, "present ground of a motion");
-  if (earlier) fill_from(*earlier, "surroundings of a motion");
-  if (!present) fill_from(level, "level ground");
-  return undisturbed(std::move(ground));
-}
-
 GroundProfile boom_plane_profile(const HeightMap& surface) {
   require_grid(surface, "ground profile");
   const BoomPlaneRows rows = rows_at_boom_plane(surface);

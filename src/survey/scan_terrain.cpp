@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include <excavplan/simulation/dig_ground.hpp>
+
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "survey/cloud_units.hpp"
@@ -19,6 +21,19 @@ namespace {
 constexpr double widest_filled = 0.3;
 constexpr double widest_filled_cells = 3.0;
 constexpr std::size_t fewest_points = 10;  // that make a ground; ours
+
+/// How far apart points may be between which the ground is taken to be known [m].
+struct Interpolation {
+  double largest_cell = std::numeric_limits<double>::infinity();
+  double widest_gap = std::numeric_limits<double>::infinity();
+};
+/// Of ground that nothing may hit; ours: a wall may stand between points that are further apart.
+constexpr Interpolation of_motions = {0.25, 0.5};
+
+// Of two scans of the same ground; ours.
+constexpr double same_height = 0.15;         // [m]
+constexpr double least_same = 0.2;           // of the cells that both know
+constexpr Eigen::Index fewest_common = 100;  // cells that are compared
 
 /// Points of the extent, with a metre around it to interpolate from, all as if seen from one place.
 Scan cropped(const Scan& scan, const Rectangle& extent) {
@@ -59,9 +74,8 @@ void require_points(const Scan& scan, std::size_t points, const Rectangle& exten
       (unit ? "; " + unit->message : ""));
 }
 
-}  // namespace
-
-ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
+ScannedTerrain read_terrain(const Scan& scan, const Rectangle& extent, double cell_size,
+                            const Interpolation& interpolation) {
   require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
           "> 0 m and finite");
   const Scan near = cropped(scan, extent);
@@ -70,9 +84,11 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
   require_width(scan, *seen.extent);
   const double density = seen.density;
   RasterOptions raster;
-  raster.cell_size = std::max(cell_size, std::sqrt(2.0 / density));
+  raster.cell_size =
+      std::max(cell_size, std::min(interpolation.largest_cell, std::sqrt(2.0 / density)));
   const HeightMap map = survey_surface(near, *seen.extent, raster).height;
-  const double widest_gap = std::max(widest_filled, widest_filled_cells * raster.cell_size);
+  const double widest_gap = std::min(
+      interpolation.widest_gap, std::max(widest_filled, widest_filled_cells * raster.cell_size));
   ScannedTerrain result{undisturbed(resampled(map, extent, cell_size, widest_gap)), {}};
   result.warnings = scan.doubts;
   if (const double unseen = unseen_area(result.terrain.bank); unseen > 0.0) {
@@ -89,6 +105,42 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
                                readable(raster.cell_size, 2) + " m"});
   }
   return result;
+}
+
+}  // namespace
+
+ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
+  return read_terrain(scan, extent, cell_size, {});
+}
+
+ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine) {
+  ScannedTerrain seen = read_terrain(scan, swing_extent(machine), usual_cell(machine), of_motions);
+  const auto is_of_digs = [](const Warning& warning) { return warning.code == "unseen_ground"; };
+  seen.warnings.erase(std::remove_if(seen.warnings.begin(), seen.warnings.end(), is_of_digs),
+                      seen.warnings.end());
+  return seen;
+}
+
+ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier) {
+  HeightMap ground = present.surface();
+  const HeightMap around = earlier.surface();
+  require(same_grid(ground, around), "surroundings: must have the cells of the present ground");
+  const auto both = ground.z.isFinite() && around.z.isFinite();
+  const Eigen::Index common = both.count();
+  const Eigen::Index same = (both && (ground.z - around.z).abs() <= same_height).count();
+  std::vector<Warning> warnings;
+  if (common >= fewest_common &&
+      static_cast<double>(same) < least_same * static_cast<double>(common)) {
+    warnings.push_back(
+        {"surroundings_differ",
+         "of the ground that the present scan and that of the surroundings both "
+         "show only " +
+             readable(100.0 * static_cast<double>(same) / static_cast<double>(common), 2) +
+             " % has the same height: is one in another frame?",
+         true});
+  }
+  ground.z = ground.z.isFinite().select(ground.z, around.z).eval();
+  return {undisturbed(std::move(ground)), std::move(warnings)};
 }
 
 }  // namespace excavplan

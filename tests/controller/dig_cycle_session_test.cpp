@@ -327,8 +327,10 @@ TEST(DigCycleSession, MotionIsClearOfAllScannedGround) {
   EXPECT_TRUE(has(planned_on(9.5, 9.0).warnings, "no_motion")) << "the present scan counts first";
   settings.surroundings->bank.cell_size *= 2.0;
   EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
-            "surroundings of a motion: must be on the cells of level_swing_ground() of machine "
-            "zx120");
+            "surroundings: must be of swing_terrain_from_scan() of machine zx120");
+  settings.level_ground = true;
+  EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
+            "level_ground: is not known where the surroundings were scanned");
 }
 
 TEST(DigCycleSession, SaysWhyThereIsNoMotion) {

@@ -176,6 +176,18 @@ TEST_F(PlanDig, GivesThePathAndATrajectoryFromAboveTheGround) {
   EXPECT_GT(plan(40.0, slow).trajectory.duration(), 1.5 * found.trajectory.duration());
 }
 
+TEST_F(PlanDig, TheGroundAfterItIsKnownWhereTheDigChangedIt) {
+  const DigPlan found = plan(40.0);
+  const auto simulator = default_simulator().make(machine_, loam_, 40.0);
+  const Terrain level = level_planning_ground(machine_);
+  const HeightMap after = simulator->dig(level, found.path).after(level).surface();
+  const Eigen::ArrayXXd& z = found.ground_after.z;
+  EXPECT_TRUE((z.isFinite() == (after.z != 0.0)).all());
+  EXPECT_TRUE((z.isNaN() || z == after.z).all());
+  EXPECT_LT(z.isNaN().select(0.0, z).minCoeff(), -0.2);
+  EXPECT_LT(z.isFinite().count(), z.size() / 2);
+}
+
 TEST_F(PlanDig, DigsTheLibrarysPathOnGivenGround) {
   const Terrain gentle = rising(0.02);
   PlanOptions options;

@@ -322,22 +322,6 @@ TEST(Surroundings, UnseenGroundOnTheWayEndsTrust) {
   EXPECT_TRUE(std::get<Way>(cycle_over(elsewhere)).warnings.empty()) << "to the right";
 }
 
-TEST(Surroundings, AnEarlierScanFillsWhatThePresentOneDoesNotSee) {
-  const Machine& machine = zx120();
-  Terrain present = terrain_of(box(3.0, -9.0, 5.0, 9.0, 0.5));
-  const Terrain earlier = terrain_of(box(3.0, -9.0, 5.0, 9.0, 0.8));
-  const Eigen::Index middle = present.bank.z.rows() / 2;
-  present.bank.z.topRows(middle) = std::nan("");
-  const HeightMap both = swing_ground(machine, present, earlier).bank;
-  EXPECT_EQ(both.z.topRows(middle).maxCoeff(), 0.8);
-  EXPECT_EQ(both.z.bottomRows(both.z.rows() - middle).maxCoeff(), 0.5);
-  EXPECT_TRUE(both.z.isFinite().all());
-  EXPECT_TRUE(std::isnan(swing_ground(machine, present, {}).bank.z(0, 0)));
-  const HeightMap around = swing_ground(machine, {}, present).bank;
-  EXPECT_TRUE((around.z.topRows(middle) == 0.0).all()) << "level where no scan is";
-  EXPECT_EQ(around.z.maxCoeff(), 0.5);
-}
-
 TEST(Surroundings, TheSwingBeginsOverTheGroundThatTheDigLeaves) {
   const Ground heap = box(3.0, 0.6, 7.0, 1.2, 1.6);
   DigLoad load = {{}, 500.0};

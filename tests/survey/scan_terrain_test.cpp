@@ -10,6 +10,9 @@
 #include <memory>
 #include <string>
 
+#include <excavplan/data_files.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
 #include "base/random.hpp"
 
 #include "support/errors.hpp"
@@ -50,6 +53,69 @@ TEST(ScanTerrain, IsTheGroundOfTheScanOnTheGridAskedFor) {
   EXPECT_NEAR(height_at(ground.terrain.bank, 4.0, 0.3), 0.4, 0.002);
   EXPECT_TRUE(ground.terrain.bank.z.allFinite());
   EXPECT_EQ(codes(ground), Codes{});
+}
+
+/// Level ground, x and y from -9 m in these steps, except where `hides`.
+template <typename Hides>
+Scan level(double step, double height, const Hides& hides) {
+  auto cloud = std::make_shared<Cloud>();
+  for (double x = -9.0; x < 9.0; x += step) {
+    for (double y = -9.0; y < 9.0; y += step) {
+      if (!hides(x, y)) cloud->points.emplace_back(x, y, height);
+    }
+  }
+  cloud->width = cloud->points.size();
+  Scan scan;
+  scan.clouds = {cloud};
+  return scan;
+}
+bool nothing(double /*x*/, double /*y*/) { return false; }
+bool left(double /*x*/, double y) { return y > 0.0; }
+
+const Machine& zx120() {
+  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  return machine;
+}
+
+double known_share(const Terrain& terrain) {
+  return static_cast<double>(terrain.bank.z.isFinite().count()) /
+         static_cast<double>(terrain.bank.z.size());
+}
+
+/// A wall may stand between the points.
+TEST(SwingTerrain, KnowsNothingBetweenPointsThatAreFarApart) {
+  EXPECT_GT(known_share(swing_terrain_from_scan(level(0.3, 0.0, nothing), zx120()).terrain), 0.8);
+  const Scan sparse = level(1.2, 0.0, nothing);
+  EXPECT_LT(known_share(swing_terrain_from_scan(sparse, zx120()).terrain), 0.1);
+  EXPECT_GT(
+      known_share(terrain_from_scan(sparse, swing_extent(zx120()), usual_cell(zx120())).terrain),
+      0.8)
+      << "ground to dig on is interpolated";
+}
+
+TEST(SwingTerrain, AnEarlierScanFillsWhatThePresentOneDoesNotSee) {
+  const auto seen = [](const Scan& scan) { return swing_terrain_from_scan(scan, zx120()).terrain; };
+  const Terrain present = seen(level(0.1, 0.5, left)), earlier = seen(level(0.1, 0.6, nothing));
+  const ScannedTerrain both = with_surroundings(present, earlier);
+  EXPECT_EQ(codes(both), Codes{});
+  EXPECT_NEAR(height_at(both.terrain.bank, 4.0, -3.0), 0.5, 1e-9);
+  EXPECT_NEAR(height_at(both.terrain.bank, 4.0, 3.0), 0.6, 1e-9);
+  EXPECT_TRUE(std::isnan(height_at(with_surroundings(present, present).terrain.bank, 4.0, 3.0)));
+  EXPECT_EQ(
+      test::error_of([&] { with_surroundings(present, undisturbed(flat_ground(extent, 0.1))); }),
+      "surroundings: must have the cells of the present ground");
+}
+
+TEST(SwingTerrain, OneInAnotherFrameIsToldByTheGroundThatBothSee) {
+  const auto seen = [](const Scan& scan) { return swing_terrain_from_scan(scan, zx120()).terrain; };
+  const Terrain present = seen(level(0.1, 0.0, left));
+  const ScannedTerrain low = with_surroundings(present, seen(level(0.1, -0.4, nothing)));
+  ASSERT_EQ(codes(low), Codes{"surroundings_differ"});
+  EXPECT_TRUE(low.warnings[0].ends_trust);
+  Terrain dug = present;
+  dug.bank.z.leftCols(2 * dug.bank.z.cols() / 3) -= 1.0;
+  EXPECT_EQ(codes(with_surroundings(dug, seen(level(0.1, 0.0, nothing)))), Codes{})
+      << "ground that was dug since";
 }
 
 TEST(ScanTerrain, ScanIsTakenIntoTheSiteFrame) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 
@@ -118,6 +119,13 @@ TEST_F(Tools, TrajectoryIsClearOfAllScannedGround) {
   EXPECT_TRUE(both.at("trustworthy"));
   around.back() = scan("around.xyz", 9.4, 9.0);
   EXPECT_TRUE(warns(answer("plan-path", around), "no_motion"));
+  around.back() = folder.file("none.xyz");
+  around.insert(around.end(), {"--search", "--checkpoint", folder.file("search.json")});
+  EXPECT_EQ(run_program("plan-path", around).code, 3);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("search.json"))) << "told before the search";
+  around.erase(around.begin() + 3, around.begin() + 5);
+  const ProgramResult alone = run_program("plan-path", around);
+  EXPECT_TRUE(contains(alone.err, "--surroundings needs --terrain")) << alone.err;
   const ProgramResult blocked = run_program("plan-path", words(9.4, 9.0));
   EXPECT_TRUE(contains(blocked.out + blocked.err, "swing: the machine would be ")) << blocked.err;
 }

@@ -11,6 +11,7 @@
 #include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/plan/plan_motion.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/survey/scan_terrain.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
@@ -126,23 +127,10 @@ const OptionNames option_names = {{"joints at the start", joints_option},
 
 bool leaves_the_dig(const MotionInputs& inputs) { return inputs.joints || inputs.whole_cycle; }
 
-/// That the motion must be clear of, where it leaves the dig.
-Terrain ground_around(const MotionInputs& inputs, const PlannedMotion& planned) {
-  const Machine& machine = planned.machine;
-  if (!leaves_the_dig(inputs)) return level_swing_ground(machine);
-  const auto seen = [&](const TerrainInput& terrain) -> std::optional<Terrain> {
-    if (!terrain.cloud) return std::nullopt;
-    return make_site(terrain, swing_extent(machine), usual_cell(machine)).ground;
-  };
-  TerrainInput surroundings = planned.terrain;
-  surroundings.cloud = inputs.surroundings;
-  return swing_ground(machine, seen(planned.terrain), seen(surroundings));
-}
-
 /// Without points, and a warning, where the ground is in the way: the plan is worth having still.
 Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   auto motion = plan_motion(
-      planned.machine, ground_around(inputs, planned), planned.plan,
+      planned.machine, planned.ground.ground, planned.plan,
       {joints_of(inputs, planned.machine), inputs.whole_cycle, planned.objective}, inputs.options);
   const auto* stop = std::get_if<BlockedWay>(&motion);
   if (stop == nullptr) return std::get<Trajectory>(std::move(motion));
@@ -150,6 +138,15 @@ Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   none.warnings = {
       {"no_motion", "the plan has no motion: the ground is in the way: " + stop->message, true}};
   return none;
+}
+
+void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle) {
+  if (!inputs.file) return;
+  naming_options(option_names, [&] {
+    excavplan::check(inputs.options);
+    excavplan::check(machine,
+                     CycleWayOptions{joints_of(inputs, machine), inputs.whole_cycle, cycle});
+  });
 }
 
 }  // namespace
@@ -195,13 +192,21 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs) {
       });
 }
 
-void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle) {
-  if (!inputs.file) return;
-  naming_options(option_names, [&] {
-    excavplan::check(inputs.options);
-    excavplan::check(machine,
-                     CycleWayOptions{joints_of(inputs, machine), inputs.whole_cycle, cycle});
-  });
+Site motion_ground(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
+                   const CycleOptions& cycle) {
+  check(inputs, machine, cycle);
+  if (inputs.surroundings && !terrain.cloud) usage_error("--surroundings needs --terrain");
+  if (!inputs.file || !leaves_the_dig(inputs)) return {level_swing_ground(machine), {}};
+  Site present = make_swing_site(terrain, machine);
+  present.warnings.clear();  // the ground of the dig has them
+  if (!inputs.surroundings) return present;
+  TerrainInput around = terrain;
+  around.cloud = inputs.surroundings;
+  around.option = "--surroundings";
+  Site earlier = make_swing_site(around, machine);
+  ScannedTerrain both = with_surroundings(present.ground, earlier.ground);
+  both.warnings.insert(both.warnings.begin(), earlier.warnings.begin(), earlier.warnings.end());
+  return {std::move(both.terrain), std::move(both.warnings)};
 }
 
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan) {
@@ -212,9 +217,11 @@ void write_motion(const MotionInputs& inputs, const PlannedMotion& planned, Outc
   if (!inputs.file || (!planned.plan.dig && planned.plan.stopped)) return;
   const Trajectory motion =
       naming_options(option_names, [&] { return motion_of(inputs, planned); });
-  for (const Warning& warning : motion.warnings) {
-    outcome.warnings.push_back(warning);
-    outcome.trustworthy = outcome.trustworthy && !warning.ends_trust;
+  for (const auto& warnings : {planned.ground.warnings, motion.warnings}) {
+    for (const Warning& warning : warnings) {
+      outcome.warnings.push_back(warning);
+      outcome.trustworthy = outcome.trustworthy && !warning.ends_trust;
+    }
   }
   outcome.json["trustworthy"] = outcome.trustworthy;
   const Format& format = format_of(inputs);

@@ -28,14 +28,17 @@ struct MotionInputs {
 
 void declare_motion(Arguments& arguments, MotionInputs& inputs);
 
-/// Checks made before the work. @throws Error (bad_input) naming the option
-void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle);
+/// Ground that the motion must be clear of, where it leaves the dig: that of `terrain`, and what it
+/// does not see of --surroundings, with the warnings of the latter. Checks all of the inputs before
+/// the work. @throws Error as make_site(), or (bad_input) naming the option
+Site motion_ground(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
+                   const CycleOptions& cycle);
 
 /// A plan with the ground on which the machine stands and the objective that has its swing and dump
 /// height.
 struct PlannedMotion {
   const Machine& machine;
-  const TerrainInput& terrain;  ///< all of it: the dig's ground is a strip
+  const Site& ground;  ///< motion_ground(): the dig's ground is a strip of it
   const DigPlan& plan;
   const DigObjective& objective;
 };

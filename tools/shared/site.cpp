@@ -16,27 +16,29 @@ namespace {
 
 /// FILE:TOPIC@TIME of a file that is there: what reads recordings is not part of the tools that
 /// plan.
-void refuse_recording(const std::string& text) {
+void refuse_recording(const TerrainInput& terrain) {
   namespace fs = std::filesystem;
+  const std::string& text = *terrain.cloud;
   std::error_code ignored;
   const std::size_t end = text.find_first_of(":@", 1);
   if (end == text.npos || fs::exists(text, ignored) || !fs::exists(text.substr(0, end), ignored)) {
     return;
   }
-  throw Error(ErrorKind::bad_file,
-              text +
-                  ": --terrain takes a cloud, no scan of a recording; inspect-cloud "
-                  "FILE:TOPIC@TIME+SPAN --out scan.pcd writes one as a cloud");
+  throw Error(ErrorKind::bad_file, text + ": " + terrain.option +
+                                       " takes a cloud, no scan of a recording; inspect-cloud "
+                                       "FILE:TOPIC@TIME+SPAN --out scan.pcd writes one as a cloud");
 }
 
-Site scanned(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
-  refuse_recording(*terrain.cloud);
+/// @param read  a ScannedTerrain from a scan
+template <typename Read>
+Site scanned(const TerrainInput& terrain, const Read& read) {
+  refuse_recording(terrain);
   Scan scan;
   scan.files = {*terrain.cloud};
   scan.unit = unit_length(terrain.unit);
   if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
   ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
-                                        [&] { return terrain_from_scan(scan, extent, cell_size); });
+                                        [&] { return read(scan); });
   return {std::move(seen.terrain), std::move(seen.warnings)};
 }
 
@@ -66,9 +68,15 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
   if (terrain.unit != TerrainInput{}.unit && !terrain.cloud) usage_error("--unit needs --terrain");
   return naming_options(cell_option, [&] {
     require_simulated_cell(cell_size);
-    return terrain.cloud ? scanned(terrain, extent, cell_size)
-                         : Site{undisturbed(flat_ground(extent, cell_size)), {}};
+    if (!terrain.cloud) return Site{undisturbed(flat_ground(extent, cell_size)), {}};
+    return scanned(terrain,
+                   [&](const Scan& scan) { return terrain_from_scan(scan, extent, cell_size); });
   });
+}
+
+Site make_swing_site(const TerrainInput& terrain, const Machine& machine) {
+  if (!terrain.cloud) return {level_swing_ground(machine), {}};
+  return scanned(terrain, [&](const Scan& scan) { return swing_terrain_from_scan(scan, machine); });
 }
 
 }  // namespace excavplan::tools

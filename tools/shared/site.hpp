@@ -16,6 +16,7 @@ namespace excavplan::tools {
 /// A measured ground from the command line.
 struct TerrainInput {
   std::optional<std::string> cloud;
+  const char* option = "--terrain";  ///< of the cloud
   std::optional<std::string>
       frame;  ///< that transforms the cloud into the site frame, as frame_named() takes it
   std::string unit = "m";  ///< of the coordinates in the cloud
@@ -32,6 +33,10 @@ struct Site {
   Terrain ground;
   std::vector<Warning> warnings;
 };
+
+/// Ground that a motion must be clear of: swing_terrain_from_scan() of a cloud, else level.
+/// @throws Error as make_site()
+Site make_swing_site(const TerrainInput& terrain, const Machine& machine);
 
 /// The ground of `extent` on cells of this size: terrain_from_scan() if a cloud is given, else
 /// level.

@@ -57,8 +57,8 @@ struct DigCycleSettings {
   MotionOptions motion = {};  ///< of the trajectory that is sent
   /// The ground before any scan is known to be level; if not, a plan on it is not trustworthy.
   bool level_ground = false;
-  /// Earlier scan of the ground around the machine, for motions where the present scan does not see
-  /// it, as swing_ground() takes it.
+  /// Earlier swing_terrain_from_scan(), for motions where the last scan does not see the ground;
+  /// not with level_ground.
   std::optional<Terrain> surroundings = {};
   std::vector<Warning> warnings = {};  ///< of what the settings were made from; every plan has them
 };

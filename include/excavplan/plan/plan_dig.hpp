@@ -87,7 +87,7 @@ struct DigPlan {
       cycle;              ///< of the dig; nothing if the machine does not state what it needs
   Trajectory trajectory;  ///< of that path
   std::vector<JointAngles> torques;         ///< DigResult::torques of that path [N m]
-  HeightMap ground_after;                   ///< surface that was planned on after it, at rest
+  HeightMap ground_after;                   ///< surface after it where it changed, at rest
   PlanMethod method = PlanMethod::library;  ///< where the dig comes from
   std::string start_rule;                   ///< rule of the start, human-readable
   int evaluations = 0;                      ///< digs simulated for the plan

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <limits>
-#include <optional>
 
 #include <Eigen/Core>
 
@@ -47,13 +46,6 @@ Rectangle swing_extent(const Machine& machine);
 
 /// swing_extent() as level ground, in cells of usual_cell().
 Terrain level_swing_ground(const Machine& machine);
-
-/// swing_extent() in cells of usual_cell(), for motions: the present ground; where that is unknown,
-/// the ground of an earlier scan of the surroundings. The rest is level if there is no present one,
-/// else unknown. Both are on the cells of level_swing_ground().
-/// @throws Error (bad_input) if one is not
-Terrain swing_ground(const Machine& machine, const std::optional<Terrain>& present,
-                     const std::optional<Terrain>& earlier);
 
 /// Height of a surface in the boom plane, for make_dig_path(). The profile keeps a copy of the rows
 /// of cells that it needs.
