@@ -258,7 +258,8 @@ class Profile {
   }
 
   double largest_by_power(std::size_t k, double before, const Interval& after) const {
-    const auto suffices = [&](double x) { return power_share(k, before, x) <= 1.0; };
+    // At the highest speed of a cell it is 1 but for rounding, whatever follows.
+    const auto suffices = [&](double x) { return power_share(k, before, x) <= 1.0 + 1e-9; };
     if (per_power_ == 0.0 || suffices(after.high)) return after.high;
     return largest(std::max(0.0, after.low), after.high, suffices);
   }

@@ -64,6 +64,19 @@ TEST(Motion, KeepsEveryLimitBetweenItsPointsOverRandomDigs) {
   EXPECT_GT(timed, 200);
 }
 
+/// Rounding put a cell at the limit of the power above it, and the machine stopped there for ever:
+/// one of 10^4 digs.
+TEST(Motion, GoesOnWhereTheDriveAloneLimitsTheSpeed) {
+  Random random(16, 50728);
+  const auto made = any_motion(random);
+  ASSERT_TRUE(made);
+  const std::vector<JointAngles> torques(made->path.poses.size() - 1, made->torque);
+  const TrajectoryOptions options{made->options.speed_fraction, made->options.corner_tolerance};
+  const double points = time_dig_path(made->machine, made->path, options, torques).duration();
+  const Trajectory motion = time_way(made->machine, way_of(made->path, torques), made->options);
+  EXPECT_NEAR(motion.duration() / points, 1.0, 0.2);
+}
+
 FrontJoints front(double boom, double arm, double bucket, double swing = 0.0) {
   return {boom, arm, bucket, swing};
 }
