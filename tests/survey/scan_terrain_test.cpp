@@ -84,7 +84,7 @@ double known_share(const Terrain& terrain) {
 
 /// A wall may stand between the points.
 TEST(SwingTerrain, KnowsNothingBetweenPointsThatAreFarApart) {
-  EXPECT_GT(known_share(swing_terrain_from_scan(level(0.3, 0.0, nothing), zx120()).terrain), 0.8);
+  EXPECT_GT(known_share(swing_terrain_from_scan(level(0.2, 0.0, nothing), zx120()).terrain), 0.8);
   const Scan sparse = level(1.2, 0.0, nothing);
   EXPECT_LT(known_share(swing_terrain_from_scan(sparse, zx120()).terrain), 0.1);
   EXPECT_GT(
