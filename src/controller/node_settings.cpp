@@ -61,6 +61,7 @@ CycleSources sources_of(const NodeParameters& given) {
   return sources;
 }
 
+/// After site_from_scan.
 void set_surroundings(const std::string& file, DigCycleSettings& settings) {
   if (file.empty()) return;
   Scan scan;
@@ -96,6 +97,8 @@ NodeSettings node_settings(const NodeParameters& given) {
   settings.machine_in_view = given.machine_in_view;
   settings.digs_as_planned = given.digs_as_planned;
   settings.level_ground = given.level_ground;
+  require(!given.level_ground || given.surroundings.empty(),
+          parameter("level_ground") + ": not with surroundings, which show whether it is");
   naming("surroundings", [&] { set_surroundings(given.surroundings, settings); });
   settings.oldest_joints = given.joint_age_seconds;
   if (const auto seconds = known(given.search_seconds)) settings.search_seconds = *seconds;

@@ -64,9 +64,11 @@ Run covered(double x, double map_cell, double origin, double cell, Index cells) 
   return {static_cast<Index>(first), static_cast<Index>(last - first) + 1};
 }
 
-/// Where a map is known it takes the place of the grid's heights, the highest of each cell.
+/// Where a map is known it takes the place of the grid's heights, the highest of each cell; where
+/// it is known in a part of a cell, nothing becomes lower.
 void enter(const HeightMap& map, HeightMap& grid) {
   ArrayXXd entered = ArrayXXd::Constant(grid.z.rows(), grid.z.cols(), -infinity);
+  ArrayXXd at_least = entered;
   const double cell = grid.cell_size;
   std::vector<Run> rows;
   for (Index row = 0; row < map.z.rows(); ++row) {
@@ -76,12 +78,18 @@ void enter(const HeightMap& map, HeightMap& grid) {
     const Run cols = covered(map.x(col), map.cell_size, grid.origin.x(), cell, grid.z.cols());
     for (Index row = 0; row < map.z.rows() && cols.count > 0; ++row) {
       const Run& run = rows[static_cast<std::size_t>(row)];
-      if (!std::isfinite(map.z(row, col)) || run.count == 0) continue;
+      if (run.count == 0) continue;
       auto place = entered.block(run.first, cols.first, run.count, cols.count);
-      place = place.max(map.z(row, col));
+      if (std::isfinite(map.z(row, col))) {
+        place = place.max(map.z(row, col));
+      } else {
+        at_least.block(run.first, cols.first, run.count, cols.count) =
+            grid.z.block(run.first, cols.first, run.count, cols.count);
+      }
     }
   }
-  grid.z = (entered == -infinity).select(grid.z, entered);
+  const ArrayXXd highest = (at_least > entered).select(at_least, entered);
+  grid.z = (entered == -infinity).select(grid.z, highest).eval();
 }
 
 /// The highest of each cell and those up to so many cells away along both axes.

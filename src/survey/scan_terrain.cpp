@@ -22,13 +22,15 @@ constexpr double widest_filled = 0.3;
 constexpr double widest_filled_cells = 3.0;
 constexpr std::size_t fewest_points = 10;  // that make a ground; ours
 
-/// How far apart points may be between which the ground is taken to be known [m].
+/// Cells on which a scan becomes ground [m], and how far apart points may be between which it is
+/// known [m].
 struct Interpolation {
+  double smallest_cell = 0.0;
   double largest_cell = std::numeric_limits<double>::infinity();
-  double widest_gap = std::numeric_limits<double>::infinity();
+  double farthest = std::numeric_limits<double>::infinity();
 };
-/// Of ground that nothing may hit; ours: a wall may stand between points that are further apart.
-constexpr Interpolation of_motions = {0.25, 0.5};
+// Of ground that nothing may hit; ours: a wall may stand between points that are further apart.
+constexpr double motion_cell = 0.25, motion_farthest = 0.5;
 
 // Of two scans of the same ground; ours.
 constexpr double same_height = 0.15;         // [m]
@@ -74,6 +76,13 @@ void require_points(const Scan& scan, std::size_t points, const Rectangle& exten
       (unit ? "; " + unit->message : ""));
 }
 
+/// The second where the first is unknown.
+Terrain filled_from(const Terrain& first, const Terrain& second) {
+  HeightMap ground = first.surface();
+  ground.z = ground.z.isFinite().select(ground.z, second.surface().z).eval();
+  return undisturbed(std::move(ground));
+}
+
 ScannedTerrain read_terrain(const Scan& scan, const Rectangle& extent, double cell_size,
                             const Interpolation& interpolation) {
   require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
@@ -85,10 +94,12 @@ ScannedTerrain read_terrain(const Scan& scan, const Rectangle& extent, double ce
   const double density = seen.density;
   RasterOptions raster;
   raster.cell_size =
-      std::max(cell_size, std::min(interpolation.largest_cell, std::sqrt(2.0 / density)));
+      std::max(cell_size, std::clamp(std::sqrt(2.0 / density), interpolation.smallest_cell,
+                                     interpolation.largest_cell));
   const HeightMap map = survey_surface(near, *seen.extent, raster).height;
-  const double widest_gap = std::min(
-      interpolation.widest_gap, std::max(widest_filled, widest_filled_cells * raster.cell_size));
+  const double widest_gap =
+      std::clamp(interpolation.farthest - 2.0 * raster.cell_size, 0.0,
+                 std::max(widest_filled, widest_filled_cells * raster.cell_size));
   ScannedTerrain result{undisturbed(resampled(map, extent, cell_size, widest_gap)), {}};
   result.warnings = scan.doubts;
   if (const double unseen = unseen_area(result.terrain.bank); unseen > 0.0) {
@@ -114,15 +125,18 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
 }
 
 ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine) {
-  ScannedTerrain seen = read_terrain(scan, swing_extent(machine), usual_cell(machine), of_motions);
-  const auto is_of_digs = [](const Warning& warning) { return warning.code == "unseen_ground"; };
-  seen.warnings.erase(std::remove_if(seen.warnings.begin(), seen.warnings.end(), is_of_digs),
-                      seen.warnings.end());
-  return seen;
+  const auto read = [&](double smallest_cell) {
+    return read_terrain(scan, swing_extent(machine), usual_cell(machine),
+                        {smallest_cell, motion_cell, motion_farthest});
+  };
+  const Terrain fine = read(0.0).terrain;
+  // Lines of points are dense, and yet apart.
+  const Terrain coarse = read(motion_cell).terrain;
+  return {filled_from(fine, coarse), scan.doubts};
 }
 
 ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier) {
-  HeightMap ground = present.surface();
+  const HeightMap ground = present.surface();
   const HeightMap around = earlier.surface();
   require(same_grid(ground, around), "surroundings: must have the cells of the present ground");
   const auto both = ground.z.isFinite() && around.z.isFinite();
@@ -139,8 +153,7 @@ ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier)
              " % has the same height: is one in another frame?",
          true});
   }
-  ground.z = ground.z.isFinite().select(ground.z, around.z).eval();
-  return {undisturbed(std::move(ground)), std::move(warnings)};
+  return {filled_from(present, earlier), std::move(warnings)};
 }
 
 }  // namespace excavplan

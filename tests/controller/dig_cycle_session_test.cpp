@@ -325,6 +325,10 @@ TEST(DigCycleSession, MotionIsClearOfAllScannedGround) {
   settings.surroundings = level_swing_ground(settings.machine);
   EXPECT_FALSE(has(planned_on(1.5, 0.0).warnings, "unseen_way"));
   EXPECT_TRUE(has(planned_on(9.5, 9.0).warnings, "no_motion")) << "the present scan counts first";
+  settings.surroundings->bank.z += 1.0;
+  const CyclePlan shifted = planned_on(1.5, 0.0);
+  EXPECT_TRUE(has(shifted.warnings, "surroundings_differ"));
+  EXPECT_FALSE(shifted.trustworthy);
   settings.surroundings->bank.cell_size *= 2.0;
   EXPECT_EQ(error_of([&] { DigCycleSession session(settings); }),
             "surroundings: must be of swing_terrain_from_scan() of machine zx120");

@@ -77,6 +77,10 @@ TEST(RobotNode, ReadsTheSurroundingsInTheFrameOfTheScans) {
   };
   EXPECT_NEAR(at(-3.5, 3.5), 0.75, 1e-6);
   EXPECT_TRUE(std::isnan(at(3.5, 3.5)));
+  EXPECT_EQ(error_of([&] {
+              settings_by({{"surroundings", cloud}, {"level_ground", true}});
+            }),
+            "parameter level_ground: not with surroundings, which show whether it is");
   EXPECT_EQ(error_of(
                 [&] {
                   settings_by({{"surroundings", folder.file("none.pcd")}});

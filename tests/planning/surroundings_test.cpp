@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.hpp"
+#include "planning/surroundings.hpp"
 
 /// @file
 /// What the way of a cycle passes over. Its clearance is found here from the points of the timed
@@ -320,6 +321,32 @@ TEST(Surroundings, UnseenGroundOnTheWayEndsTrust) {
   Terrain elsewhere = level_swing_ground(zx120());
   elsewhere.bank.z.topRows(elsewhere.bank.z.rows() / 2 - 20) = std::nan("");
   EXPECT_TRUE(std::get<Way>(cycle_over(elsewhere)).warnings.empty()) << "to the right";
+}
+
+/// A stake beside the trench stands in a cell that finer ones of the dig know, and lower, in part.
+TEST(Surroundings, GroundThatFineCellsKnowInPartDoesNotBecomeLower) {
+  const Machine& machine = zx120();
+  const auto joints = inverse_kinematics(machine, {5.2, 1.0, 0.3});
+  FrontJoints from = front(0.0, 0.0, 0.0, -0.3), to = from;
+  from.head<3>() = to.head<3>() = std::get<JointAngles>(joints);
+  to[3] = 0.3;
+  const auto is_blocked = [&](double height) {
+    HeightMap ground = level_swing_ground(machine).bank;
+    const auto col = static_cast<Eigen::Index>((5.2 - ground.origin.x()) / ground.cell_size);
+    const Eigen::Index row = ground.z.rows() / 2;
+    ground.z(row, col) = height;
+    Surroundings around(machine, ground);
+    HeightMap after;
+    after.cell_size = 0.25 * ground.cell_size;
+    after.origin = ground.origin +
+                   ground.cell_size * Vector2d(static_cast<double>(col), static_cast<double>(row));
+    after.z = Eigen::ArrayXXd::Constant(4, 4, -0.4);
+    after.z.col(3) = std::nan("");
+    around.replace(after);
+    return around.obstacle(from, to).has_value();
+  };
+  EXPECT_FALSE(is_blocked(0.0));
+  EXPECT_TRUE(is_blocked(2.0));
 }
 
 TEST(Surroundings, TheSwingBeginsOverTheGroundThatTheDigLeaves) {

@@ -67,6 +67,19 @@ class Machines(unittest.TestCase):
 
 
 class Motions(unittest.TestCase):
+    def test_an_earlier_scan_of_the_surroundings(self):
+        places = [0.1 * i - 9.8 for i in range(197)]
+        around = ex.Cloud([(x, y, 0.0) for x in places for y in places])
+        strip = ex.Cloud([(x, y, 0.0) for x in places for y in places if abs(y) < 1.5])
+        plan = ex.plan_dig(MACHINE, LOAM, 40)
+        present, earlier = (ex.swing_terrain_from_scan(cloud, MACHINE).terrain
+                            for cloud in (strip, around))
+        unseen = ex.plan_motion(MACHINE, plan, present, whole_cycle=True)
+        self.assertEqual([each.code for each in unseen.warnings], ["unseen_way"])
+        both = ex.with_surroundings(present, earlier)
+        self.assertEqual(both.warnings, [])
+        self.assertEqual(ex.plan_motion(MACHINE, plan, both.terrain, whole_cycle=True).warnings, [])
+
     def test_a_motion_is_that_of_the_tool(self):
         joints = "-0.6,1.6,0.5,0.7"
         with tempfile.TemporaryDirectory() as folder:

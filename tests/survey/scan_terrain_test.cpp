@@ -93,6 +93,25 @@ TEST(SwingTerrain, KnowsNothingBetweenPointsThatAreFarApart) {
       << "ground to dig on is interpolated";
 }
 
+/// However dense it is along the lines.
+TEST(SwingTerrain, SpacingOfLinesDecides) {
+  const auto known = [](double apart) {
+    auto cloud = std::make_shared<Cloud>();
+    for (double x = -10.0; x < 10.0; x += 0.02) {
+      for (double y = -10.0; y < 10.0; y += apart) cloud->points.emplace_back(x, y, 0.0);
+    }
+    cloud->width = cloud->points.size();
+    Scan scan;
+    scan.clouds = {cloud};
+    return known_share(swing_terrain_from_scan(scan, zx120()).terrain);
+  };
+  EXPECT_GT(known(0.1), 0.99);
+  EXPECT_GT(known(0.15), 0.99);
+  EXPECT_GT(known(0.24), 0.99);
+  EXPECT_LT(known(0.52), 0.2);
+  EXPECT_LT(known(0.7), 0.2);
+}
+
 TEST(SwingTerrain, AnEarlierScanFillsWhatThePresentOneDoesNotSee) {
   const auto seen = [](const Scan& scan) { return swing_terrain_from_scan(scan, zx120()).terrain; };
   const Terrain present = seen(level(0.1, 0.5, left)), earlier = seen(level(0.1, 0.6, nothing));

@@ -119,6 +119,12 @@ TEST_F(Tools, TrajectoryIsClearOfAllScannedGround) {
   EXPECT_TRUE(both.at("trustworthy"));
   around.back() = scan("around.xyz", 9.4, 9.0);
   EXPECT_TRUE(warns(answer("plan-path", around), "no_motion"));
+  around.back() = folder.write("mm.xyz", "0 0 0\n1 1 1\n");
+  EXPECT_EQ(run_program("plan-path", around).code, 3);
+  around.back() = scan("low.xyz", 9.4, 0.0);
+  around.insert(around.end(), {"--terrain-frame", "0,0,0.5,0,0,0,1"});
+  EXPECT_FALSE(warns(answer("plan-path", around), "surroundings_differ")) << "both in one frame";
+  around.resize(around.size() - 2);
   around.back() = folder.file("none.xyz");
   around.insert(around.end(), {"--search", "--checkpoint", folder.file("search.json")});
   EXPECT_EQ(run_program("plan-path", around).code, 3);

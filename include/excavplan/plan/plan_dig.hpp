@@ -86,8 +86,8 @@ struct DigPlan {
   std::optional<DigCycle>
       cycle;              ///< of the dig; nothing if the machine does not state what it needs
   Trajectory trajectory;  ///< of that path
-  std::vector<JointAngles> torques;         ///< DigResult::torques of that path [N m]
-  HeightMap ground_after;                   ///< surface after it where it changed, at rest
+  std::vector<JointAngles> torques;  ///< DigResult::torques of that path [N m]
+  HeightMap ground_after;            ///< surface after it, at rest [m]; NaN where it did not change
   PlanMethod method = PlanMethod::library;  ///< where the dig comes from
   std::string start_rule;                   ///< rule of the start, human-readable
   int evaluations = 0;                      ///< digs simulated for the plan

@@ -28,14 +28,16 @@ struct ScannedTerrain {
 /// than 10 points within a metre of the extent; (bad_input) unless cell_size > 0
 ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size);
 
-/// Ground that a motion must be clear of: swing_extent() in cells of usual_cell(). Only gaps of up
-/// to 0.5 m are filled, also in a sparse scan (ours); no unseen_ground is said.
+/// Ground that a motion must be clear of: swing_extent() in cells of usual_cell(). It is known
+/// between points at most 0.25 m apart, and not between points more than 0.5 m apart (ours). The
+/// warnings are Scan::doubts.
 /// @throws Error as terrain_from_scan()
 ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine);
 
 /// The present ground, and where that is unknown an earlier one of the surroundings, both of
 /// swing_terrain_from_scan(). Warning surroundings_differ, which ends trust, if less than a fifth
-/// of what both know has the same height to 0.15 m (ours): the frame of one is wrong.
+/// of what both know has the same height to 0.15 m (ours): the frame of one is wrong. Level ground
+/// shows neither shift nor turn.
 /// @throws Error (bad_input) if their cells differ
 ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier);
 
