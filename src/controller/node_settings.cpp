@@ -67,9 +67,7 @@ void set_surroundings(const std::string& file, DigCycleSettings& settings) {
   Scan scan;
   scan.files = {file};
   scan.site_from_scan = settings.site_from_scan;
-  ScannedTerrain seen = swing_terrain_from_scan(scan, settings.machine);
-  settings.surroundings = std::move(seen.terrain);
-  settings.warnings.insert(settings.warnings.end(), seen.warnings.begin(), seen.warnings.end());
+  settings.surroundings = swing_terrain_from_scan(scan, settings.machine).terrain;
 }
 
 void name_joints(const std::vector<std::string>& names, RobotJoints& joints) {

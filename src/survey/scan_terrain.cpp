@@ -22,14 +22,7 @@ constexpr double widest_filled = 0.3;
 constexpr double widest_filled_cells = 3.0;
 constexpr std::size_t fewest_points = 10;  // that make a ground; ours
 
-/// Cells on which a scan becomes ground [m], and how far apart points may be between which it is
-/// known [m].
-struct Interpolation {
-  double smallest_cell = 0.0;
-  double largest_cell = std::numeric_limits<double>::infinity();
-  double farthest = std::numeric_limits<double>::infinity();
-};
-// Of ground that nothing may hit; ours: a wall may stand between points that are further apart.
+// Of ground that nothing may hit [m]; ours: a wall may stand between points that are further apart.
 constexpr double motion_cell = 0.25, motion_farthest = 0.5;
 
 // Of two scans of the same ground; ours.
@@ -83,56 +76,71 @@ Terrain filled_from(const Terrain& first, const Terrain& second) {
   return undisturbed(std::move(ground));
 }
 
-ScannedTerrain read_terrain(const Scan& scan, const Rectangle& extent, double cell_size,
-                            const Interpolation& interpolation) {
-  require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
-          "> 0 m and finite");
+/// What a scan shows of an extent.
+struct Seen {
+  Scan near;
+  Rectangle extent;
+  double density;  ///< points per m^2
+};
+
+Seen seen_of(const Scan& scan, const Rectangle& extent) {
   const Scan near = cropped(scan, extent);
   const CloudSummary seen = is_empty(*near.area) ? CloudSummary{} : summarise(near);
   require_points(scan, seen.finite_points, extent);
   require_width(scan, *seen.extent);
-  const double density = seen.density;
+  return {near, *seen.extent, seen.density};
+}
+
+/// Two points lie in such a cell [m].
+double cell_of(const Seen& seen) { return std::sqrt(2.0 / seen.density); }
+
+Terrain ground_of(const Seen& seen, double raster_cell, double widest_gap, const Rectangle& extent,
+                  double cell_size) {
   RasterOptions raster;
-  raster.cell_size =
-      std::max(cell_size, std::clamp(std::sqrt(2.0 / density), interpolation.smallest_cell,
-                                     interpolation.largest_cell));
-  const HeightMap map = survey_surface(near, *seen.extent, raster).height;
-  const double widest_gap =
-      std::clamp(interpolation.farthest - 2.0 * raster.cell_size, 0.0,
-                 std::max(widest_filled, widest_filled_cells * raster.cell_size));
-  ScannedTerrain result{undisturbed(resampled(map, extent, cell_size, widest_gap)), {}};
-  result.warnings = scan.doubts;
+  raster.cell_size = raster_cell;
+  const HeightMap map = survey_surface(seen.near, seen.extent, raster).height;
+  return undisturbed(resampled(map, extent, cell_size, widest_gap));
+}
+
+}  // namespace
+
+ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
+  require(cell_size > 0.0 && std::isfinite(cell_size), "terrain from a scan: cell_size", cell_size,
+          "> 0 m and finite");
+  const Seen seen = seen_of(scan, extent);
+  const double cell = std::max(cell_size, cell_of(seen));
+  const double widest_gap = std::max(widest_filled, widest_filled_cells * cell);
+  ScannedTerrain result{ground_of(seen, cell, widest_gap, extent, cell_size), scan.doubts};
   if (const double unseen = unseen_area(result.terrain.bank); unseen > 0.0) {
     result.warnings.push_back(
         {"unseen_ground", name_of(scan) + ": the scan does not see " + readable(unseen, 2) +
                               " m2 of the ground within reach, in gaps wider than " +
                               readable(widest_gap, 2) + " m; no dig is planned there"});
   }
-  if (raster.cell_size > cell_size) {
+  if (cell > cell_size) {
     result.warnings.push_back(
-        {"sparse_terrain", name_of(scan) + ": " + readable(density, 2) +
+        {"sparse_terrain", name_of(scan) + ": " + readable(seen.density, 2) +
                                " points per m2 are too few for cells of " + readable(cell_size, 2) +
                                " m; heights are interpolated between cells of " +
-                               readable(raster.cell_size, 2) + " m"});
+                               readable(cell, 2) + " m"});
   }
   return result;
 }
 
-}  // namespace
-
-ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, double cell_size) {
-  return read_terrain(scan, extent, cell_size, {});
-}
-
 ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine) {
-  const auto read = [&](double smallest_cell) {
-    return read_terrain(scan, swing_extent(machine), usual_cell(machine),
-                        {smallest_cell, motion_cell, motion_farthest});
+  const Rectangle extent = swing_extent(machine);
+  const double cell_size = usual_cell(machine);
+  const Seen seen = seen_of(scan, extent);
+  const auto ground_on = [&](double smallest) {
+    const double cell = std::max(cell_size, smallest);
+    const double widest_gap = std::clamp(motion_farthest - 2.0 * cell, 0.0, widest_filled);
+    return ground_of(seen, cell, widest_gap, extent, cell_size);
   };
-  const Terrain fine = read(0.0).terrain;
+  ScannedTerrain result{ground_on(std::min(cell_of(seen), motion_cell)), scan.doubts};
   // Lines of points are dense, and yet apart.
-  const Terrain coarse = read(motion_cell).terrain;
-  return {filled_from(fine, coarse), scan.doubts};
+  const bool is_whole = result.terrain.bank.z.isFinite().all();
+  if (!is_whole) result.terrain = filled_from(result.terrain, ground_on(motion_cell));
+  return result;
 }
 
 ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier) {

@@ -197,15 +197,12 @@ Site motion_ground(const MotionInputs& inputs, const Machine& machine, const Ter
   check(inputs, machine, cycle);
   if (inputs.surroundings && !terrain.cloud) usage_error("--surroundings needs --terrain");
   if (!inputs.file || !leaves_the_dig(inputs)) return {level_swing_ground(machine), {}};
-  Site present = make_swing_site(terrain, machine);
-  present.warnings.clear();  // the ground of the dig has them
-  if (!inputs.surroundings) return present;
+  const Terrain present = make_swing_ground(terrain, machine);
+  if (!inputs.surroundings) return {present, {}};
   TerrainInput around = terrain;
   around.cloud = inputs.surroundings;
   around.option = "--surroundings";
-  Site earlier = make_swing_site(around, machine);
-  ScannedTerrain both = with_surroundings(present.ground, earlier.ground);
-  both.warnings.insert(both.warnings.begin(), earlier.warnings.begin(), earlier.warnings.end());
+  ScannedTerrain both = with_surroundings(present, make_swing_ground(around, machine));
   return {std::move(both.terrain), std::move(both.warnings)};
 }
 

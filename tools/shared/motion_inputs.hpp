@@ -29,7 +29,7 @@ struct MotionInputs {
 void declare_motion(Arguments& arguments, MotionInputs& inputs);
 
 /// Ground that the motion must be clear of, where it leaves the dig: that of `terrain`, and what it
-/// does not see of --surroundings, with the warnings of the latter. Checks all of the inputs before
+/// does not see of --surroundings, with warnings of both together. Checks all of the inputs before
 /// the work. @throws Error as make_site(), or (bad_input) naming the option
 Site motion_ground(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
                    const CycleOptions& cycle);

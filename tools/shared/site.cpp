@@ -74,9 +74,10 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
   });
 }
 
-Site make_swing_site(const TerrainInput& terrain, const Machine& machine) {
-  if (!terrain.cloud) return {level_swing_ground(machine), {}};
-  return scanned(terrain, [&](const Scan& scan) { return swing_terrain_from_scan(scan, machine); });
+Terrain make_swing_ground(const TerrainInput& terrain, const Machine& machine) {
+  if (!terrain.cloud) return level_swing_ground(machine);
+  return scanned(terrain, [&](const Scan& scan) { return swing_terrain_from_scan(scan, machine); })
+      .ground;
 }
 
 }  // namespace excavplan::tools

@@ -36,7 +36,7 @@ struct Site {
 
 /// Ground that a motion must be clear of: swing_terrain_from_scan() of a cloud, else level.
 /// @throws Error as make_site()
-Site make_swing_site(const TerrainInput& terrain, const Machine& machine);
+Terrain make_swing_ground(const TerrainInput& terrain, const Machine& machine);
 
 /// The ground of `extent` on cells of this size: terrain_from_scan() if a cloud is given, else
 /// level.
