@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/ground/bulking.hpp>
-#include <excavplan/simulation/depth_camera.hpp>
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/change/bulking.hpp>
+#include <excavplan/density/density_estimate.hpp>
+#include <excavplan/sensing/depth_camera.hpp>
 
 #include "base/parallel.hpp"
 #include "support/block_heap.hpp"

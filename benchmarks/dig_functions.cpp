@@ -8,7 +8,7 @@
 #include <fstream>
 #include <memory>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>

@@ -14,7 +14,7 @@
 #include <string>
 #include <variant>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/foreign_simulators.hpp>
 

@@ -19,9 +19,9 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/planning/dig_search.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>

@@ -16,7 +16,7 @@
 #include <kdl/chainiksolvervel_pinv.hpp>
 #endif
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include "base/random.hpp"
 

@@ -11,7 +11,7 @@
 
 #include <kdl/velocityprofile_trap.hpp>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 
 #include "support/motion_check.hpp"
 

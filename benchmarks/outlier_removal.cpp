@@ -8,7 +8,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/clouds/cloud.hpp>
 
 /// @file
 /// PCL's StatisticalOutlierRemoval, 50 neighbours and one standard deviation, on one cloud: the

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 /// @file

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <benchmark/benchmark.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/library/path_library.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/planning/path_library.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include "simulation/section_simulator.hpp"

@@ -20,7 +20,7 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/ground/bulking.hpp>
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/change/bulking.hpp>
+#include <excavplan/density/density_estimate.hpp>
 
 #include "base/parallel.hpp"
 #include "support/site_scenes.hpp"

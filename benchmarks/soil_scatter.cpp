@@ -13,7 +13,7 @@
 #include <map>
 #include <string>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 
 #include "support/soil_digs.hpp"
 

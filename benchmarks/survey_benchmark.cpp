@@ -6,7 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <excavplan/survey/scan_surface.hpp>
+#include <excavplan/scans/scan_surface.hpp>
 #include "base/random.hpp"
 
 namespace excavplan {

@@ -58,7 +58,7 @@ if(EXCAVPLAN_SURVEY)
     REQUIRES_PUBLIC excavplan-clouds
     REQUIRES pcl_filters pcl_search pcl_octree pcl_common
     LINKS -lopencv_imgcodecs -lopencv_core -lz)
-  excavplan_install(controller
+  excavplan_install(robot
     SUMMARY "The dig cycle of a robot from its messages"
     REQUIRES_PUBLIC excavplan-survey REQUIRES excavplan-recordings)
 endif()

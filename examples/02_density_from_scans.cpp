@@ -7,8 +7,8 @@
 
 #include <cstdio>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/density/density_estimate.hpp>
 
 using namespace excavplan;
 

@@ -10,10 +10,10 @@
 #include <csignal>
 #include <cstdio>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/planning/plan_dig.hpp>
+#include <excavplan/scans/scan_terrain.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/survey/scan_terrain.hpp>
 
 using namespace excavplan;
 

@@ -11,8 +11,8 @@
 #include <memory>
 #include <string>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/soil/soil.hpp>
 
 using namespace excavplan;

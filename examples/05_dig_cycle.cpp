@@ -10,12 +10,12 @@
 #include <memory>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/density/density_estimate.hpp>
+#include <excavplan/planning/plan_dig.hpp>
+#include <excavplan/scans/scan_terrain.hpp>
+#include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/scene.hpp>
-#include <excavplan/survey/density_estimate.hpp>
-#include <excavplan/survey/scan_terrain.hpp>
 
 using namespace excavplan;
 

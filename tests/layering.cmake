@@ -30,8 +30,8 @@ set(roomless ceilings error data_files)
 set(third_parties "pcl/" "opencv2/" "nlopt" "nlohmann/" "CLI/"
   "zlib\\.h" "sqlite3\\.h" "lz4frame\\.h" "zstd\\.h" "bzlib\\.h")
 set(third_party_places
-  "^(src/survey/paper_method|tests/survey/paper_method_test|tests/bad_files/bad_files_by_pcl)\\.cpp$"
-  "^(src/survey/depth_image|tests/survey/depth_image_test)\\.cpp$"
+  "^(src/survey/paper_method|tests/paper/paper_method_test|tests/bad_files/bad_files_by_pcl)\\.cpp$"
+  "^(src/survey/depth_image|tests/images/depth_image_test)\\.cpp$"
   "^src/(soil|optimisation)/[a-z_]+\\.cpp$"
   "^(src/base/json\\.hpp|src/.*\\.[ch]pp|tools/.*|tests/.*)$"
   "^tools/shared/tool\\.cpp$"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/library/library_build.hpp>
+#include <excavplan/planning/library_build.hpp>
 
 #include "shared/entry_folder.hpp"
 #include "shared/library_inputs.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/calibration/calibration.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"

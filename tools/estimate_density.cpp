@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/density/density_estimate.hpp>
 
 #include "shared/estimate.hpp"
 #include "shared/ground_maps.hpp"

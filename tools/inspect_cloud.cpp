@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include <excavplan/survey/scan_surface.hpp>
+#include <excavplan/scans/scan_surface.hpp>
 
 #include "shared/cloud_results.hpp"
 #include "shared/found_pose.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include <excavplan/kit/kit_files.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 
 #include "base/text.hpp"
 #include "shared/ground_maps.hpp"

@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include <excavplan/planning/planned_dig.hpp>
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 #include "base/files.hpp"
 #include "machine/dig_path_text.hpp"

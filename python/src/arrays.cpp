@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 namespace excavplan::python {
 namespace {

@@ -15,7 +15,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 /// @file
 /// Calls of the library that take long or call Python back.

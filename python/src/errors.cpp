@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/pybind11.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
-#include <excavplan/survey/scan_surface.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/scans/scan_surface.hpp>
 
 #include "calls.hpp"
 #include "paths.hpp"

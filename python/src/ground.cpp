@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/change/bulking.hpp>
+#include <excavplan/change/volume_change.hpp>
 #include <excavplan/ground/height_map.hpp>
-#include <excavplan/ground/volume_change.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
-#include <excavplan/library/library_build.hpp>
-#include <excavplan/library/path_library.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/planning/library_build.hpp>
+#include <excavplan/planning/path_library.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/machine/machine.hpp>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/plan/plan_motion.hpp>
 #include <excavplan/planning/dig_search.hpp>
+#include <excavplan/planning/plan_motion.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 

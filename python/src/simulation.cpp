@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/calibration/calibration.hpp>
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/dig_path.hpp>
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
-#include <excavplan/simulation/scene.hpp>
-#include <excavplan/simulation/terrain.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/calibration.hpp>
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>

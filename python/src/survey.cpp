@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
-#include <excavplan/simulation/calibration.hpp>
-#include <excavplan/survey/cloud.hpp>
-#include <excavplan/survey/density_estimate.hpp>
-#include <excavplan/survey/scan_pose.hpp>
-#include <excavplan/survey/scan_terrain.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/calibration.hpp>
+#include <excavplan/clouds/cloud.hpp>
+#include <excavplan/density/density_estimate.hpp>
+#include <excavplan/scans/scan_pose.hpp>
+#include <excavplan/scans/scan_terrain.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 /// @file
 /// Enumerators as the words that the tools and files have for them.

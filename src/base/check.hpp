@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 
 #include <dlfcn.h>
 #include <sys/auxv.h>
@@ -11,7 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 

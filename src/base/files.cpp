@@ -19,7 +19,7 @@
 #include <system_error>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/input_file.hpp"
 

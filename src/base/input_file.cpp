@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 namespace excavplan {
 namespace {

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include <excavplan/ceilings.hpp>
+#include <excavplan/base/ceilings.hpp>
 
 #include "base/check.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/read_double.hpp"
 #include "base/table_text.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <string_view>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 

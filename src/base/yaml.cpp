@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/read_double.hpp"
 #include "base/text.hpp"

@@ -11,8 +11,8 @@
 #include <Eigen/Geometry>
 
 #include "base/angles.hpp"
+#include "base/robust.hpp"
 #include "ground/grid_cells.hpp"
-#include "ground/robust.hpp"
 
 namespace excavplan {
 namespace {

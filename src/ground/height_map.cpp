@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include <excavplan/ceilings.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/ceilings.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"

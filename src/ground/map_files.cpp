@@ -9,7 +9,7 @@
 #include <limits>
 #include <string_view>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
 #include "base/files.hpp"

@@ -11,13 +11,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
+#include "base/robust.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
-#include "ground/robust.hpp"
 #include "ground/too_few_cells.hpp"
 
 namespace excavplan {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "ground/robust.hpp"
+#include "base/robust.hpp"
 
 namespace excavplan {
 namespace {

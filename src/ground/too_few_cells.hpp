@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 

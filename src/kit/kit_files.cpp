@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 
 #include "base/files.hpp"
 

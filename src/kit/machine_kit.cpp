@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/error.hpp>
-#include <excavplan/library/library_build.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/calibration/calibration.hpp>
 #include <excavplan/machine/kinematics.hpp>
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/planning/library_build.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"

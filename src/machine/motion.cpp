@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/angles.hpp"
 #include "base/text.hpp"

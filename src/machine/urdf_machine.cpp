@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <set>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 
 #include "base/angles.hpp"
 #include "base/files.hpp"

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/read_double.hpp"
 #include "base/text.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include <excavplan/ceilings.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/ceilings.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/optimisation/search.hpp>
 
 #include "base/text.hpp"

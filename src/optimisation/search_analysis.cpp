@@ -8,7 +8,7 @@
 
 #include <Eigen/Dense>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
 #include "base/parallel.hpp"

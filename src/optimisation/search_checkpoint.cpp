@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/files.hpp"
 #include "base/input_file.hpp"

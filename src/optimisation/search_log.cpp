@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/parallel.hpp"
 #include "optimisation/sound_evaluation.hpp"

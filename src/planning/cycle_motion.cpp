@@ -11,10 +11,10 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
+#include "ground/terrain_check.hpp"
 #include "machine/front_check.hpp"
 #include "planning/front_load.hpp"
 #include "planning/surroundings.hpp"
-#include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {

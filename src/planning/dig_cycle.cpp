@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/soil/soil.hpp>
 

@@ -11,9 +11,9 @@
 #include <excavplan/planning/dig_cycle.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "ground/terrain_check.hpp"
 #include "simulation/checked_dig.hpp"
 #include "simulation/swath.hpp"
-#include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {

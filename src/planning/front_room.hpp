@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/kinematics.hpp>
-#include <excavplan/simulation/terrain.hpp>
 
 namespace excavplan {
 

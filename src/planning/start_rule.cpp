@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"

@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/kinematics.hpp>
 #include <excavplan/machine/motion.hpp>
-#include <excavplan/simulation/terrain.hpp>
 
 /// @file
 /// What boom, arm and bucket pass over off the dig (docs/methods.md#motion).

@@ -10,8 +10,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <excavplan/ceilings.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/ceilings.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
 #include "base/parallel.hpp"

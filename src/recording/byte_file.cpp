@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 namespace excavplan {
 namespace {

@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 #include "recording/byte_file.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/scalar.hpp"
 #include "base/text.hpp"

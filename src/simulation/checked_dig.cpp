@@ -12,15 +12,15 @@
 
 #include <cxxabi.h>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
+#include "ground/terrain_check.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/dig_account.hpp"
-#include "simulation/terrain_check.hpp"
 #include "soil/sound_soil.hpp"
 
 namespace excavplan {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/simulation/foreign_simulators.hpp>
 
 #include "base/check.hpp"

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
+#include "ground/terrain_check.hpp"
 #include "machine/plane.hpp"
 #include "simulation/slump.hpp"
-#include "simulation/terrain_check.hpp"
 
 namespace excavplan {
 namespace {

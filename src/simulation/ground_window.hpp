@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/simulation/terrain.hpp>
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "simulation/cell_block.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/angles.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <excavplan/simulation/simulator_plugin.h>
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/simulation/foreign_simulators.hpp>
 
 #include "base/check.hpp"

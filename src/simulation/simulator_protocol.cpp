@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/base64.hpp"
 #include "base/json.hpp"

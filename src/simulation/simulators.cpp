@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/simulation/simulators.hpp>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include "simulation/section_simulator.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/angles.hpp"
 #include "base/text.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 

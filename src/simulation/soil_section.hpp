@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/simulation/terrain.hpp>
+#include <excavplan/ground/terrain.hpp>
 
 #include "simulation/ground_window.hpp"
 #include "simulation/section_bucket.hpp"

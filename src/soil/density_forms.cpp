@@ -11,7 +11,7 @@
 
 #include <nlopt.hpp>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"

@@ -4,7 +4,7 @@
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "fuzz/file_readers.hpp"
 

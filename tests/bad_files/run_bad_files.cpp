@@ -18,7 +18,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 namespace excavplan::test {
 namespace {

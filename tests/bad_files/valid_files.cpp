@@ -7,14 +7,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/library/path_library.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/trajectory.hpp>
+#include <excavplan/planning/path_library.hpp>
 
 #include "bad_files/bad_file.hpp"
 #include "fuzz/file_readers.hpp"
-#include "library/library_tasks.hpp"
 #include "optimisation/search_checkpoint.hpp"
+#include "planning/library_tasks.hpp"
 #include "support/las_file.hpp"
 #include "support/png_bytes.hpp"
 #include "support/ros_bytes.hpp"

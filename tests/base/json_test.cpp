@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "support/errors.hpp"
 

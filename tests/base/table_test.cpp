@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include "base/random.hpp"
 
 /// @file

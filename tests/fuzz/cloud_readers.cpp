@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <stdexcept>
 
-#include <excavplan/survey/cloud.hpp>
-#include <excavplan/survey/efficiency.hpp>
-#include <excavplan/survey/scan_pose.hpp>
+#include <excavplan/clouds/cloud.hpp>
+#include <excavplan/efficiency/efficiency.hpp>
+#include <excavplan/scans/scan_pose.hpp>
 
 #include "fuzz/file_readers.hpp"
 

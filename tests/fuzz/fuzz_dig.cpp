@@ -9,8 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>

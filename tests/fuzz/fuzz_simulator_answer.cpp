@@ -4,8 +4,8 @@
 #include <string>
 #include <variant>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "fuzz/fuzz_target.hpp"

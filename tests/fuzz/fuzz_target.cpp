@@ -9,7 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/json.hpp"
 #include "fuzz/file_readers.hpp"

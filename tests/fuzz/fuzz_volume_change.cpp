@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/error.hpp>
-#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/change/volume_change.hpp>
 
 #include "fuzz/fuzz_target.hpp"
 

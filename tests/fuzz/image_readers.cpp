@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/survey/depth_image.hpp>
+#include <excavplan/images/depth_image.hpp>
 
 #include "fuzz/file_readers.hpp"
 

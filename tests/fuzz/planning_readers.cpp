@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
-#include <excavplan/library/path_library.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/machine/machine_file.hpp>
 #include <excavplan/machine/trajectory.hpp>
+#include <excavplan/planning/path_library.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -14,9 +14,9 @@
 #include "base/table.hpp"
 #include "base/yaml.hpp"
 #include "fuzz/file_readers.hpp"
-#include "library/library_tasks.hpp"
 #include "machine/dig_path_text.hpp"
 #include "optimisation/search_checkpoint.hpp"
+#include "planning/library_tasks.hpp"
 
 namespace excavplan::test {
 namespace {

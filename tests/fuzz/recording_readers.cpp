@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include <excavplan/error.hpp>
-#include <excavplan/survey/recording.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/recording/recording.hpp>
 
 #include "base/files.hpp"
 #include "fuzz/file_readers.hpp"

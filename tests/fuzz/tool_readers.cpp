@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <functional>
 
-#include <excavplan/error.hpp>
-#include <excavplan/plan/plan_dig.hpp>
-#include <excavplan/simulation/calibration.hpp>
-#include <excavplan/survey/recording.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/calibration/calibration.hpp>
+#include <excavplan/planning/plan_dig.hpp>
+#include <excavplan/recording/recording.hpp>
 
 #include "base/table.hpp"
 #include "fuzz/file_readers.hpp"

@@ -9,13 +9,13 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/change/bulking.hpp>
+#include <excavplan/change/volume_change.hpp>
 #include <excavplan/ground/height_map.hpp>
-#include <excavplan/ground/volume_change.hpp>
 #include "base/random.hpp"
 
-#include "ground/change_zones.hpp"
-#include "ground/doming.hpp"
+#include "change/change_zones.hpp"
+#include "change/doming.hpp"
 #include "ground/grid_cells.hpp"
 #include "support/errors.hpp"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "base/random.hpp"
-#include "ground/stripes.hpp"
+#include "change/stripes.hpp"
 
 namespace excavplan {
 namespace {

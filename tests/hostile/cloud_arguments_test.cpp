@@ -12,11 +12,11 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/survey/efficiency.hpp>
-#include <excavplan/survey/machine_front.hpp>
-#include <excavplan/survey/scan_pose.hpp>
-#include <excavplan/survey/scan_terrain.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/efficiency/efficiency.hpp>
+#include <excavplan/scans/machine_front.hpp>
+#include <excavplan/scans/scan_pose.hpp>
+#include <excavplan/scans/scan_terrain.hpp>
 
 #include "support/hostile.hpp"
 

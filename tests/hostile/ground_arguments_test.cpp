@@ -11,12 +11,12 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/ground/blocks.hpp>
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/fallback.hpp>
+#include <excavplan/change/blocks.hpp>
+#include <excavplan/change/bulking.hpp>
 #include <excavplan/planning/planned_dig.hpp>
-#include <excavplan/simulation/fallback.hpp>
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 #include "support/hostile.hpp"
 

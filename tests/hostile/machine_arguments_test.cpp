@@ -10,11 +10,11 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/calibration.hpp>
+#include <excavplan/change/bulking.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/planning/dig_cycle.hpp>
-#include <excavplan/simulation/calibration.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/soil/density_fit.hpp>

@@ -15,12 +15,12 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/ceilings.hpp>
-#include <excavplan/data_files.hpp>
-#include <excavplan/experiment/experiment.hpp>
-#include <excavplan/library/library_build.hpp>
+#include <excavplan/base/ceilings.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/experiments/experiment.hpp>
 #include <excavplan/optimisation/search_analysis.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/planning/library_build.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "support/hostile.hpp"

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/survey/recording.hpp>
+#include <excavplan/recording/recording.hpp>
 
 #include "support/errors.hpp"
 #include "support/hostile.hpp"

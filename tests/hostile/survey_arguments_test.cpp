@@ -12,10 +12,10 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/survey/density_estimate.hpp>
-#include <excavplan/survey/depth_image.hpp>
-#include <excavplan/survey/survey_plan.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/density/density_estimate.hpp>
+#include <excavplan/images/depth_image.hpp>
+#include <excavplan/sensing/survey_plan.hpp>
 
 #include "support/hostile.hpp"
 

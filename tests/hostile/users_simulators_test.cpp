@@ -15,12 +15,12 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/experiment/experiment.hpp>
-#include <excavplan/plan/plan_dig.hpp>
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/calibration.hpp>
+#include <excavplan/experiments/experiment.hpp>
+#include <excavplan/planning/plan_dig.hpp>
+#include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/scene.hpp>
 
 #include "base/random.hpp"
 #include "base/text.hpp"

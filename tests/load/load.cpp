@@ -25,11 +25,11 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/density/density_estimate.hpp>
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
-#include <excavplan/survey/density_estimate.hpp>
 
 #include "base/random.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "support/errors.hpp"
 #include "support/run_program.hpp"

@@ -16,7 +16,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include "base/random.hpp"
 
 #include "support/errors.hpp"

@@ -20,8 +20,8 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/ceilings.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/ceilings.hpp>
+#include <excavplan/base/error.hpp>
 #include "base/random.hpp"
 
 #include "base/files.hpp"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "support/errors.hpp"

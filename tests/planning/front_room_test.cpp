@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "planning/dig_layout.hpp"

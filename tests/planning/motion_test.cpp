@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/machine/motion.hpp>
 #include <excavplan/planning/cycle_motion.hpp>

@@ -20,9 +20,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/calibration/calibration.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 #include "simulation/section_simulator.hpp"
 

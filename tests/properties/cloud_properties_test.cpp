@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/survey/cloud.hpp>
-#include <excavplan/survey/scan_pose.hpp>
+#include <excavplan/clouds/cloud.hpp>
+#include <excavplan/scans/scan_pose.hpp>
 
 #include <algorithm>
 #include <cstring>
 
 #include <Eigen/Geometry>
 
+#include "base/robust_mean.hpp"
 #include "base/text.hpp"
 #include "support/cases.hpp"
 #include "support/las_file.hpp"
 #include "support/run_program.hpp"
-#include "survey/robust_mean.hpp"
 
 namespace excavplan::test {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/error.hpp>
-#include <excavplan/ground/bulking.hpp>
-#include <excavplan/simulation/terrain.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/change/bulking.hpp>
+#include <excavplan/ground/terrain.hpp>
 
 #include <algorithm>
 
 #include <Eigen/Geometry>
 
+#include "base/robust.hpp"
 #include "ground/hole_filling.hpp"
-#include "ground/robust.hpp"
 #include "support/cases.hpp"
 
 namespace excavplan::test {

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/trajectory.hpp>
 
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "support/cases.hpp"
 #include "support/run_program.hpp"

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
-#include <excavplan/library/path_library.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/planning/path_library.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 

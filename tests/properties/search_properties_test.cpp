@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/optimisation/search.hpp>
 
 #include <map>

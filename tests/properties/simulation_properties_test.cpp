@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
-#include <excavplan/simulation/depth_camera.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/sensing/depth_camera.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 

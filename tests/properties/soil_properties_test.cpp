@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/change/bulking.hpp>
 #include <excavplan/soil/density_fit.hpp>
 #include <excavplan/soil/soil_scatter.hpp>
 

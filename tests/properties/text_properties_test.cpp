@@ -4,7 +4,7 @@
 #include <cstring>
 #include <fstream>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"

@@ -71,7 +71,7 @@ class Packaging(unittest.TestCase):
             base = f"excavplan-{backend.version()}"
             names = {each[len(base) + 1:] for each in archive.getnames()}
         for needed in ("pyproject.toml", "CMakeLists.txt", "python/src/module.cpp", "PKG-INFO",
-                       "data/machines/zx120.json", "src/plan/plan_dig.cpp"):
+                       "data/machines/zx120.json", "src/planning/plan_dig.cpp"):
             self.assertIn(needed, names)
         self.assertFalse([each for each in names if each.startswith("build")])
         backend.build_sdist(self.folder)

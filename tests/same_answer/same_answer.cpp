@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/ground/bulking.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/change/bulking.hpp>
+#include <excavplan/planning/plan_dig.hpp>
+#include <excavplan/scans/scan_surface.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/survey/scan_surface.hpp>
 
 #include "base/text.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 namespace excavplan {
 namespace {

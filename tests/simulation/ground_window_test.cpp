@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include "base/random.hpp"
 
 #include "support/errors.hpp"

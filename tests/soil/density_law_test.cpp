@@ -13,8 +13,8 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/calibration.hpp>
 #include <excavplan/soil/soil.hpp>
 #include "base/random.hpp"
 

@@ -7,7 +7,7 @@
 #include <excavplan/ground/height_map.hpp>
 
 #include "base/random.hpp"
-#include "simulation/block_heap.hpp"
+#include "sensing/block_heap.hpp"
 
 /// @file
 /// Heaps for tests whose solids are known: blocks dropped one by one, which roll down to where they

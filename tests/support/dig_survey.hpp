@@ -11,8 +11,8 @@
 
 #include <Eigen/Geometry>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/density/density_estimate.hpp>
 
 #include "support/survey_scenes.hpp"
 

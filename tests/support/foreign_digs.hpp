@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/simulators.hpp>

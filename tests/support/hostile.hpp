@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 /// @file
 /// Arguments that no careful caller gives, and what a function may do with them: refuse them by an

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/library/path_library.hpp>
+#include <excavplan/planning/path_library.hpp>
 
 #include "support/run_program.hpp"
 

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/machine.hpp>
 
 #include "support/errors.hpp"

@@ -13,9 +13,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include <excavplan/change/volume_change.hpp>
+#include <excavplan/clouds/cloud.hpp>
 #include <excavplan/ground/registration.hpp>
-#include <excavplan/ground/volume_change.hpp>
-#include <excavplan/survey/cloud.hpp>
 
 #include "support/survey_scenes.hpp"
 

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/random.hpp"

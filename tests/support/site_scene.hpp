@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/simulation/depth_camera.hpp>
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/density/density_estimate.hpp>
+#include <excavplan/sensing/depth_camera.hpp>
 
 #include "support/site_shapes.hpp"
 

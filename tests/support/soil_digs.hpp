@@ -8,15 +8,15 @@
 #include <optional>
 #include <utility>
 
-#include <excavplan/error.hpp>
-#include <excavplan/ground/bulking.hpp>
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/calibration/calibration.hpp>
+#include <excavplan/change/bulking.hpp>
+#include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/scene.hpp>
 #include <excavplan/soil/soil_scatter.hpp>
 
 #include "base/random.hpp"
-#include "survey/density_of_volumes.hpp"
+#include "density/density_of_volumes.hpp"
 
 /// @file
 /// Simulated digs in random soil along random paths, and the density found from their volumes.

@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 /// @file
 /// Inputs of a wrong meaning, and whether what becomes of them can be accepted.

@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/clouds/cloud.hpp>
 
 #include "base/angles.hpp"
 #include "support/report_page.hpp"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/simulation/scene.hpp>
 
 #include "shared/dig_timing.hpp"
 #include "shared/study_figure.hpp"

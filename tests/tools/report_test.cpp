@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <limits>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 #include "shared/dig_report.hpp"
 #include "support/report_page.hpp"

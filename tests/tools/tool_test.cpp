@@ -15,7 +15,7 @@
 #include <fstream>
 #include <limits>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 
 #include "shared/stack.hpp"
 #include "support/errors.hpp"

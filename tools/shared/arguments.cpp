@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <utility>
 
-#include <excavplan/ceilings.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/ceilings.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 

@@ -11,7 +11,7 @@
 
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_parameters.hpp>
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 #include "shared/option_names.hpp"
 #include "shared/quantity.hpp"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 #include "shared/arguments.hpp"
 

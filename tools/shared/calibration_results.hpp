@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/calibration/calibration.hpp>
 
 #include "base/json.hpp"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/change/bulking.hpp>
 
 #include "shared/quantity.hpp"
 

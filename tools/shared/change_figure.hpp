@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/change/volume_change.hpp>
 
 #include "shared/plot.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "clouds/cloud_units.hpp"
 #include "shared/quantity.hpp"
 #include "shared/results.hpp"
-#include "survey/cloud_units.hpp"
 
 namespace excavplan::tools {
 namespace {

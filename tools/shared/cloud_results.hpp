@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/clouds/cloud.hpp>
 
 #include "shared/tool.hpp"
 

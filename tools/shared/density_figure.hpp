@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/density/density_estimate.hpp>
 
 #include "shared/plot.hpp"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/plan/plan_dig.hpp>
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/planning/plan_dig.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 #include "shared/report.hpp"
 

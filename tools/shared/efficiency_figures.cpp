@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "base/text.hpp"
+#include "logs/dig_phases.hpp"
 #include "shared/bars.hpp"
 #include "shared/efficiency_results.hpp"
-#include "survey/dig_phases.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <excavplan/survey/efficiency.hpp>
+#include <excavplan/efficiency/efficiency.hpp>
 
 #include "shared/efficiency_runs.hpp"
 #include "shared/plots.hpp"

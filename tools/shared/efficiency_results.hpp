@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/survey/efficiency.hpp>
-#include <excavplan/survey/run_comparison.hpp>
+#include <excavplan/efficiency/efficiency.hpp>
+#include <excavplan/efficiency/run_comparison.hpp>
 
 /// @file
 /// Efficiencies as JSON, with the keys of docs/formats.md#measure-efficiency, and as lines of text.

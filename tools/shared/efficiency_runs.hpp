@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/survey/efficiency.hpp>
-#include <excavplan/survey/run_comparison.hpp>
+#include <excavplan/efficiency/efficiency.hpp>
+#include <excavplan/efficiency/run_comparison.hpp>
 
 #include "shared/logged_dig.hpp"
 #include "shared/scans.hpp"

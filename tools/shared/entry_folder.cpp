@@ -12,8 +12,8 @@
 #include <system_error>
 #include <utility>
 
-#include <excavplan/error.hpp>
-#include <excavplan/library/library_build.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/planning/library_build.hpp>
 
 namespace excavplan::tools {
 namespace {

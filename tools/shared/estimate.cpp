@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <excavplan/ground/bulking.hpp>
+#include <excavplan/change/bulking.hpp>
 
 #include "base/files.hpp"
+#include "clouds/cloud_units.hpp"
 #include "shared/density_figure.hpp"
 #include "shared/quantity.hpp"
 #include "shared/report.hpp"
 #include "shared/results.hpp"
-#include "survey/cloud_units.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/experiment/experiment.hpp>
+#include <excavplan/experiments/experiment.hpp>
 
 #include "shared/plots.hpp"
 

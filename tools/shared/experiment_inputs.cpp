@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/experiment/sensitivity.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/calibration.hpp>
+#include <excavplan/experiments/sensitivity.hpp>
 #include <excavplan/kit/kit_files.hpp>
-#include <excavplan/simulation/calibration.hpp>
 
 #include "base/text.hpp"
 #include "shared/results.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/experiment/experiment.hpp>
+#include <excavplan/experiments/experiment.hpp>
 
 #include "shared/goal_inputs.hpp"
 #include "shared/search_method.hpp"

@@ -7,8 +7,8 @@
 #include <utility>
 #include <variant>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/simulation/calibration.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/calibration.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/text.hpp"

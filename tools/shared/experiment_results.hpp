@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/experiment/experiment.hpp>
+#include <excavplan/experiments/experiment.hpp>
 
 #include "shared/experiment_figures.hpp"
 #include "shared/report.hpp"

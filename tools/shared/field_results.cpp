@@ -5,8 +5,8 @@
 #include <cmath>
 #include <mutex>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/study/field_experiment.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/experiments/field_experiment.hpp>
 
 #include "base/text.hpp"
 #include "shared/results.hpp"

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/survey/scan_pose.hpp>
+#include <excavplan/scans/scan_pose.hpp>
 
 #include "shared/arguments.hpp"
 

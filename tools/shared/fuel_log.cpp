@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/planning/dig_cycle.hpp>
 
 #include "base/files.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <excavplan/machine/fuel_model.hpp>
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 #include "shared/arguments.hpp"
 

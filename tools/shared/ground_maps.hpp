@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/change/volume_change.hpp>
 
 #include "shared/dig_report.hpp"
 #include "shared/maps.hpp"

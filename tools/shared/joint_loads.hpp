@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/machine/kinematics.hpp>
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 /// @file
 /// Loads of the joints and of their cylinders in a dig, from its force history.

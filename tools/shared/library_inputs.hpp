@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/library/library_build.hpp>
+#include <excavplan/planning/library_build.hpp>
 
 #include "shared/goal_inputs.hpp"
 #include "shared/simulator_inputs.hpp"

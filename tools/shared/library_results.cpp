@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"

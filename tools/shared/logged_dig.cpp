@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/read_double.hpp"
+#include "logs/log_columns.hpp"
 #include "shared/quantity.hpp"
-#include "survey/log_columns.hpp"
 
 namespace excavplan::tools {
 namespace {

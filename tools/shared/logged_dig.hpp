@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/survey/efficiency.hpp>
+#include <excavplan/efficiency/efficiency.hpp>
 
 #include "shared/scans.hpp"
 #include "shared/tool.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/density/density_estimate.hpp>
 
 #include "shared/arguments.hpp"
 

@@ -6,12 +6,12 @@
 #include <array>
 #include <filesystem>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include <excavplan/machine/joint_motion.hpp>
-#include <excavplan/plan/plan_motion.hpp>
+#include <excavplan/planning/plan_motion.hpp>
+#include <excavplan/scans/scan_terrain.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
-#include <excavplan/survey/scan_terrain.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"

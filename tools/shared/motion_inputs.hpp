@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include <excavplan/plan/plan_dig.hpp>
 #include <excavplan/planning/cycle_motion.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 
 #include "shared/arguments.hpp"
 #include "shared/site.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 namespace excavplan::tools {
 

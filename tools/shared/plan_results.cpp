@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 
 #include "shared/arguments.hpp"
 #include "shared/plots.hpp"

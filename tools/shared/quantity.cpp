@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include <excavplan/error.hpp>
-#include <excavplan/survey/scan_pose.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/scans/scan_pose.hpp>
 
 #include "base/angles.hpp"
 #include "base/read_double.hpp"

@@ -9,7 +9,7 @@
 
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_parameters.hpp>
-#include <excavplan/survey/machine_front.hpp>
+#include <excavplan/scans/machine_front.hpp>
 
 #include "base/text.hpp"
 

@@ -21,7 +21,7 @@ int excavplan::tools::run_ranked(int argc, const char* const* argv, const Ranked
 #include <sstream>
 #include <thread>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/parallel.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include <excavplan/library/library_build.hpp>
+#include <excavplan/planning/library_build.hpp>
 
 namespace excavplan::tools {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 #include "recording/recording_file.hpp"

@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/survey/machine_front.hpp>
-#include <excavplan/survey/recording.hpp>
-#include <excavplan/survey/scan_surface.hpp>
+#include <excavplan/recording/recording.hpp>
+#include <excavplan/scans/machine_front.hpp>
+#include <excavplan/scans/scan_surface.hpp>
 
 namespace excavplan::tools {
 

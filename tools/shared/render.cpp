@@ -11,7 +11,7 @@
 #include <memory>
 #include <new>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/angles.hpp"
 #include "base/text.hpp"

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/change/volume_change.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"

@@ -8,10 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/change/volume_change.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/sensing/scene.hpp>
 #include <excavplan/soil/density_law.hpp>
 
 #include "planning/planned_digs.hpp"  // dig_json()

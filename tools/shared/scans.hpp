@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/survey/scan_surface.hpp>
+#include <excavplan/scans/scan_surface.hpp>
 
 #include "shared/arguments.hpp"
 #include "shared/found_pose.hpp"

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include <excavplan/survey/cloud.hpp>
+#include <excavplan/clouds/cloud.hpp>
 
 namespace excavplan::tools {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/simulation/scene.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 #include "shared/arguments.hpp"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shared/search_inputs.hpp"
 
-#include <excavplan/ceilings.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/ceilings.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
 
 #include "shared/quantity.hpp"

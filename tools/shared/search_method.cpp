@@ -4,7 +4,7 @@
 
 #include <variant>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "shared/quantity.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <excavplan/survey/density_estimate.hpp>
+#include <excavplan/density/density_estimate.hpp>
 
 #include "shared/logged_dig.hpp"
 #include "shared/tool.hpp"

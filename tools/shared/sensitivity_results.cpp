@@ -4,7 +4,7 @@
 
 #include <mutex>
 
-#include <excavplan/experiment/sensitivity.hpp>
+#include <excavplan/experiments/sensitivity.hpp>
 
 #include "base/text.hpp"
 #include "shared/results.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-#include <excavplan/survey/scan_terrain.hpp>
+#include <excavplan/scans/scan_terrain.hpp>
 
 #include "shared/found_pose.hpp"
 #include "shared/scans.hpp"

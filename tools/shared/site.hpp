@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "shared/arguments.hpp"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/calibration/calibration.hpp>
 #include <excavplan/kit/kit_files.hpp>
-#include <excavplan/simulation/calibration.hpp>
 
 #include "base/text.hpp"
 #include "shared/tool.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include <excavplan/density/density_estimate.hpp>
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/survey/density_estimate.hpp>
 
 #include "shared/arguments.hpp"
 

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 
 namespace excavplan::tools {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/change/volume_change.hpp>
 
 #include "base/json.hpp"
 #include "base/text.hpp"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <excavplan/study/study.hpp>
+#include <excavplan/experiments/study.hpp>
 
 #include "shared/plot.hpp"
 

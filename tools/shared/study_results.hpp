@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <excavplan/study/study.hpp>
+#include <excavplan/experiments/study.hpp>
 
 #include "shared/plots.hpp"
 #include "shared/tool.hpp"

@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include <excavplan/survey/survey_plan.hpp>
+#include <excavplan/sensing/survey_plan.hpp>
 
 #include "shared/quantity.hpp"
 

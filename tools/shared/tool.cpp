@@ -17,10 +17,10 @@
 #include <string_view>
 #include <system_error>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/kit/kit_files.hpp>
 #include <excavplan/machine/machine_file.hpp>
-#include <excavplan/plan/plan_dig.hpp>
+#include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/simulation/simulators.hpp>
 
 #include "base/files.hpp"

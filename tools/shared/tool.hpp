@@ -13,8 +13,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/data_files.hpp>
-#include <excavplan/error.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/soil/soil.hpp>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "survey/cloud_units.hpp"
+#include "clouds/cloud_units.hpp"
 
 namespace excavplan::tools {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/library/path_library.hpp>
 #include <excavplan/machine/machine.hpp>
+#include <excavplan/planning/path_library.hpp>
 
 /// @file
 /// Where the files of machine-kit are (docs/machines.md): a folder with machine.json, laws and

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/error.hpp>
-#include <excavplan/library/path_library.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/planning/path_library.hpp>
 #include <excavplan/soil/density_fit.hpp>
 
 /// @file

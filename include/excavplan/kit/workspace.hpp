@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/machine/machine_file.hpp>
 
 /// @file

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/error.hpp>
+#include <excavplan/base/error.hpp>
 #include <excavplan/machine/dig_path.hpp>
 
 namespace excavplan {

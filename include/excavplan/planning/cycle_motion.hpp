@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/motion.hpp>
 #include <excavplan/planning/planned_dig.hpp>
-#include <excavplan/simulation/terrain.hpp>
 
 /// @file
 /// The way of the joints over a working cycle: from where the machine stands to the dig, along it,

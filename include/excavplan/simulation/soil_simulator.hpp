@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/dig_path.hpp>
-#include <excavplan/simulation/terrain.hpp>
 
 namespace excavplan {
 

@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/error.hpp>
-#include <excavplan/ground/volume_change.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/change/volume_change.hpp>
 #include <excavplan/soil/soil.hpp>
 
 /// @file

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/data_files.hpp>
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
 

@@ -18,7 +18,7 @@
 #include <std_msgs/String.h>
 #include <tf2_msgs/TFMessage.h>
 #include <trajectory_msgs/JointTrajectory.h>
-#include <excavplan/controller/robot_node.hpp>
+#include <excavplan/robot/robot_node.hpp>
 
 #include <excavplan_ros/DigAndPlan.h>
 #include <excavplan_ros/Estimate.h>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include <excavplan/controller/robot_node.hpp>
+#include <excavplan/robot/robot_node.hpp>
 
 namespace excavplan_ros {
 namespace {

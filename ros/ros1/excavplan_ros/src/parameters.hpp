@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ros/node_handle.h>
-#include <excavplan/controller/robot_node.hpp>
+#include <excavplan/robot/robot_node.hpp>
 
 namespace excavplan_ros {
 

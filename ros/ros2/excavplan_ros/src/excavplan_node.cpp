@@ -11,7 +11,7 @@
 #include <limits>
 #include <optional>
 
-#include <excavplan/controller/robot_node.hpp>
+#include <excavplan/robot/robot_node.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
 #include <sensor_msgs/msg/point_cloud2.hpp>

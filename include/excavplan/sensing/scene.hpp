@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/base/error.hpp>
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/sensing/depth_camera.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+#include <excavplan/simulation/simulators.hpp>
+#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/soil/soil.hpp>
+
+/// @file
+/// A simulated dig with the heap it leaves, and the scans of a camera before and after.
+
+namespace excavplan {
+
+/// Hard soil falls as blocks with voids between them (docs/methods.md#rehearsal). Numbers are ours.
+struct BlockSettings {
+  double size = 0.15;  ///< mean edge of a block, at least 4 cm and at most 1 m [m]
+  /// Share of its swelling that the soil of a block has gone through [-], in 0 .. 1: 1 is cracked
+  /// soil as loose as dumped soil is by its law, 0 is undisturbed soil.
+  double swell = 1.0;
+  double fines = 0.3;           ///< share of the voids that fine soil fills [-], in 0 .. 1
+  double least_density = 80.0;  ///< softer ground crumbles [%]
+  std::uint64_t seed = 1;       ///< of shapes and places
+};
+
+/// Loose soil as blocks.
+struct BlockLayer {
+  HeightMap before;    ///< the ground before the dig, on finer cells
+  HeightMap after;     ///< with the blocks
+  int count = 0;       ///< of blocks
+  double soil = 0.0;   ///< volume of blocks and fines [m^3]
+  double voids = 0.0;  ///< between and under them, as seen from above, without the fines [m^3]
+};
+
+/// Settings of run_scene().
+struct SceneOptions {
+  DigParameters path = paper_fixed_path();  ///< to dig
+  std::optional<double> start_x = {};       ///< [m]; empty: make_dig_path_anywhere() chooses it
+  DigPathOptions rules = {};                ///< that the path must keep
+  Eigen::Vector2d dump_at = default_dump_point();  ///< centre of the heap (x, y) [m]
+  SimulatorKind simulator = default_simulator();   ///< that digs
+  bool history = false;                            ///< fill DigResult::history
+  std::optional<BlockSettings> blocks = {};        ///< if hard soil shall fall as blocks
+};
+
+/// One dig with the ground before and after it.
+struct DigScene {
+  std::string soil;                  ///< its name
+  double density_percent = 0.0;      ///< 0 .. 100
+  DigPath path;                      ///< that was dug
+  Eigen::Vector2d dump_at;           ///< centre of the heap (x, y) [m]
+  Terrain before;                    ///< the ground before
+  Terrain after;                     ///< with the heap
+  DigResult dig;                     ///< with a stall, if there was one
+  std::optional<BlockLayer> blocks;  ///< instead of the loose soil of `after` that rose
+  HeightMapVolumes volumes;          ///< of the two grounds, or of those with blocks
+  double bulking_factor_true = 0.0;  ///< by the balance of dry mass [-]
+  double duration = 0.0;             ///< of penetrate, drag and scoop [s]
+  /// dump_out_of_reach: the machine cannot dump there; no_blocks: the ground is not hard enough
+  std::vector<Warning> warnings;
+};
+
+/// Digs once and dumps the payload. The ground must contain the path and the heap: scene_extent().
+/// A stall is in the result of the dig.
+///
+/// @throws Error (bad_input) if the path cannot be driven, the heap would reach the dig (the
+///         volumes of both would hide each other), or as SoilSimulator::dig()
+DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
+                   const Terrain& ground, const SceneOptions& options = {});
+
+/// Points of a scene.
+struct SceneScans {
+  std::vector<Eigen::Vector3d> before;  ///< in the site frame [m]
+  std::vector<Eigen::Vector3d> after;   ///< likewise
+};
+
+/// Where a camera stands in the site frame.
+struct CameraPlace {
+  Eigen::Vector3d position;  ///< [m]
+  Eigen::Vector3d target;    ///< point on the optical axis [m]
+};
+
+/// Scans of depth cameras at these places. Without any there are two, one over the dig and one over
+/// the heap, placed by camera_above(). They have the errors, image and field of view of `camera`;
+/// its place is not used.
+///
+/// @throws Error (bad_input) as scan_surface(), or if a camera sees no ground
+SceneScans scan_scene(const DigScene& scene, const DepthCamera& camera, std::uint64_t seed,
+                      const std::vector<CameraPlace>& places = {});
+
+}  // namespace excavplan

@@ -1,0 +1,406 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "change/surveyed_area.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <excavplan/base/error.hpp>
+
+#include "change/doming.hpp"
+#include "change/relief.hpp"
+#include "change/shadow_filling.hpp"
+#include "change/stripes.hpp"
+#include "change/zone_filling.hpp"
+#include "ground/grid_cells.hpp"
+#include "ground/sampling_gaps.hpp"
+#include "ground/sight_lines.hpp"
+#include "ground/too_few_cells.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr Eigen::Index fewest_known_cells = 100;
+constexpr double gentle = 0.5;  // ours: soil beyond the edge of a scan lies steeper [-]
+constexpr double steep = 1.0;  // ours: on gentler faces the cells are averages of enough points [-]
+/// Error of the position of a steep face in a lattice of points, as a share of its spacing and the
+/// same along the whole face; ours, from pits with upright walls under simulated cameras.
+constexpr double face_place = 0.15;
+
+/// Of what lies within a cell of the border between a hole and soil beside it, the share that each
+/// may hide of the other; ours, from simulated digs that leave soil at the edge of the hole.
+constexpr double hidden_at_border = 0.1;
+
+/// Sums the difference over each zone: area, volume, place. `shadow` is 1 for cells filled as such.
+void sum_zones(Area& area, const Eigen::ArrayXXi& shadow) {
+  const HeightMap& grid = area.grid;
+  const ChangedGround& ground = area.ground;
+  const double cell_area = grid.cell_size * grid.cell_size;
+  for_each_cell(ground.zone, [&](Cell cell) {
+    const int index = ground.zone(cell.row, cell.col);
+    if (index < 0) return;
+    ZoneSum& zone = area.zones[static_cast<std::size_t>(index)];
+    const Eigen::Vector2d place(grid.x(cell.col), grid.y(cell.row));
+    const double half = 0.5 * grid.cell_size;
+    if (zone.area == 0.0) zone.extent = {place.x(), place.y(), place.x(), place.y()};
+    zone.extent = {std::min(zone.extent.x_min, place.x() - half),
+                   std::min(zone.extent.y_min, place.y() - half),
+                   std::max(zone.extent.x_max, place.x() + half),
+                   std::max(zone.extent.y_max, place.y() + half)};
+    zone.volume += cell_area * ground.difference(cell.row, cell.col);
+    zone.area += cell_area;
+    zone.centre += cell_area * place;
+    if (area.unknown(cell.row, cell.col) != 0) zone.unknown += cell_area;
+    if (shadow(cell.row, cell.col) != 0) zone.shadow += cell_area;
+  });
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    if (area.zones[i].area > 0.0) area.zones[i].centre /= area.zones[i].area;
+    area.zones[i].is_cut = ground.zone_is_cut[i];
+  }
+}
+
+/// Noise of each cell: that of stable ground, or more where its points scatter more.
+Eigen::ArrayXXd noise_of_cells(const Eigen::ArrayXXd& variance, const Area& area) {
+  const double stable = area.noise.white;
+  const auto& z = area.ground.difference;
+  if (variance.size() == 0) return Eigen::ArrayXXd::Constant(z.rows(), z.cols(), stable);
+  return (variance > stable).select(variance, stable);  // also where it is NaN
+}
+
+/// Noise of the cells of each zone.
+void sum_noise(Area& area, const Eigen::ArrayXXd& noise) {
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  for_each_cell(area.ground.zone, [&](Cell cell) {
+    const int index = area.ground.zone(cell.row, cell.col);
+    if (index < 0 || area.unknown(cell.row, cell.col) != 0) return;
+    area.zones[static_cast<std::size_t>(index)].noise +=
+        cell_area * cell_area * noise(cell.row, cell.col);
+  });
+}
+
+/// How regularly points lie: 0 for random points, whose counts in two cells differ by the square
+/// root of their sum; towards 1 for a lattice, as of a camera.
+double regularity_of(const Surface& scan, const Eigen::ArrayXXi& zone) {
+  const Eigen::ArrayXXi& points = scan.points;
+  const Eigen::ArrayXXd& z = scan.height.z;
+  double squares = 0.0;
+  double sums = 0.0;
+  for_each_cell(points, [&](Cell at) {
+    if (at.row == 0 || zone(at.row, at.col) >= 0 || zone(at.row - 1, at.col) >= 0) return;
+    const double one = points(at.row - 1, at.col);
+    const double two = points(at.row, at.col);
+    if (std::isnan(z(at.row - 1, at.col)) || std::isnan(z(at.row, at.col))) return;
+    squares += (one - two) * (one - two);
+    sums += one + two;
+  });
+  return sums > 0.0 ? std::max(0.0, 1.0 - squares / sums) : 0.0;
+}
+
+/// Error of each zone by the steep faces of a scan: their area seen from the side times the error
+/// of their position. Random points err independently in each cell, which the noise of the cells
+/// contains; rows of points along a face have the same error.
+void sum_faces(Area& area, const Surface& scan) {
+  if (scan.points.size() == 0) return;
+  const std::size_t zones = area.zones.size();
+  std::vector<double> faces(zones, 0.0);
+  std::vector<double> points(zones, 0.0);
+  const Gradient gradient = gradient_of(scan.height);
+  const double regularity = regularity_of(scan, area.ground.zone);
+  const double cell_size = area.grid.cell_size;
+  const double least = std::max(steep, 2.0 * area.ground.noise_sd / cell_size);
+  for_each_cell(area.ground.zone, [&](Cell at) {
+    const int index = area.ground.zone(at.row, at.col);
+    if (index < 0) return;
+    const auto i = static_cast<std::size_t>(index);
+    points[i] += scan.points(at.row, at.col);
+    const double slope = std::hypot(gradient.x(at.row, at.col), gradient.y(at.row, at.col));
+    if (slope > least) faces[i] += slope * cell_size * cell_size;
+  });
+  for (std::size_t i = 0; i < zones; ++i) {
+    if (faces[i] == 0.0 || points[i] == 0.0) continue;
+    const double spacing = std::sqrt(area.zones[i].area / points[i]);
+    area.zones[i].faces += regularity * std::pow(face_place * spacing * faces[i], 2);
+  }
+}
+
+/// Error of each zone by what lies between the points of a sparse scan.
+void sum_between(Area& area, const Surface& scan) {
+  const std::vector<double> variance =
+      variance_between_points(scan, area.ground.zone, area.zones.size());
+  if (scan.points.size() == 0) return;
+  const double irregularity = 1.0 - regularity_of(scan, area.ground.zone);
+  for (std::size_t i = 0; i < area.zones.size(); ++i)
+    area.zones[i].faces += irregularity * variance[i];
+}
+
+/// Error of zones that touch: a cell on their border takes in soil that was lost and soil that was
+/// gained, and shows the difference.
+void sum_borders(Area& area) {
+  const auto& zone = area.ground.zone;
+  const auto& difference = area.ground.difference;
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  std::vector<double> hidden(area.zones.size(), 0.0);
+  for_each_cell(zone, [&](Cell at) {
+    const int index = zone(at.row, at.col);
+    if (index < 0) return;
+    for_each_neighbour(zone, at, [&](Cell n) {
+      const int other = zone(n.row, n.col);
+      if (other < 0 || other == index) return;
+      const double step = std::abs(difference(at.row, at.col) - difference(n.row, n.col));
+      if (step > 0.0) hidden[static_cast<std::size_t>(index)] += cell_area * step;
+    });
+  });
+  for (std::size_t i = 0; i < hidden.size(); ++i) {
+    area.zones[i].faces += std::pow(hidden_at_border * hidden[i], 2);
+  }
+}
+
+/// Volume that may be missing of zones at the edge of the survey: soil that meets the ground by a
+/// gentle slope beyond the edge.
+void sum_beyond_edge(Area& area) {
+  const double cell_size = area.grid.cell_size;
+  std::vector<double> missing(area.zones.size(), 0.0);
+  const auto& zone = area.ground.zone;
+  for_each_cell(zone, [&](Cell at) {
+    const int index = zone(at.row, at.col);
+    if (index < 0 || !area.zones[static_cast<std::size_t>(index)].is_cut) return;
+    bool is_edge = on_border(zone, at);
+    for_each_neighbour(zone, at, [&](Cell n) {
+      is_edge = is_edge || std::isnan(area.ground.difference(n.row, n.col));
+    });
+    if (!is_edge) return;
+    const double height = area.ground.difference(at.row, at.col);
+    missing[static_cast<std::size_t>(index)] += cell_size * 0.5 * height * height / gentle;
+  });
+  for (std::size_t i = 0; i < missing.size(); ++i) area.zones[i].holes += std::pow(missing[i], 2);
+}
+
+/// Error of zones against a wall, whose face is somewhere in cells that were left out: up to half a
+/// cell of the soil along it, which is what their filling holds.
+void sum_walls(Area& area, const Eigen::ArrayXXd& before) {
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  std::vector<double> uncertain(area.zones.size(), 0.0);
+  for_each_cell(area.ground.zone, [&](Cell at) {
+    const int index = area.ground.zone(at.row, at.col);
+    if (index < 0 || !std::isnan(before(at.row, at.col)) || !is_beside_wall(before, at)) return;
+    uncertain[static_cast<std::size_t>(index)] +=
+        cell_area * std::abs(area.ground.difference(at.row, at.col));
+  });
+  for (std::size_t i = 0; i < uncertain.size(); ++i) {
+    area.zones[i].faces += std::pow(uncertain[i], 2);
+  }
+}
+
+/// Error of soil by its edge that is too thin to tell from noise and runs out beyond the margin of
+/// the zone.
+void sum_thin(Area& area, const ChangeOptions& options) {
+  constexpr double scattered = 0.3;  // ours: slope of soil that thins out [-]
+  const double cell_size = area.grid.cell_size;
+  const double least = options.growth * area.ground.smooth_sd;
+  const double beyond = least / scattered - zone_margin(options, cell_size, area.ground.smooth_sd);
+  if (!(beyond > 0.0)) return;
+  const auto& zone = area.ground.zone;
+  std::vector<double> edge(area.zones.size(), 0.0);
+  for_each_cell(zone, [&](Cell at) {
+    if (zone(at.row, at.col) < 0) return;
+    for_each_neighbour(zone, at, [&](Cell n) {
+      if (zone(n.row, n.col) < 0) edge[static_cast<std::size_t>(zone(at.row, at.col))] += cell_size;
+    });
+  });
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    if (!(area.zones[i].volume > 0.0)) continue;
+    area.zones[i].thin = std::pow(edge[i] * 0.5 * beyond * beyond * scattered, 2);
+  }
+}
+
+/// One area's scans, with motion and objects taken out.
+struct Scans {
+  HeightMap before;
+  HeightMap after;
+  Eigen::ArrayXXi mixed;  // 1 where returns after were mixed and dropped
+  Surface places;         // sensors of the scan after, and what each saw
+  std::optional<SensorPlace> inferred;
+  Eigen::ArrayXXd variance_before;  // of each cell [m^2]; both empty where unknown
+  Eigen::ArrayXXd variance_after;
+
+  /// Of a cell of after - before - share * before.
+  Eigen::ArrayXXd variance_of(double share) const {
+    return std::pow(1.0 + share, 2) * variance_before + variance_after;
+  }
+};
+
+/// Where nothing says where the sensor stood, the scan itself may.
+std::optional<SensorPlace> complete_place(Surface& surface) {
+  if (!surface.sensors.empty()) return std::nullopt;
+  std::optional<SensorPlace> inferred = infer_sensor(surface);
+  if (inferred) surface.sensors = {inferred->place()};
+  return inferred;
+}
+
+Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
+               std::vector<Object>& objects) {
+  if (!same_grid(pair.before.height, pair.after.height)) {
+    throw Error(ErrorKind::bad_input,
+                "the maps before and after must be on one grid: same origin, cell and size");
+  }
+  Surface before = pair.before;
+  Surface after = pair.after;
+  complete_place(before);
+  drop_mixed_returns(before);
+  const std::optional<SensorPlace> inferred = complete_place(after);
+  const Eigen::ArrayXXi mixed = drop_mixed_returns(after);
+  Scans scans{before.height,
+              realigned(after.height, pair.alignment),
+              mixed,
+              {{}, {}, {}, after.sensors, after.seen_from},
+              inferred,
+              {},
+              {}};
+  const bool told = before.variance.size() == scans.before.z.size() &&
+                    after.variance.size() == scans.after.z.size();
+  if (told) {
+    scans.variance_before = before.variance;
+    scans.variance_after = after.variance;
+  }
+  objects = take_out_objects(scans.before.z, scans.after.z, scans.before.cell_size,
+                             options.margin / scans.before.cell_size);
+  const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
+  const Eigen::Index known = difference.size() - difference.isNaN().count();
+  if (known < fewest_known_cells) {
+    throw TooFewCells("the maps before and after share " + std::to_string(known) + " known cells",
+                      fewest_known_cells, scans.before.cell_size);
+  }
+  return scans;
+}
+
+/// Errors that run through stable ground and zones alike.
+struct Systematic {
+  Eigen::MatrixXd left;  // covariance of the sums of the cells of the zones [m^2]
+  double rms = 0.0;      // of what was taken off stable ground [m]
+};
+
+Systematic take_systematic_off(ChangedGround& ground, double cell_size) {
+  const Eigen::ArrayXXd before = ground.residual;
+  Systematic errors{take_doming_off(ground, cell_size)};
+  const std::vector<double> of_stripes = take_stripes_off(ground);
+  for (std::size_t i = 0; i < of_stripes.size(); ++i) {
+    errors.left(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += of_stripes[i];
+  }
+  const Eigen::ArrayXXd taken = before - ground.residual;
+  const auto known = static_cast<double>(taken.size() - taken.isNaN().count());
+  errors.rms = std::sqrt(taken.isNaN().select(0.0, taken.square()).sum() / std::max(1.0, known));
+  return errors;
+}
+
+/// The change, found where systematic errors are taken off: they would hide what is lower than they
+/// are. They are still in its difference.
+ChangedGround change_in(const Eigen::ArrayXXd& difference, const Eigen::ArrayXXd& variance,
+                        double cell_size, const ChangeOptions& options) {
+  constexpr int most_rounds = 4;
+  ChangedGround found = find_change(difference, variance, cell_size, options);
+  for (int round = 0; round < most_rounds; ++round) {
+    ChangedGround flat = found;
+    take_systematic_off(flat, cell_size);
+    const Eigen::ArrayXXd errors =
+        flat.difference.isNaN().select(0.0, found.difference - flat.difference);
+    if ((errors == 0.0).all()) break;
+    ChangedGround next = find_change(difference - errors, variance, cell_size, options);
+    const bool is_settled = (next.zone == found.zone).all();
+    found = std::move(next);
+    found.difference += errors;
+    found.residual += errors;
+    if (is_settled) break;
+  }
+  return found;
+}
+
+/// Sums, for each zone, what outliers leave in its volume that are as many as on even ground [m^3].
+Eigen::VectorXd outlier_volumes(const SurfacePair& pair, const Area& area) {
+  Eigen::VectorXd volumes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(area.zones.size()));
+  const Eigen::ArrayXXf& before = pair.before.outlier_bias;
+  const Eigen::ArrayXXf& after = pair.after.outlier_bias;
+  const auto cells = area.unknown.size();
+  if (before.size() != cells || after.size() != cells) return volumes;
+  for_each_cell(area.unknown, [&](Cell at) {
+    const int zone = area.ground.zone(at.row, at.col);
+    if (zone < 0 || area.unknown(at.row, at.col) != 0) return;
+    volumes(zone) += static_cast<double>(after(at.row, at.col) - before(at.row, at.col));
+  });
+  return volumes * area.grid.cell_size * area.grid.cell_size;
+}
+
+/// The errors that each zone has of its own.
+void sum_own_errors(Area& area, const SurfacePair& pair, const Scans& scans,
+                    const Eigen::ArrayXXd& variance, const ChangeOptions& options) {
+  const Eigen::ArrayXXd noise = noise_of_cells(variance, area);
+  area.variance = noise + area.noise.correlated;
+  sum_noise(area, noise);
+  sum_beyond_edge(area);
+  for (const Surface* surface : {&pair.before, &pair.after}) {
+    sum_faces(area, *surface);
+    sum_between(area, *surface);
+  }
+  sum_borders(area);
+  sum_walls(area, scans.before.z);
+  sum_thin(area, options);
+}
+
+/// Those that zones share, with what the stable ground predicts of them taken off the volumes.
+void predict_errors(Area& area, const HeightMap& before, const Alignment& left) {
+  area.errors = ErrorField{before,           area.ground.residual,
+                           area.ground.zone, static_cast<int>(area.zones.size()),
+                           area.noise,       left}
+                    .predict();
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    area.zones[i].volume -= area.errors.mean(static_cast<Eigen::Index>(i));
+  }
+}
+
+}  // namespace
+
+Area survey(const SurfacePair& pair, const ChangeOptions& options) {
+  Area area;
+  Scans scans = prepared(pair, options, area.objects);
+  area.place_before = doubt_of_place(pair.before);
+  area.place_after = doubt_of_place(pair.after);
+  area.grid.origin = scans.before.origin;
+  area.grid.cell_size = scans.before.cell_size;
+  const Eigen::ArrayXXd difference = scans.after.z - scans.before.z;
+  area.inferred = scans.inferred;
+  area.unknown = difference.isNaN().cast<int>();
+  area.ground = change_in(difference, scans.variance_of(0.0), scans.before.cell_size, options);
+  area.parts = part_zones(area.ground, area.grid.cell_size);
+  area.zones.resize(area.ground.zone_is_cut.size());
+  area.kinds.assign(area.zones.size(), ZoneKind::other);
+
+  std::vector<double> shadows(area.zones.size(), 0.0);
+  if (!scans.places.sensors.empty()) {
+    shadows = fill_shadows({scans.before, scans.after, scans.mixed, scans.places, scans.inferred},
+                           area.ground);
+  }
+  const Eigen::ArrayXXi shadow = (scans.after.z - scans.before.z).isNaN().select(0, area.unknown);
+  const ZoneFilling filling = fill_zones(scans.before.z, scans.after.z, area.ground);
+  const double cell_area = area.grid.cell_size * area.grid.cell_size;
+  for (std::size_t i = 0; i < area.zones.size(); ++i) {
+    area.zones[i].holes = (filling.variance[i] + shadows[i]) * cell_area * cell_area;
+  }
+  area.ground.difference = filling.difference;
+
+  Alignment left = pair.alignment;
+  const double share = take_relief_off(scans.before, area.ground, left);
+  const Systematic systematic = take_systematic_off(area.ground, area.grid.cell_size);
+  area.systematic_rms = systematic.rms;
+  sum_zones(area, shadow);
+  area.noise = find_noise(area.ground.residual, area.grid.cell_size);
+  area.noise.white = std::max(area.noise.white, least_noise * least_noise);
+  sum_own_errors(area, pair, scans, scans.variance_of(share), options);
+  predict_errors(area, scans.before, left);
+  area.outliers = outlier_volumes(pair, area);
+  area.errors.correlated += systematic.left * cell_area * cell_area;
+  area.errors.correlated += area.outliers * area.outliers.transpose();
+  return area;
+}
+
+}  // namespace excavplan

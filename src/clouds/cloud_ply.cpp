@@ -1,0 +1,324 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "clouds/cloud_formats.hpp"
+
+// PLY 1.0 as Greg Turk describes it (Stanford, 1994), with the type names int8 ... float64 that
+// later programs write.
+
+namespace excavplan {
+namespace {
+
+enum class Encoding { ascii, little_endian, big_endian };
+
+struct Property {
+  std::string name;
+  ScalarType type = ScalarType::float32;
+  std::optional<ScalarType> length_type;  ///< of a list
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+
+  bool has_lists() const {
+    return std::any_of(properties.begin(), properties.end(),
+                       [](const Property& property) { return property.length_type.has_value(); });
+  }
+  /// Bytes of one row, all lists being empty.
+  std::size_t row() const {
+    std::size_t bytes = 0;
+    for (const Property& property : properties) {
+      bytes += size_of(property.length_type.value_or(property.type));
+    }
+    return bytes;
+  }
+};
+
+struct Header {
+  Encoding encoding = Encoding::ascii;
+  std::vector<Element> elements;
+};
+
+constexpr std::size_t no_axis = 3;
+
+/// 0, 1, 2 for x, y, z of a vertex.
+std::size_t axis_of(const Element& element, const Property& property) {
+  if (element.name != "vertex" || property.length_type || property.name.size() != 1) return no_axis;
+  return std::min(std::string("xyz").find(property.name), no_axis);
+}
+
+ScalarType scalar_type(std::string_view name, const LineReader& lines) {
+  struct Name {
+    std::string_view old_name;
+    std::string_view new_name;
+    ScalarType type;
+  };
+  constexpr std::array<Name, 8> names = {{{"char", "int8", ScalarType::int8},
+                                          {"uchar", "uint8", ScalarType::uint8},
+                                          {"short", "int16", ScalarType::int16},
+                                          {"ushort", "uint16", ScalarType::uint16},
+                                          {"int", "int32", ScalarType::int32},
+                                          {"uint", "uint32", ScalarType::uint32},
+                                          {"float", "float32", ScalarType::float32},
+                                          {"double", "float64", ScalarType::float64}}};
+  for (const Name& known : names) {
+    if (name == known.old_name || name == known.new_name) return known.type;
+  }
+  lines.fail("type " + in_quotes(name), "char ... double or int8 ... float64");
+}
+
+using Words = std::vector<std::string_view>;
+
+Encoding read_encoding(const Words& words, const LineReader& lines) {
+  if (words.size() == 3 && words[0] == "format" && words[2] == "1.0") {
+    if (words[1] == "ascii") return Encoding::ascii;
+    if (words[1] == "binary_little_endian") return Encoding::little_endian;
+    if (words[1] == "binary_big_endian") return Encoding::big_endian;
+  }
+  lines.fail(in_quotes(lines.line()),
+             "format ascii, binary_little_endian or binary_big_endian 1.0");
+}
+
+Element read_element(const Words& words, const LineReader& lines) {
+  if (words.size() != 3) lines.fail(in_quotes(lines.line()), "element NAME COUNT");
+  return {std::string(words[1]), count_of(words[2], lines), {}};
+}
+
+Property read_property(const Words& words, const LineReader& lines) {
+  if (words.size() == 3 && words[1] != "list") {
+    return {std::string(words[2]), scalar_type(words[1], lines), std::nullopt};
+  }
+  if (words.size() != 5 || words[1] != "list") {
+    lines.fail(in_quotes(lines.line()), "property TYPE NAME or property list TYPE TYPE NAME");
+  }
+  const ScalarType length_type = scalar_type(words[2], lines);
+  if (!is_integer(length_type)) {
+    lines.fail("a list length of type " + in_quotes(words[2]), "an integer type");
+  }
+  return {std::string(words[4]), scalar_type(words[3], lines), length_type};
+}
+
+/// The header must describe one element vertex with x, y and z.
+void require_vertices(const Header& header, const LineReader& lines) {
+  std::size_t vertices = 0;
+  for (const Element& element : header.elements) {
+    if (element.properties.empty()) {
+      lines.fail("element " + in_quotes(element.name) + " without a property", "one or more");
+    }
+    if (element.name != "vertex") continue;
+    ++vertices;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto times =
+          std::count_if(element.properties.begin(), element.properties.end(),
+                        [&](const auto& property) { return axis_of(element, property) == axis; });
+      if (times == 1) continue;
+      lines.fail(std::string("property ") + "xyz"[axis] + " " + std::to_string(times) + " times",
+                 "x, y and z of a vertex once each");
+    }
+  }
+  if (vertices != 1) {
+    lines.fail(std::to_string(vertices) + " elements called vertex", "one");
+  }
+}
+
+Words next_header_line(LineReader& lines) {
+  while (true) {
+    if (!lines.next_filled()) lines.fail("the end of the file", "end_header of a PLY header");
+    if (lines.offset() > longest_header) {
+      lines.fail("a header of more than " + std::to_string(longest_header) + " bytes", "less");
+    }
+    Words words = words_of(lines.line());
+    if (words[0] != "comment" && words[0] != "obj_info") return words;
+  }
+}
+
+Header read_header(LineReader& lines) {
+  Header header;
+  lines.next();  // "ply", by which the format was detected
+  header.encoding = read_encoding(next_header_line(lines), lines);
+  std::size_t properties = 0;
+  for (Words words = next_header_line(lines); words[0] != "end_header";
+       words = next_header_line(lines)) {
+    if (words[0] == "element") {
+      header.elements.push_back(read_element(words, lines));
+    } else if (words[0] == "property" && !header.elements.empty()) {
+      header.elements.back().properties.push_back(read_property(words, lines));
+      ++properties;
+    } else {
+      lines.fail(in_quotes(words[0]), "element, property of an element or end_header");
+    }
+    if (properties > most_fields || header.elements.size() > most_fields) {
+      lines.fail("more than " + std::to_string(most_fields) + " elements or properties", "fewer");
+    }
+  }
+  require_vertices(header, lines);
+  return header;
+}
+
+/// Reads one row of text and keeps x, y and z if it is a vertex.
+Eigen::Vector3d read_text_row(const Element& element, const LineReader& lines) {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  std::string_view rest = lines.line();
+  const auto next_word = [&] {
+    const std::string_view word = take_word(rest);
+    if (word.empty()) lines.fail("the end of the line", "a value for every property");
+    return word;
+  };
+  for (const Property& property : element.properties) {
+    if (property.length_type) {
+      for (auto n = count_of(next_word(), lines); n > 0; --n) number_of(next_word(), lines);
+      continue;
+    }
+    const double value = number_of(next_word(), lines);
+    const std::size_t axis = axis_of(element, property);
+    if (axis != no_axis) point[static_cast<Eigen::Index>(axis)] = value;
+  }
+  if (const std::string_view word = take_word(rest); !word.empty()) {
+    lines.fail(in_quotes(word), "the end of the row of element " + in_quotes(element.name));
+  }
+  return point;
+}
+
+void stream_text(FileStream& file, LineReader& lines, const Header& header, PointSink& sink) {
+  PointBatch batch(sink);
+  for (const Element& element : header.elements) {
+    const bool is_vertex = element.name == "vertex";
+    if (is_vertex) {
+      const std::size_t shortest_row = 2 * element.properties.size();
+      sink.require_memory(std::min(element.count, file.left() / shortest_row + 1), 0);
+    }
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (!lines.next_filled()) {
+        lines.fail(
+            "the end after " + std::to_string(i) + " rows of element " + in_quotes(element.name),
+            std::to_string(element.count));
+      }
+      const Eigen::Vector3d point = read_text_row(element, lines);
+      if (is_vertex) batch.add(point);
+    }
+  }
+  if (lines.next_filled()) lines.fail(in_quotes(lines.line()), "the end after the last element");
+  batch.hand_on();
+}
+
+/// Walks over the binary part.
+class BinaryBody {
+ public:
+  BinaryBody(FileStream& file, bool swapped, PointSink& sink)
+      : file_(file), swapped_(swapped), sink_(sink) {}
+
+  void stream(const std::vector<Element>& elements) {
+    for (const Element& element : elements) {
+      require(element.count, element.row(), element);
+      if (element.name == "vertex") sink_.require_memory(element.count, 0);
+      if (element.has_lists()) {
+        walk(element);
+      } else if (element.name == "vertex") {
+        stream_rows(file_, element.count, columns_of(element), swapped_, sink_);
+      } else {
+        file_.skip(element.count * element.row());
+      }
+    }
+    file_.require_end();
+  }
+
+ private:
+  void require(std::uint64_t count, std::size_t bytes, const Element& element) const {
+    if (count <= file_.left() / bytes) return;
+    file_.fail_here(std::to_string(file_.left()) + " bytes of data",
+                    std::to_string(count) + " times " + std::to_string(bytes) +
+                        " bytes of element " + in_quotes(element.name));
+  }
+
+  /// Of rows of fixed size.
+  static Columns columns_of(const Element& element) {
+    Columns columns;
+    std::size_t offset = 0;
+    for (const Property& property : element.properties) {
+      if (const std::size_t axis = axis_of(element, property); axis != no_axis) {
+        columns.type[axis] = property.type;
+        columns.offset[axis] = offset;
+        columns.stride[axis] = element.row();
+      }
+      offset += size_of(property.type);
+    }
+    return columns;
+  }
+
+  /// Rows with lists, each of its own size.
+  void walk(const Element& element) {
+    PointBatch batch(sink_);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      Eigen::Vector3d point = Eigen::Vector3d::Zero();
+      for (const Property& property : element.properties) {
+        if (property.length_type) {
+          skip_list(element, property);
+          continue;
+        }
+        const double value = take(property.type, element);
+        const std::size_t axis = axis_of(element, property);
+        if (axis != no_axis) point[static_cast<Eigen::Index>(axis)] = value;
+      }
+      if (element.name == "vertex") batch.add(point);
+    }
+    batch.hand_on();
+  }
+
+  void skip_list(const Element& element, const Property& property) {
+    const double length = take(*property.length_type, element);
+    if (length < 0.0) file_.fail_here("a list of negative length", "0 or more");
+    const auto entries = static_cast<std::uint64_t>(length);
+    require(entries, size_of(property.type), element);
+    file_.skip(entries * size_of(property.type));
+  }
+
+  double take(ScalarType type, const Element& element) {
+    require(1, size_of(type), element);
+    const double value = load_scalar(type, file_.peek(size_of(type)).data(), swapped_);
+    file_.skip(size_of(type));
+    return value;
+  }
+
+  FileStream& file_;
+  bool swapped_;
+  PointSink& sink_;
+};
+
+bool holds_ply(FileStream& file) {
+  const std::string_view text = file.peek(5);
+  return text.substr(0, 4) == "ply\n" || text == "ply\r\n";
+}
+
+CloudShape stream_ply(FileStream& file, PointSink& sink) {
+  LineReader lines(file);
+  const Header header = read_header(lines);
+  if (header.encoding == Encoding::ascii) {
+    stream_text(file, lines, header, sink);
+  } else {
+    BinaryBody(file, header.encoding == Encoding::big_endian, sink).stream(header.elements);
+  }
+  const auto vertices = std::find_if(header.elements.begin(), header.elements.end(),
+                                     [](const Element& e) { return e.name == "vertex"; });
+  return {vertices->count, 1};
+}
+
+std::string head_of_ply(const CloudShape& shape, Numbers numbers) {
+  const std::string encoding = numbers == Numbers::text ? "ascii" : "binary_little_endian";
+  const std::string type = numbers == Numbers::float32 ? "float" : "double";
+  return "ply\nformat " + encoding + " 1.0\nelement vertex " + std::to_string(shape.points()) +
+         "\nproperty " + type + " x\nproperty " + type + " y\nproperty " + type +
+         " z\nend_header\n";
+}
+
+}  // namespace
+
+CloudFileFormat ply_format() {
+  return {"ply", "PLY", {".ply"}, holds_ply, stream_ply, head_of_ply};
+}
+
+}  // namespace excavplan

@@ -1,0 +1,355 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/density/density_estimate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include <excavplan/change/bulking.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+#include "change/cover.hpp"
+#include "density/density_of_volumes.hpp"
+#include "ground/too_few_cells.hpp"
+#include "paper/paper_change.hpp"
+#include "scans/scan_checks.hpp"
+#include "scans/scan_reading.hpp"
+#include "soil/density_forms.hpp"
+
+namespace excavplan {
+namespace {
+
+// ---- Scans to height maps ---------------------------------------------------------------------
+
+/// The scans with their outlines.
+struct OutlinedScans {
+  OutlinedPair dig;
+  std::optional<OutlinedPair> dump;
+  double cell_size = 0.0;
+
+  std::string names() const { return dig.names() + (dump ? ", " + dump->names() : ""); }
+  double unit() const { return dig.scans.after.unit; }
+  std::uint64_t machine_points() const {
+    return dig.machine_points() + (dump ? dump->machine_points() : 0);
+  }
+};
+
+OutlinedScans outline_scans(const DigScans& scans, const DensityOptions& options) {
+  OutlinedScans seen;
+  seen.dig = outlined({scans.before, scans.after}, options.threads);
+  seen.cell_size = seen.dig.cell_size();
+  if (scans.dump) {
+    seen.dump = outlined(*scans.dump, options.threads);
+    seen.cell_size = std::max(seen.cell_size, seen.dump->cell_size());
+  }
+  if (options.cell_size) seen.cell_size = *options.cell_size;
+  return seen;
+}
+
+struct Surfaces {
+  RegisteredPair dig;
+  std::optional<RegisteredPair> dump;
+
+  std::vector<const SurfacePair*> pairs() const {
+    std::vector<const SurfacePair*> all = {&dig.surfaces};
+    if (dump) all.push_back(&dump->surfaces);
+    return all;
+  }
+  std::vector<HeightMap> before() const {
+    std::vector<HeightMap> maps;
+    for (const SurfacePair* pair : pairs()) maps.push_back(pair->before.height);
+    return maps;
+  }
+  std::vector<HeightMap> after() const {
+    std::vector<HeightMap> maps = {dig.surfaces.after.height};
+    if (dump) maps.push_back(dump->surfaces.after.height);
+    return maps;
+  }
+};
+
+Surfaces survey(const OutlinedScans& seen, const DensityOptions& options) {
+  const auto survey_one = [&](const OutlinedPair& pair) {
+    return survey_pair(pair, seen.cell_size, options.registered, options.threads);
+  };
+  Surfaces surfaces;
+  surfaces.dig = survey_one(seen.dig);
+  if (seen.dump) surfaces.dump = survey_one(*seen.dump);
+  return surfaces;
+}
+
+// ---- Height maps to volumes -------------------------------------------------------------------
+
+void append(std::vector<Warning> more, std::vector<Warning>& warnings) {
+  for (Warning& warning : more) {
+    const auto same = [&](const Warning& w) { return w.message == warning.message; };
+    if (std::none_of(warnings.begin(), warnings.end(), same)) {
+      warnings.push_back(std::move(warning));
+    }
+  }
+}
+
+/// Errors of the change are about what the scans show.
+template <typename Measure>
+VolumeChange about(const OutlinedScans& seen, const Measure& measure) {
+  try {
+    return measure();
+  } catch (const TooFewCells& few) {
+    throw few.of_scans(seen.names());
+  } catch (const Error& error) {
+    throw Error(ErrorKind::bad_file, seen.names() + ": " + error.what());
+  }
+}
+
+struct SurfaceVolumes {
+  VolumeChange change;
+  std::vector<Warning> of_points;  ///< doubts
+  std::vector<Warning> of_cover;
+};
+
+SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& surfaces,
+                                  const ChangeOptions& options) {
+  SurfaceVolumes volumes;
+  VolumeChange& change = volumes.change;
+  change = about(seen, [&] {
+    return surfaces.dump ? measure_change(surfaces.dig.surfaces, surfaces.dump->surfaces, options)
+                         : measure_change(surfaces.dig.surfaces, options);
+  });
+  volumes.of_points = check_points(surfaces.pairs(), change);
+  volumes.of_cover = check_cover(surfaces.pairs(), change);
+  std::vector<Warning> doubts = volumes.of_points;
+  append(volumes.of_cover, doubts);
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
+  }
+  with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
+  state_water(surfaces.pairs(), change);
+  return volumes;
+}
+
+VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& surface,
+                              const DensityOptions& options) {
+  const PaperScans scans = {seen.dig.scans, seen.dump ? &seen.dump->scans : nullptr};
+  const PaperSettings settings = {options.change, seen.cell_size, options.paper};
+  return about(seen, [&] { return paper_change(scans, surface, settings); });
+}
+
+// ---- Whether the scans can be what they are taken for ------------------------------------------
+
+std::vector<Warning> doubts_about(const OutlinedScans& seen) {
+  std::vector<Warning> doubts = check_outlines(seen.dig);
+  if (seen.dump) append(check_outlines(*seen.dump), doubts);
+  return doubts;
+}
+
+std::vector<Warning> doubts_about(const OutlinedScans& seen, const Surfaces& surfaces,
+                                  const SurfaceVolumes& volumes) {
+  const VolumeChange& change = volumes.change;
+  std::vector<Warning> doubts = volumes.of_points;
+  append(check_volumes(change, seen.unit()), doubts);
+  append(check_machine(seen.machine_points(), change), doubts);
+  const auto check = [&](const OutlinedPair& outlined, const RegisteredPair& pair,
+                         const AreaChange& area) {
+    append(check_registration(pair), doubts);
+    append(check_tilt(outlined.scans, pair.surfaces, change, area), doubts);
+    append(check_curvature(pair.surfaces, area), doubts);
+  };
+  check(seen.dig, surfaces.dig, change.areas.front());
+  if (seen.dump) check(*seen.dump, *surfaces.dump, change.areas.back());
+  append(volumes.of_cover, doubts);
+  return doubts;
+}
+
+// ---- What is known beside the volumes ---------------------------------------------------------
+
+/// The path that was dug, on the ground before it.
+DigPath path_of(const DugPath& dug, const HeightMap& before) {
+  const auto path = make_dig_path(dug.machine, dug.parameters, *dug.start_x,
+                                  profile_under_bucket(before, dug.machine));
+  if (const auto* infeasible = std::get_if<Infeasible>(&path)) {
+    throw Error(ErrorKind::bad_input, "path that was dug: " + infeasible->message);
+  }
+  return std::get<DigPath>(path);
+}
+
+/// Loose soil on the floor of the path that was dug.
+Fallback fallback_of(const DugPath& dug, const SurfacePair& surfaces, const VolumeChange& change) {
+  const HeightMap& before = surfaces.before.height;
+  HeightMap after = realigned(surfaces.after.height, surfaces.alignment);
+  const AreaChange& area = change.areas.front();
+  after.z = area.difference.z.isNaN().select(after.z - area.datum, before.z + area.difference.z);
+  return measure_fallback(dug.machine, path_of(dug, before), before, after);
+}
+
+/// Nothing where the start of the dug path is not known.
+std::optional<Fallback> fallback_of(const DensityOptions& options, const Surfaces& surfaces,
+                                    const VolumeChange& change) {
+  if (!options.dug_path || !options.dug_path->start_x) return std::nullopt;
+  return fallback_of(*options.dug_path, surfaces.dig.surfaces, change);
+}
+
+/// Work of the joints over density in digs on the ground that was dug; a warning where the scan
+/// does not show enough of it.
+void add_work(const DensityOptions& options, const Surfaces& surfaces, LawsForDig& laws) {
+  if (!options.joint_work) return;
+  constexpr double cell = 0.05;
+  constexpr double widest_gap = 0.3;  // that is filled; ours [m]
+  const DugPath& dug = *options.dug_path;
+  const HeightMap& before = surfaces.dig.surfaces.before.height;
+  try {
+    const Terrain ground =
+        undisturbed(resampled(before, planning_extent(dug.machine), cell, widest_gap));
+    const DigPath path = path_of(dug, before);
+    const LoadedDig dig = {dug.machine, path, ground, *options.soil.kind, options.soil.scatter};
+    laws.work = work_over_density(dig, laws.law.freed_form, options.threads);
+  } catch (const Error& error) {
+    laws.warnings.push_back({"loads_not_used", std::string("the dig of the joint loads cannot be "
+                                                           "simulated on the scanned ground: ") +
+                                                   error.what()});
+  }
+}
+
+Warning warning_of(const BlockReport& report) {
+  std::string message = "the soil is in blocks (score " + readable(report.score) + " of 1): ";
+  for (std::size_t i = 0; i < report.reasons.size(); ++i) {
+    message += (i > 0 ? "; " : "") + report.reasons[i];
+  }
+  message += report.voids ? "; the voids between them were estimated and subtracted"
+                          : "; the voids between them are part of the volume, and their size "
+                            "cannot be estimated";
+  return {"blocks", message + ": the density is not trustworthy"};
+}
+
+/// Marks the estimate as not trustworthy where the scans do not support it.
+void judge_scans(DensityEstimate& estimate) {
+  if (estimate.blocks.blocks) {
+    estimate.warnings.push_back(warning_of(estimate.blocks));
+    estimate.trustworthy = false;
+  }
+  for (Warning& warning : estimate.warnings) {
+    const bool is_leant_on = warning.code == "little_stable_ground" && estimate.registration;
+    if (is_leant_on) warning.ends_trust = true;
+    if (warning.ends_trust) estimate.trustworthy = false;
+  }
+  estimate.warnings = causes_of(std::move(estimate.warnings));
+}
+
+void keep_registration(const Surfaces& surfaces, DensityEstimate& estimate) {
+  const auto registration = [](const RegisteredPair& pair) {
+    return ScanRegistration{pair.correction, pair.first};
+  };
+  estimate.registration = registration(surfaces.dig);
+  if (surfaces.dump) estimate.dump_registration = registration(*surfaces.dump);
+}
+
+void require_measured(const std::string& what, const Measured& figure) {
+  require(figure.value > 0.0 && std::isfinite(figure.value), what, figure.value,
+          "above 0 and finite");
+  require(figure.sd >= 0.0 && std::isfinite(figure.sd), what + ", its sd,", figure.sd,
+          "at least 0 and finite");
+}
+
+void check(const DensityLaw& law, const DensityOptions& options) {
+  require_form(law.form);
+  require_form(law.freed_form);
+  const double cell = options.cell_size.value_or(1.0);
+  require(cell > 0.0 && std::isfinite(cell), "cell_size", cell, "above 0 m and finite");
+  if (options.dug_path) require_machine(options.dug_path->machine);
+  if (options.soil.kind) require_soil(*options.soil.kind);
+  for (const SoilLaw& possible : options.soil.possible) {
+    require_soil(possible.soil);
+    require_form(possible.law.form);
+    require_form(possible.law.freed_form);
+    require_in("weight of a soil", possible.weight, 0.0, 1.0);
+  }
+  if (options.payload_mass) require_measured("payload_mass [kg]", *options.payload_mass);
+  if (options.joint_work) {
+    require_measured("joint_work [J]", *options.joint_work);
+    require(
+        options.dug_path && options.dug_path->start_x && options.soil.kind && !options.soil.unknown,
+        "joint_work needs the path that was dug, its start and the kind of soil");
+  }
+  if (const auto& water = options.soil.water_content) {
+    require(water->value >= 0.0 && water->value <= 10.0, "water_content", water->value,
+            "in 0 .. 10, a share of the dry mass: 12 % is 0.12");
+    require_in("water_content, its sd,", water->sd, 0.0, 10.0);
+  }
+}
+
+/// The method, in the order of the paper, for each way to find the volumes.
+std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& law,
+                                       const DensityOptions& options,
+                                       std::initializer_list<VolumeMethod> methods) {
+  check(law, options);
+  const OutlinedScans seen = outline_scans(scans, options);  // extent, density of points, cell
+  std::vector<Warning> doubts = doubts_about(seen);
+  Surfaces surfaces;
+  const SurfaceVolumes volumes = with_doubts(doubts, [&] {
+    surfaces = survey(seen, options);  // height maps on each other
+    return surface_volumes_of(seen, surfaces, options.change);
+  });
+  const VolumeChange& surface = volumes.change;
+  append(doubts_about(seen, surfaces, volumes), doubts);
+
+  DensityEstimate known;  // whatever the method
+  known.fallback = fallback_of(options, surfaces, surface);
+  LawsForDig laws = laws_for_dig(law, options, known.fallback);
+  add_work(options, surfaces, laws);
+  known.law = laws.law;
+  known.cell_size = seen.cell_size;
+  known.machine_points = seen.machine_points();
+  if (options.registered) keep_registration(surfaces, known);
+  known.before = surfaces.before();
+  known.blocks = assess_blocks(surfaces.after(), surface);
+
+  std::vector<DensityEstimate> results;
+  for (const VolumeMethod method : methods) {
+    DensityEstimate& estimate = results.emplace_back(known);
+    const bool by_paper = method == VolumeMethod::paper;
+    estimate.method = method;
+    // eqs. 3 and 4: volumes before and after
+    estimate.change = by_paper ? paper_volumes_of(seen, surface, options) : surface;
+    estimate.warnings = doubts;  // the causes first
+    append(estimate.change.warnings, estimate.warnings);
+    estimate.bulking = bulking_factor(estimate.change);  // eq. 1
+    estimate.trustworthy = estimate.bulking.has_value();
+    if (estimate.bulking) set_density(estimate, laws, options);
+    judge_scans(estimate);
+  }
+  return results;
+}
+
+}  // namespace
+
+std::optional<GroundDensity> DensityEstimate::ground_density() const {
+  if (!density) return std::nullopt;
+  GroundDensity ground(density->percent, density->sd_percent);
+  ground.trustworthy = trustworthy;
+  ground.soil = law.soil;
+  return ground;
+}
+
+DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
+                                 const DensityOptions& options) {
+  return std::move(estimates(scans, law, options, {options.method}).front());
+}
+
+DensityEstimate estimate_density(const DigScans& scans, const SoilKind& soil,
+                                 const DensityOptions& options) {
+  DensityOptions in_soil = options;
+  in_soil.soil.kind = soil;
+  return estimate_density(scans, density_law_of(soil), in_soil);
+}
+
+BothEstimates estimate_by_both(const DigScans& scans, const DensityLaw& law,
+                               const DensityOptions& options) {
+  auto both = estimates(scans, law, options, {VolumeMethod::surface, VolumeMethod::paper});
+  return {std::move(both[0]), std::move(both[1])};
+}
+
+}  // namespace excavplan

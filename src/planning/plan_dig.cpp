@@ -1,0 +1,570 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/plan_dig.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include <excavplan/base/ceilings.hpp>
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "base/check.hpp"
+#include "base/files.hpp"
+#include "base/robust.hpp"
+#include "base/text.hpp"
+#include "ground/terrain_check.hpp"
+#include "machine/dig_path_text.hpp"
+#include "planning/dig_layout.hpp"
+#include "planning/dig_problem.hpp"
+#include "simulation/checked_dig.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double much_steeper =
+    0.04;  // than the library's slopes [rad]; ours, docs/formats.md#warning-codes
+constexpr double far_below = 0.1;      // the library's efficiency; ours, above its own errors
+constexpr double likely_stall = 0.05;  // probability; ours
+constexpr int least_to_divide = 60;    // digs of a search in two parts; ours
+constexpr double worth_making = 0.1;   // fill of the bucket; ours
+
+struct Task {
+  const Machine& machine;
+  const SoilKind& soil;
+  const GroundDensity& density;
+  const Terrain& ground;
+  bool level;  ///< no ground was given
+  const PlanOptions& options;
+
+  bool uncertain() const { return density.sd_percent > 0.0; }
+  const DigObjective& objective() const { return options.search.objective; }
+};
+
+void warn(DigPlan& plan, const char* code, const std::string& message) {
+  plan.warnings.push_back({code, message});
+}
+
+void distrust(DigPlan& plan, const char* code, const std::string& message) {
+  warn(plan, code, message);
+  plan.trustworthy = false;
+}
+
+void judge_density(const Task& task, DigPlan& plan) {
+  const std::string& soil = task.density.soil;
+  if (task.density.percent > 0.0 && task.density.percent < 1.0 && task.density.sd_percent < 1.0) {
+    distrust(plan, "density_as_fraction",
+             "the density is " + number_text(task.density.percent) +
+                 " %: if that is a fraction, it is " + number_text(100.0 * task.density.percent) +
+                 " %");
+  }
+  if (!task.density.trustworthy) {
+    distrust(plan, "density_not_trustworthy",
+             "the density is not trustworthy, so the path may be wrong for the soil");
+  }
+  if (!soil.empty() && soil != task.soil.name) {
+    distrust(plan, "law_of_other_soil",
+             "the density was estimated by the law of " + soil + ", the path is planned in " +
+                 task.soil.name);
+  }
+}
+
+/// Of a column, as far to both sides of the boom plane.
+void add_known_heights(const HeightMap& map, Eigen::Index col, double half_width,
+                       std::vector<double>& heights) {
+  for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+    const bool inside = std::abs(map.y(row)) <= half_width;
+    if (inside && !std::isnan(map.z(row, col))) heights.push_back(map.z(row, col));
+  }
+}
+
+/// Machines stand at z = 0, and so does the ground just ahead of them, or lower: not far above.
+void judge_ground(const Task& task, DigPlan& plan) {
+  constexpr double ahead = 1.0;  // of the tracks, and to both sides [m]; ours
+  constexpr double most = 0.5;   // [m]; ours: a slope of 30 degrees rises so far
+  const HeightMap map = task.ground.surface();
+  const double front = task.machine.track_front;
+  std::vector<double> heights;
+  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+    if (map.x(col) < front || map.x(col) > front + ahead) continue;
+    add_known_heights(map, col, ahead, heights);
+  }
+  if (heights.empty()) return;
+  const double height = median(heights);
+  if (height <= most) return;
+  distrust(plan, "ground_above_tracks",
+           "the ground ahead of the tracks, x = " + readable(front) + " .. " +
+               readable(front + ahead) + " m, lies " + readable(height, 2) +
+               " m above the ground that the machine stands on, z = 0: are the heights of the "
+               "terrain those of the site frame?");
+}
+
+/// The simulators dig all ground as soil: they do not know a post or a rock.
+void judge_strip(const Task& task, DigPlan& plan) {
+  constexpr double inner = 0.7;  // of the bucket's width: beside it a wall may stand; ours
+  constexpr double most = 0.5;   // above the median of the width [m]; ours
+  const HeightMap map = task.ground.surface();
+  const Rectangle strip = swept_strip(task.machine, plan.path);
+  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
+    if (map.x(col) < strip.x_min || map.x(col) > strip.x_max) continue;
+    std::vector<double> heights;
+    add_known_heights(map, col, inner * strip.y_max, heights);
+    if (heights.empty()) continue;
+    const double above = *std::max_element(heights.begin(), heights.end()) - median(heights);
+    if (!(above > most)) continue;
+    distrust(plan, "obstacle_in_strip",
+             "at x = " + readable(map.x(col)) + " m something stands " + readable(above, 2) +
+                 " m above the ground that the bucket passes; the plan takes it for soil");
+    return;
+  }
+}
+
+std::shared_ptr<const PathLibrary> library_of(const Task& task) {
+  const PlanOptions& options = task.options;
+  if (!options.library) {
+    return std::make_shared<PathLibrary>(
+        shipped_library(task.machine, task.soil, task.objective(), options.data_folder));
+  }
+  const std::string& own = options.simulator.name;
+  require_fit(*options.library, task.machine, task.soil, task.objective(),
+              options.library->simulator == own ? own : default_simulator().name);
+  return options.library;
+}
+
+/// The slope of the ground, and as much of it as the library covers.
+struct Slope {
+  double ground = 0.0;  ///< [rad]; NaN: unknown
+  double covered = 0.0;
+};
+
+/// @param x_from, x_to  of the ground that counts
+Slope slope_in(const PathLibrary& library, const Task& task, double x_from, double x_to) {
+  if (task.level || library.entries.empty()) return {};
+  const double slope = boom_plane_slope(task.ground, x_from, x_to);
+  return {slope, std::clamp(std::isnan(slope) ? 0.0 : slope, library.entries.front().slope,
+                            library.entries.back().slope)};
+}
+
+Slope slope_ahead(const PathLibrary& library, const Task& task) {
+  return slope_in(library, task, task.machine.track_front, std::numeric_limits<double>::infinity());
+}
+
+/// A dig, or why the library has none.
+std::variant<PlannedDig, std::string> known_dig(const PathLibrary& library, const Task& task,
+                                                const Slope& slope) {
+  try {
+    return look_up(library, task.density.percent, slope.covered);
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+/// A dig of the library, and the slope that it is for.
+struct KnownOnSlope {
+  Slope slope;
+  PlannedDig dig;
+};
+
+/// The dig for the slope of the ground over which one like `usual` goes that enters it at x.
+std::optional<KnownOnSlope> known_at(const PathLibrary& library, const Task& task,
+                                     const DigParameters& usual, double x) {
+  const double length = usual.penetration_length + usual.drag_length;
+  const Slope slope = slope_in(library, task, x - length, x);
+  if (std::isnan(slope.ground)) return std::nullopt;
+  auto known = known_dig(library, task, slope);
+  if (auto* dig = std::get_if<PlannedDig>(&known)) return KnownOnSlope{slope, std::move(*dig)};
+  return std::nullopt;
+}
+
+/// A dig from the best of starts along the reach, and from that of least work. Ground may bend: at
+/// each start that of its own slope is tried too.
+/// @param known  for the slope of all ground ahead; becomes the one that the dig is laid out from
+std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayout& layout,
+                                                const PathLibrary& library, KnownOnSlope& known,
+                                                DigPlan& plan) {
+  const Machine& machine = task.machine;
+  const auto simulator =
+      make_simulator(task.options.simulator, machine, task.soil, task.density.percent);
+  std::variant<PlannedDig, DigFailure> best;
+  double rank = 0.0;
+  const KnownOnSlope ahead = known;
+  const auto compare = [&](const std::variant<DigPath, Infeasible>& laid,
+                           const KnownOnSlope& source) {
+    if (const auto* infeasible = std::get_if<Infeasible>(&laid)) return DigFailure(*infeasible);
+    const auto& path = std::get<DigPath>(laid);
+    const auto outcome = dig_along(machine, *simulator, task.ground, path, task.objective());
+    ++plan.evaluations;
+    if (const auto* failure = std::get_if<DigFailure>(&outcome)) return *failure;
+    const auto& dig = std::get<PlannedDig>(outcome);
+    if (task.objective().rank(dig) > rank) {
+      rank = task.objective().rank(dig);
+      best = dig;
+      plan.path = path;
+      known = source;
+    }
+    return DigFailure();
+  };
+  const DigParameters& usual = ahead.dig.parameters;
+  const DigFailure failure = compare(layout.path(usual, StartRule::Kind::least_work), ahead);
+  for (const double x : starts_along_reach(machine)) {
+    compare(layout.path_from(usual, x), ahead);
+    const auto here = known_at(library, task, usual, x);
+    if (here) compare(layout.path_from(here->dig.parameters, x), *here);
+  }
+  return rank > 0.0 ? best : std::variant<PlannedDig, DigFailure>(failure);
+}
+
+/// A dig of the library laid out where it is needed, and simulated if its figures do not hold
+/// there.
+std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrary& library,
+                                              KnownOnSlope& source, DigPlan& plan) {
+  const PlannedDig& known = source.dig;
+  const SimulatorKind& kind = task.options.simulator;
+  const DigLayout layout(task.machine, task.ground);
+  if (!task.level && task.options.search.start_rule.kind == StartRule::Kind::searched) {
+    return best_start(task, layout, library, source, plan);
+  }
+  auto path = task.level ? layout.path_near(known.parameters, known.start_x)
+                         : layout.path(known.parameters, task.options.search.start_rule);
+  if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
+  plan.path = std::get<DigPath>(std::move(path));
+  if (task.level && library.simulator == kind.name) {
+    PlannedDig dig = known;
+    dig.start_x = plan.path.start_x;
+    add_cycle(dig, task.machine, plan.path, task.objective());
+    return dig;
+  }
+  plan.evaluations = 1;
+  const auto simulator = make_simulator(kind, task.machine, task.soil, task.density.percent);
+  return dig_along(task.machine, *simulator, task.ground, plan.path, task.objective());
+}
+
+/// Warns where the ground is unlike that of the library. @return whether it is alike
+bool suits_ground(const Task& task, const Slope& slope, const PlannedDig& expected, DigPlan& plan) {
+  const std::string remedy = "; use a search for this ground";
+  if (std::abs(slope.ground - slope.covered) > much_steeper) {
+    distrust(plan, "slope_outside_library",
+             "the slope of the ground is " + readable(slope.ground, 2) + " rad, the look-up used " +
+                 readable(slope.covered, 2) + " rad" + remedy);
+    return false;
+  }
+  const DigGoalInfo& goal = info_of(task.objective().goal);
+  const double here = task.objective().worth(*plan.dig);
+  const double there = task.objective().worth(expected);
+  if (here < (1.0 - far_below) * there) {
+    distrust(plan, "ground_unlike_library",
+             "the path from the library reaches " + readable(goal.per_si * here) + " " + goal.unit +
+                 " on this ground, but " + readable(goal.per_si * there) + " " + goal.unit +
+                 " on the even ground of the library" + remedy);
+    return false;
+  }
+  return true;
+}
+
+void look_up_plan(const Task& task, DigPlan& plan) {
+  const auto library = library_of(task);
+  const Slope slope = slope_ahead(*library, task);
+  const auto known = known_dig(*library, task, slope);
+  if (const auto* reason = std::get_if<std::string>(&known)) {
+    plan.reason = *reason;
+    return;
+  }
+  KnownOnSlope source{slope, std::get<PlannedDig>(known)};
+  plan.start_rule = task.level ? "of the library" : describe(task.options.search.start_rule);
+  const auto outcome = dig_here(task, *library, source, plan);
+  if (const auto* failure = std::get_if<DigFailure>(&outcome)) {
+    plan.path = {};
+    plan.reason =
+        "the library's path does not work here (a search may find one): " + describe(*failure);
+    return;
+  }
+  plan.dig = std::get<PlannedDig>(outcome);
+  plan.look_up = PlanLookUp{source.slope.covered, std::nullopt};
+  if (task.level || suits_ground(task, source.slope, source.dig, plan)) {
+    plan.look_up->error = look_up_error(*library, task.density.percent, source.slope.covered);
+  }
+}
+
+/// The library's dig to begin with, if there is one.
+std::vector<KnownDig> known_start(const Task& task, DigPlan& plan) {
+  try {
+    const auto library = library_of(task);
+    const auto known = known_dig(*library, task, slope_ahead(*library, task));
+    if (const auto* dig = std::get_if<PlannedDig>(&known)) return {dig->parameters};
+    if (task.options.library) throw Error(ErrorKind::bad_input, std::get<std::string>(known));
+  } catch (const Error& error) {
+    if (task.options.library) throw;
+    if (error.kind() == ErrorKind::bad_file) {
+      warn(plan, "library_unreadable",
+           std::string("the search has no warm start from the shipped library: ") + error.what());
+    }
+  }
+  return {};
+}
+
+/// The paper's algorithm begins at random, unless a dig or a library is given.
+bool begins_known(const Task& task) {
+  return task.options.library || std::holds_alternative<MemeticSearch>(task.options.search.method);
+}
+
+/// With the digs of the default method, unless the caller said how many.
+DigSearchOptions within_budget(const DigSearchOptions& search, bool uncertain) {
+  DigSearchOptions options = search;
+  auto* memetic = std::get_if<MemeticSearch>(&options.method);
+  if (options.stop.evaluations != 0 || !memetic) return options;
+  options.stop.evaluations = evaluation_budget(uncertain, !options.start.empty());
+  if (!uncertain) {  // slopes and pits have more valleys than level ground
+    memetic->first_generation = 48;
+    memetic->polish_evaluations = 30;
+  }
+  return options;
+}
+
+/// Progress of a search that others precede or follow.
+std::function<bool(const SearchProgress&)> as_part_of(
+    const std::function<bool(const SearchProgress&)>& progress, int before, int planned) {
+  if (!progress) return nullptr;
+  return [=](SearchProgress now) {
+    now.evaluations += before;
+    now.planned = planned;
+    return progress(now);
+  };
+}
+
+int digs_of(const Found<DigSearchResult>& found) {
+  return found ? found->evaluations : found.evaluations;
+}
+
+bool was_stopped(const Found<DigSearchResult>& found) {
+  return found ? found->stopped : found.stopped;
+}
+
+/// Searches the path first, with the start of least work: without a fourth number that finds the
+/// valley that the search goes on in. Only where the number of digs alone ends a search.
+/// @param options  of the search that follows, which goes on from there
+/// @return nothing if the search is not divided
+std::optional<Found<DigSearchResult>> search_by_least_work(const Task& task,
+                                                           const SoilSimulator& simulator,
+                                                           DigSearchOptions& options) {
+  const StopRules& stop = options.stop;
+  const bool by_digs = std::holds_alternative<MemeticSearch>(options.method) &&
+                       stop.evaluations >= least_to_divide && stop.stall == 0 &&
+                       stop.seconds == 0.0 && !stop.target;
+  if (options.start_rule.kind != StartRule::Kind::searched || !by_digs) return std::nullopt;
+  const int budget = stop.evaluations;
+  DigSearchOptions first = options;
+  first.start_rule = StartRule::Kind::least_work;
+  first.checkpoint = {};
+  first.stop.evaluations = budget / 3;
+  first.progress = as_part_of(options.progress, 0, budget);
+  auto found = search_dig(task.machine, simulator, task.ground, first);
+  options.stop.evaluations = budget - digs_of(found);
+  options.progress = as_part_of(options.progress, digs_of(found), budget);
+  if (found) options.start.insert(options.start.begin(), found->dig.parameters);
+  return found;
+}
+
+/// @param best  of what was found, if anything was
+template <typename Result>
+void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan) {
+  if (best) {
+    plan.dig = best->dig;
+    plan.path = best->path;
+    plan.evaluations = found->evaluations;
+    plan.search = PlanSearch{best->worth, best->stopped_by, best->refused, best->insight.seen,
+                             {},          best->ranks};
+    if (best->failed > 0) {
+      warn(plan, "simulator_failed",
+           std::to_string(best->failed) + " of " + std::to_string(best->evaluations) +
+               " digs failed and were left out, the first: " + best->first_failure);
+    }
+    for (const DigParameterInfo* info : best->at_bound) {
+      warn(plan, "optimum_at_bound",
+           std::string("the best path found lies at an end of the search range of the ") +
+               info->text + ": a wider range may hold a better one");
+    }
+  }
+  plan.stopped = best ? best->stopped : found.stopped;
+  if (!best) plan.evaluations = found.evaluations;
+  if (best || plan.stopped) return;
+  plan.reason = "no dig inside the search ranges can be done on this ground";
+  plan.nearest = found.nearest;
+}
+
+void search_certain(const Task& task, const SoilSimulator& simulator, DigSearchOptions& options,
+                    DigPlan& plan) {
+  require_own_checkpoint(task.machine, simulator, task.ground, options);
+  const auto first = search_by_least_work(task, simulator, options);
+  const bool ended = first && was_stopped(*first);
+  const auto found = ended ? *first : search_dig(task.machine, simulator, task.ground, options);
+  take(found, found ? &*found : nullptr, plan);
+  if (!first || ended) return;
+  plan.evaluations += digs_of(*first);
+  if (!*first || !plan.search) return;
+  std::vector<double>& ranks = plan.search->ranks;
+  ranks.insert(ranks.begin(), (*first)->ranks.begin(), (*first)->ranks.end());
+}
+
+/// The few digs for each soil do not find the valley on uneven ground: those for the most likely
+/// one do, as many as for a density that is known.
+DigPlan search_most_likely(const Task& task, const std::vector<PossibleSoil>& soils,
+                           const DigSearchOptions& options) {
+  const auto& likely = *std::max_element(
+      soils.begin(), soils.end(),
+      [](const PossibleSoil& a, const PossibleSoil& b) { return a.probability < b.probability; });
+  DigSearchOptions certain = within_budget(options, false);
+  certain.checkpoint = {};
+  DigPlan found;
+  search_certain(task, *likely.simulator, certain, found);
+  return found;
+}
+
+void search_uncertain(const Task& task, const std::vector<PossibleSoil>& soils,
+                      DigSearchOptions options, DigPlan& plan) {
+  require_own_checkpoint(task.machine, soils, task.ground, within_budget(options, true));
+  int digs_of_likely = 0;
+  if (!task.level && begins_known(task)) {
+    const DigPlan likely = search_most_likely(task, soils, options);
+    digs_of_likely = likely.evaluations;
+    if (likely.dig) {
+      options.start.emplace(options.start.begin(), likely.dig->parameters, likely.dig->start_x);
+    }
+  }
+  options = within_budget(options, true);
+  const auto found = search_dig(task.machine, soils, task.ground, options);
+  take(found, found ? &found->expected : nullptr, plan);
+  plan.evaluations += digs_of_likely;
+  if (plan.dig && !plan.stopped) plan.search->value_of_knowing = found->value_of_knowing();
+}
+
+void search_plan(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
+  DigSearchOptions options = task.options.search;
+  if (options.start.empty() && begins_known(task)) options.start = known_start(task, plan);
+  plan.start_rule = describe(options.start_rule);
+  if (task.uncertain()) {
+    search_uncertain(task, soils, options, plan);
+  } else {
+    options = within_budget(options, false);
+    search_certain(task, *soils.front().simulator, options, plan);
+  }
+}
+
+void add_spread(const Task& task, const std::vector<PossibleSoil>& soils, DigPlan& plan) {
+  plan.spread = dig_spread(task.machine, soils, task.ground, *plan.dig, plan.path);
+  plan.evaluations += static_cast<int>(soils.size());
+  if (plan.spread.stall_probability <= likely_stall) return;
+  distrust(plan, "may_stall",
+           "the machine stalls with a probability of " +
+               readable(100.0 * plan.spread.stall_probability, 2) +
+               " %; the results are those of the digs without a stall");
+}
+
+void add_trajectory(const Task& task, DigPlan& plan) {
+  auto approach = DigLayout(task.machine, task.ground).approach(plan.path);
+  if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
+    warn(plan, "approach_blocked",
+         "the trajectory begins on the ground, because the approach is blocked: " +
+             blocked->message);
+  } else {
+    plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
+  }
+  const auto simulator =
+      make_simulator(task.options.simulator, task.machine, task.soil, task.density.percent);
+  const DigResult dig = checked_dig(*simulator, task.machine, task.ground, plan.path, {});
+  plan.torques = dig.torques;
+  plan.ground_after = dig.after(task.ground).surface();
+  Eigen::ArrayXXd& after = plan.ground_after.z;
+  after = (after == task.ground.surface().z).select(std::nan(""), after).eval();
+  plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, plan.torques);
+}
+
+/// Takes back a dig that lifts next to nothing.
+bool is_worth_making(DigPlan& plan) {
+  if (!plan.dig || plan.dig->fill >= worth_making) return plan.dig.has_value();
+  plan.reason = "no dig is worth making: the best found, " +
+                path_text(plan.dig->parameters, plan.dig->start_x) + ", fills " +
+                readable(100.0 * plan.dig->fill, 2) + " % of the bucket";
+  plan.dig.reset();
+  plan.path = {};
+  return false;
+}
+
+void judge_fill(const Task& task, DigPlan& plan) {
+  const double asked = task.objective().min_fill;
+  if (plan.dig->fill >= asked) return;
+  warn(plan, "min_fill_relaxed",
+       "no dig was found that fills " + readable(100.0 * asked) +
+           " % of the heaped capacity of the bucket; the fullest that was found fills " +
+           readable(100.0 * plan.dig->fill) + " %");
+}
+
+DigPlan plan_dig(const Task& task) {
+  require_machine(task.machine);
+  require_soil(task.soil);
+  require_terrain(task.ground, "ground to dig on");
+  require_density(task.density);
+  check(task.objective(), task.machine);
+  const PlanMethod method = task.options.method;
+  require(method == PlanMethod::library || method == PlanMethod::search, "method of a plan",
+          static_cast<double>(method), "one of PlanMethod");
+  require_in("search: stop.evaluations", task.options.search.stop.evaluations, 0, most_evaluations);
+  DigPlan plan;
+  plan.method = task.options.method;
+  judge_density(task, plan);
+  if (!task.level) judge_ground(task, plan);
+  std::optional<PossibleGround> ground;  // not for a density taken as known that is looked up
+  if (plan.method == PlanMethod::search || task.uncertain()) {
+    ground.emplace(task.options.simulator, task.machine, task.soil, task.density);
+  }
+  if (plan.method == PlanMethod::library) look_up_plan(task, plan);
+  if (plan.method == PlanMethod::search) search_plan(task, ground->soils(), plan);
+  if (!is_worth_making(plan)) return plan;
+  judge_fill(task, plan);
+  if (!task.level) judge_strip(task, plan);
+  plan.cycle = cycle_of(task.machine, plan.path, *plan.dig, task.objective());
+  if (task.uncertain()) add_spread(task, ground->soils(), plan);
+  add_trajectory(task, plan);
+  return plan;
+}
+
+}  // namespace
+
+const char* name(PlanMethod method) { return method == PlanMethod::library ? "library" : "search"; }
+
+PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
+                            const DigObjective& objective, const std::string& data_folder) {
+  const std::string goal = info_of(objective.goal).word;
+  std::string file;
+  try {
+    file = find_data_file("libraries/" + file_name_part(machine.name) + "-" +
+                              file_name_part(soil.name) + "-" + goal + ".json",
+                          data_folder);
+  } catch (const Error&) {
+    if (!has_data_folder("libraries", data_folder)) throw;
+    throw Error(
+        ErrorKind::bad_input,
+        "no library of " + machine.name + " in " + soil.name + " for the goal " + goal +
+            " is shipped: make one with machine-kit or build-path-library, or use a search");
+  }
+  PathLibrary library = load_path_library(file);
+  require_fit(library, machine, soil, objective);
+  return library;
+}
+
+DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
+                 const Terrain& terrain, const PlanOptions& options) {
+  return plan_dig(Task{machine, soil, density, terrain, false, options});
+}
+
+DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
+                 const PlanOptions& options) {
+  const Terrain level =
+      level_planning_ground(machine, options.cell_size.value_or(usual_cell(machine)));
+  return plan_dig(Task{machine, soil, density, level, true, options});
+}
+
+}  // namespace excavplan

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/plan_motion.hpp>
+
+#include <utility>
+
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+#include "planning/motion_load.hpp"
+
+namespace excavplan {
+
+std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const Terrain& ground,
+                                                 const DigPlan& plan, const CycleWayOptions& way,
+                                                 const MotionOptions& motion) {
+  if (!plan.dig) return Trajectory{machine.name, {}, machine.robot_joints};
+  require(plan.trajectory.machine == machine.name, "motion: the plan is of the machine " +
+                                                       in_quotes(plan.trajectory.machine) +
+                                                       ", not of " + in_quotes(machine.name));
+  const DigLoad load = {plan.torques, plan.dig->payload_mass, plan.ground_after};
+  const auto laid = way_of_cycle(machine, ground, plan.path, load, way);
+  if (const auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
+  Trajectory timed = time_way(machine, std::get<Way>(laid), motion);
+  timed.warnings = std::get<Way>(laid).warnings;
+  for (Warning& each : load_warnings(machine, std::get<Way>(laid))) {
+    timed.warnings.push_back(std::move(each));
+  }
+  return timed;
+}
+
+std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const DigPlan& plan,
+                                                 const CycleWayOptions& way,
+                                                 const MotionOptions& motion) {
+  return plan_motion(machine, level_swing_ground(machine), plan, way, motion);
+}
+
+}  // namespace excavplan

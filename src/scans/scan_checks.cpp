@@ -1,0 +1,671 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "scans/scan_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+
+#include <Eigen/Cholesky>
+
+#include "base/angles.hpp"
+#include "base/text.hpp"
+#include "clouds/cloud_units.hpp"
+#include "ground/error_field.hpp"
+#include "ground/grid_cells.hpp"
+#include "scans/points_by_cell.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double degree = pi / 180.0;
+constexpr const char* give_frames =
+    "let --level find the ground, or give the transform into a frame with z up by --frame, or "
+    "--before-frame and --after-frame";
+
+std::string degrees(double angle) { return readable(angle / degree, 2) + " degrees"; }
+
+std::string size_of(const Rectangle& r) {
+  return readable(r.x_max - r.x_min) + " x " + readable(r.y_max - r.y_min);
+}
+
+/// The value that a share of all is not above; 0 for none.
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+// ---- Units --------------------------------------------------------------------------------------
+
+std::optional<Warning> too_small(const OutlinedPair& pair) {
+  constexpr double dense =
+      std::numeric_limits<double>::infinity();  // its volume tells of wide ones
+  const auto before = doubt_of_extent(*pair.before.extent, dense, pair.scans.before.unit);
+  return before ? before : doubt_of_extent(*pair.after.extent, dense, pair.scans.after.unit);
+}
+
+/// Twice as large and more in both directions, and by the same factor to a tenth.
+std::optional<Warning> other_units(const OutlinedPair& pair) {
+  constexpr double least_factor = 2.0;  // ours
+  constexpr double alike = 0.1;         // ours, of the logarithm of the factor
+  const Rectangle& a = *pair.before.extent;
+  const Rectangle& b = *pair.after.extent;
+  const double x = std::log((b.x_max - b.x_min) / (a.x_max - a.x_min));
+  const double y = std::log((b.y_max - b.y_min) / (a.y_max - a.y_min));
+  const double points = std::log(static_cast<double>(pair.after.finite_points) /
+                                 static_cast<double>(pair.before.finite_points));
+  const double factor = 0.5 * (x + y);
+  if (std::abs(factor) < std::log(least_factor) || std::abs(x - y) > alike * std::abs(factor)) {
+    return std::nullopt;
+  }
+  if (std::abs(points) > std::abs(factor)) return std::nullopt;  // it shows more ground
+  return Warning{"units",
+                 "the scans show " + size_of(a) + " m before and " + size_of(b) +
+                     " m after, in both directions a factor of " +
+                     readable(std::exp(std::abs(factor))) +
+                     ": one of them is in other units: give --before-unit or --after-unit",
+                 true};
+}
+
+std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
+  constexpr double most = 0.021;  // ours [m]: steps of 2 cm are a tenth of a shallow hole
+  const bool is_after = pair.after.height_step > pair.before.height_step;
+  const double step = std::max(pair.before.height_step, pair.after.height_step);
+  if (!(step > most)) return std::nullopt;
+  return Warning{"coarse_heights",
+                 name_of(is_after ? pair.scans.after : pair.scans.before) +
+                     ": all heights are multiples of " + readable(step) +
+                     " m: volumes of a dig need finer ones; write the coordinates with more digits",
+                 true};
+}
+
+/// Of a machine that takes nothing out of scans, or most of them.
+std::optional<Warning> not_in_view(const OutlinedPair& pair) {
+  constexpr double most = 0.5;  // ours, of a scan
+  const bool is_told = pair.scans.before.machine || pair.scans.after.machine;
+  if (!is_told) return std::nullopt;
+  for (const ScanOutline* seen : {&pair.before, &pair.after}) {
+    const auto of_machine = static_cast<double>(seen->machine_points);
+    if (of_machine > most * (of_machine + static_cast<double>(seen->finite_points))) {
+      return Warning{"machine_pose",
+                     "more than half of the points of a scan lie in the machine as it is said to "
+                     "have stood: its pose or the frame of the scans is wrong",
+                     true};
+    }
+  }
+  if (pair.machine_points() > 0) return std::nullopt;
+  return Warning{"machine_pose",
+                 "no point lies in the machine as it is said to have stood: it is not in view, or "
+                 "its pose or the frame of the scans is wrong, and it is still in them"};
+}
+
+// ---- Frame --------------------------------------------------------------------------------------
+
+std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
+  constexpr double nearly_all = 0.99;
+  constexpr double steepest = 45.0 * degree;  // ours: no ground to dig in
+  const double off = std::acos(std::min(seen.normal.z(), 1.0));
+  if (off > steepest) {
+    return Warning{"frame",
+                   name_of(scan) + ": the ground lies at " + degrees(off) +
+                       " to level, so z is not up: " + give_frames,
+                   true};
+  }
+  if (scan.z_is_up || scan.site_from_scan != Eigen::Matrix4d::Identity()) return std::nullopt;
+  if (!(seen.seen_along_z >= nearly_all)) return std::nullopt;
+  return Warning{"frame",
+                 name_of(scan) +
+                     ": all points lie ahead of the origin along z, as in the frame of a camera, "
+                     "where hole and heap are exchanged: " +
+                     give_frames + "; if z is up, say so by --frame lidar",
+                 true};
+}
+
+struct Plane {
+  double slope_x = 0.0;
+  double slope_y = 0.0;
+  double tilt() const { return std::atan(std::hypot(slope_x, slope_y)); }
+};
+
+Plane plane_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for_each_cell(zone, [&](Cell at) {
+    const double z = ground.z(at.row, at.col);
+    if (zone(at.row, at.col) >= 0 || std::isnan(z)) return;
+    const Eigen::Vector3d terms(1.0, ground.x(at.col) - ground.origin.x(),
+                                ground.y(at.row) - ground.origin.y());
+    normal += terms * terms.transpose();
+    right += z * terms;
+  });
+  const Eigen::Vector3d plane = normal.ldlt().solve(right);
+  return {plane.y(), plane.z()};
+}
+
+/// Ground z = a + b x + c y + d x^2 + e x y + f y^2 that did not change, about its middle.
+struct Bowl {
+  double across = 0.0;   ///< 2 f [1/m]
+  double along = 0.0;    ///< 2 d
+  double twist = 0.0;    ///< e
+  double sagitta = 0.0;  ///< by the curvature, from the middle to the rim [m]
+  double rest_sd = 0.0;  ///< of the ground about it [m]
+};
+
+Bowl bowl_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
+  using Terms = Eigen::Matrix<double, 6, 1>;
+  const Rectangle extent = ground.extent();
+  const Eigen::Vector2d middle(0.5 * (extent.x_min + extent.x_max),
+                               0.5 * (extent.y_min + extent.y_max));
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  Terms right = Terms::Zero();
+  double squares = 0.0;
+  for_each_cell(zone, [&](Cell at) {
+    const double z = ground.z(at.row, at.col);
+    if (zone(at.row, at.col) >= 0 || std::isnan(z)) return;
+    const double x = ground.x(at.col) - middle.x();
+    const double y = ground.y(at.row) - middle.y();
+    Terms terms;
+    terms << 1.0, x, y, x * x, x * y, y * y;
+    normal += terms * terms.transpose();
+    right += z * terms;
+    squares += z * z;
+  });
+  const Terms found = normal.ldlt().solve(right);
+  Bowl bowl{2.0 * found(5), 2.0 * found(3), found(4), 0.0, 0.0};
+  const double half = 0.5 * std::max(extent.x_max - extent.x_min, extent.y_max - extent.y_min);
+  bowl.sagitta = 0.25 * std::abs(bowl.across + bowl.along) * half * half;
+  const double left = squares - found.dot(right);
+  bowl.rest_sd = std::sqrt(std::max(0.0, left) / std::max(1.0, normal(0, 0)));
+  return bowl;
+}
+
+/// Slope of the walls of the hole between neighbouring cells, and whether they are so wide that the
+/// cells tell it.
+struct Walls {
+  double angle = 0.0;
+  bool resolved = true;
+};
+
+Walls walls_of(const VolumeChange& change, const AreaChange& area, const HeightMap& after) {
+  constexpr double wall = 1.0;         // ours: steeper than loose soil stands [-]
+  constexpr double in_one_step = 0.6;  // ours, of the depth
+  std::vector<double> steps;
+  std::vector<double> depths;
+  const auto in_hole = [&](Cell at) {
+    const int zone = area.zone(at.row, at.col);
+    return zone >= 0 && change.zones[static_cast<std::size_t>(zone)].kind == ZoneKind::dig;
+  };
+  for_each_cell(area.zone, [&](Cell at) {
+    if (!in_hole(at)) return;
+    depths.push_back(-area.difference.z(at.row, at.col));
+    if (std::isnan(depths.back())) depths.pop_back();
+    double step = 0.0;
+    for_each_neighbour(area.zone, at, [&](Cell n) {
+      const double down = std::abs(after.z(at.row, at.col) - after.z(n.row, n.col));
+      if (in_hole(n) && down > step) step = down;
+    });
+    if (step > wall * after.cell_size) steps.push_back(step);
+  });
+  const double step = quantile(steps, 0.9);
+  return {std::atan(step / after.cell_size), step < in_one_step * quantile(depths, 0.95)};
+}
+
+// ---- Order --------------------------------------------------------------------------------------
+
+/// Volumes that fell and rose in the zones of an area [m^3].
+struct Balance {
+  double fell = 0.0;
+  double rose = 0.0;
+};
+
+Balance balance_of(const AreaChange& area) {
+  Balance sum;
+  const double cell_area = area.difference.cell_size * area.difference.cell_size;
+  for_each_cell(area.zone, [&](Cell at) {
+    const double change = area.difference.z(at.row, at.col);
+    if (area.zone(at.row, at.col) < 0 || std::isnan(change)) return;
+    (change < 0.0 ? sum.fell : sum.rose) += cell_area * std::abs(change);
+  });
+  return sum;
+}
+
+/// Slope of the steepest tenth of a kind of zones [-].
+double steepness(const VolumeChange& change, ZoneKind kind) {
+  std::vector<double> slopes;
+  for (const AreaChange& area : change.areas) {
+    const Gradient gradient = gradient_of(area.difference);
+    for_each_cell(area.zone, [&](Cell at) {
+      const int zone = area.zone(at.row, at.col);
+      if (zone < 0 || change.zones[static_cast<std::size_t>(zone)].kind != kind) return;
+      const double slope = std::hypot(gradient.x(at.row, at.col), gradient.y(at.row, at.col));
+      if (!std::isnan(slope)) slopes.push_back(slope);
+    });
+  }
+  return quantile(slopes, 0.9);
+}
+
+double gap_between(const Rectangle& a, const Rectangle& b) {
+  const double x = std::max(a.x_min, b.x_min) - std::min(a.x_max, b.x_max);
+  const double y = std::max(a.y_min, b.y_min) - std::min(a.y_max, b.y_max);
+  return std::hypot(std::max(x, 0.0), std::max(y, 0.0));
+}
+
+/// Volume of other ground that fell beside the heap, as the spill does where scans are swapped, and
+/// deeper than tracks.
+double lost_beside_heap(const VolumeChange& change) {
+  constexpr double track = 0.05;  // ours, mean depth [m]
+  const double beside = ChangeOptions{}.spill_distance;
+  double lost = 0.0;
+  for (const ChangeZone& zone : change.zones) {
+    if (zone.kind != ZoneKind::other || !(zone.volume.value < -track * zone.area)) continue;
+    if (std::any_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& heap) {
+          return heap.kind == ZoneKind::dump && gap_between(heap.extent, zone.extent) < beside;
+        })) {
+      lost -= zone.volume.value;
+    }
+  }
+  return lost;
+}
+
+std::optional<Warning> exchanged(const VolumeChange& change) {
+  constexpr double loose = 1.19;       // ours: tan 50 degrees; loose soil stands at 28 to 45
+  constexpr double gentle = 1.0;       // ours: tan 45 degrees
+  constexpr double steeper = 1.1;      // ours
+  constexpr double least_lost = 0.03;  // ours, of the hole
+  const double heap = steepness(change, ZoneKind::dump);
+  const double hole = steepness(change, ZoneKind::dig);
+  const bool lost = lost_beside_heap(change) > least_lost * change.excavated.value;
+  if (!(heap > loose && hole < gentle) && !(lost && heap > steeper * hole)) return std::nullopt;
+  return Warning{
+      "looks_swapped",
+      "the heap is as steep as " + degrees(std::atan(heap)) + ", the hole " +
+          degrees(std::atan(hole)) + (lost ? ", and ground beside the heap fell" : "") +
+          ", as if hole and heap were exchanged: check the order of BEFORE and AFTER, and if z "
+          "points down, " +
+          give_frames,
+      true};
+}
+
+}  // namespace
+
+std::vector<Warning> causes_of(std::vector<Warning> warnings) {
+  struct Cause {
+    std::string code;
+    std::set<std::string> effects;
+  };
+  // What is judged by lengths, and by heights above a plane.
+  static const std::vector<Cause> causes = {
+      {"units",
+       {"blocks",
+        "coarse_heights",
+        "curved_ground",
+        "dug_path_doubtful",
+        "flat_water",
+        "floor_cut",
+        "grass",
+        "hole_in_shadow",
+        "implausible_energy",
+        "implausible_fuel",
+        "loads_disagree",
+        "loads_not_used",
+        "machine_pose",
+        "object_on_soil",
+        "object_taken_out",
+        "payload_disagrees",
+        "registration_beyond_prior",
+        "scans_do_not_fit",
+        "sensor_place_doubtful",
+        "sensor_place_inferred",
+        "systematic_errors",
+        "zone_partly_unseen"}},
+      {"frame", {"object_taken_out", "scans_do_not_fit", "zone_partly_unseen"}}};
+  for (const Cause& cause : causes) {
+    const bool is_there = std::any_of(warnings.begin(), warnings.end(), [&](const Warning& w) {
+      return w.code == cause.code && w.ends_trust;
+    });
+    if (!is_there) continue;
+    const auto is_effect = [&](const Warning& w) { return cause.effects.count(w.code) > 0; };
+    warnings.erase(std::remove_if(warnings.begin(), warnings.end(), is_effect), warnings.end());
+  }
+  return warnings;
+}
+
+std::vector<Warning> check_outlines(const OutlinedPair& pair) {
+  std::vector<Warning> found = pair.scans.before.doubts;
+  found.insert(found.end(), pair.scans.after.doubts.begin(), pair.scans.after.doubts.end());
+  const auto add = [&found](std::optional<Warning> warning) {
+    if (warning) found.push_back(std::move(*warning));
+  };
+  add(too_small(pair));
+  add(other_units(pair));
+  add(coarse_heights(pair));
+  const auto before = not_up(pair.before, pair.scans.before);
+  add(before ? before : not_up(pair.after, pair.scans.after));
+  add(not_in_view(pair));
+  return found;
+}
+
+std::vector<Warning> check_registration(const RegisteredPair& pair) {
+  const Alignment& found = pair.surfaces.alignment;
+  const Displacement moved = displacement_by(pair.correction, found.centre);
+  if (!moved.is_beyond_prior()) return {};
+  std::string message = "the scan after was moved against the scan before by " +
+                        readable(moved.shift, 2) + " m and " + degrees(moved.turn) +
+                        ", more than one standpoint explains";
+  if (!leaves_difference(pair.surfaces)) {
+    return {{"registration_beyond_prior",
+             message +
+                 "; it was brought back by the ground that did not change, which then fits to " +
+                 readable(1000.0 * found.residual_sd, 2) + " mm"}};
+  }
+  return {{"registration_beyond_prior",
+           message + ", and the ground that did not change still differs by " +
+               readable(1000.0 * found.residual_sd, 2) +
+               " mm: give the transform of the scan after by --after-frame",
+           true}};
+}
+
+std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfaces,
+                                const VolumeChange& change, const AreaChange& area) {
+  constexpr double noted = 5.0 * degree;      // ours
+  constexpr double doubtful = 12.0 * degree;  // ours: walls that overhang by less cost under 0.4 %
+  constexpr double largest = 17.0 * degree;   // ours: slopes of 15 degrees are dug
+  constexpr double upright = 93.0 * degree;   // ours: from pits that were tilted by a known angle
+  if (scans.before.site_from_scan != Eigen::Matrix4d::Identity()) return {};
+  const double tilt = plane_of_stable(surfaces.before.height, area.zone).tilt();
+  if (!(tilt > noted)) return {};
+  const Walls walls = walls_of(change, area, surfaces.after.height);
+  const bool may_overhang = walls.angle + tilt > upright || (tilt > doubtful && !walls.resolved);
+  const bool ends = tilt > largest || may_overhang;
+  return {{"tilted",
+           "the ground lies at " + degrees(tilt) + " to the plane z = 0" +
+               (ends ? ", and walls of " + degrees(walls.angle) +
+                           " may overhang there, which hides soil"
+                     : ", of which the volumes are free") +
+               ": if the scanner was not level, " + give_frames,
+           ends}};
+}
+
+std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeChange& change) {
+  constexpr double most_hidden = 0.05;  // ours, of a zone's cells: a heap's top is not guessed
+  constexpr double least_volume = 0.1;  // ours, of its kind
+  if (machine_points == 0) return {};
+  for (const ChangeZone& zone : change.zones) {
+    const bool is_dig = zone.kind == ZoneKind::dig;
+    if (!is_dig && zone.kind != ZoneKind::dump) continue;
+    const double all = is_dig ? change.excavated.value : change.dumped.value;
+    if (zone.unknown_share < most_hidden || std::abs(zone.volume.value) < least_volume * all) {
+      continue;
+    }
+    return {{"machine_pose",
+             readable(100.0 * zone.unknown_share, 2) + " % of the " + (is_dig ? "hole" : "heap") +
+                 " are unseen with the machine taken out, " + std::to_string(machine_points) +
+                 " points: its pose is wrong, or it hides what counts; scan with the machine aside",
+             true}};
+  }
+  return {};
+}
+
+namespace {
+
+/// What a surface tells of its heights; zero where it has none.
+Eigen::ArrayXXf known(const Eigen::ArrayXXf& values, const Surface& surface) {
+  const Eigen::ArrayXXd& z = surface.height.z;
+  if (values.size() != z.size()) return Eigen::ArrayXXf::Zero(z.rows(), z.cols());
+  return z.isNaN().select(0.0F, values);
+}
+
+/// -1 in the hole, 1 in spill and heap, 0 elsewhere.
+Eigen::ArrayXXi parts_of(const VolumeChange& change, const AreaChange& area) {
+  Eigen::ArrayXXi part = Eigen::ArrayXXi::Zero(area.zone.rows(), area.zone.cols());
+  for_each_cell(part, [&](Cell at) {
+    const int zone = area.zone(at.row, at.col);
+    if (zone < 0) return;
+    const ZoneKind kind = change.zones[static_cast<std::size_t>(zone)].kind;
+    if (kind != ZoneKind::other) part(at.row, at.col) = kind == ZoneKind::dig ? -1 : 1;
+  });
+  return part;
+}
+
+double ratio(double part, double all) { return all > 0.0 ? part / all : 0.0; }
+
+/// With the ground beside them whose doubt grew: the lower of its two surfaces may be the ground
+/// before.
+Eigen::ArrayXXi parts_with_doubt(const VolumeChange& change, const AreaChange& area,
+                                 const Eigen::ArrayXXf& growth) {
+  Eigen::ArrayXXi part = parts_of(change, area);
+  std::vector<Cell> front;
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) != 0) front.push_back(at);
+  });
+  for (std::size_t next = 0; next < front.size(); ++next) {
+    const int here = part(front[next].row, front[next].col);
+    for_each_neighbour(part, front[next], [&](Cell n) {
+      if (part(n.row, n.col) != 0 || !(growth(n.row, n.col) > 0.0F)) return;
+      part(n.row, n.col) = here;
+      front.push_back(n);
+    });
+  }
+  return part;
+}
+
+/// Volumes that points put in doubt [m^3].
+struct DoubtfulVolume {
+  double hole = 0.0;
+  double soil = 0.0;  ///< spill and heap
+  double in_before = 0.0;
+  double in_after = 0.0;
+
+  double& of(int part) { return part < 0 ? hole : soil; }
+  double sum() const { return hole + soil; }
+  const char* scan() const { return in_after > in_before ? "after" : "before"; }
+  double share_of(const VolumeChange& change) const {
+    return std::abs(ratio(hole, change.before.value) + ratio(soil, change.after.value));
+  }
+};
+
+void add_overlays(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
+                  DoubtfulVolume& doubt) {
+  constexpr double weight_of_new =
+      3.0;  // ours: nothing grows on dug soil, so that either may be it
+  const Eigen::ArrayXXf of_before = known(surfaces.before.doubt, surfaces.before);
+  const Eigen::ArrayXXf of_after = known(surfaces.after.doubt, surfaces.after);
+  const Eigen::ArrayXXi part = parts_with_doubt(change, area, of_after - of_before);
+  const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) == 0) return;
+    const double before = cell_area * static_cast<double>(of_before(at.row, at.col));
+    const double after = cell_area * static_cast<double>(of_after(at.row, at.col));
+    const double grown = std::max(0.0, after - before);
+    doubt.of(part(at.row, at.col)) += before + after + (weight_of_new - 1.0) * grown;
+    doubt.in_before += before;
+    doubt.in_after += after;
+  });
+}
+
+std::vector<Warning> warning_of_overlays(const DoubtfulVolume& doubt, const VolumeChange& change) {
+  constexpr double noted = 0.01;     // ours, of the bulking factor
+  constexpr double doubtful = 0.03;  // ours, likewise
+  const double share = doubt.share_of(change);
+  if (!(share > noted)) return {};
+  return {{"two_surfaces",
+           std::string("points of the scan ") + doubt.scan() +
+               " lie on two surfaces, one above the other, which leaves " +
+               readable(doubt.hole, 2) + " m^3 of the hole and " + readable(doubt.soil, 2) +
+               " m^3 of spill and heap in doubt: leave out dust, plants and what else is above the "
+               "ground, and points that were taken at other times",
+           share > doubtful}};
+}
+
+/// What outliers that are not told from the ground raise.
+void add_outliers(const SurfacePair& surfaces, const VolumeChange& change, const AreaChange& area,
+                  DoubtfulVolume& doubt) {
+  const Eigen::ArrayXXf of_before = known(surfaces.before.outlier_bias, surfaces.before);
+  const Eigen::ArrayXXf of_after = known(surfaces.after.outlier_bias, surfaces.after);
+  const Eigen::ArrayXXi part = parts_of(change, area);
+  const double cell_area = std::pow(surfaces.after.height.cell_size, 2);
+  for_each_cell(part, [&](Cell at) {
+    if (part(at.row, at.col) == 0) return;
+    const double before = cell_area * static_cast<double>(of_before(at.row, at.col));
+    const double after = cell_area * static_cast<double>(of_after(at.row, at.col));
+    doubt.of(part(at.row, at.col)) += after - before;
+    doubt.in_before += std::abs(before);
+    doubt.in_after += std::abs(after);
+  });
+}
+
+std::vector<Warning> warning_of_outliers(const DoubtfulVolume& doubt, const VolumeChange& change) {
+  constexpr double noted = 0.01;     // ours, of the bulking factor
+  constexpr double doubtful = 0.02;  // ours: twice the error of a good survey
+  const double share = doubt.share_of(change);
+  if (!(share > noted)) return {};
+  const bool are_above = (doubt.sum() > 0.0) == (doubt.in_after > doubt.in_before);
+  return {{"outliers",
+           std::string("points of the scan ") + doubt.scan() + " lie off the ground, " +
+               (are_above ? "above" : "below") +
+               " it in the main; where it is uneven they are not told from it, which may change "
+               "the bulking factor by " +
+               readable(100.0 * share, 2) +
+               " %: scan again without dust, rain or vibration, or clean the cloud",
+           share > doubtful}};
+}
+
+/// Rounded heights of several cells are the same.
+bool are_rounded(const std::vector<double>& sorted) {
+  constexpr double same = 1e-6;  // [m]
+  std::size_t alike = 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) alike += sorted[i] - sorted[i - 1] < same ? 1 : 0;
+  return 2 * alike > sorted.size();
+}
+
+/// A floor that a limit of heights cuts: cells of the hole whose lowest points lie at one height,
+/// as no noise leaves them. Nothing of rounded heights, which do.
+std::optional<Warning> floor_cut(const SurfacePair& surfaces, const VolumeChange& change,
+                                 const AreaChange& area) {
+  constexpr std::size_t blunders = 2;    // below the floor; ours
+  constexpr std::ptrdiff_t fewest = 20;  // ours
+  constexpr double least_noise = 2e-3;   // [m], ours: less hides no volume that counts
+  constexpr double edge = 0.25;          // ours, of the noise
+  constexpr double floor = 2.0;          // ours, likewise
+  constexpr double most = 0.25;  // ours: noise leaves some 0.03 of the cells so near the lowest
+  const Surface& after = surfaces.after;
+  if (after.below.size() != after.height.z.size()) return {};
+  const Eigen::ArrayXXi part = parts_of(change, area);
+  std::vector<double> lowest;
+  std::vector<double> scatter;
+  for_each_cell(part, [&](Cell at) {
+    const double here =
+        after.height.z(at.row, at.col) - static_cast<double>(after.below(at.row, at.col));
+    if (part(at.row, at.col) >= 0 || std::isnan(here)) return;
+    lowest.push_back(here);
+    const int points = std::min(after.points(at.row, at.col), most_points_of_cell);
+    const double variance = points * after.variance(at.row, at.col);
+    if (!std::isnan(variance)) scatter.push_back(variance);
+  });
+  if (lowest.size() <= blunders || scatter.empty()) return {};
+  std::sort(lowest.begin(), lowest.end());
+  const double noise = std::sqrt(quantile(scatter, 0.5));
+  if (noise < least_noise || are_rounded(lowest)) return {};
+  const auto up_to = [&](double height) {
+    return std::upper_bound(lowest.begin(), lowest.end(), lowest[blunders] + height) -
+           lowest.begin();  // cells
+  };
+  const auto at_edge = up_to(edge * noise);
+  if (at_edge < fewest ||
+      static_cast<double>(at_edge) < most * static_cast<double>(up_to(floor * noise))) {
+    return {};
+  }
+  return Warning{"floor_cut",
+                 "the lowest points of " + std::to_string(at_edge) + " cells of the hole lie at " +
+                     readable(lowest[blunders], 4) +
+                     " m, as where a limit of heights or depths cuts "
+                     "the floor off: what lies deeper is missing; widen the limit",
+                 true};
+}
+
+}  // namespace
+
+std::vector<Warning> check_points(const std::vector<const SurfacePair*>& pairs,
+                                  const VolumeChange& change) {
+  DoubtfulVolume overlays;
+  DoubtfulVolume outliers;
+  std::vector<Warning> floors;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i] == nullptr) continue;
+    const AreaChange& area = change.areas[i];
+    add_overlays(*pairs[i], change, area, overlays);
+    add_outliers(*pairs[i], change, area, outliers);
+    if (auto cut = floor_cut(*pairs[i], change, area)) floors.push_back(std::move(*cut));
+  }
+  std::vector<Warning> found = warning_of_overlays(overlays, change);
+  for (const auto& more : {warning_of_outliers(outliers, change), floors}) {
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  return found;
+}
+
+std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChange& area) {
+  constexpr double longest = 15.0;  // [m], ours: cameras stand nearer
+  constexpr double round = 0.35;    // ours: of the mean curvature, by which both differ from it
+  constexpr double smooth = 0.15;   // ours: of the sagitta
+  const Bowl bowl = bowl_of_stable(surfaces.before.height, area.zone);
+  const double mean = 0.5 * (bowl.across + bowl.along);
+  const double apart = std::hypot(0.5 * (bowl.across - bowl.along), bowl.twist);
+  if (!(std::abs(mean) * longest > 1.0) || apart > round * std::abs(mean) ||
+      bowl.rest_sd > smooth * bowl.sagitta) {
+    return {};
+  }
+  return {
+      {"curved_ground",
+       "the ground is part of a ball of " + readable(1.0 / std::abs(mean), 2) +
+           " m radius, as where ranges are read as depths or depths as ranges: lengths are wrong "
+           "by another factor in each part of the scan",
+       true}};
+}
+
+std::vector<Warning> check_volumes(const VolumeChange& change, double unit) {
+  std::vector<Warning> found;
+  const bool is_dig = change.excavated.value > 0.0;
+  auto units = is_dig ? doubt_of_volume(change.excavated.value, "a hole", unit)
+                      : doubt_of_volume(change.dumped.value, "a heap", unit);
+  if (units) found.push_back(std::move(*units));
+  if (auto warning = exchanged(change)) found.push_back(std::move(*warning));
+  return found;
+}
+
+void refuse_swapped(const VolumeChange& change, const std::string& names, double unit) {
+  const auto refuse = [&](const std::string& message) {
+    const auto units = doubt_of_volume(change.excavated.value, "a hole", unit);
+    throw Error(ErrorKind::bad_file,
+                names + ": " + message + (units ? "; " + units->message : std::string()));
+  };
+  for (const Warning& warning : change.warnings) {
+    if (warning.code == "looks_swapped") refuse(warning.message);
+  }
+  constexpr double much_lost = 0.2;  // ours, of the hole
+  const double lost = lost_beside_heap(change);
+  if (change.excavated.value > 0.0 && lost > much_lost * change.excavated.value) {
+    refuse("before and after are probably swapped: the ground fell by " + readable(lost) +
+           " m^3 beside what would be the heap, and by " + readable(change.excavated.value) +
+           " m^3 where the hole would be; exchange BEFORE and AFTER, or if z points down, " +
+           give_frames);
+  }
+  constexpr double least = 0.2;  // ours, of what moved at the dig
+  if (change.areas.size() != 2) return;
+  const Balance dig = balance_of(change.areas[0]);
+  const Balance dump = balance_of(change.areas[1]);
+  if (!(dump.fell > dump.rose) || dump.fell < least * std::max(dig.fell, dig.rose)) return;
+  const bool both = dig.rose > dig.fell;
+  refuse("before and after are probably swapped" + std::string(both ? "" : " in the dump area") +
+         ": there the ground fell by " + readable(dump.fell) + " m^3 and rose by " +
+         readable(dump.rose) + " m^3; exchange --dump-before and --dump-after" +
+         (both ? ", BEFORE and AFTER; or if z points down, " + std::string(give_frames) : ""));
+}
+
+}  // namespace excavplan
