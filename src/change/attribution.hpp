@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/change/change_options.hpp>
 
 #include "change/changes.hpp"
 #include "change/soil_balance.hpp"

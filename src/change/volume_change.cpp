@@ -17,6 +17,7 @@
 #include "change/open_changes.hpp"
 #include "change/surveyed_area.hpp"
 #include "ground/map_check.hpp"
+#include "ground/registration.hpp"
 
 namespace excavplan {
 namespace {
@@ -480,20 +481,6 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
 }
 
 }  // namespace
-
-const char* name(ZoneKind kind) {
-  switch (kind) {
-    case ZoneKind::dig:
-      return "dig";
-    case ZoneKind::spill:
-      return "spill";
-    case ZoneKind::dump:
-      return "dump";
-    case ZoneKind::other:
-      break;
-  }
-  return "other";
-}
 
 VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& options) {
   return result_of({&scene}, options);
