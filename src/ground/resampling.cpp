@@ -41,7 +41,8 @@ HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell_s
   for (const std::vector<Cell>& hole : fill_holes(whole.z).cells) {
     for (const Cell& at : hole) {
       const auto width = std::min(gap_along(map.z, at, {0, 1}), gap_along(map.z, at, {1, 0}));
-      if (static_cast<double>(width) > most) whole.z(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
+      if (static_cast<double>(width) > most)
+        whole.z(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
     }
   }
   HeightMap result = flat_ground(extent, cell_size);
