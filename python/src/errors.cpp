@@ -4,6 +4,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 
 #include "calls.hpp"

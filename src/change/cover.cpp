@@ -14,8 +14,8 @@
 
 #include "base/robust.hpp"
 #include "base/text.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {

@@ -304,12 +304,6 @@ class OpenChanges {
 
 }  // namespace
 
-bool is_unseen(const Reading& reading) {
-  return std::any_of(reading.kinds.begin(), reading.kinds.end(), [](ChangeKind kind) {
-    return kind == ChangeKind::pressed || kind == ChangeKind::water;
-  });
-}
-
 void state_open_changes(const std::vector<Area>& areas, const Attribution& attribution,
                         VolumeChange& result) {
   if (!attribution.changes.empty()) OpenChanges(areas, attribution, result).state();

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"

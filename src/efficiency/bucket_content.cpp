@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include <excavplan/change/volume_change.hpp>
+
 #include "base/text.hpp"
 #include "ground/too_few_cells.hpp"
 #include "scans/scan_checks.hpp"

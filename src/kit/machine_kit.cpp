@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/machine/kinematics.hpp>
 #include <excavplan/planning/library_build.hpp>

@@ -11,7 +11,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "machine/front_check.hpp"
 #include "planning/front_load.hpp"
 #include "planning/surroundings.hpp"

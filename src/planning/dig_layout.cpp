@@ -11,7 +11,7 @@
 #include <excavplan/planning/dig_cycle.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "simulation/checked_dig.hpp"
 #include "simulation/swath.hpp"
 

@@ -17,7 +17,7 @@
 #include "base/files.hpp"
 #include "base/robust.hpp"
 #include "base/text.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
 #include "planning/dig_problem.hpp"

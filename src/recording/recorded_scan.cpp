@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/scans/depth_intrinsics.hpp>
 
 #include "base/check.hpp"

@@ -11,11 +11,13 @@
 
 #include <Eigen/Cholesky>
 
+#include <excavplan/change/change_options.hpp>
+
 #include "base/angles.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/slopes.hpp"
 #include "scans/points_by_cell.hpp"
 
 namespace excavplan {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
+#include <excavplan/change/dig_volumes.hpp>
 
 #include "scans/scan_reading.hpp"
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"

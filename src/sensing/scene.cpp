@@ -9,13 +9,14 @@
 #include <variant>
 
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/machine/trajectory.hpp>
-#include "base/random.hpp"
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/random.hpp"
 #include "base/text.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "sensing/block_heap.hpp"
 #include "sensing/scene_path.hpp"
 #include "simulation/checked_dig.hpp"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/base/data_files.hpp>
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/machine/machine_file.hpp>
 #include <excavplan/machine/trajectory.hpp>

@@ -12,8 +12,9 @@
 #include <excavplan/change/bulking.hpp>
 #include <excavplan/change/volume_change.hpp>
 #include <excavplan/ground/height_map.hpp>
-#include "base/random.hpp"
+#include <excavplan/ground/resampling.hpp>
 
+#include "base/random.hpp"
 #include "change/change_zones.hpp"
 #include "change/doming.hpp"
 #include "ground/grid_cells.hpp"

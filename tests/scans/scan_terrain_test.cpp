@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
 
 #include <gtest/gtest.h>

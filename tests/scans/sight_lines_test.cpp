@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/change/volume_change.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 #include <excavplan/sensing/depth_camera.hpp>
 

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 /// @file
 /// Inputs of a wrong meaning, and whether what becomes of them can be accepted.

@@ -6,7 +6,7 @@
 #include <array>
 #include <filesystem>
 
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 #include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/planning/plan_motion.hpp>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"

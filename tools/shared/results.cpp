@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"

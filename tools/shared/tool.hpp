@@ -15,6 +15,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/soil/soil.hpp>
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>

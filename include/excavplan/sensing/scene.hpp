@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/sensing/depth_camera.hpp>
 #include <excavplan/simulation/dig_ground.hpp>

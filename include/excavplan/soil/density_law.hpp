@@ -9,7 +9,8 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/measured.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/soil/soil.hpp>
 
 /// @file
