@@ -19,7 +19,7 @@
 #include "ground/too_few_cells.hpp"
 #include "paper/paper_change.hpp"
 #include "scans/scan_checks.hpp"
-#include "scans/scan_reading.hpp"
+#include "scans/scan_pairs.hpp"
 #include "soil/density_forms.hpp"
 
 namespace excavplan {

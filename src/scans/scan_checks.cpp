@@ -14,9 +14,9 @@
 #include "base/angles.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
+#include "clouds/points_by_cell.hpp"
 #include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
-#include "scans/points_by_cell.hpp"
 
 namespace excavplan {
 namespace {

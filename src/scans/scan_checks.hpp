@@ -8,7 +8,7 @@
 
 #include <excavplan/base/error.hpp>
 
-#include "scans/scan_reading.hpp"
+#include "scans/scan_pairs.hpp"
 
 /// @file
 /// Whether scans can be what they are taken for: units, frame, motion between them, order

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/scans/scan_surface.hpp>
-#include <excavplan/simulation/soil_simulator.hpp>
 
 namespace excavplan {
 
