@@ -326,14 +326,6 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
 
 }  // namespace
 
-std::optional<GroundDensity> DensityEstimate::ground_density() const {
-  if (!density) return std::nullopt;
-  GroundDensity ground(density->percent, density->sd_percent);
-  ground.trustworthy = trustworthy;
-  ground.soil = law.soil;
-  return ground;
-}
-
 DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
                                  const DensityOptions& options) {
   return std::move(estimates(scans, law, options, {options.method}).front());

@@ -13,7 +13,6 @@
 #include "base/text.hpp"
 #include "recording/byte_file.hpp"
 #include "recording/compression.hpp"
-#include "recording/container.hpp"
 
 namespace excavplan {
 namespace {
@@ -239,13 +238,6 @@ bool Recording::show(const Open& open, const MessageVisitor& visitor) const {
 }
 
 }  // namespace
-
-std::string ros2_type(std::string_view type) {
-  std::string out(type);
-  const std::size_t slash = out.find('/');
-  if (slash != out.npos && out.find('/', slash + 1) == out.npos) out.insert(slash, "/msg");
-  return out;
-}
 
 bool is_recording(const std::string& path) {
   std::error_code none;
