@@ -13,6 +13,7 @@
 #include "base/text.hpp"
 #include "recording/byte_file.hpp"
 #include "recording/compression.hpp"
+#include "recording/container.hpp"
 
 namespace excavplan {
 namespace {

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <memory>
 
-#include <excavplan/base/error.hpp>
+#include <Eigen/Geometry>
+
 #include <excavplan/scans/machine_front.hpp>
 
 #include "base/check.hpp"
