@@ -20,7 +20,7 @@
 #include "ground/too_few_cells.hpp"
 #include "paper/paper_change.hpp"
 #include "scans/scan_checks.hpp"
-#include "scans/scan_reading.hpp"
+#include "scans/scan_pairs.hpp"
 #include "soil/density_forms.hpp"
 
 namespace excavplan {
@@ -326,14 +326,6 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
 }
 
 }  // namespace
-
-std::optional<GroundDensity> DensityEstimate::ground_density() const {
-  if (!density) return std::nullopt;
-  GroundDensity ground(density->percent, density->sd_percent);
-  ground.trustworthy = trustworthy;
-  ground.soil = law.soil;
-  return ground;
-}
 
 DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
                                  const DensityOptions& options) {

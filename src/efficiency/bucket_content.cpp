@@ -11,7 +11,7 @@
 #include "base/text.hpp"
 #include "ground/too_few_cells.hpp"
 #include "scans/scan_checks.hpp"
-#include "scans/scan_reading.hpp"
+#include "scans/scan_pairs.hpp"
 
 namespace excavplan {
 namespace {

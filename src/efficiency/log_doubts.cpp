@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "logs/dig_phases.hpp"
 
 namespace excavplan {
 namespace {

@@ -16,9 +16,9 @@
 #include "base/angles.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
+#include "clouds/points_by_cell.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/slopes.hpp"
-#include "scans/points_by_cell.hpp"
 
 namespace excavplan {
 namespace {

@@ -14,6 +14,7 @@
 
 #include "base/random.hpp"
 #include "scans/scan_checks.hpp"
+#include "scans/scan_pairs.hpp"
 
 namespace excavplan {
 namespace {

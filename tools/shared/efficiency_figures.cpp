@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "base/text.hpp"
-#include "logs/dig_phases.hpp"
 #include "shared/bars.hpp"
 #include "shared/efficiency_results.hpp"
 
