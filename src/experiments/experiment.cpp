@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "experiments/experiment_site.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {

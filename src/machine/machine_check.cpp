@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include "machine/machine_check.hpp"
+
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include <excavplan/machine/kinematics.hpp>
-#include <excavplan/machine/machine.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
-#include "machine/machine_check.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {

@@ -21,6 +21,7 @@
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
 #include "planning/dig_problem.hpp"
+#include "planning/simulated_dig.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {

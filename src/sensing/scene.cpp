@@ -18,7 +18,6 @@
 #include "base/text.hpp"
 #include "ground/terrain.hpp"
 #include "sensing/block_heap.hpp"
-#include "sensing/scene_path.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/angles.hpp"
-#include "soil/sound_soil.hpp"
+#include "soil/soil.hpp"
 
 namespace excavplan {
 namespace {

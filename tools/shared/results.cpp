@@ -9,7 +9,7 @@
 
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"
-#include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 #include "shared/joint_loads.hpp"
 #include "shared/quantity.hpp"
 
