@@ -9,7 +9,7 @@
 
 #include <excavplan/change/bulking.hpp>
 
-#include "frame/quantity.hpp"
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {

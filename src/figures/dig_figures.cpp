@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "figures/load_figures.hpp"
-#include "figures/machine_outline.hpp"
 
 namespace excavplan {
 namespace {
@@ -243,17 +241,6 @@ Figure section_figure(const DugDig& dug) {
   figure.title = dug.title;
   figure.rows = {{machine_panel(dug), dig_panel(dug)}};
   return figure;
-}
-
-FigureTable<DugDig> dig_figures(const std::function<Machine()>& machine) {
-  const Arguments::Use with_cylinders = {[machine] { return machine().cylinders.has_value(); },
-                                         "the file of the machine states no cylinders"};
-  return {
-      {{"section", "machine, ground and bucket in the plane of the boom"}, section_figure},
-      {{"forces", "force of the soil and payload over time"}, forces_figure},
-      {{"torques", "torques of the joints with their limits"}, torques_figure},
-      {{"power", "power and energy over time"}, power_figure},
-      {{"cylinders", "pressures or forces of the cylinders", with_cylinders}, cylinders_figure}};
 }
 
 }  // namespace excavplan

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "base/text.hpp"
-#include "logs/dig_phases.hpp"
 #include "drawing/bars.hpp"
+#include "logs/dig_phases.hpp"
 #include "results/efficiency_results.hpp"
 
 namespace excavplan {
@@ -34,30 +34,6 @@ Bar bar_of(const DigEfficiency& run) {
     bar.interval = {value.value - within_95 * value.sd, value.value + within_95 * value.sd};
   }
   return bar;
-}
-
-Figure bars_figure(const DrawnRuns& drawn) {
-  const std::vector<DigEfficiency>& runs = drawn.runs;
-  Figure figure;
-  figure.title = "Efficiency of each run";
-  std::vector<BarGroup> groups;
-  for (const DigEfficiency& run : runs) {
-    groups.push_back({name_of(run), {bar_of(run)}, readable(run.value().value, run.value().sd)});
-  }
-  Panel panel = bar_panel("efficiency [" + unit_text(runs.front().symbol()) + "]",
-                          {{"", {"#444444", 0.6, "#9ecae1"}}}, groups);
-  figure.rows = {{panel}};
-  const auto has_sd = [](const DigEfficiency& run) { return std::isfinite(run.value().sd); };
-  if (std::any_of(runs.begin(), runs.end(), has_sd)) figure.note = "± is one standard deviation. ";
-  if (runs.size() == 2) {
-    const Measured gain = efficiency_gain(runs[0], runs[1], drawn.own_meters);
-    const auto [low, high] = gain_interval(gain);
-    figure.note += "Gain of the second run: " + readable(gain.value, gain.sd) + " %";
-    figure.note += std::isfinite(low)
-                       ? ", 95 % interval " + readable(low) + " .. " + readable(high) + " %."
-                       : ".";
-  }
-  return figure;
 }
 
 /// Rates of the log as a figure shows them.
@@ -109,7 +85,44 @@ Panel log_panel(const DigEfficiency& run, bool last) {
   return panel;
 }
 
-Figure fuel_figure(const DrawnRuns& drawn) {
+/// The runs of a set side by side in the bar of their mean.
+Points dots_of(const std::vector<DigEfficiency>& runs, double middle) {
+  constexpr double spread = 0.5;
+  Points dots;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(runs.size());
+    dots.emplace_back(middle + spread * (share - 0.5), runs[i].value().value);
+  }
+  return dots;
+}
+
+}  // namespace
+
+Figure runs_figure(const DrawnRuns& drawn) {
+  const std::vector<DigEfficiency>& runs = drawn.runs;
+  Figure figure;
+  figure.title = "Efficiency of each run";
+  std::vector<BarGroup> groups;
+  for (const DigEfficiency& run : runs) {
+    groups.push_back({name_of(run), {bar_of(run)}, readable(run.value().value, run.value().sd)});
+  }
+  Panel panel = bar_panel("efficiency [" + unit_text(runs.front().symbol()) + "]",
+                          {{"", {"#444444", 0.6, "#9ecae1"}}}, groups);
+  figure.rows = {{panel}};
+  const auto has_sd = [](const DigEfficiency& run) { return std::isfinite(run.value().sd); };
+  if (std::any_of(runs.begin(), runs.end(), has_sd)) figure.note = "± is one standard deviation. ";
+  if (runs.size() == 2) {
+    const Measured gain = efficiency_gain(runs[0], runs[1], drawn.own_meters);
+    const auto [low, high] = gain_interval(gain);
+    figure.note += "Gain of the second run: " + readable(gain.value, gain.sd) + " %";
+    figure.note += std::isfinite(low)
+                       ? ", 95 % interval " + readable(low) + " .. " + readable(high) + " %."
+                       : ".";
+  }
+  return figure;
+}
+
+Figure rates_figure(const DrawnRuns& drawn) {
   const std::vector<DigEfficiency>& runs = drawn.runs;
   Figure figure;
   figure.title = "Rate of fuel or energy over time";
@@ -126,17 +139,6 @@ Figure fuel_figure(const DrawnRuns& drawn) {
     figure.rows.push_back({panel});
   }
   return figure;
-}
-
-/// The runs of a set side by side in the bar of their mean.
-Points dots_of(const std::vector<DigEfficiency>& runs, double middle) {
-  constexpr double spread = 0.5;
-  Points dots;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(runs.size());
-    dots.emplace_back(middle + spread * (share - 0.5), runs[i].value().value);
-  }
-  return dots;
 }
 
 Figure sets_figure(const ComparedSets& sets) {
@@ -159,20 +161,8 @@ Figure sets_figure(const ComparedSets& sets) {
   figure.title = "Efficiency of the runs of both sets";
   figure.rows = {{panel}};
   figure.note = std::to_string(found.second.runs) + " runs against " +
-                std::to_string(found.first.runs) + ", " + set_lines(found, symbol)[2] + ".";
+                std::to_string(found.first.runs) + ", " + gain_text(found) + ".";
   return figure;
-}
-
-}  // namespace
-
-FigureTable<DrawnRuns> run_figures(const Arguments::Use& of_logs) {
-  return {
-      {{"efficiency", "efficiency of each run with its 95 % interval", of_logs}, bars_figure},
-      {{"fuel", "fuel flow or power over time, with the dig and idling", of_logs}, fuel_figure}};
-}
-
-FigureTable<ComparedSets> set_figures(const Arguments::Use& of_sets) {
-  return {{{"sets", "every run of both sets, their means and the gain", of_sets}, sets_figure}};
 }
 
 }  // namespace excavplan

@@ -4,13 +4,11 @@
 
 #include <vector>
 
-#include <excavplan/efficiency/efficiency.hpp>
-
-#include "measure_efficiency/efficiency_runs.hpp"
-#include "inputs/plots.hpp"
+#include "drawing/plot.hpp"
+#include "results/efficiency_results.hpp"
 
 /// @file
-/// Figures of measure-efficiency, of one run or two, or of two sets.
+/// Figures of one run or two, or of two sets.
 
 namespace excavplan {
 
@@ -19,10 +17,11 @@ struct DrawnRuns {
   bool own_meters = false;  ///< as efficiency_gain() takes it
 };
 
-/// efficiency and fuel. @param of_logs  possible for logs, not for sets of runs
-FigureTable<DrawnRuns> run_figures(const Arguments::Use& of_logs);
-
-/// sets. @param of_sets  possible for sets of runs only
-FigureTable<ComparedSets> set_figures(const Arguments::Use& of_sets);
+/// Efficiency of each run with its 95 % interval.
+Figure runs_figure(const DrawnRuns& drawn);
+/// Fuel flow or power over time, with the dig and idling.
+Figure rates_figure(const DrawnRuns& drawn);
+/// Every run of both sets, their means and the gain.
+Figure sets_figure(const ComparedSets& sets);
 
 }  // namespace excavplan

@@ -43,10 +43,6 @@ std::string gain_text(double percent) {
   return (percent < 0.0 ? "−" : "+") + short_number(std::abs(percent), 0) + " %";
 }
 
-DensityLine line_of(const nlohmann::ordered_json& json) {
-  return {json.at("a_percent"), json.at("b_percent"), json.at("r2")};
-}
-
 std::string line_text(const std::string& name, const DensityLine& line) {
   return name + ": d = " + decimals(line.a, 1) + " k − " + decimals(-line.b, 1);
 }
@@ -161,10 +157,10 @@ Figure efficiency_figure(const Experiments& experiments) {
 
 Figure regression_figure(const DrawnExperiments& drawn) {
   Panel panel("", bulking_label, density_label);
-  const auto& regression = drawn.regression;
-  const DensityLine own = line_of(regression.at("line"));
-  const DensityLine freed = line_of(regression.at("line_without_fallback"));
-  const DensityLine paper = line_of(regression.at("paper_line"));
+  const DensityRegression& regression = drawn.regression;
+  const DensityLine& own = regression.line;
+  const DensityLine& freed = regression.line_without_fallback;
+  const DensityLine& paper = regression.paper_line;
   panel.line(law_curve(paper), {"#b5b5b5", 2.8}, line_text("paper", paper));
   panel.line(law_curve(density_law_of(drawn.soil).form),
              {colours::green, 1.1, "none", 1.0, {5.0, 1.5, 1.2, 1.5}},
@@ -173,8 +169,8 @@ Figure regression_figure(const DrawnExperiments& drawn) {
              line_text("without fallback", freed));
   panel.line(law_curve(own), {colours::blue, 1.3}, line_text("regression", own));
   Points samples;
-  for (const auto& sample : regression.at("samples")) {
-    samples.emplace_back(sample.at("bulking_factor"), sample.at("density_percent"));
+  for (const DensityCalibration::Sample& sample : regression.samples) {
+    samples.emplace_back(sample.bulking_factor_measured, sample.density_percent);
   }
   panel.dots(samples, 1.7, {colours::blue, 0.8, "#ffffff"}, "digs along the fixed path");
   Figure figure;
@@ -182,15 +178,6 @@ Figure regression_figure(const DrawnExperiments& drawn) {
   figure.rows = {{panel}};
   figure.note = "The void ratios of loam were derived from the paper's line.";
   return figure;
-}
-
-FigureTable<DrawnExperiments> experiment_figures(const Arguments::Use& experiment) {
-  return {{{"paths", "paths of the tip, fixed and planned", experiment},
-           [](const DrawnExperiments& drawn) { return paths_figure(drawn.experiments); }},
-          {{"efficiency", "what both digs of each condition are worth", experiment},
-           [](const DrawnExperiments& drawn) { return efficiency_figure(drawn.experiments); }},
-          {{"regression", "density over bulking factor, with the paper's line", experiment},
-           regression_figure}};
 }
 
 }  // namespace excavplan

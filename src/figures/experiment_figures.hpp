@@ -2,41 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include <nlohmann/json.hpp>
-
-#include <excavplan/experiments/experiment.hpp>
-
-#include "inputs/plots.hpp"
+#include "drawing/plot.hpp"
+#include "results/experiment_results.hpp"
 
 /// @file
-/// Figures of run-experiment, after the paper's Figs. 7, 8 and 9.
+/// Figures of an experiment, after the paper's Figs. 7, 8 and 9.
 
 namespace excavplan {
 
-struct NamedExperiment {
-  std::string condition;
-  ExperimentResult result;
-};
-
-/// A condition that could not be dug along one of the paths.
-struct FailedExperiment {
-  std::string condition;
-  double density_percent = 0.0;
-  std::size_t place = 0;  ///< conditions before it that were done
-};
-
-struct Experiments {
-  std::vector<NamedExperiment> done;
-  std::vector<FailedExperiment> failed;
-  SecondGround second = SecondGround::fresh;
-};
-
 struct DrawnExperiments {
   const Experiments& experiments;
-  const nlohmann::ordered_json& regression;  ///< by regression_json()
+  const DensityRegression& regression;
   const SoilKind& soil;
 };
 
@@ -50,8 +26,5 @@ Figure efficiency_figure(const Experiments& experiments);
 
 /// Density over bulking factor: digs and regression lines; Fig. 7.
 Figure regression_figure(const DrawnExperiments& drawn);
-
-/// paths, efficiency and regression, of an experiment.
-FigureTable<DrawnExperiments> experiment_figures(const Arguments::Use& experiment);
 
 }  // namespace excavplan

@@ -23,6 +23,8 @@ Style style_of(std::size_t form) {
   return styles[form % styles.size()];
 }
 
+}  // namespace
+
 Figure law_figure(const DensityCalibration& calibration) {
   Panel panel("", bulking_label, density_label);
   const DensityForm& used = calibration.form(calibration.use);
@@ -50,14 +52,6 @@ Figure law_figure(const DensityCalibration& calibration) {
   figure.title = "Relative density over bulking factor, law " + calibration.name;
   figure.rows = {{panel}};
   return figure;
-}
-
-}  // namespace
-
-const FigureTable<DensityCalibration>& calibration_figures() {
-  static const FigureTable<DensityCalibration> figures = {
-      {{"law", "samples, the forms fitted to them and the scatter"}, law_figure}};
-  return figures;
 }
 
 }  // namespace excavplan

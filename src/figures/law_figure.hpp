@@ -4,11 +4,11 @@
 
 #include <excavplan/soil/density_fit.hpp>
 
-#include "inputs/plots.hpp"
+#include "drawing/plot.hpp"
 
 namespace excavplan {
 
-/// law: samples, the forms fitted to them and 95 % of digs about the one to use.
-const FigureTable<DensityCalibration>& calibration_figures();
+/// Samples, the forms fitted to them and 95 % of digs about the one to use.
+Figure law_figure(const DensityCalibration& calibration);
 
 }  // namespace excavplan

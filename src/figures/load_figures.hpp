@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "figures/dig_figures.hpp"
+#include "drawing/plot.hpp"
+#include "figures/dug_dig.hpp"
 
 /// @file
 /// Loads of a dig over its time.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include <excavplan/simulation/dig_ground.hpp>
@@ -13,7 +12,6 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"
-#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 namespace {
@@ -127,17 +125,6 @@ std::string search_note(const DrawnPlan& drawn, bool is_uncertain) {
   return note;
 }
 
-/// Warns of pictures of an earlier plan, which must not be taken for that of this ground, which has
-/// none.
-void warn_of_old(const Plots& plots, Outcome& outcome) {
-  for (const Plots::File& plot : plots.files) {
-    std::error_code unknown;
-    if (!std::filesystem::exists(plot.file, unknown)) continue;
-    outcome.warnings.push_back(
-        {"plot_not_written", plot.file + ": is of an earlier run, as there is no dig to draw"});
-  }
-}
-
 }  // namespace
 
 Figure search_figure(const DrawnPlan& drawn) {
@@ -197,46 +184,6 @@ Figure landscape_figure(const DrawnPlan& drawn) {
         sections[i].panel({first, first + static_cast<std::ptrdiff_t>(Section::count)}, scale));
   }
   return figure;
-}
-
-FigureTable<DrawnPlan> plan_figures(const Arguments::Use& searches,
-                                    const std::function<Machine()>& machine) {
-  FigureTable<DrawnPlan> figures;
-  for (const NamedFigure<DugDig>& figure : dig_figures(machine)) {
-    figures.push_back(
-        {figure.name, [draw = figure.draw](const DrawnPlan& drawn) { return draw(*drawn.dug); }});
-  }
-  figures.push_back({{"search", "worth of the digs of --search", searches}, search_figure});
-  figures.push_back(
-      {{"landscape", "worth around the dig that --search found", searches}, landscape_figure});
-  return figures;
-}
-
-void draw_plan(const Plots& plots, const std::optional<std::string>& report, DrawnPlan drawn,
-               Outcome& outcome) {
-  if (plots.files.empty() && !report) return;
-  const PlanSite& site = drawn.site;
-  const DigPlan& plan = drawn.plan;
-  const std::string title = (plan.dig ? "Planned dig in " : "No dig in ") + site.soil.name +
-                            " at " + readable(site.density_percent) + " % relative density";
-  std::optional<DigResult> dig;
-  std::string section;
-  if (plan.dig) {
-    dig = rehearse(drawn.machine, plan, site);
-    const DugDig dug = {drawn.machine,
-                        plan.path,
-                        *dig,
-                        boom_plane_profile(site.ground),
-                        boom_plane_profile(dig->after(site.ground)),
-                        title};
-    drawn.dug = &dug;
-    write_plots(plots, plan_figures({}, {}), drawn, outcome.lines, outcome.warnings);
-    section = to_svg(lay_out(section_figure(dug)));
-  } else if (!plan.stopped) {
-    warn_of_old(plots, outcome);
-  }
-  if (!report) return;
-  outcome.report = titled(plan_report(drawn.machine, plan, site, dig), *report, title, section);
 }
 
 }  // namespace excavplan

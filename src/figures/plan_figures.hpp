@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "figures/dig_figures.hpp"
-#include "report/dig_report.hpp"
+#include <excavplan/planning/rehearsal.hpp>
+
+#include "drawing/plot.hpp"
+#include "figures/dug_dig.hpp"
 
 /// @file
 /// Figures of a planned dig and of the search for it.
@@ -25,14 +27,5 @@ Figure search_figure(const DrawnPlan& drawn);
 /// Worth in two sections of the search ranges through the planned dig, with its start: angle and
 /// penetration length, penetration length and drag length; some 700 digs in the simulator.
 Figure landscape_figure(const DrawnPlan& drawn);
-
-/// dig_figures(), search and landscape. @param searches  whether plan-path does
-FigureTable<DrawnPlan> plan_figures(const Arguments::Use& searches,
-                                    const std::function<Machine()>& machine);
-
-/// Writes the figures that were asked for and adds the page about the plan to the outcome if there
-/// is a file for it. Without a dig there is only the page.
-void draw_plan(const Plots& plots, const std::optional<std::string>& report, DrawnPlan drawn,
-               Outcome& outcome);
 
 }  // namespace excavplan

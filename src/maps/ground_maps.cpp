@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "maps/ground_maps.hpp"
+#include <excavplan/maps/ground_maps.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -95,26 +95,7 @@ MapLine cut_outline(const Machine& machine, const DigPath& path, const HeightMap
   return line;
 }
 
-std::vector<MapName> ground_names(std::size_t layers) {
-  return {{"all", "all of these layers, not as .asc", layers},
-          {"before", "height of the ground before"},
-          {"after", "height after"},
-          {"change", "height after less before"}};
-}
-
 }  // namespace
-
-std::vector<MapName> survey_map_names(const std::optional<std::string>& dump) {
-  const Arguments::Use has_dump = {[&dump] { return dump.has_value(); },
-                                   "the dump area has no scans of its own"};
-  std::vector<MapName> names = ground_names(5);
-  names.push_back({"sd", "standard deviation of the change of a cell"});
-  names.push_back({"zones", "1 hole, 2 spill, 3 heap, 4 other, 0 none"});
-  const std::size_t own = names.size();
-  names.push_back({"dump", "all of the dump area, if it has scans of its own", 5, has_dump});
-  for (std::size_t i = 1; i < own; ++i) names.push_back({"dump-" + names[i].name, "", 1, has_dump});
-  return names;
-}
 
 std::vector<NamedMap> survey_maps(const VolumeChange& change,
                                   const std::vector<HeightMap>& before) {
@@ -134,19 +115,10 @@ std::vector<NamedMap> survey_maps(const VolumeChange& change,
   return maps;
 }
 
-std::vector<MapName> scene_map_names() { return ground_names(3); }
-
 std::vector<NamedMap> scene_maps(const DigScene& scene) {
   const HeightMap before = scene.blocks ? scene.blocks->before : scene.before.surface();
   const HeightMap after = scene.blocks ? scene.blocks->after : scene.after.surface();
   return maps_of("", before, after.z, ground_layers(before.z, after.z, after.z - before.z));
-}
-
-std::vector<MapName> plan_map_names() {
-  std::vector<MapName> names = ground_names(4);
-  names.push_back({"footprint", "1 where the dig lowers the ground"});
-  names.push_back({"path", "path of the tip and outline of the cut, as .dxf or .ply", 0});
-  return names;
 }
 
 std::vector<NamedMap> plan_maps(const Machine& machine, const DigPlan& plan, const PlanSite& site) {

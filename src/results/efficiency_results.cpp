@@ -10,8 +10,6 @@
 namespace excavplan {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 const char* word_of(PhaseSource source) {
@@ -25,8 +23,6 @@ const char* word_of(PhaseSource source) {
   }
   return "";
 }
-
-std::string cost_unit(const DigEfficiency& run) { return run.spent == Spent::fuel ? "mL" : "kJ"; }
 
 /// A dig, or a cycle: the mean of those of the log.
 Json share_json(const DigEfficiency& run, const RunShare& share) {
@@ -49,21 +45,9 @@ Json idle_json(const DigEfficiency& run) {
           {"found", run.idle->is_found}};
 }
 
-std::string share_line(const DigEfficiency& run, const char* name, const RunShare& share) {
-  const double count = static_cast<double>(run.digs);
-  const auto spent = [&](double cost) {
-    return readable(cost / count) + " " + cost_unit(run) + ", " +
-           (cost > 0.0 ? readable(run.per(cost).value) : "unknown") + " " + run.symbol();
-  };
-  std::string line = std::string("  per ") + name + ": " + spent(share.cost) + " in " +
-                     readable(share.duration / count) + " s";
-  if (share.above_idle) line += "; above idling " + spent(*share.above_idle);
-  return line;
-}
-
 }  // namespace
 
-nlohmann::ordered_json to_json(const DigEfficiency& run) {
+Json run_json(const DigEfficiency& run) {
   Json json = {{"file", run.file}, {"duration_s", run.duration}};
   for (const char* key :
        {"volume_m3", "volume_sd_m3", "mass_kg", "mass_sd_kg", "fuel_ml", "fuel_sd_ml", "energy_kj",
@@ -94,31 +78,7 @@ nlohmann::ordered_json to_json(const DigEfficiency& run) {
   return json;
 }
 
-std::vector<std::string> run_lines(const DigEfficiency& run) {
-  const Measured& payload = run.payload.amount;
-  std::vector<std::string> lines = {
-      run.file + ": " + readable(payload.value, payload.sd) +
-      (run.payload.kind == Lifted::volume ? " m3, " : " kg, ") + readable(run.cost, run.cost_sd) +
-      " " + cost_unit(run) + " in " + readable(run.duration) +
-      " s: " + readable(run.value().value, run.value().sd) + " " + run.symbol()};
-  if (run.idle || run.cycle) lines.push_back(share_line(run, "dig", run.dig));
-  if (run.cycle) lines.push_back(share_line(run, "cycle", *run.cycle));
-  if (run.idle) {
-    const bool is_fuel = run.spent == Spent::fuel;
-    const double litres_per_hour = 3.6 * run.idle->rate;
-    lines.push_back(
-        "  idling: " +
-        (is_fuel ? readable(litres_per_hour) + " L/h" : readable(run.idle->rate / 1000.0) + " kW") +
-        (run.idle->is_found ? ", the low plateau of the log" : ""));
-  }
-  if (run.bank_volume) {
-    lines.push_back("  in the ground: " + readable(run.bank_volume->value, run.bank_volume->sd) +
-                    " m3");
-  }
-  return lines;
-}
-
-nlohmann::ordered_json to_json(const SetComparison& sets) {
+Json comparison_json(const SetComparison& sets) {
   const auto set = [](const RunSet& runs) -> Json {
     return {{"runs", runs.runs},
             {"efficiency_mean", runs.mean},
@@ -139,30 +99,16 @@ nlohmann::ordered_json to_json(const SetComparison& sets) {
             {"divisions", sets.permutation.divisions}}}};
 }
 
-std::vector<std::string> set_lines(const SetComparison& sets, const std::string& symbol) {
-  const auto line = [&](const char* name, const RunSet& set) {
-    return name + std::to_string(set.runs) + " runs, " + readable(set.mean) + " " + symbol +
-           " on average, standard deviation " + readable(set.sd, 2);
-  };
+std::string gain_text(const SetComparison& sets) {
   const std::string divisions = std::to_string(sets.permutation.divisions);
   const std::string test = sets.by_permutation
                                ? "permutation test over " +
                                      std::string(sets.permutation.is_exact ? "all " : "") +
                                      divisions + " divisions"
                                : std::string("Welch's t-test");
-  std::vector<std::string> lines = {
-      line("against: ", sets.first), line("runs:    ", sets.second),
-      "gain: " + readable(sets.gain_percent) + " %, 95 % interval " +
-          readable(sets.gain_low_percent) + " .. " + readable(sets.gain_high_percent) +
-          " %; p = " + readable(sets.p_value(), 2) + " (" + test + ")"};
-  constexpr double level = 0.05;  // of an interval of 95 %
-  const bool interval_shows = sets.gain_low_percent > 0.0 || sets.gain_high_percent < 0.0;
-  if (interval_shows != (sets.p_value() < level)) {
-    lines.push_back(
-        "the interval, which takes the scatter for normal, says otherwise than the permutation "
-        "test, which does not and decides: more runs are needed");
-  }
-  return lines;
+  return "gain: " + readable(sets.gain_percent) + " %, 95 % interval " +
+         readable(sets.gain_low_percent) + " .. " + readable(sets.gain_high_percent) +
+         " %; p = " + readable(sets.p_value(), 2) + " (" + test + ")";
 }
 
 std::pair<double, double> gain_interval(const Measured& gain_percent) {

@@ -6,25 +6,29 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <excavplan/efficiency/efficiency.hpp>
 #include <excavplan/efficiency/run_comparison.hpp>
 
+#include "base/json_fwd.hpp"
+
 /// @file
-/// Efficiencies as JSON, with the keys of docs/formats.md#measure-efficiency, and as lines of text.
+/// Efficiencies with the keys of docs/formats.md#measure-efficiency.
 
 namespace excavplan {
 
-nlohmann::ordered_json to_json(const DigEfficiency& run);
+/// Two sets of runs and what comes of them.
+struct ComparedSets {
+  std::vector<DigEfficiency> against;
+  std::vector<DigEfficiency> runs;
+  SetComparison comparison;
+};
 
-/// What counts in one line, then what is known beside it.
-std::vector<std::string> run_lines(const DigEfficiency& run);
+Json run_json(const DigEfficiency& run);
 
 /// Both sets, the gain, its interval and the tests.
-nlohmann::ordered_json to_json(const SetComparison& sets);
-/// The same for people. @param symbol  of the efficiency
-std::vector<std::string> set_lines(const SetComparison& sets, const std::string& symbol);
+Json comparison_json(const SetComparison& sets);
+/// The gain with its interval and its test, in one line.
+std::string gain_text(const SetComparison& sets);
 
 /// Bounds of a 95 % interval of the gain [%], of the ratio's logarithm; NaN if its sd is.
 std::pair<double, double> gain_interval(const Measured& gain_percent);

@@ -5,38 +5,46 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <excavplan/experiments/experiment.hpp>
+#include <excavplan/soil/density_fit.hpp>
 
-#include "figures/experiment_figures.hpp"
-#include "report/report.hpp"
-#include "frame/tool.hpp"
+#include "base/json_fwd.hpp"
 
 /// @file
-/// What run-experiment writes and prints.
+/// What a simulated experiment of the paper gives.
 
 namespace excavplan {
 
-nlohmann::ordered_json experiment_json(const std::string& condition,
-                                       const ExperimentResult& result);
-std::string experiment_line(const std::string& condition, const ExperimentResult& result);
+struct NamedExperiment {
+  std::string condition;
+  ExperimentResult result;
+};
+
+/// A condition that could not be dug along one of the paths.
+struct FailedExperiment {
+  std::string condition;
+  double density_percent = 0.0;
+  std::size_t place = 0;  ///< conditions before it that were done
+};
+
+struct Experiments {
+  std::vector<NamedExperiment> done;
+  std::vector<FailedExperiment> failed;
+  SecondGround second = SecondGround::fresh;
+};
 
 /// The paper's Fig. 7: bulking factors of digs along the fixed path at 0, 5 .. 100 %, the
 /// regression of the density on them, and that of the paper.
-nlohmann::ordered_json regression_json(const Machine& machine, const SoilKind& soil,
-                                       const ExperimentOptions& options);
-std::string regression_line(const nlohmann::ordered_json& regression);
+struct DensityRegression {
+  std::vector<DensityCalibration::Sample> samples;
+  DensityLine line;                   ///< on the bulking factors as measured
+  DensityLine line_without_fallback;  ///< on those by dry mass
+  DensityLine paper_line;
+};
+DensityRegression density_regression(const Machine& machine, const SoilKind& soil,
+                                     const ExperimentOptions& options);
 
-/// Adds the results of a condition to `conditions` of the outcome, and to its lines and warnings.
-void add(const NamedExperiment& done, Outcome& outcome);
-/// Likewise of one that has none.
-void add_failure(const std::string& condition, double density_percent, const std::string& why,
-                 Outcome& outcome);
-
-/// The page, without its file: both digs of each condition, dug once more on level ground, and bars
-/// of what they are worth.
-Report experiment_report(const Machine& machine, const SoilKind& soil, const PlanOptions& options,
-                         const Experiments& experiments);
+Json experiment_json(const NamedExperiment& experiment);
+Json regression_json(const DensityRegression& regression);
 
 }  // namespace excavplan

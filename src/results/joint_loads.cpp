@@ -8,12 +8,9 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "results/dig_timing.hpp"
-#include "frame/quantity.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr std::array<Joint, 3> all_joints = {Joint::boom, Joint::arm, Joint::bucket};
 
 double larger(double a, double b) { return std::abs(b) > std::abs(a) ? b : a; }
 
@@ -26,24 +23,17 @@ void add_sample(const Cylinder& cylinder, double joint, double torque,
   use->longest = std::max(use->longest, length);
 }
 
-double stroke_share(const Cylinder& cylinder, const CylinderUse& use) {
-  return (use.longest - use.shortest) / cylinder.stroke();
-}
-
-nlohmann::ordered_json cylinder_json(const Cylinder& cylinder, const CylinderUse& use) {
+Json cylinder_json(const Cylinder& cylinder, const CylinderUse& use) {
   return {{"count", cylinder.count()},     {"peak_force_kn", use.peak_force / 1000.0},
           {"shortest_m", use.shortest},    {"longest_m", use.longest},
           {"stroke_m", cylinder.stroke()}, {"stroke_share", stroke_share(cylinder, use)}};
 }
 
-std::string cylinder_text(const Cylinder& cylinder, const CylinderUse& use) {
-  const std::string times =
-      cylinder.count() == 1 ? std::string() : std::to_string(cylinder.count()) + " x ";
-  return times + readable(use.peak_force / 1000.0) + " kN over " +
-         readable(100.0 * stroke_share(cylinder, use)) + " %";
-}
-
 }  // namespace
+
+double stroke_share(const Cylinder& cylinder, const CylinderUse& use) {
+  return (use.longest - use.shortest) / cylinder.stroke();
+}
 
 JointLoads joint_loads(const Machine& machine, const std::vector<ForceSample>& history) {
   JointLoads loads;
@@ -59,35 +49,19 @@ JointLoads joint_loads(const Machine& machine, const std::vector<ForceSample>& h
   return loads;
 }
 
-nlohmann::ordered_json to_json(const Machine& machine, const JointLoads& loads) {
-  auto json = nlohmann::ordered_json::object();
+Json joint_loads_json(const Machine& machine, const JointLoads& loads) {
+  auto json = Json::object();
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const auto& use = loads[i].cylinder;
-    json[name(all_joints[i])] = {{"peak_torque_kn_m", loads[i].peak_torque / 1000.0},
-                                 {"limit_kn_m", machine.limits[i].torque / 1000.0},
-                                 {"cylinder", use ? cylinder_json((*machine.cylinders)[i], *use)
-                                                  : nlohmann::ordered_json()}};
+    json[name(joint_order[i])] = {
+        {"peak_torque_kn_m", loads[i].peak_torque / 1000.0},
+        {"limit_kn_m", machine.limits[i].torque / 1000.0},
+        {"cylinder", use ? cylinder_json((*machine.cylinders)[i], *use) : Json()}};
   }
   return json;
 }
 
-std::vector<std::string> load_lines(const Machine& machine, const JointLoads& loads) {
-  std::string torques = "peak torque  ";
-  std::string cylinders = "cylinders    ";
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    const std::string joint = (i == 0 ? "" : ", ") + std::string(name(all_joints[i])) + " ";
-    torques += joint + readable(loads[i].peak_torque / 1000.0) + " of " +
-               readable(machine.limits[i].torque / 1000.0);
-    if (loads[i].cylinder) {
-      cylinders += joint + cylinder_text((*machine.cylinders)[i], *loads[i].cylinder);
-    }
-  }
-  std::vector<std::string> lines = {torques + " kN m"};
-  if (loads[0].cylinder) lines.push_back(cylinders + " of the stroke");
-  return lines;
-}
-
-std::string to_csv(const Machine& machine, const DigScene& scene) {
+std::string force_history_csv(const Machine& machine, const DigScene& scene) {
   const std::vector<TimedStep> steps = timed_steps(machine, scene.path, scene.dig);
   std::string csv =
       "phase,travelled_m,boom_rad,arm_rad,bucket_rad,soil_x_n,soil_z_n,boom_torque_n_m,"

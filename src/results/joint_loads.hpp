@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <excavplan/machine/kinematics.hpp>
 #include <excavplan/sensing/scene.hpp>
+
+#include "base/json_fwd.hpp"
 
 /// @file
 /// Loads of the joints and of their cylinders in a dig, from its force history.
@@ -29,17 +29,19 @@ struct JointLoad {
   std::optional<CylinderUse> cylinder;  ///< empty if the machine's file has none
 };
 
-/// Boom, arm, bucket.
+inline constexpr std::array<Joint, 3> joint_order = {Joint::boom, Joint::arm, Joint::bucket};
+
+/// In that order.
 using JointLoads = std::array<JointLoad, 3>;
 
 JointLoads joint_loads(const Machine& machine, const std::vector<ForceSample>& history);
 
-nlohmann::ordered_json to_json(const Machine& machine, const JointLoads& loads);
+Json joint_loads_json(const Machine& machine, const JointLoads& loads);
 
-/// A line of torques and, where there are cylinders, one of theirs.
-std::vector<std::string> load_lines(const Machine& machine, const JointLoads& loads);
+/// What a cylinder moved as a share of its stroke.
+double stroke_share(const Cylinder& cylinder, const CylinderUse& use);
 
 /// CSV, a row per step of the dig; columns: docs/formats.md#force-history.
-std::string to_csv(const Machine& machine, const DigScene& scene);
+std::string force_history_csv(const Machine& machine, const DigScene& scene);
 
 }  // namespace excavplan

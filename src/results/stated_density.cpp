@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "results/stated_density.hpp"
+#include <excavplan/results/stated_density.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@
 #include "plan_path/plan_results.hpp"
 #include "frame/quantity.hpp"
 #include "frame/settings_file.hpp"
-#include "results/stated_density.hpp"
+#include <excavplan/results/stated_density.hpp>
 
 namespace excavplan::test {
 namespace {

@@ -6,8 +6,8 @@
 #include "build_path_library/library_inputs.hpp"
 #include "build_path_library/library_results.hpp"
 #include "build_path_library/ranks.hpp"
-#include "results/results.hpp"
 #include "frame/tool.hpp"
+#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {

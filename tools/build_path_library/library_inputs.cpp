@@ -3,8 +3,8 @@
 #include "build_path_library/library_inputs.hpp"
 
 #include "base/text.hpp"
-#include "results/results.hpp"
 #include "inputs/search_method.hpp"
+#include "results/results.hpp"
 
 namespace excavplan::tools {
 

@@ -7,9 +7,9 @@
 
 #include <excavplan/planning/library_build.hpp>
 
+#include "frame/tool.hpp"
 #include "inputs/goal_inputs.hpp"
 #include "inputs/simulator_inputs.hpp"
-#include "frame/tool.hpp"
 
 namespace excavplan::tools {
 

@@ -17,12 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-nlohmann::ordered_json library_json(const PathLibrary& library) {
-  auto json = parse_ordered_json("the library", to_json(library));
-  for (const char* key : {"format", "version", "checksum"}) json.erase(key);
-  return json;
-}
-
 void add_lines(const PathLibrary& library, const std::string& file, Outcome& outcome) {
   outcome.lines.push_back(file + ": " + std::to_string(library.entries.size()) + " digs of " +
                           library.machine + " in " + library.soil + ", " +

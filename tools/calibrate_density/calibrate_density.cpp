@@ -7,12 +7,12 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/table.hpp"
-#include "calibrate_density/calibration_results.hpp"
-#include "figures/law_figure.hpp"
-#include "results/results.hpp"
+#include "calibrate_density/calibration_plots.hpp"
+#include "calibrate_density/difference_lines.hpp"
+#include "frame/tool.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
-#include "frame/tool.hpp"
+#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -102,19 +102,15 @@ std::string text(const DensityFit& fit, const nlohmann::ordered_json& file) {
 Outcome work(const Inputs& inputs, Console& console) {
   const DensityCalibration calibration =
       inputs.samples ? from_samples(*inputs.samples) : from_simulator(inputs, console);
-  const std::string file = to_json(calibration);
-  if (inputs.out) write_file(*inputs.out, file);
+  if (inputs.out) write_file(*inputs.out, to_json(calibration));
   Outcome outcome;
-  outcome.json = parse_ordered_json("the law", file);
-  outcome.json.erase("format");
-  outcome.json.erase("version");
+  outcome.json = calibration_json(calibration);
   for (const DensityFit& fit : calibration.forms) {
     std::string name = fit.key + std::string(25, ' ');
     std::replace(name.begin(), name.end(), '_', ' ');
     outcome.lines.push_back(name.substr(0, 25) + text(fit, outcome.json));
   }
   if (const auto difference = bulking_difference(calibration)) {
-    outcome.json["largest_difference"] = difference_json(*difference);
     for (std::string& line : difference_lines(*difference)) {
       outcome.lines.push_back(std::move(line));
     }

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "base/text.hpp"
-#include "inputs/found_pose.hpp"
 #include "frame/tool.hpp"
+#include "inputs/found_pose.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -12,229 +12,10 @@
 #include "figures/density_figure.hpp"
 #include "frame/quantity.hpp"
 #include "report/report.hpp"
-#include "results/results.hpp"
+#include "results/density_results.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-nlohmann::ordered_json fallback_json(const Fallback& fallback) {
-  return {{"fraction", fallback.fraction.value},
-          {"fraction_sd", fallback.fraction.sd},
-          {"cut_m3", fallback.cut},
-          {"in_pit_m3", fallback.in_pit},
-          {"seen_share", fallback.seen_share}};
-}
-
-nlohmann::ordered_json blocks_json(const BlockReport& report) {
-  nlohmann::ordered_json json = {{"score", report.score},   {"found", report.blocks},
-                                 {"block_size_m", nullptr}, {"voids_m3", nullptr},
-                                 {"voids_sd_m3", nullptr},  {"reasons", report.reasons}};
-  if (report.block_size) json["block_size_m"] = *report.block_size;
-  if (report.voids) {
-    json["voids_m3"] = report.voids->value;
-    json["voids_sd_m3"] = report.voids->sd;
-  }
-  return json;
-}
-
-/// Null without a registration.
-nlohmann::ordered_json registration_json(const std::optional<ScanRegistration>& registration) {
-  if (!registration) return nullptr;
-  const Alignment& alignment = registration->found;
-  const auto numbers = [](const Motion& motion) {
-    return nlohmann::ordered_json(std::vector<double>(motion.data(), motion.data() + 6));
-  };
-  nlohmann::ordered_json correction = nlohmann::ordered_json::array();
-  for (const auto& row : registration->correction.rowwise()) {
-    correction.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return {{"correction", correction},
-          {"found", numbers(alignment.found)},
-          {"found_sd", numbers(alignment.covariance.diagonal().cwiseMax(0.0).cwiseSqrt())},
-          {"vertical_is_significant", alignment.vertical_is_significant},
-          {"lateral_is_significant", alignment.lateral_is_significant},
-          {"residual_sd_m", alignment.residual_sd},
-          {"stable_share", alignment.stable_share}};
-}
-
-nlohmann::ordered_json zones_json(const VolumeChange& change) {
-  auto list = nlohmann::ordered_json::array();
-  for (const ChangeZone& zone : change.zones) {
-    list.push_back(
-        {{"kind", name(zone.kind)},
-         {"volume_m3", zone.volume.value},
-         {"volume_sd_m3", zone.volume.sd},
-         {"area_m2", zone.area},
-         {"unseen_share", zone.unknown_share},
-         {"extent_m",
-          {zone.extent.x_min, zone.extent.y_min, zone.extent.x_max, zone.extent.y_max}}});
-  }
-  return list;
-}
-
-nlohmann::ordered_json attribution_json(const VolumeChange& change) {
-  auto list = nlohmann::ordered_json::array();
-  for (const AttributedChange& open : change.attribution) {
-    list.push_back({{"kind", name(open.kind)},
-                    {"what", open.what},
-                    {"volume_m3", open.volume.value},
-                    {"volume_sd_m3", open.volume.sd},
-                    {"counted", open.counted},
-                    {"probability", open.probability}});
-  }
-  return list;
-}
-
-nlohmann::ordered_json readings_json(const DensityEstimate& estimate) {
-  auto list = nlohmann::ordered_json::array();
-  for (const DensityReading& each : estimate.readings) {
-    auto kinds = nlohmann::ordered_json::array();
-    for (const ChangeKind kind : each.reading.kinds) kinds.push_back(name(kind));
-    list.push_back({{"kinds", std::move(kinds)},
-                    {"what", each.reading.what},
-                    {"weight", each.reading.weight},
-                    {"bulking_factor", each.reading.bulking.value},
-                    {"bulking_factor_sd", each.reading.bulking.sd},
-                    {"density_percent", std::clamp(each.density_percent, 0.0, 100.0)}});
-  }
-  return list;
-}
-
-const char* name(VolumeMethod method) {
-  return method == VolumeMethod::paper ? "paper" : "surface";
-}
-
-nlohmann::ordered_json density_json(const RelativeDensity& density) {
-  return {{"density_percent", density.percent},
-          {"density_sd_percent", density.sd_percent},
-          {"density_interval_percent", density.interval_percent}};
-}
-
-nlohmann::ordered_json payload_json(const PayloadDensity& payload) {
-  return {{"mass_kg", payload.mass.value},
-          {"mass_sd_kg", payload.mass.sd},
-          {"dug_mass_kg", payload.dug_mass.value},
-          {"bulk_density_kg_m3", payload.bulk_density.value},
-          {"bulk_density_sd_kg_m3", payload.bulk_density.sd},
-          {"density_percent", payload.density_percent.value},
-          {"density_sd_percent", payload.density_percent.sd},
-          {"law_density_percent", payload.law_density_percent.value},
-          {"law_density_sd_percent", payload.law_density_percent.sd},
-          {"disagreement_sds", payload.disagreement}};
-}
-
-nlohmann::ordered_json loads_json(const LoadsDensity& loads) {
-  nlohmann::ordered_json json = {{"work_kj", loads.work.value / 1000.0},
-                                 {"work_sd_kj", loads.work.sd / 1000.0},
-                                 {"density_percent", nullptr},
-                                 {"density_sd_percent", nullptr},
-                                 {"density_interval_percent", nullptr},
-                                 {"reason", nullptr},
-                                 {"scans_density_percent", loads.by_scans.percent},
-                                 {"scans_density_sd_percent", loads.by_scans.sd_percent},
-                                 {"weight", loads.weight},
-                                 {"disagreement_sds", loads.disagreement}};
-  if (loads.density_percent) {
-    json["density_percent"] = loads.density_percent->value;
-    json["density_sd_percent"] = loads.density_percent->sd;
-    json["density_interval_percent"] = loads.interval_percent;
-  } else {
-    json["reason"] = loads.reason;
-  }
-  return json;
-}
-
-nlohmann::ordered_json prior_json(const SuccessiveDensity& successive) {
-  const PriorDensity& prior = successive.prior;
-  return {{"density_percent", std::clamp(prior.raw_percent, 0.0, 100.0)},
-          {"independent_sd_percent", prior.independent_sd_percent},
-          {"shared_sd_percent", prior.shared_sd_percent},
-          {"drift_sd_percent", prior.drift_sd_percent},
-          {"this_dig_density_percent", successive.this_dig.percent},
-          {"this_dig_density_sd_percent", successive.this_dig.sd_percent},
-          {"combined_independent_sd_percent", successive.density.sd_given_law_percent},
-          {"combined_shared_sd_percent", successive.shared_sd_percent},
-          {"weight", successive.weight},
-          {"disagreement_sds", successive.disagreement}};
-}
-
-nlohmann::ordered_json soils_json(const std::vector<SoilAnswer>& soils) {
-  auto list = nlohmann::ordered_json::array();
-  for (const SoilAnswer& soil : soils) {
-    nlohmann::ordered_json json = {{"name", soil.name}, {"weight", soil.weight}};
-    json.update(density_json(soil.density));
-    json["payload"] = nullptr;
-    if (soil.payload) json["payload"] = payload_json(*soil.payload);
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
-nlohmann::ordered_json estimate_json(const DensityEstimate& estimate) {
-  auto json = nlohmann::ordered_json::object();
-  json["volume"] = volumes_json(estimate.change);
-  json["bulking_factor"] = nullptr;
-  json["bulking_factor_sd"] = nullptr;
-  json["bulking_factor_sd_scans"] = nullptr;
-  json["bulking_factor_interval"] = nullptr;
-  json["density_percent"] = nullptr;
-  json["density_raw_percent"] = nullptr;
-  json["density_sd_given_law_percent"] = nullptr;
-  json["density_sd_percent"] = nullptr;
-  json["density_interval_percent"] = nullptr;
-  json["density_without_fallback_percent"] = nullptr;
-  if (estimate.bulking) {
-    json["bulking_factor"] = estimate.bulking->value;
-    json["bulking_factor_sd"] = estimate.bulking->sd;
-    if (!std::isnan(estimate.bulking->sd)) {
-      json["bulking_factor_sd_scans"] = bulking_errors(estimate.change).scans;
-    }
-    if (const auto interval = bulking_interval(estimate.change)) {
-      json["bulking_factor_interval"] = *interval;
-    }
-    json["density_raw_percent"] = estimate.density->raw_percent;
-    json["density_sd_given_law_percent"] = estimate.density->sd_given_law_percent;
-    json.update(density_json(*estimate.density));
-    json["density_without_fallback_percent"] = estimate.density_without_fallback;
-  }
-  json["bulking_factor_corrected"] = nullptr;
-  json["bulking_factor_corrected_sd"] = nullptr;
-  if (estimate.corrected) {
-    json["bulking_factor_corrected"] = estimate.corrected->value;
-    json["bulking_factor_corrected_sd"] = estimate.corrected->sd;
-  }
-  json["soils"] = soils_json(estimate.soils);
-  json["any_soil"] = nullptr;
-  if (estimate.any_soil) json["any_soil"] = density_json(*estimate.any_soil);
-  json["payload"] = nullptr;
-  if (estimate.payload) json["payload"] = payload_json(*estimate.payload);
-  json["density_by_loads"] = nullptr;
-  if (estimate.loads) json["density_by_loads"] = loads_json(*estimate.loads);
-  json["prior"] = nullptr;
-  if (estimate.successive) json["prior"] = prior_json(*estimate.successive);
-  json["fallback"] = estimate.fallback ? fallback_json(*estimate.fallback) : nullptr;
-  json["blocks"] = blocks_json(estimate.blocks);
-  json["law"] = estimate.law.name;
-  json["law_soil"] = nullptr;
-  if (!estimate.law.soil.empty()) json["law_soil"] = estimate.law.soil;
-  json["trustworthy"] = estimate.trustworthy;
-  json["method"] = name(estimate.method);
-  return json;
-}
-
-nlohmann::ordered_json survey_json(const DensityEstimate& estimate) {
-  nlohmann::ordered_json json = {{"cell_m", estimate.cell_size},
-                                 {"machine_points", estimate.machine_points},
-                                 {"registration", nullptr}};
-  if (estimate.registration) {
-    json["registration"] = {{"dig", registration_json(estimate.registration)},
-                            {"dump", registration_json(estimate.dump_registration)}};
-  }
-  json["zones"] = zones_json(estimate.change);
-  json["attribution"] = attribution_json(estimate.change);
-  json["readings"] = readings_json(estimate);
-  return json;
-}
 
 /// "loam 41.0 ± 4.1, sand 69.1 ± 7.0; any of them 52.3 ± 17.4 %"
 std::string soils_text(const DensityEstimate& estimate) {
@@ -335,9 +116,7 @@ std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machi
 Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil) {
   Outcome outcome;
   outcome.json = estimate_json(estimate);
-  outcome.json["soil"] = nullptr;
-  if (soil.kind && !soil.unknown) outcome.json["soil"] = soil.kind->name;
-  outcome.json["soil_assumed"] = soil.assumed;
+  outcome.json.update(soil_knowledge_json(soil));
   outcome.json.update(survey_json(estimate));
   outcome.lines = estimate_lines(estimate);
   outcome.warnings = estimate.warnings;
@@ -375,8 +154,9 @@ void draw_estimate(const Plots& plots, const std::optional<std::string>& report,
   page.scene.zones = estimate.change.zones;
   page.note =
       "The ground after the dig is that before it plus the height change that was measured.";
-  outcome.report = titled(std::move(page), *report, "Relative density of the ground from two scans",
-                          to_svg(lay_out(height_change_figure(drawn.sheet))));
+  page.title = "Relative density of the ground from two scans";
+  page.plot = to_svg(lay_out(height_change_figure(drawn.sheet)));
+  outcome.page = page_of(std::move(page), *report);
 }
 
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome) {

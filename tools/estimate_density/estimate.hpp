@@ -5,8 +5,8 @@
 #include <excavplan/density/density_estimate.hpp>
 
 #include "figures/change_figure.hpp"
-#include "inputs/plots.hpp"
 #include "frame/tool.hpp"
+#include "inputs/plots.hpp"
 
 /// @file
 /// Results of a density estimate, as JSON and as text lines.

@@ -3,15 +3,15 @@
 #include <excavplan/density/density_estimate.hpp>
 
 #include "estimate_density/estimate.hpp"
-#include "maps/ground_maps.hpp"
 #include "estimate_density/method_inputs.hpp"
-#include "inputs/recordings.hpp"
-#include "results/results.hpp"
-#include "inputs/scans.hpp"
 #include "estimate_density/second_densities.hpp"
 #include "estimate_density/soil_inputs.hpp"
+#include "estimate_density/survey_map_names.hpp"
 #include "estimate_density/survey_planning.hpp"
 #include "frame/tool.hpp"
+#include "inputs/recordings.hpp"
+#include "inputs/scans.hpp"
+#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -7,7 +7,6 @@
 #include "frame/tool.hpp"
 
 namespace excavplan::tools {
-
 namespace {
 
 PaperOptions paper_options(const MethodInputs& inputs) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <excavplan/results/stated_density.hpp>
 #include "base/text.hpp"
-#include "results/stated_density.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <excavplan/density/density_estimate.hpp>
 
-#include "inputs/logged_dig.hpp"
 #include "frame/tool.hpp"
+#include "inputs/logged_dig.hpp"
 
 /// @file
 /// What the command line says of a second density, to be combined with that of the scans:

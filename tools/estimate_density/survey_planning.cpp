@@ -10,7 +10,9 @@
 
 #include <excavplan/sensing/survey_plan.hpp>
 
+#include "base/json.hpp"
 #include "frame/quantity.hpp"
+#include "results/survey_results.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -94,34 +96,6 @@ std::string at_most(const std::optional<double>& value, const std::string& unit)
   return value ? "at most " + readable(*value, 2) + unit : insufficient;
 }
 
-nlohmann::ordered_json json_of(const Request& request, const SurveyForecast& f,
-                               const SurveyNeeds& needs) {
-  const auto or_null = [](const auto& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-  };
-  return {{"sensor", request.plan.sensor.name},
-          {"range_m", f.range},
-          {"ray_spacing_m", f.ray_spacing},
-          {"excavated_sd_m3", f.excavated_sd},
-          {"after_sd_m3", f.after_sd},
-          {"bulking_factor_sd", f.bulking_sd},
-          {"density_sd_percent", f.density_sd_percent},
-          {"datum_sd_m", f.datum_sd},
-          {"variance_shares",
-           {{"white", f.white_share},
-            {"correlated", f.correlated_share},
-            {"datum", f.datum_share},
-            {"occlusion", f.occlusion_share}}},
-          {"hidden_share", f.hidden_share},
-          {"in_view", f.in_view},
-          {"target_sd_percent", request.target},
-          {"needs",
-           {{"range_at_most_m", or_null(needs.range)},
-            {"range_at_least_m", needs.nearest_range},
-            {"frames_at_least", or_null(needs.frames)},
-            {"noise_factor_at_most", or_null(needs.noise)}}}};
-}
-
 std::vector<std::string> lines_of(const Request& request, const SurveyForecast& f,
                                   const SurveyNeeds& needs) {
   const auto percent = [](double share) { return readable(100.0 * share, 2) + " %"; };
@@ -160,7 +134,7 @@ Outcome planned_survey(const std::string& text, const DensityLaw& law) {
   const SurveyForecast forecast = plan_survey(request.plan);
   const SurveyNeeds needs = survey_needs(request.plan, request.target);
   Outcome outcome;
-  outcome.json = json_of(request, forecast, needs);
+  outcome.json = forecast_json(request.plan, forecast, needs, request.target);
   outcome.json["law"] = law.name;
   outcome.lines = lines_of(request, forecast, needs);
   if (!forecast.in_view) {

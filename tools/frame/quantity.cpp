@@ -235,4 +235,14 @@ std::vector<double> parse_series(const std::string& what, const std::string& tex
   return series;
 }
 
+std::vector<double> parse_densities(const std::string& what, const std::string& text) {
+  std::vector<double> densities = parse_series(what, text, Quantity::percent);
+  for (const double density : densities) {
+    if (density >= 0.0 && density <= 100.0) continue;
+    throw Error(ErrorKind::bad_input,
+                what + ": " + number_text(density) + " % is outside 0 .. 100");
+  }
+  return densities;
+}
+
 }  // namespace excavplan::tools

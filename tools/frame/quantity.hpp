@@ -47,6 +47,9 @@ std::vector<std::string> split(const std::string& text, char separator);
 std::vector<double> parse_series(const std::string& what, const std::string& text,
                                  Quantity quantity);
 
+/// Densities "0:5:100", "40" or "10,40,80" [%]. @throws Error (bad_input)
+std::vector<double> parse_densities(const std::string& what, const std::string& text);
+
 /// What a number in this SI unit measures.
 Quantity quantity_of(const std::string& unit);
 

@@ -26,7 +26,6 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "report/report.hpp"
 #include "frame/settings_file.hpp"
 #include "frame/stack.hpp"
 #include "frame/standard_input.hpp"
@@ -439,13 +438,6 @@ void hold_standard_streams() {
   }
 }
 
-constexpr std::size_t longest_line = 4000;  // ours [byte]
-
-/// A text with foreign names in it, as a terminal may get it.
-std::string shown(const StandardInput& input, const std::string& text) {
-  return safe_text(input.named(text), longest_line);
-}
-
 /// On standard output, to its end.
 void print(const std::string& text) {
   errno = 0;
@@ -501,7 +493,7 @@ void write_report(const About& about, const Outcome& outcome, const StandardInpu
       outcome.trustworthy, outcome.stopped_early, settings};
   for (std::string& line : run.lines) line = input.named(line);
   for (Warning& warning : run.warnings) warning.message = input.named(warning.message);
-  write_file(outcome.report->file, html_page(*outcome.report, run));
+  write_file(outcome.page->file, outcome.page->text(run));
 }
 
 void print_outcome(const About& about, const Common& common, const Outcome& outcome,
@@ -586,7 +578,7 @@ int run(int argc, const char* const* argv, const About& about,
                   [](const auto& entry) { return entry.name == "machine" && !entry.positional; });
   if (has_machine && given("machine")) add_machine_warnings(arguments.entries(), words, outcome);
   console.clear();
-  if (outcome.report) {
+  if (outcome.page) {
     write_report(about, outcome, input, settings_of(arguments.entries(), words, own));
   }
   signals.end_at_closed_pipe();
@@ -657,33 +649,6 @@ int reported(const About& about, const StandardInput& input, const Run& run) {
 
 }  // namespace
 
-// ---- Console ----------------------------------------------------------------------------------
-
-void Console::progress(double done, const std::string& what) {
-  if (quiet_ || !terminal_) return;
-  const std::lock_guard lock(mutex_);
-  std::cerr << "\r\033[K" << static_cast<int>(std::floor(100.0 * done)) << " %  " << what
-            << std::flush;
-  line_open_ = true;
-}
-
-void Console::note(const std::string& line) {
-  if (quiet_) return;
-  const std::lock_guard lock(mutex_);
-  remove_line();
-  std::cerr << safe_text(line, longest_line) << '\n';
-}
-
-void Console::clear() {
-  const std::lock_guard lock(mutex_);
-  remove_line();
-}
-
-void Console::remove_line() {
-  if (line_open_) std::cerr << "\r\033[K" << std::flush;
-  line_open_ = false;
-}
-
 // ---- Free functions ---------------------------------------------------------------------------
 
 int run_tool(int argc, const char* const* argv, const About& about,
@@ -702,14 +667,6 @@ int run_tool(int argc, const char* const* argv, const About& about,
 int without_memory(const About& about) {
   std::cerr << about.name << ": not enough memory\n";  // and none for another text
   return 1;
-}
-
-SoilKind soil_named(const std::string& name_or_path) {
-  return load_soil(shipped_or_file("soils", name_or_path));
-}
-
-Machine machine_named(const std::string& name_or_path) {
-  return load_machine(machine_path(name_or_path));
 }
 
 }  // namespace excavplan::tools

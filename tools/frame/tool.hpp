@@ -3,8 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
-#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
@@ -13,13 +11,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/base/data_files.hpp>
 #include <excavplan/base/error.hpp>
-#include <excavplan/machine/machine.hpp>
-#include <excavplan/soil/soil.hpp>
 
 #include "frame/arguments.hpp"
-#include "frame/signals.hpp"
+#include "frame/console.hpp"
+#include "frame/page.hpp"
 
 /// @file
 /// How a command line tool runs: help, output, exit codes. A tool is a struct of inputs with their
@@ -49,8 +45,6 @@ struct About {
   bool can_stop_early = false;        ///< an interrupt sets Console::stop_requested() instead
 };
 
-struct Report;  // shared/report.hpp
-
 /// Result of a tool.
 struct Outcome {
   /// Printed with --json, "tool" and "version" before it, "warnings" after it, those of options
@@ -62,32 +56,7 @@ struct Outcome {
   std::vector<Warning> warnings;
   bool trustworthy = true;
   bool stopped_early = false;
-  std::shared_ptr<const Report> report = nullptr;  ///< written by run_tool(), if asked for
-};
-
-/// Progress and notes on standard error while a tool works.
-class Console {
- public:
-  Console(bool quiet, bool terminal, const Signals& signals)
-      : quiet_(quiet), terminal_(terminal), signals_(signals) {}
-
-  /// One line that is overwritten by the next; only on a terminal. `done` is in 0 .. 1.
-  void progress(double done, const std::string& what);
-  /// One line of text, from any thread. Warnings belong in the outcome.
-  void note(const std::string& line);
-  /// True once the user or the system asked a tool that can stop early to stop.
-  bool stop_requested() const { return signals_.stop_requested(); }
-  /// Removes the progress line.
-  void clear();
-
- private:
-  void remove_line();
-
-  bool quiet_;
-  bool terminal_;
-  const Signals& signals_;
-  std::mutex mutex_;  ///< of standard error and of
-  bool line_open_ = false;
+  std::optional<Page> page = std::nullopt;  ///< written by run_tool()
 };
 
 /// Runs a tool: parses, works, prints. @return the exit code @throws std::bad_alloc
@@ -118,9 +87,5 @@ int tool_main(int argc, const char* const* argv, const About& about,
     return without_memory(about);
   }
 }
-
-/// Reads the soil or machine that a name or path means. @throws Error (bad_input) or (bad_file)
-SoilKind soil_named(const std::string& name_or_path);
-Machine machine_named(const std::string& name_or_path);
 
 }  // namespace excavplan::tools

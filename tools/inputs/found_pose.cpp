@@ -7,6 +7,7 @@
 
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "results/pose_results.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -21,8 +22,7 @@ FoundPose pose_from_points(const KnownPoints& points) {
   double lowest = points.in_site.front().z();
   for (const Eigen::Vector3d& point : points.in_site) lowest = std::min(lowest, point.z());
   const double below = lowest - pose.site_from_scan(2, 3);
-  return {pose.site_from_scan,
-          {{"method", "points"}, {"residuals_m", pose.residuals}, {"residual_rms_m", pose.rms}},
+  return {pose.site_from_scan, pose_json(pose),
           std::to_string(points.in_site.size()) + " known points fit within " +
               millimetres(pose.rms) + " (rms), the worst one within " + millimetres(worst) +
               (below > 0.0 ? "; the sensor is " + readable(below) +
@@ -34,12 +34,7 @@ FoundPose pose_from_points(const KnownPoints& points) {
 }  // namespace
 
 FoundPose found_pose(const LevelPose& level) {
-  return {level.site_from_scan,
-          {{"method", "level"},
-           {"height_m", level.height},
-           {"tilt_rad", level.tilt},
-           {"residual_sd_m", level.residual_sd},
-           {"ground_share", level.ground_share}},
+  return {level.site_from_scan, pose_json(level),
           "ground found in " + std::to_string(std::lround(100.0 * level.ground_share)) +
               " % of the points, " + number_text(std::round(level.height * 1e3) / 1e3) +
               " m below the sensor, flat within " + millimetres(level.residual_sd)};

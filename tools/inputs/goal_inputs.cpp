@@ -111,9 +111,4 @@ std::vector<Warning> goal_warnings(const GoalInputs& inputs, const std::vector<M
   return warnings;
 }
 
-std::string worth_text(const DigObjective& objective, double worth) {
-  const DigGoalInfo& goal = info_of(objective.goal);
-  return readable(goal.per_si * worth) + " " + goal.unit;
-}
-
 }  // namespace excavplan::tools

@@ -27,7 +27,4 @@ DigObjective objective_of(const GoalInputs& inputs, const std::vector<Machine>& 
 /// Warning `dump_height_lowered`, where that matters to the goal.
 std::vector<Warning> goal_warnings(const GoalInputs& inputs, const std::vector<Machine>& machines);
 
-/// The worth of a dig in the unit of its goal: "25.1 kg/kJ".
-std::string worth_text(const DigObjective& objective, double worth);
-
 }  // namespace excavplan::tools

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/read_double.hpp"
-#include "logs/log_columns.hpp"
 #include "frame/quantity.hpp"
+#include "logs/log_columns.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <excavplan/efficiency/efficiency.hpp>
 
-#include "inputs/scans.hpp"
 #include "frame/tool.hpp"
+#include "inputs/scans.hpp"
 
 namespace excavplan::tools {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/ground/map_files.hpp>
+#include <excavplan/maps/ground_maps.hpp>
 
 #include "frame/tool.hpp"
 
@@ -34,13 +34,6 @@ struct Maps {
 };
 
 void declare_maps(Arguments& arguments, Maps& maps, const std::vector<MapName>& names);
-
-/// A map with its content.
-struct NamedMap {
-  std::string name;
-  LayeredMap map = {};
-  std::vector<MapLine> lines = {};  ///< instead of a map
-};
 
 /// Writes what the options ask for; `contents` makes the maps if any is. Warns (map_not_written)
 /// where a map is not there and its file is of an earlier run.

@@ -7,8 +7,8 @@
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "frame/named_file.hpp"
 #include "drawing/render.hpp"
+#include "frame/named_file.hpp"
 
 namespace excavplan::tools {
 namespace {

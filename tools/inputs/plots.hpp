@@ -8,8 +8,8 @@
 
 #include <excavplan/base/error.hpp>
 
-#include "frame/arguments.hpp"
 #include "drawing/plot.hpp"
+#include "frame/arguments.hpp"
 
 /// @file
 /// The options --plot, --plot-size and --plot-table of every tool that draws. A tool has a table of

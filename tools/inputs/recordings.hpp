@@ -16,6 +16,8 @@ namespace excavplan::tools {
 inline constexpr const char* recording_form =
     "of a recording (rosbag2, MCAP, ROS 1 bag) FILE:TOPIC@TIME+SPAN";
 
+inline constexpr std::size_t longest_frame = 100;  ///< of its name in a line [byte]
+
 /// A scan out of a recording, with what was read for people and programs.
 struct RecordedInput {
   std::string path;  ///< of the recording
@@ -34,12 +36,5 @@ Scan scan_of_input(const std::string& text, std::optional<RecordedInput>& record
 /// How the machine stood when a scan was recorded: of /joint_states the joints whose names hold
 /// swing, boom, arm or stick, and bucket. @throws Error (bad_file) if one of them is not there
 MachinePosture recorded_posture(const RecordedInput& input);
-
-/// What is in a recording, as inspect-cloud shows it; nothing if `text` does not name one alone.
-struct RecordingListing {
-  nlohmann::ordered_json json;
-  std::vector<std::string> lines;
-};
-std::optional<RecordingListing> recording_listing(const std::string& text);
 
 }  // namespace excavplan::tools

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "inputs/recordings.hpp"
 #include "frame/tool.hpp"
+#include "inputs/recordings.hpp"
 
 namespace excavplan::tools {
 namespace {

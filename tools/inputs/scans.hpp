@@ -9,8 +9,8 @@
 #include <excavplan/scans/scan_surface.hpp>
 
 #include "frame/arguments.hpp"
-#include "inputs/found_pose.hpp"
 #include "frame/tool.hpp"
+#include "inputs/found_pose.hpp"
 #include "inputs/unit_inputs.hpp"
 
 namespace excavplan::tools {

@@ -93,24 +93,4 @@ void apply(const SearchMethodInputs& inputs, DigSearchOptions& options) {
   if (inputs.method == "paper") options.start_rule = StartRule::Kind::least_work;
 }
 
-nlohmann::ordered_json search_settings_json(const Machine& machine,
-                                            const DigSearchOptions& options) {
-  nlohmann::ordered_json json = {{"method", "default"}};
-  if (const auto* paper = std::get_if<GeneticAlgorithm>(&options.method)) {
-    json = {{"method", "paper"},
-            {"population", paper->population},
-            {"generations", paper->generations},
-            {"crossover", paper->crossover},
-            {"mutation", paper->mutation},
-            {"tournament", paper->tournament},
-            {"elites", paper->elites}};
-  }
-  json["seed"] = options.seed;
-  const DigBounds bounds = machine_bounds(machine, options.bounds);
-  for (const DigParameterInfo& info : dig_parameter_table()) {
-    json["ranges"][info.name] = {bounds.lower.*info.field, bounds.upper.*info.field};
-  }
-  return json;
-}
-
 }  // namespace excavplan::tools

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <excavplan/planning/dig_search.hpp>
 
 #include "frame/arguments.hpp"
@@ -49,9 +47,5 @@ void check(const SearchMethodInputs& inputs);
 /// Sets method, ranges and number of digs, and the rule for the start: the paper's algorithm has no
 /// gene for it.
 void apply(const SearchMethodInputs& inputs, DigSearchOptions& options);
-
-/// Key `search` of a result: all that a search was set to.
-nlohmann::ordered_json search_settings_json(const Machine& machine,
-                                            const DigSearchOptions& options);
 
 }  // namespace excavplan::tools

@@ -5,11 +5,13 @@
 
 #include <excavplan/scans/scan_surface.hpp>
 
-#include "inspect_cloud/cloud_results.hpp"
+#include "frame/tool.hpp"
 #include "inputs/found_pose.hpp"
 #include "inputs/recordings.hpp"
-#include "frame/tool.hpp"
 #include "inputs/unit_inputs.hpp"
+#include "inspect_cloud/cloud_lines.hpp"
+#include "inspect_cloud/recording_listing.hpp"
+#include "results/cloud_results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -2,41 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "machine_kit/kit_results.hpp"
 
-#include <algorithm>
-#include <array>
-
 #include <excavplan/kit/kit_files.hpp>
 #include <excavplan/kit/workspace.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
-#include "results/results.hpp"
+#include "inputs/named_kinds.hpp"
+#include "results/dig_lines.hpp"
+#include "results/kit_results.hpp"
 
 namespace excavplan::tools {
-namespace {
-
-/// The dig on level ground at the density nearest to a usual one.
-const PathLibraryEntry& shown_entry(const PathLibrary& library) {
-  constexpr double usual = 40.0;  // [%]
-  const auto distance = [](const PathLibraryEntry& entry) {
-    return std::abs(entry.slope) * 1e4 + std::abs(entry.density_percent - usual);
-  };
-  return *std::min_element(library.entries.begin(), library.entries.end(),
-                           [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-}
-
-nlohmann::ordered_json joints_json(const RobotJoints& joints) {
-  constexpr std::array<const char*, 4> words = {"boom", "arm", "bucket", "swing"};
-  nlohmann::ordered_json json;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const RobotJoint& joint = joints[i];
-    json[words[i]] = {{"name", joint.name}, {"sign", joint.sign}, {"zero_rad", joint.zero}};
-  }
-  return json;
-}
-
-}  // namespace
-
 Outcome examined(const MachineFile& file, const std::string& folder) {
   const Machine& machine = file.machine;
   const Reach reach = reach_of(machine);
@@ -46,15 +21,7 @@ Outcome examined(const MachineFile& file, const std::string& folder) {
     outcome.trustworthy = outcome.trustworthy && !each.ends_trust;
     outcome.warnings.push_back(std::move(each));
   }
-  outcome.json = {
-      {"machine", machine.name},
-      {"folder", folder},
-      {"reach_m", {{"ground", reach.ground}, {"depth", reach.depth}, {"height", reach.height}}},
-      {"digging_force_kn",
-       {{"bucket", 1e-3 * bucket_force(machine)}, {"arm", 1e-3 * arm_force(machine)}}},
-      {"capacity_m3",
-       {{"struck", struck_capacity(machine)}, {"heaped", heaped_capacity(machine)}}}};
-  outcome.json["robot_joints"] = joints_json(machine.robot_joints);
+  outcome.json = examined_json(machine, folder);
   outcome.lines = {machine.name + ": reaches " + readable(reach.ground) + " m on the ground, " +
                        readable(reach.depth) + " m deep, " + readable(reach.height) + " m high",
                    "digging force: bucket " + readable(1e-3 * bucket_force(machine)) + " kN, arm " +
@@ -74,24 +41,18 @@ void add_kit(const KitSoil& kit, const Machine& machine, const SoilKind& soil,
   const std::string law = law_file(machine.name, soil.name);
   make_folder(folder + "/laws");
   write_file(folder + "/" + law, to_json(kit.law));
-  nlohmann::ordered_json json = {{"soil", soil.name}, {"law", law}, {"library", nullptr}};
   if (kit.library.entries.empty()) {
     outcome.trustworthy = false;
     outcome.warnings.push_back(
         {"no_library", soil.name + ": there is no library: " + kit.reason, true});
-    outcome.json["soils"].push_back(std::move(json));
+    outcome.json["soils"].push_back(kit_json(soil, law, kit.library, {}));
     return;
   }
   const std::string library = "libraries/" + file_name(kit.library);
   make_folder(folder + "/libraries");
   write_file(folder + "/" + library, to_json(kit.library));
   const PathLibraryEntry& entry = shown_entry(kit.library);
-  json["library"] = library;
-  json["entries"] = kit.library.entries.size();
-  json["evaluations"] = kit.library.evaluations();
-  json["example"] = {{"density_percent", entry.density_percent}, {"slope_rad", entry.slope}};
-  json["example"].update(dig_json(entry.dig));
-  outcome.json["soils"].push_back(std::move(json));
+  outcome.json["soils"].push_back(kit_json(soil, law, kit.library, library));
   outcome.lines.push_back(soil.name + ": " + std::to_string(kit.library.entries.size()) +
                           " digs; at " + readable(entry.density_percent) +
                           " %: " + path_text(entry.dig) + ", " + readable(entry.dig.payload_mass) +

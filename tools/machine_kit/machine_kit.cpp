@@ -9,11 +9,11 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "frame/tool.hpp"
 #include "inputs/goal_inputs.hpp"
-#include "figures/kit_figures.hpp"
+#include "machine_kit/kit_plots.hpp"
 #include "machine_kit/kit_results.hpp"
 #include "results/results.hpp"
-#include "frame/tool.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/json.hpp"
-#include "results/efficiency_results.hpp"
+#include "measure_efficiency/efficiency_lines.hpp"
 #include "measure_efficiency/run_sets.hpp"
 
 namespace excavplan::tools {
@@ -30,7 +30,7 @@ DigEfficiency measure(const RunInputs& inputs, const EfficiencyInputs& all, Outc
   DigEfficiency run = naming_options(names, [&] {
     return with_frame_hint(pair_frame_hint, [&] { return measure_efficiency(dig); });
   });
-  outcome.json["runs"].push_back(to_json(run));
+  outcome.json["runs"].push_back(run_json(run));
   for (std::string& line : run_lines(run)) outcome.lines.push_back(std::move(line));
   for (const Warning& each : run.warnings) {
     outcome.warnings.push_back(
@@ -113,7 +113,7 @@ ComparedSets compare_sets(const EfficiencyInputs& inputs, Outcome& outcome) {
   });
   warn_of_repeated(sets, outcome);
   const SetComparison& found = sets.comparison;
-  outcome.json["sets"] = to_json(found);
+  outcome.json["sets"] = comparison_json(found);
   outcome.json["gain_percent"] = found.gain_percent;
   outcome.json["gain_sd_percent"] = unknown;
   outcome.json["gain_interval_percent"] = {found.gain_low_percent, found.gain_high_percent};

@@ -9,9 +9,10 @@
 #include <excavplan/efficiency/efficiency.hpp>
 #include <excavplan/efficiency/run_comparison.hpp>
 
+#include "frame/tool.hpp"
 #include "inputs/logged_dig.hpp"
 #include "inputs/scans.hpp"
-#include "frame/tool.hpp"
+#include "results/efficiency_results.hpp"
 
 /// @file
 /// Runs measured and compared, two or two sets.
@@ -32,13 +33,6 @@ struct EfficiencyInputs {
 /// One run or two: their efficiencies and the gain of the second. Each has its log, with time and
 /// rate for figures.
 std::vector<DigEfficiency> compare_two(const EfficiencyInputs& inputs, Outcome& outcome);
-
-/// Two sets of runs and what comes of them.
-struct ComparedSets {
-  std::vector<DigEfficiency> against;
-  std::vector<DigEfficiency> runs;
-  SetComparison comparison;
-};
 
 /// The set of --runs against that of --against. A recording that counts more than once is warned of
 /// (repeated_run), which ends trust.

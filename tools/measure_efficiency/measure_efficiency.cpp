@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "figures/efficiency_figures.hpp"
-#include "measure_efficiency/efficiency_runs.hpp"
 #include "frame/tool.hpp"
+#include "measure_efficiency/efficiency_plots.hpp"
+#include "measure_efficiency/efficiency_runs.hpp"
 
 namespace excavplan::tools {
 namespace {

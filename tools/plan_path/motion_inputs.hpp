@@ -9,8 +9,8 @@
 #include <excavplan/planning/plan_dig.hpp>
 
 #include "frame/arguments.hpp"
-#include "inputs/site.hpp"
 #include "frame/tool.hpp"
+#include "inputs/site.hpp"
 
 /// @file
 /// The motion of a planned dig: what it begins and ends with, and the file that it is written to.

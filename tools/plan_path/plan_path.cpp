@@ -6,15 +6,17 @@
 #include <excavplan/planning/plan_dig.hpp>
 
 #include "base/text.hpp"
-#include "maps/ground_maps.hpp"
-#include "plan_path/motion_inputs.hpp"
-#include "figures/plan_figures.hpp"
-#include "plan_path/plan_results.hpp"
-#include "results/results.hpp"
-#include "plan_path/search_inputs.hpp"
+#include "frame/tool.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
-#include "frame/tool.hpp"
+#include "plan_path/density_input.hpp"
+#include "plan_path/motion_inputs.hpp"
+#include "plan_path/plan_lines.hpp"
+#include "plan_path/plan_map_names.hpp"
+#include "plan_path/plan_plots.hpp"
+#include "plan_path/search_inputs.hpp"
+#include "results/plan_results.hpp"
+#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {

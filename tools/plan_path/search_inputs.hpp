@@ -9,9 +9,9 @@
 
 #include <excavplan/planning/dig_search.hpp>
 
+#include "frame/tool.hpp"
 #include "inputs/goal_inputs.hpp"
 #include "inputs/search_method.hpp"
-#include "frame/tool.hpp"
 
 namespace excavplan::tools {
 

@@ -3,7 +3,6 @@
 #include "report/dig_report.hpp"
 
 #include "base/text.hpp"
-#include "simulation/checked_dig.hpp"
 
 namespace excavplan::tools {
 
@@ -19,13 +18,6 @@ Report scene_report(const Machine& machine, const DigScene& scene) {
   if (scene.blocks) report.scene.areas.front().states.back() = {"after", scene.blocks->after};
   if (scene.blocks) report.scene.areas.front().states.front() = {"before", scene.blocks->before};
   return report;
-}
-
-DigResult rehearse(const Machine& machine, const DigPlan& plan, const PlanSite& site) {
-  const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
-  DigOptions options;
-  options.history = true;
-  return checked_dig(*simulator, machine, site.ground, plan.path, options);
 }
 
 Report plan_report(const Machine& machine, const DigPlan& plan, const PlanSite& site,

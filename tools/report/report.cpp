@@ -9,7 +9,8 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "drawing/plot.hpp"
+#include "drawing/drawing.hpp"
+#include "report/report_figures.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -107,14 +108,6 @@ std::string plot_part(const Report& report) {
 
 }  // namespace
 
-std::shared_ptr<const Report> titled(Report report, const std::string& file,
-                                     const std::string& title, const std::string& plot) {
-  report.file = file;
-  report.title = title;
-  report.plot = plot;
-  return std::make_shared<Report>(std::move(report));
-}
-
 std::string html_page(const Report& report, const ReportedRun& run) {
   const auto result = parse_ordered_json("the result", run.json);
   const std::string data = embedded(to_json(report.scene));
@@ -137,6 +130,11 @@ std::string html_page(const Report& report, const ReportedRun& run) {
       {"vendor", shipped("vendor/vendor.js")},
       {"app", app()}};
   return filled(shipped("page.html"), parts);
+}
+
+Page page_of(Report report, const std::string& file) {
+  return {file, [report = std::make_shared<const Report>(std::move(report))](
+                    const ReportedRun& run) { return html_page(*report, run); }};
 }
 
 }  // namespace excavplan::tools

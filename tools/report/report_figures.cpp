@@ -7,9 +7,10 @@
 #include <optional>
 #include <set>
 
+#include "report/report_figures.hpp"
+
 #include "base/text.hpp"
 #include "drawing/plot.hpp"
-#include "report/report.hpp"
 
 namespace excavplan::tools {
 namespace {

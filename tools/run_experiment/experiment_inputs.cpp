@@ -10,11 +10,10 @@
 #include <excavplan/kit/kit_files.hpp>
 
 #include "base/text.hpp"
-#include "results/results.hpp"
 #include "inputs/site.hpp"
+#include "results/results.hpp"
 
 namespace excavplan::tools {
-
 namespace {
 
 /// What a search for the best paths alone has no use for.

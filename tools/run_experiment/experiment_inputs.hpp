@@ -9,10 +9,10 @@
 
 #include <excavplan/experiments/experiment.hpp>
 
+#include "frame/tool.hpp"
 #include "inputs/goal_inputs.hpp"
 #include "inputs/search_method.hpp"
 #include "inputs/simulator_inputs.hpp"
-#include "frame/tool.hpp"
 
 /// @file
 /// What the command line says of an experiment.

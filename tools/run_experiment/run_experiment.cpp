@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "run_experiment/experiment_inputs.hpp"
-#include "results/results.hpp"
-#include "run_experiment/sensitivity_results.hpp"
-#include "run_experiment/simulation_experiment.hpp"
 #include "frame/tool.hpp"
+#include "results/results.hpp"
+#include "run_experiment/experiment_inputs.hpp"
+#include "run_experiment/sensitivity.hpp"
+#include "run_experiment/simulation_experiment.hpp"
 #ifdef EXCAVPLAN_STUDY  // they simulate surveys
-#include "run_experiment/field_results.hpp"
-#include "run_experiment/study_results.hpp"
+#include "run_experiment/field_experiment.hpp"
+#include "run_experiment/study.hpp"
 #endif
 
 namespace excavplan::tools {

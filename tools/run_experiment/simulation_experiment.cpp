@@ -58,9 +58,8 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
   write_plots(pages.plots, experiment_figures({}), {experiments, outcome.json["regression"], soil},
               outcome.lines, outcome.warnings);
   if (pages.report) {
-    Report report = experiment_report(machine, soil, options.plan, experiments);
-    report.file = *pages.report;
-    outcome.report = std::make_shared<Report>(std::move(report));
+    outcome.page =
+        page_of(experiment_report(machine, soil, options.plan, experiments), *pages.report);
   }
   return outcome;
 }

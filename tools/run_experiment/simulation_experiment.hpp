@@ -6,8 +6,8 @@
 #include <string>
 
 #include "figures/experiment_figures.hpp"
-#include "run_experiment/experiment_inputs.hpp"
 #include "frame/tool.hpp"
+#include "run_experiment/experiment_inputs.hpp"
 
 /// @file
 /// run-experiment by default: section 3 of the paper.

@@ -6,17 +6,17 @@
 #include <excavplan/sensing/scene.hpp>
 
 #include "base/files.hpp"
-#include "machine/dig_path_text.hpp"
-#include "simulate_dig/block_inputs.hpp"
 #include "figures/dig_figures.hpp"
-#include "simulate_dig/fuel_log.hpp"
-#include "maps/ground_maps.hpp"
-#include "results/joint_loads.hpp"
-#include "results/results.hpp"
-#include "simulate_dig/scene_scans.hpp"
+#include "frame/tool.hpp"
+#include "inputs/map_names.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
-#include "frame/tool.hpp"
+#include "machine/dig_path_text.hpp"
+#include "results/joint_loads.hpp"
+#include "results/results.hpp"
+#include "simulate_dig/block_inputs.hpp"
+#include "simulate_dig/fuel_log.hpp"
+#include "simulate_dig/scene_scans.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -74,7 +74,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.output("history", inputs.history, "write the loads of each step, CSV");
   declare_plots(arguments, inputs.plots,
                 names_of(dig_figures([&inputs] { return machine_named(inputs.machine); })));
-  declare_maps(arguments, inputs.maps, scene_map_names());
+  declare_maps(arguments, inputs.maps, ground_map_names(3));
   arguments.report(inputs.report);
 }
 
@@ -107,8 +107,10 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
   write_maps(
       inputs.maps, [&] { return scene_maps(scene); }, outcome);
   if (!inputs.report) return;
-  outcome.report = titled(scene_report(machine, scene), *inputs.report, title,
-                          to_svg(lay_out(section_figure(dug))));
+  Report report = scene_report(machine, scene);
+  report.title = title;
+  report.plot = to_svg(lay_out(section_figure(dug)));
+  outcome.page = page_of(std::move(report), *inputs.report);
 }
 
 Outcome work(const Inputs& inputs, Console& console) {
