@@ -245,7 +245,7 @@ void warn_of_angles(const UrdfFront& front, std::vector<Warning>& warnings) {
   add("swing", front.swing_angle);
   if (text.empty()) return;
   warnings.push_back(
-      {"urdf_angles",
+      {WarningCode::urdf_angles,
        "the angles of excavplan are not those of the URDF: " + text +
            " rad; of trajectories .yaml and .com3 are in the latter, all else in the former"});
 }
@@ -256,7 +256,7 @@ void warn_of_root(const json& machine, std::vector<Warning>& warnings) {
   const double yaw = root.value("yaw_rad", 0.0);
   if (std::abs(at[0]) + std::abs(at[1]) + std::abs(at[2]) + std::abs(yaw) < 1e-6) return;
   warnings.push_back(
-      {"urdf_frame",
+      {WarningCode::urdf_frame,
        "the root frame of the URDF is not the site frame, which has its origin on the "
        "swing axis at the ground and x along the boom: in the site frame the root is "
        "at (" +
@@ -303,18 +303,19 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
   machine["format"] = "excavplan-machine";
   machine["version"] = 1;
   if (!scaled.empty()) {
-    draft.warnings.push_back({"urdf_scaled", "these numbers are in neither " + path +
-                                                 " nor a JSON beside it; those of "
-                                                 "the zx120, scaled to this size, are taken: " +
-                                                 listed(scaled)});
+    draft.warnings.push_back(
+        {WarningCode::urdf_scaled, "these numbers are in neither " + path +
+                                       " nor a JSON beside it; those of "
+                                       "the zx120, scaled to this size, are taken: " +
+                                       listed(scaled)});
   }
   if (!said.placeholders.empty()) {
-    draft.warnings.push_back(
-        {"urdf_placeholder", "these numbers of " + path +
-                                 " are taken for placeholders, as a usual "
-                                 "machine of this size differs by more than a factor of " +
-                                 number_text(most_apart) + ": " +
-                                 safe_text(said.placeholders, 400)});
+    draft.warnings.push_back({WarningCode::urdf_placeholder,
+                              "these numbers of " + path +
+                                  " are taken for placeholders, as a usual "
+                                  "machine of this size differs by more than a factor of " +
+                                  number_text(most_apart) + ": " +
+                                  safe_text(said.placeholders, 400)});
   }
   warn_of_angles(front, draft.warnings);
   warn_of_root(machine, draft.warnings);
