@@ -216,6 +216,14 @@ std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayou
   return rank > 0.0 ? best : std::variant<PlannedDig, DigFailure>(failure);
 }
 
+/// What the simulator says of the dig that is planned, its ground at rest.
+void set_result(const Task& task, const DigResult& result, DigPlan& plan) {
+  plan.torques = result.torques;
+  plan.ground_after = result.after(task.ground).surface();
+  Eigen::ArrayXXd& after = plan.ground_after.z;
+  after = (after == task.ground.surface().z).select(std::nan(""), after).eval();
+}
+
 /// A dig of the library laid out where it is needed, and simulated if its figures do not hold
 /// there.
 std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrary& library,
@@ -238,7 +246,12 @@ std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrar
   }
   plan.evaluations = 1;
   const auto simulator = make_simulator(kind, task.machine, task.soil, task.density.percent);
-  return dig_along(task.machine, *simulator, task.ground, plan.path, task.objective());
+  const auto outcome =
+      dig_to_rest(task.machine, *simulator, task.ground, plan.path, task.objective());
+  if (const auto* failure = std::get_if<DigFailure>(&outcome)) return *failure;
+  const auto& [dig, result] = std::get<SimulatedDig>(outcome);
+  set_result(task, result, plan);
+  return dig;
 }
 
 /// Warns where the ground is unlike that of the library. @return whether it is alike
@@ -461,6 +474,15 @@ void add_spread(const Task& task, const std::vector<PossibleSoil>& soils, DigPla
                                           " %; the results are those of the digs without a stall"});
 }
 
+/// Digs the plan, unless that was done to tell its figures. Those of a library are without the
+/// ground; digs that are compared by the thousand do not wait until theirs has come to rest.
+void add_result(const Task& task, DigPlan& plan) {
+  if (plan.ground_after.z.size() > 0) return;
+  const auto simulator =
+      make_simulator(task.options.simulator, task.machine, task.soil, task.density.percent);
+  set_result(task, checked_dig(*simulator, task.machine, task.ground, plan.path, {}), plan);
+}
+
 void add_trajectory(const Task& task, DigPlan& plan) {
   auto approach = DigLayout(task.machine, task.ground).approach(plan.path);
   if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
@@ -470,13 +492,6 @@ void add_trajectory(const Task& task, DigPlan& plan) {
   } else {
     plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
   }
-  const auto simulator =
-      make_simulator(task.options.simulator, task.machine, task.soil, task.density.percent);
-  const DigResult dig = checked_dig(*simulator, task.machine, task.ground, plan.path, {});
-  plan.torques = dig.torques;
-  plan.ground_after = dig.after(task.ground).surface();
-  Eigen::ArrayXXd& after = plan.ground_after.z;
-  after = (after == task.ground.surface().z).select(std::nan(""), after).eval();
   plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, plan.torques);
 }
 
@@ -488,6 +503,8 @@ bool is_worth_making(DigPlan& plan) {
                 readable(100.0 * plan.dig->fill, 2) + " % of the bucket";
   plan.dig.reset();
   plan.path = {};
+  plan.torques.clear();
+  plan.ground_after = {};
   return false;
 }
 
@@ -525,6 +542,7 @@ DigPlan plan_dig(const Task& task) {
   if (!task.level) judge_strip(task, plan);
   plan.cycle = cycle_of(task.machine, plan.path, *plan.dig, task.objective());
   if (task.uncertain()) add_spread(task, ground->soils(), plan);
+  add_result(task, plan);
   add_trajectory(task, plan);
   return plan;
 }

@@ -129,6 +129,10 @@ void require_sight(const std::vector<Eigen::Vector3d>& seen, const HeightMap& su
 
 DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& ground,
                    const SceneOptions& options) {
+  require_machine(machine);
+  require_soil(soil);
+  require_terrain(ground, "ground of a scene");
+  if (!options.dump_at.allFinite()) refuse("scene: the dump point must be finite");
   DigPath path = lay_out(machine, ground, options);
   require_clear_of_dig(options.dump_at, machine, soil, path);
   return path;
@@ -136,10 +140,6 @@ DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& 
 
 DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
                    const Terrain& ground, const SceneOptions& options) {
-  require_machine(machine);
-  require_soil(soil);
-  require_terrain(ground, "ground of a scene");
-  if (!options.dump_at.allFinite()) refuse("scene: the dump point must be finite");
   DigScene scene;
   scene.soil = soil.name;
   scene.density_percent = density_percent;
