@@ -148,9 +148,12 @@ Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
                                    const Eigen::Vector4d& quaternion) {
   constexpr double tolerance = 1e-3;
   const double norm = quaternion.norm();
-  if (!translation.allFinite() || !quaternion.allFinite()) refuse("a number is not finite");
+  if (!translation.allFinite() || !quaternion.allFinite()) {
+    refuse("pose of a scan: a number is not finite");
+  }
   if (std::abs(norm - 1.0) > tolerance) {
-    refuse("the quaternion's norm is " + number_text(norm) + ", must be 1 to 0.001");
+    refuse("pose of a scan: the quaternion's norm is " + number_text(norm) +
+           ", must be 1 to 0.001");
   }
   Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
   pose.topLeftCorner<3, 3>() = Eigen::Quaterniond(quaternion / norm).toRotationMatrix();
