@@ -7,6 +7,7 @@
 #include <set>
 
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/base/warning.hpp>
 
 #include "base/angles.hpp"
 #include "base/files.hpp"
