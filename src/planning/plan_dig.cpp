@@ -22,6 +22,7 @@
 #include "planning/dig_layout.hpp"
 #include "planning/dig_problem.hpp"
 #include "planning/simulated_dig.hpp"
+#include "planning/start_rule.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -207,7 +208,7 @@ std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayou
     return DigFailure();
   };
   const DigParameters& usual = ahead.dig.parameters;
-  const DigFailure failure = compare(layout.path(usual, StartRule::Kind::least_work), ahead);
+  const DigFailure failure = compare(path_by(layout, usual, StartRule::Kind::least_work), ahead);
   for (const double x : starts_along_reach(machine)) {
     compare(layout.path_from(usual, x), ahead);
     const auto here = known_at(library, task, usual, x);
@@ -235,7 +236,7 @@ std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrar
     return best_start(task, layout, library, source, plan);
   }
   auto path = task.level ? layout.path_near(known.parameters, known.start_x)
-                         : layout.path(known.parameters, task.options.search.start_rule);
+                         : path_by(layout, known.parameters, task.options.search.start_rule);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
   plan.path = std::get<DigPath>(std::move(path));
   if (task.level && library.simulator == kind.name) {

@@ -6,12 +6,6 @@
 #include <string>
 
 #include <excavplan/experiments/experiment_options.hpp>
-#include <excavplan/planning/plan_dig.hpp>
-#include <excavplan/planning/planned_dig.hpp>
-#include <excavplan/sensing/scene.hpp>
-#include <excavplan/simulation/soil_simulator.hpp>
-#include <excavplan/soil/density_law.hpp>
-#include <excavplan/soil/soil.hpp>
 
 /// @file
 /// The paper's simulation experiment (section 3): a fixed path against the path planned for the
