@@ -12,6 +12,7 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 namespace {

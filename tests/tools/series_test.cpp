@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "frame/quantity.hpp"
-#include "results/results.hpp"
+#include "frame/quantity.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::tools {

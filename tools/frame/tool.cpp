@@ -27,6 +27,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "frame/settings_file.hpp"
+#include "frame/signals.hpp"
 #include "frame/stack.hpp"
 #include "frame/standard_input.hpp"
 #include "frame/used_files.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/json.hpp"
 #include "base/text.hpp"
 #include "results/pose_results.hpp"
 

@@ -9,7 +9,6 @@
 
 #include <excavplan/base/error.hpp>
 
-#include "base/json.hpp"
 #include "base/text.hpp"
 #include "frame/option_names.hpp"
 #include "recording/recording_file.hpp"

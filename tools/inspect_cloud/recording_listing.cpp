@@ -6,7 +6,6 @@
 
 #include <excavplan/recording/recording.hpp>
 
-#include "base/json.hpp"
 #include "base/text.hpp"
 #include "inputs/recordings.hpp"
 #include "recording/recording_file.hpp"

@@ -6,7 +6,13 @@
 #include <excavplan/planning/plan_dig.hpp>
 
 #include "base/text.hpp"
+#include "frame/stopwatch.hpp"
 #include "frame/tool.hpp"
+#include "inputs/goal_inputs.hpp"
+#include "inputs/maps.hpp"
+#include "inputs/named_kinds.hpp"
+#include "inputs/plots.hpp"
+#include "inputs/search_method.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
 #include "plan_path/density_input.hpp"
@@ -16,7 +22,6 @@
 #include "plan_path/plan_plots.hpp"
 #include "plan_path/search_inputs.hpp"
 #include "results/plan_results.hpp"
-#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {
