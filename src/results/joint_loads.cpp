@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <excavplan/results/result_json.hpp>
+
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "results/dig_timing.hpp"

@@ -31,6 +31,7 @@
 #include "frame/stack.hpp"
 #include "frame/standard_input.hpp"
 #include "frame/used_files.hpp"
+#include "results/warning_results.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -451,10 +452,7 @@ void print(const std::string& text) {
 std::string json_text(const About& about, const Outcome& outcome) {
   nlohmann::ordered_json json = {{"tool", about.name}, {"version", EXCAVPLAN_VERSION}};
   json.update(outcome.json);
-  json["warnings"] = nlohmann::ordered_json::array();
-  for (const Warning& warning : outcome.warnings) {
-    json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
-  }
+  json["warnings"] = warnings_json(outcome.warnings);
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "base/text.hpp"
 #include "figures/dig_figures.hpp"
 #include "inputs/dig_plots.hpp"
 #include "report/dig_report.hpp"
@@ -43,8 +42,7 @@ void draw_plan(const Plots& plots, const std::optional<std::string>& report, Dra
   if (plots.files.empty() && !report) return;
   const PlanSite& site = drawn.site;
   const DigPlan& plan = drawn.plan;
-  const std::string title = (plan.dig ? "Planned dig in " : "No dig in ") + site.soil.name +
-                            " at " + readable(site.density_percent) + " % relative density";
+  const std::string title = plan_title(plan, site);
   std::optional<DigResult> dig;
   std::string section;
   if (plan.dig) {

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/results/result_json.hpp>
 #include <excavplan/sensing/scene.hpp>
 
 #include "base/files.hpp"
@@ -101,9 +102,8 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
                  Outcome& outcome) {
   write_scans(inputs.scans, scene, inputs.seed);
   inputs.fuel_log.write(machine, scene, inputs.seed);
-  if (inputs.history) write_file(*inputs.history, to_csv(machine, scene));
-  const std::string title =
-      "Dig in " + scene.soil + " at " + readable(scene.density_percent) + " % relative density";
+  if (inputs.history) write_file(*inputs.history, force_history_csv(machine, scene));
+  const std::string title = scene_title(scene);
   const DugDig dug = {machine,
                       scene.path,
                       scene.dig,
