@@ -34,7 +34,7 @@ set(third_party_places
   "^(src/survey/depth_image|tests/images/depth_image_test)\\.cpp$"
   "^src/(soil|optimisation)/[a-z_]+\\.cpp$"
   "^(src/base/json\\.hpp|src/.*\\.[ch]pp|tools/.*|tests/.*)$"
-  "^tools/shared/tool\\.cpp$"
+  "^tools/frame/command_line\\.cpp$"
   "^src/survey/depth_png\\.cpp$"
   "^(src/recording/sqlite_recording|tests/recording/containers_test)\\.cpp$"
   "^src/recording/compression\\.cpp$" "^src/recording/compression\\.cpp$"

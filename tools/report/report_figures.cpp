@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "drawing/drawing.hpp"
 
