@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scans/points_by_cell.hpp"
+#include "clouds/points_by_cell.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/random.hpp"
 #include "base/robust.hpp"
-#include "clouds/cloud_outline.hpp"
+#include "clouds/stream_sample.hpp"
 
 namespace excavplan {
 namespace {

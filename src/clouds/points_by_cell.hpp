@@ -12,8 +12,8 @@
 #include <Eigen/Core>
 
 #include <excavplan/ground/height_map.hpp>
+#include "clouds/cloud_cell.hpp"
 #include "clouds/point_stream.hpp"
-#include "scans/cloud_cell.hpp"
 
 /// @file The points of a scan in the cells of a map. Private to the library.
 

@@ -1,15 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <excavplan/base/error.hpp>
 #include <excavplan/clouds/cloud.hpp>
-#include <excavplan/scans/scan_pose.hpp>
 
+#include "base/check.hpp"
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
@@ -142,6 +144,23 @@ Eigen::Matrix4d read_frame(const std::string& path) {
   }
 }
 
+Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
+                                   const Eigen::Vector4d& quaternion) {
+  constexpr double tolerance = 1e-3;
+  const double norm = quaternion.norm();
+  if (!translation.allFinite() || !quaternion.allFinite()) {
+    refuse("pose of a scan: a number is not finite");
+  }
+  if (std::abs(norm - 1.0) > tolerance) {
+    refuse("pose of a scan: the quaternion's norm is " + number_text(norm) +
+           ", must be 1 to 0.001");
+  }
+  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+  pose.topLeftCorner<3, 3>() = Eigen::Quaterniond(quaternion / norm).toRotationMatrix();
+  pose.topRightCorner<3, 1>() = translation;
+  return pose;
+}
+
 void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan) {
   std::string text;
   for (Eigen::Index row = 0; row < 4; ++row) {
@@ -150,6 +169,14 @@ void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan)
     }
   }
   write_file(path, text);
+}
+
+void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan) {
+  if (!site_from_scan.allFinite()) refuse("transform: a number of site_from_scan is not finite");
+  const Eigen::Matrix3d rotation = site_from_scan.topLeftCorner<3, 3>();
+  const Eigen::Vector3d shift = site_from_scan.topRightCorner<3, 1>();
+  for (Eigen::Vector3d& point : cloud.points) point = rotation * point + shift;
+  if (cloud.sensor_origin) cloud.sensor_origin = rotation * *cloud.sensor_origin + shift;
 }
 
 }  // namespace excavplan

@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <excavplan/scans/scan_surface.hpp>
 #include "base/random.hpp"
 
-/// @file Summary of a stream of points that are not stored. Private to the library.
+/// @file A random choice of values that stream by. Private to the library.
 
 namespace excavplan {
 
@@ -52,17 +51,6 @@ class StreamSample {
   std::uint64_t count_ = 0;
   std::uint64_t stride_ = 1;  ///< every stretch of so many values gives one
   std::uint64_t chosen_ = 0;  ///< of the stretch that runs or comes
-};
-
-/// Extent and density of a cloud that streams by.
-class CloudOutline {
- public:
-  void add(const std::vector<Eigen::Vector3d>& points);
-  ScanOutline result() const;
-
- private:
-  ScanOutline outline_;
-  StreamSample<Eigen::Vector3d> sample_{std::size_t{1} << 16};
 };
 
 }  // namespace excavplan

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scans/cloud_cell.hpp"
+#include "clouds/cloud_cell.hpp"
 
 #include <algorithm>
 #include <array>

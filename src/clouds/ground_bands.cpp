@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scans/ground_bands.hpp"
+#include "clouds/ground_bands.hpp"
 
 #include <algorithm>
 #include <cmath>

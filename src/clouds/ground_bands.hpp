@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "scans/cloud_cell.hpp"
-#include "scans/points_by_cell.hpp"
+#include "clouds/cloud_cell.hpp"
+#include "clouds/points_by_cell.hpp"
 
 /// @file Which points of a scan may be ground. Private to the library.
 
