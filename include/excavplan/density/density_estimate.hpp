@@ -12,11 +12,11 @@
 #include <excavplan/change/blocks.hpp>
 #include <excavplan/change/volume_change.hpp>
 #include <excavplan/density/density_by_loads.hpp>
+#include <excavplan/density/other_volumes.hpp>
 #include <excavplan/density/soil_answers.hpp>
 #include <excavplan/density/successive_density.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/paper/paper_options.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 #include <excavplan/soil/density_law.hpp>
 
@@ -36,7 +36,7 @@ struct DigScans {
 /// How volumes are found.
 enum class VolumeMethod {
   surface,  ///< signed change of one height map, measure_change()
-  paper,    ///< paper_volumes(), as published, in the areas that the first finds
+  paper,    ///< DensityOptions::paper, as published, in the areas that the first finds
 };
 
 /// The dig as driven, for a law of digs along this path. With its start, which needs scans in the
@@ -54,7 +54,7 @@ struct DensityOptions {
                                     ///< else cell_for() the sparsest scan
   bool registered = true;           ///< false: the sensor did not move, scans are not registered
   ChangeOptions change;             ///< dig area, dump area and more
-  PaperOptions paper;               ///< of VolumeMethod::paper
+  OtherVolumes paper;               ///< of VolumeMethod::paper: paper_change()
   std::optional<DugPath> dug_path;  ///< if it is known
   SoilKnowledge soil;               ///< its kind, or the kinds that it may be
   std::optional<Measured> payload_mass;  ///< moist soil that was dumped, if it was weighed [kg]
@@ -124,7 +124,7 @@ struct DensityEstimate {
 ///
 /// @throws Error (bad_file) naming the scans if one cannot be read, holds fewer than 100 finite
 /// points, or they do not overlap (FrameError) or are probably swapped; (bad_input) if an option is
-/// out of range or the path that was dug cannot be driven
+/// out of range, the path that was dug cannot be driven or VolumeMethod::paper lacks its volumes
 DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
                                  const DensityOptions& options = {});
 
@@ -139,7 +139,7 @@ struct BothEstimates {
   DensityEstimate paper;    ///< by VolumeMethod::paper
 };
 
-/// As estimate_density() by both methods; `options.method` is ignored.
+/// As estimate_density() by both methods; `options.method` is ignored, `options.paper` needed.
 BothEstimates estimate_by_both(const DigScans& scans, const DensityLaw& law,
                                const DensityOptions& options = {});
 
