@@ -4,38 +4,44 @@ cmake_minimum_required(VERSION 3.24)
 
 # The architecture as a test: run with cmake -D ROOT=<source directory> -P layering.cmake
 
-# What a room may include of the others; itself and base are always allowed.
-set(rooms base optimisation ground soil machine simulation planning library kit plan experiment recording survey study controller)
+# The rooms of the library from the ground up, and what each may include of the others beside itself
+# and base.
+set(rooms base optimisation ground change soil machine simulation sensing calibration planning kit
+  clouds scans logs efficiency recording images density paper experiments results figures robot)
 set(base_may_use "")
 set(optimisation_may_use "")
 set(ground_may_use "")
-set(soil_may_use ground)
+set(change_may_use ground)
+set(soil_may_use "")
 set(machine_may_use "")
 set(simulation_may_use ground soil machine)
+set(sensing_may_use ground change soil machine simulation)
+set(calibration_may_use ground change soil machine simulation sensing)
 set(planning_may_use optimisation ground soil machine simulation)
-set(library_may_use optimisation ground soil machine simulation planning)
-set(kit_may_use ground soil machine simulation planning library)
-set(plan_may_use ground soil machine simulation planning library)
-set(experiment_may_use ground soil machine simulation planning library plan)
-set(recording_may_use "")
-set(survey_may_use ground soil machine simulation recording)
-set(study_may_use ground soil machine simulation planning library kit plan experiment survey)
-set(controller_may_use ground soil machine simulation planning library kit plan recording survey)
-
-# Public headers that belong to no room; all may include them.
-set(roomless ceilings error data_files)
+set(kit_may_use soil machine simulation calibration planning)
+set(clouds_may_use ground)
+set(scans_may_use ground change machine simulation clouds)
+set(logs_may_use machine)
+set(efficiency_may_use ground change clouds scans logs)
+set(recording_may_use clouds scans)
+set(images_may_use clouds scans)
+set(density_may_use ground change soil machine simulation calibration scans logs)
+set(paper_may_use change clouds scans density)
+set(experiments_may_use
+  ground change soil machine simulation sensing calibration planning scans density)
+set(robot_may_use ground soil machine simulation planning kit clouds scans recording density results)
 
 # Where a third-party header may be included: in no public header any of them, and in every benchmark,
 # which stands beside its peers.
 set(third_parties "pcl/" "opencv2/" "nlopt" "nlohmann/" "CLI/"
   "zlib\\.h" "sqlite3\\.h" "lz4frame\\.h" "zstd\\.h" "bzlib\\.h")
 set(third_party_places
-  "^(src/survey/paper_method|tests/paper/paper_method_test|tests/bad_files/bad_files_by_pcl)\\.cpp$"
-  "^(src/survey/depth_image|tests/images/depth_image_test)\\.cpp$"
+  "^(src/paper/paper_method|tests/paper/paper_method_test|tests/bad_files/bad_files_by_pcl)\\.cpp$"
+  "^(src/images/depth_image|tests/images/depth_image_test)\\.cpp$"
   "^src/(soil|optimisation)/[a-z_]+\\.cpp$"
   "^(src/base/json\\.hpp|src/.*\\.[ch]pp|tools/.*|tests/.*)$"
   "^tools/shared/tool\\.cpp$"
-  "^src/survey/depth_png\\.cpp$"
+  "^src/images/depth_png\\.cpp$"
   "^(src/recording/sqlite_recording|tests/recording/containers_test)\\.cpp$"
   "^src/recording/compression\\.cpp$" "^src/recording/compression\\.cpp$"
   "^src/recording/compression\\.cpp$")
@@ -66,9 +72,49 @@ function(check_rooms file line)
     if(NOT used STREQUAL room AND NOT used STREQUAL base AND NOT used IN_LIST ${room}_may_use)
       message(SEND_ERROR "${file}: must not use the room ${used}: ${line}")
     endif()
-  elseif(line MATCHES "\"" OR NOT header IN_LIST roomless)
+  else()
     message(SEND_ERROR "${file}: include headers by their room: ${line}")
   endif()
+endfunction()
+
+# A module is a source with its headers, public and private: none reaches itself by its includes.
+# collect_uses(FILE LINE): notes the module that the line includes as used by that of the file.
+function(module_of file result)
+  string(REGEX REPLACE "^(include/excavplan|src)/|\\.[a-z]+$" "" module "${file}")
+  set(${result} "${module}" PARENT_SCOPE)
+endfunction()
+function(collect_uses file line)
+  if(line MATCHES "<excavplan/([a-z0-9_/]+)\\.hp?p?>|\"([a-z0-9_/]+)\\.hpp\"")
+    set(used "${CMAKE_MATCH_1}${CMAKE_MATCH_2}")
+    if(EXISTS ${ROOT}/tools/${used}.hpp)
+      set(used tools/${used})
+    endif()
+    module_of(${file} module)
+    if(NOT used STREQUAL module)
+      set_property(GLOBAL APPEND PROPERTY uses:${module} ${used})
+      set_property(GLOBAL APPEND PROPERTY modules ${module})
+    endif()
+  endif()
+endfunction()
+# walk(MODULE trail...): fails where a module on the trail to it is met again.
+function(walk module)
+  if(module IN_LIST ARGN)
+    list(FIND ARGN ${module} start)
+    list(SUBLIST ARGN ${start} -1 circle)
+    list(JOIN circle " -> " circle)
+    message(SEND_ERROR "a circle of modules: ${circle} -> ${module}")
+    return()
+  endif()
+  get_property(is_walked GLOBAL PROPERTY walked:${module})
+  if(is_walked)
+    return()
+  endif()
+  get_property(all GLOBAL PROPERTY uses:${module})
+  list(REMOVE_DUPLICATES all)
+  foreach(used IN LISTS all)
+    walk(${used} ${ARGN} ${module})
+  endforeach()
+  set_property(GLOBAL PROPERTY walked:${module} TRUE)
 endfunction()
 
 # The library answers by values and exceptions: it prints nothing and never ends the program.
@@ -100,6 +146,9 @@ foreach(file IN LISTS sources)
     if(file MATCHES "^(include|src)/")
       check_rooms(${file} "${line}")
     endif()
+    if(file MATCHES "^(include|src|tools)/")
+      collect_uses(${file} "${line}")
+    endif()
   endforeach()
   if(file MATCHES "^(include|src)/")
     check_manners(${file})
@@ -108,4 +157,14 @@ foreach(file IN LISTS sources)
   if(NOT head MATCHES "SPDX-FileCopyrightText: .*;.*SPDX-License-Identifier: Apache-2.0")
     message(SEND_ERROR "${file}: lacks its two SPDX lines")
   endif()
+endforeach()
+
+get_property(modules GLOBAL PROPERTY modules)
+list(REMOVE_DUPLICATES modules)
+list(LENGTH modules count)
+if(count LESS 200)
+  message(SEND_ERROR "only ${count} modules with includes: no circle was looked for")
+endif()
+foreach(module IN LISTS modules)
+  walk(${module})
 endforeach()
