@@ -39,7 +39,7 @@ set(third_party_places
   "^(src/paper/paper_method|tests/paper/paper_method_test|tests/bad_files/bad_files_by_pcl)\\.cpp$"
   "^src/(soil|optimisation)/[a-z_]+\\.cpp$"
   "^(src/base/json\\.hpp|src/.*\\.[ch]pp|tools/.*|tests/.*)$"
-  "^tools/shared/tool\\.cpp$"
+  "^tools/frame/command_line\\.cpp$"
   "^src/images/depth_png\\.cpp$"
   "^(src/recording/sqlite_recording|tests/recording/containers_test)\\.cpp$"
   "^src/recording/compression\\.cpp$" "^src/recording/compression\\.cpp$"

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include <excavplan/planning/dig_cycle.hpp>
+#include <excavplan/planning/goal_words.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
@@ -60,22 +61,16 @@ const DigGoalInfo& info_of(DigObjective::Goal goal) {
 }
 
 DigObjective objective_named(const std::string& text) {
-  std::string known;
-  for (const DigGoalInfo& goal : dig_goals()) {
-    known += (known.empty() ? "" : ", ") + goal.word;
-    DigObjective objective(goal.goal);
-    if (!goal.parameter) {
-      if (text == goal.word) return objective;
-      continue;
-    }
-    known += ':' + goal.parameter_name;
-    const std::size_t word_end = goal.word.size() + 1;
-    if (text.compare(0, word_end, goal.word + ':') != 0) continue;
-    const char* end = text.data() + text.size();
-    double& number = objective.*goal.parameter;
-    const auto [after, error] = read_double(text.data() + word_end, end, number);
+  if (const auto written = written_goal(text)) {
+    DigObjective objective(written->goal.goal);
+    if (!written->goal.parameter) return objective;
+    const char* const end = written->number.data() + written->number.size();
+    double& number = objective.*written->goal.parameter;
+    const auto [after, error] = read_double(written->number.data(), end, number);
     if (error == std::errc() && after == end) return objective;
   }
+  std::string known;
+  for (const DigGoalInfo& goal : dig_goals()) known += (known.empty() ? "" : ", ") + usage(goal);
   refuse("the goal " + in_quotes(text) + " is none of " + known);
 }
 

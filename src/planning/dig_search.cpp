@@ -9,7 +9,6 @@
 #include "planning/dig_problem.hpp"
 
 namespace excavplan {
-
 namespace {
 
 /// Of the bucket's length from pin to tip, and angles: ours.
