@@ -73,9 +73,19 @@ if(TARGET excavplan_paper)
     REQUIRES pcl_filters pcl_search pcl_octree pcl_common
     RUNTIME ${runtime})
 endif()
+excavplan_install(results
+  SUMMARY "Results as JSON, and as maps of the ground"
+  REQUIRES_PUBLIC excavplan-survey excavplan-recordings)
+set(requires "")
+if(excavplan_with_cairo)
+  set(requires cairo fontconfig)
+endif()
+excavplan_install(figures
+  SUMMARY "Results as figures"
+  REQUIRES_PUBLIC excavplan-results REQUIRES ${requires})
 excavplan_install(robot
   SUMMARY "The dig cycle of a robot from its messages"
-  REQUIRES_PUBLIC excavplan-survey REQUIRES excavplan-recordings)
+  REQUIRES_PUBLIC excavplan-survey REQUIRES excavplan-recordings excavplan-results)
 
 configure_package_config_file(cmake/excavplan-config.cmake.in excavplan-config.cmake
   INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_DATADIR)

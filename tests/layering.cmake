@@ -116,6 +116,28 @@ function(walk module)
   set_property(GLOBAL PROPERTY walked:${module} TRUE)
 endfunction()
 
+# Rooms of the tools, each of which may use those before it; the folder of a tool uses all of them and
+# no other tool's.
+set(tool_rooms frame inputs report)
+file(GLOB tools RELATIVE ${ROOT}/tools LIST_DIRECTORIES true ${ROOT}/tools/*)
+list(REMOVE_ITEM tools CMakeLists.txt ${tool_rooms})
+
+function(check_tool_rooms file line)
+  string(REGEX MATCH "^tools/([a-z_]+)/" whole ${file})
+  set(room ${CMAKE_MATCH_1})
+  if(NOT line MATCHES "\"([a-z_]+)/")
+    return()
+  endif()
+  set(used ${CMAKE_MATCH_1})
+  list(FIND tool_rooms ${used} used_place)
+  list(FIND tool_rooms ${room} place)
+  if(used IN_LIST tools AND NOT used STREQUAL room)
+    message(SEND_ERROR "${file}: must not use what belongs to another tool: ${line}")
+  elseif(place GREATER_EQUAL 0 AND used_place GREATER place)
+    message(SEND_ERROR "${file}: must not use the room ${used}: ${line}")
+  endif()
+endfunction()
+
 # The library answers by values and exceptions: it prints nothing and never ends the program.
 function(check_manners file)
   file(STRINGS ${ROOT}/${file} lines
@@ -144,6 +166,8 @@ foreach(file IN LISTS sources)
     check_third_parties(${file} "${line}")
     if(file MATCHES "^(include|src)/")
       check_rooms(${file} "${line}")
+    elseif(file MATCHES "^tools/")
+      check_tool_rooms(${file} "${line}")
     endif()
     if(file MATCHES "^(include|src|tools)/")
       collect_uses(${file} "${line}")

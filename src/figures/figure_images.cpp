@@ -16,7 +16,6 @@
 #include "figures/study_figure.hpp"
 
 namespace excavplan {
-
 namespace {
 
 std::string image_of(const Figure& figure, ImageFormat format) {

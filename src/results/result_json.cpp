@@ -3,11 +3,10 @@
 #include <excavplan/results/result_json.hpp>
 
 #include "base/json.hpp"
-#include "results/cloud_results.hpp"
 #include "results/density_results.hpp"
 #include "results/efficiency_results.hpp"
 #include "results/plan_results.hpp"
-#include "results/recording_results.hpp"
+#include "results/scan_results.hpp"
 #include "results/scene_results.hpp"
 #include "results/survey_results.hpp"
 

@@ -10,9 +10,7 @@
 #include "estimate_density/survey_map_names.hpp"
 #include "estimate_density/survey_planning.hpp"
 #include "frame/tool.hpp"
-#include "inputs/maps.hpp"
 #include "inputs/named_kinds.hpp"
-#include "inputs/plots.hpp"
 #include "inputs/recordings.hpp"
 #include "inputs/scans.hpp"
 

@@ -8,7 +8,6 @@
 #include "base/text.hpp"
 
 namespace excavplan::tools {
-
 namespace {
 
 /// "loam 41.0 ± 4.1, sand 69.1 ± 7.0; any of them 52.3 ± 17.4 %"

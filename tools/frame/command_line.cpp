@@ -12,7 +12,6 @@
 #include "frame/used_files.hpp"
 
 namespace excavplan::tools {
-
 namespace {
 
 std::vector<bool> given_entries(const ParsedWords& words) {

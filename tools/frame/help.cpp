@@ -5,7 +5,6 @@
 #include <sstream>
 
 namespace excavplan::tools {
-
 namespace {
 
 constexpr std::size_t help_width = 96;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "results/pose_results.hpp"
+#include "results/scan_results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/text.hpp"
 #include "inputs/recordings.hpp"
 #include "recording/recording_file.hpp"
-#include "results/recording_results.hpp"
+#include "results/scan_results.hpp"
 
 namespace excavplan::tools {
 namespace {

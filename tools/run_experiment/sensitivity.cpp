@@ -12,7 +12,7 @@
 #include "inputs/simulator_inputs.hpp"
 #include "planning/planned_digs.hpp"
 #include "results/dig_lines.hpp"
-#include "results/sensitivity_results.hpp"
+#include "results/experiment_results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -16,7 +16,6 @@
 #include "run_experiment/experiment_report.hpp"
 
 namespace excavplan::tools {
-
 namespace {
 
 /// A machine in a soil, and how both digs of a condition are made.

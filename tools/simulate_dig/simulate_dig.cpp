@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include <excavplan/planning/planned_dig.hpp>
-#include <excavplan/results/result_json.hpp>
+#include <excavplan/results/force_history.hpp>
 #include <excavplan/sensing/scene.hpp>
 
 #include "base/files.hpp"
@@ -12,14 +12,11 @@
 #include "frame/tool.hpp"
 #include "inputs/dig_plots.hpp"
 #include "inputs/map_names.hpp"
-#include "inputs/maps.hpp"
 #include "inputs/named_kinds.hpp"
-#include "inputs/plots.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
 #include "machine/dig_path_text.hpp"
 #include "report/dig_report.hpp"
-#include "report/report.hpp"
 #include "results/scene_results.hpp"
 #include "simulate_dig/block_inputs.hpp"
 #include "simulate_dig/fuel_log.hpp"

@@ -31,8 +31,6 @@ std::string to_json(const DigPlan& plan, const GroundDensity& density,
 
 /// What simulate-dig finds. @param scene  with the history of its dig
 std::string to_json(const Machine& machine, const DigScene& scene);
-/// The loads of each step as CSV: docs/formats.md#force-history.
-std::string force_history_csv(const Machine& machine, const DigScene& scene);
 
 /// A run and the comparison of two sets of measure-efficiency.
 std::string to_json(const DigEfficiency& run);
