@@ -4,6 +4,7 @@
 
 #include <csetjmp>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <string_view>
@@ -25,7 +26,8 @@ constexpr std::size_t signature_size = 8;
 struct Source {
   std::string content;
   std::size_t at = 0;
-  bool ended = false;    ///< too early
+  bool ended = false;  ///< too early
+  bool no_memory = false;
   char fault[100] = "";  ///< libpng's words; no string, which may throw through C
 };
 
@@ -45,13 +47,22 @@ void give_bytes(png_structp png, png_bytep bytes, std::size_t count) {
   png_longjmp(png, 1);
 }
 
+png_voidp allocate(png_structp png, png_alloc_size_t size) {
+  void* const memory = std::malloc(size);
+  if (!memory) static_cast<Source*>(png_get_mem_ptr(png))->no_memory = true;
+  return memory;
+}
+
+void release(png_structp /*png*/, png_voidp memory) { std::free(memory); }
+
 void ignore(png_structp /*png*/, png_const_charp /*warning*/) {}
 
 class PngReader {
  public:
   explicit PngReader(const std::string& path) : path_(path) {
     source_.content = read_file(path, most_image_bytes);
-    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source_, stop, ignore);
+    png_ = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &source_, stop, ignore, &source_,
+                                    allocate, release);
     info_ = png_ ? png_create_info_struct(png_) : nullptr;
     if (!info_) throw std::bad_alloc();
   }
@@ -90,6 +101,8 @@ class PngReader {
   void run(const Steps& steps) {
     if (setjmp(png_jmpbuf(png_)) == 0) {
       steps();
+    } else if (source_.no_memory) {
+      throw std::bad_alloc();
     } else if (source_.ended) {
       refuse("the end of the file at byte " + std::to_string(source_.content.size()));
     } else {
