@@ -25,7 +25,7 @@ inline std::string png_chunk(const std::string& content) {
   return big_endian(static_cast<std::uint32_t>(content.size() - 4)) + content + big_endian(~crc);
 }
 
-/// Bytes as a zlib stream of one stored block, so at most 65535 of them.
+/// Bytes as a zlib stream of stored blocks, each of at most 65535 bytes.
 inline std::string zlib_stored(const std::string& bytes) {
   std::uint32_t a = 1;
   std::uint32_t b = 0;
@@ -33,16 +33,21 @@ inline std::string zlib_stored(const std::string& bytes) {
     a = (a + static_cast<unsigned char>(c)) % 65521U;
     b = (b + a) % 65521U;
   }
-  const auto size = static_cast<std::uint32_t>(bytes.size());
-  std::string stored = {'\x78', '\x01', '\x01'};
-  for (const std::uint32_t n : {size, ~size}) {
-    stored += static_cast<char>(n & 0xffU);
-    stored += static_cast<char>(n >> 8U & 0xffU);
+  std::string stored = "\x78\x01";
+  for (std::size_t at = 0; at == 0 || at < bytes.size(); at += 65535) {
+    const std::string block = bytes.substr(at, 65535);
+    const auto size = static_cast<std::uint32_t>(block.size());
+    stored += at + size == bytes.size() ? '\1' : '\0';  // the last one or not
+    for (const std::uint32_t n : {size, ~size}) {
+      stored += static_cast<char>(n & 0xffU);
+      stored += static_cast<char>(n >> 8U & 0xffU);
+    }
+    stored += block;
   }
-  return stored + bytes + big_endian(b << 16U | a);
+  return stored + big_endian(b << 16U | a);
 }
 
-/// A 16-bit greyscale PNG of at most 65535 bytes of pixels.
+/// A 16-bit greyscale PNG.
 inline std::string png_of(std::uint32_t width, const std::vector<std::uint16_t>& pixels) {
   std::string rows;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
