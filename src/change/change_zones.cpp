@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
 #include "ground/noise_model.hpp"
@@ -16,26 +16,11 @@ namespace excavplan {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double mad_to_sd = 1.4826;             // of a normal distribution
 constexpr double clip = 4.0;                     // residuals beyond are not noise [sd]
 constexpr std::size_t fewest_stable_cells = 25;  // ours: fewest for noise and datum
 constexpr int most_rounds = 8;
 constexpr std::size_t most_by_chance = 16;  // ours: unknown cells together in a sparse scan
 constexpr int stable = -1;
-
-/// Centre and spread of a distribution.
-struct Spread {
-  double middle = 0.0;
-  double sd = 0.0;
-};
-
-Spread median_and_mad(std::vector<double> values) {
-  Spread spread;
-  spread.middle = median(values);
-  for (double& value : values) value = std::abs(value - spread.middle);
-  spread.sd = mad_to_sd * median(values);
-  return spread;
-}
 
 /// The densest quarter of the values: finds stable ground even where most of it changed. Where two
 /// quarters are equally dense, as on maps without noise, the one nearer to zero is taken.
@@ -276,14 +261,14 @@ class ChangeFinder {
     const std::vector<double> changes = values(found_.difference, on_stable);
     found_.stable_share = static_cast<double>(changes.size()) / static_cast<double>(known_cells_);
     if (changes.size() < fewest_stable_cells) return;
-    const Spread spread = median_and_mad(changes);
+    const Spread spread = robust_spread(changes);
     found_.noise_sd = std::max(spread.sd, least_noise);
     found_.datum = clipped_mean(changes, spread.middle);
     std::vector<double> weighted;
     for_each_cell(found_.zone, [&](Cell cell) {
       if (is_stable(cell)) weighted.push_back(significance(cell) * smooth_sd_);
     });
-    smooth_sd_ = std::max(median_and_mad(std::move(weighted)).sd, least_noise);
+    smooth_sd_ = std::max(robust_spread(std::move(weighted)).sd, least_noise);
   }
 
   double clipped_mean(const std::vector<double>& changes, double middle) const {

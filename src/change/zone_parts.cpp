@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "change/zone_shape.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/noise_model.hpp"
@@ -263,9 +263,8 @@ class Parter {
       if (is_known(at.row, at.col)) squares.push_back(windows.square(at.row, at.col));
     });
     if (squares.empty()) return Mask::Constant(left_out.rows(), left_out.cols(), false);
-    const auto tenth = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 10);
-    std::nth_element(squares.begin(), tenth, squares.end());
-    const double least = std::max(churn_to_noise * std::sqrt(*tenth), least_churn);
+    const double least =
+        std::max(churn_to_noise * std::sqrt(upper_quantile(squares, 0.1)), least_churn);
     return is_known && !left_out && windows.square > least * least &&
            windows.mean.square() < largest_lean * largest_lean * windows.square &&
            windows.raised.min(windows.square - windows.raised) > least_both_ways * windows.square;

@@ -68,9 +68,9 @@ struct Moments {
 };
 
 /// Mean and slope of weighted points.
-class PlaneFit {
+class CellPlane {
  public:
-  explicit PlaneFit(const Moments& m) : mean_(m.sum / m.count) {
+  explicit CellPlane(const Moments& m) : mean_(m.sum / m.count) {
     const Eigen::Vector2d centre = mean_.head<2>();
     spread_ = m.plan_products() / m.count - centre * centre.transpose();
     with_height_ = Eigen::Vector2d(m.xz, m.yz) / m.count - mean_.z() * centre;
@@ -123,7 +123,7 @@ class CellMean {
   /// else that of the surroundings.
   CellHeight result(const Eigen::Vector2d& slope_around) const {
     if (points_.empty()) return {};
-    const PlaneFit plane(shared_);
+    const CellPlane plane(shared_);
     if (!tells_slope(plane)) {
       return height_of(plane.mean(), slope_around, Eigen::Vector2d::Zero(), 1.0);
     }
@@ -137,14 +137,14 @@ class CellMean {
 
   /// Enough points, with at least half the standard deviation of an even spread, 1 / sqrt(12), in
   /// every direction.
-  bool tells_slope(const PlaneFit& plane) const {
+  bool tells_slope(const CellPlane& plane) const {
     constexpr double least_spread = 0.25 / 12.0;
     return points_.size() >= enough && plane.least_spread() >= least_spread;
   }
 
   /// About the plane through all points; 0 if they are too few for one.
   double residual_sd() const {
-    const PlaneFit plane(shared_);
+    const CellPlane plane(shared_);
     if (!tells_slope(plane)) return 0.0;
     const double constant = plane.mean().z() - plane.slope().dot(plane.mean().head<2>());
     return std::sqrt(std::max(0.0, all_.squares_about(constant, plane.slope())) /
@@ -245,14 +245,6 @@ Partition best_partition(const std::vector<float>& heights, std::size_t fewest) 
 
 }  // namespace
 
-double mean_median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const auto upper = static_cast<double>(*middle);
-  if (values.size() % 2 == 1) return upper;
-  return 0.5 * (upper + static_cast<double>(*std::max_element(values.begin(), middle)));
-}
-
 std::optional<Split> two_levels(CellRange points, double level, double gap,
                                 std::vector<float>& heights) {
   const std::size_t support = std::max<std::size_t>(3, points.size() / 10);
@@ -335,7 +327,7 @@ Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Ei
   for (std::size_t i = 1; i + 1 < count; ++i) {
     kept.add({around[i].x, around[i].y, around[i].z - result.low}, 1.0);
   }
-  const PlaneFit plane(kept);
+  const CellPlane plane(kept);
   constexpr double nearly_in_a_row = 0.1;  // [cell^2]
   if (!(plane.least_spread() > nearly_in_a_row)) return result;
   result.slope = plane.slope();

@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/statistics.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -25,7 +27,7 @@ double noise_of(std::vector<float>& heights, double level) {
     if (heights[i] > heights[i - 1]) step = std::min(step, heights[i] - heights[i - 1]);
   }
   for (float& value : heights) value = std::abs(value - static_cast<float>(level));
-  const double scatter = 1.4826 * mean_median(heights);
+  const double scatter = mad_to_sd * mean_median(heights);
   if (std::isinf(step)) return scatter;
   return std::max(scatter, static_cast<double>(step) / std::sqrt(12.0));
 }
@@ -63,9 +65,7 @@ GroundLevels find_levels(PointsByCell& points) {
     return levels;
   }
   if (noise.empty()) return levels;  // rounded to one height in every group
-  const auto quartile = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 4);
-  std::nth_element(noise.begin(), quartile, noise.end());
-  levels.noise = *quartile;
+  levels.noise = upper_quantile(noise, 0.25);
   return levels;
 }
 

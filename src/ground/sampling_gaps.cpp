@@ -7,11 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
+#include "ground/plane_fit.hpp"
 #include "ground/slopes.hpp"
 
 namespace excavplan {
@@ -103,27 +102,18 @@ std::vector<Cell> held_by_known(const Mask& known, const std::vector<Cell>& cell
 /// Mean square of the known heights around a cell about their best plane; NaN if they are too few.
 double scatter_around(const Eigen::ArrayXXd& z, const Mask& known, Cell at, Index radius) {
   constexpr double fewest = 6.0;  // ours
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double squares = 0.0;
+  PlaneFit fit;
   const double middle = z(at.row, at.col);
   for (Index c = std::max<Index>(at.col - radius, 0); c <= std::min(at.col + radius, z.cols() - 1);
        ++c) {
     for (Index r = std::max<Index>(at.row - radius, 0);
          r <= std::min(at.row + radius, z.rows() - 1); ++r) {
       if (!known(r, c)) continue;
-      const Eigen::Vector3d terms(1.0, static_cast<double>(c - at.col),
-                                  static_cast<double>(r - at.row));
-      const double height = z(r, c) - middle;
-      normal += terms * terms.transpose();
-      right += height * terms;
-      squares += height * height;
+      fit.add(static_cast<double>(c - at.col), static_cast<double>(r - at.row), z(r, c) - middle);
     }
   }
-  const double count = normal(0, 0);
-  if (count < fewest) return std::numeric_limits<double>::quiet_NaN();
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
-  return std::max(0.0, squares - plane.dot(right)) / (count - 3.0);
+  if (fit.count() < fewest) return std::numeric_limits<double>::quiet_NaN();
+  return fit.squares_about(fit.plane()) / (fit.count() - 3.0);
 }
 
 /// Sampling of one zone.

@@ -12,7 +12,7 @@
 
 #include "base/check.hpp"
 #include "base/parallel.hpp"
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "ground/coarse_motion.hpp"
 #include "ground/sampling_gaps.hpp"
