@@ -54,17 +54,13 @@ Smoothed smooth(const Eigen::ArrayXXd& z) {
   smoothed.evidence = Eigen::ArrayXXd::Zero(z.rows(), z.cols());
   for_each_cell(z, [&](Cell cell) {
     if (std::isnan(z(cell.row, cell.col))) return;
-    const Eigen::Index row = std::max<Eigen::Index>(cell.row - 1, 0);
-    const Eigen::Index col = std::max<Eigen::Index>(cell.col - 1, 0);
     double sum = 0.0;
     int count = 0;
-    for (Eigen::Index c = col; c <= std::min(cell.col + 1, z.cols() - 1); ++c) {
-      for (Eigen::Index r = row; r <= std::min(cell.row + 1, z.rows() - 1); ++r) {
-        if (std::isnan(z(r, c))) continue;
-        sum += z(r, c);
-        ++count;
-      }
-    }
+    for_each_around(z, cell, 1, [&](Cell n) {
+      if (std::isnan(z(n.row, n.col))) return;
+      sum += z(n.row, n.col);
+      ++count;
+    });
     smoothed.mean(cell.row, cell.col) = sum / count;
     smoothed.evidence(cell.row, cell.col) = std::sqrt(count / 9.0);
   });
@@ -80,17 +76,15 @@ Eigen::ArrayXXi widened(const Eigen::ArrayXXi& label, double radius) {
   Eigen::ArrayXXd nearest = Eigen::ArrayXXd::Constant(label.rows(), label.cols(),
                                                       std::numeric_limits<double>::infinity());
   const auto stamp = [&](Cell from) {
-    for (Eigen::Index c = std::max<Eigen::Index>(from.col - reach, 0);
-         c <= std::min(from.col + reach, label.cols() - 1); ++c) {
-      for (Eigen::Index r = std::max<Eigen::Index>(from.row - reach, 0);
-           r <= std::min(from.row + reach, label.rows() - 1); ++r) {
-        const auto away =
-            static_cast<double>((r - from.row) * (r - from.row) + (c - from.col) * (c - from.col));
-        if (label(r, c) >= 0 || away > radius_squared || away >= nearest(r, c)) continue;
-        nearest(r, c) = away;
-        wide(r, c) = label(from.row, from.col);
-      }
-    }
+    for_each_around(label, from, reach, [&](Cell at) {
+      const Eigen::Index rows = at.row - from.row;
+      const Eigen::Index cols = at.col - from.col;
+      const auto away = static_cast<double>(rows * rows + cols * cols);
+      double& least = nearest(at.row, at.col);
+      if (label(at.row, at.col) >= 0 || away > radius_squared || away >= least) return;
+      least = away;
+      wide(at.row, at.col) = label(from.row, from.col);
+    });
   };
   for_each_cell(label, [&](Cell cell) {
     if (label(cell.row, cell.col) < 0) return;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/statistics.hpp"
+#include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
 #include "ground/plane_fit.hpp"
 #include "ground/sight_lines.hpp"
@@ -138,7 +139,7 @@ class ShadowFiller {
     const double sign = is_hole ? -1.0 : 1.0;
     std::vector<double> heights;
     for (const Cell at : cells) heights.push_back(sign * change(at));
-    const double top = value_at(heights, 0.95);
+    const double top = quantile(heights, 0.95);
     double slopes = 0.0;
     double counted = 0.0;
     double middle = 0.0;
@@ -301,13 +302,10 @@ class ShadowFiller {
     constexpr Eigen::Index reach = 2;
     constexpr double fewest = 8.0;  // ours: cells
     PlaneFit fit;
-    for (Eigen::Index c = at.col - reach; c <= at.col + reach; ++c) {
-      for (Eigen::Index r = at.row - reach; r <= at.row + reach; ++r) {
-        if (r < 0 || c < 0 || r >= after_.z.rows() || c >= after_.z.cols()) continue;
-        if (std::isnan(change({r, c}))) continue;
-        fit.add(static_cast<double>(c - at.col), static_cast<double>(r - at.row), change({r, c}));
-      }
-    }
+    for_each_around(after_.z, at, reach, [&](Cell n) {
+      if (std::isnan(change(n))) return;
+      fit.add(static_cast<double>(n.col - at.col), static_cast<double>(n.row - at.row), change(n));
+    });
     if (fit.count() < fewest || !(fit.reciprocal_condition() > 1e-3)) {
       return {{change(at), 0.0, 0.0}};
     }

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "ground/grid_cells.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -309,15 +311,11 @@ Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Ei
   };
   std::array<Neighbour, 9> around;
   std::size_t count = 0;
-  for (Eigen::Index c = std::max<Eigen::Index>(column - 1, 0);
-       c <= std::min(column + 1, levels.cols() - 1); ++c) {
-    for (Eigen::Index r = std::max<Eigen::Index>(row - 1, 0);
-         r <= std::min(row + 1, levels.rows() - 1); ++r) {
-      if (std::isnan(levels(r, c))) continue;
-      around[count++] = {levels(r, c), static_cast<double>(c - column),
-                         static_cast<double>(r - row)};
-    }
-  }
+  for_each_around(levels, {row, column}, 1, [&](Cell at) {
+    const double z = levels(at.row, at.col);
+    if (std::isnan(z)) return;
+    around[count++] = {z, static_cast<double>(at.col - column), static_cast<double>(at.row - row)};
+  });
   std::sort(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Neighbour& a, const Neighbour& b) { return a.z < b.z; });
   const std::size_t dropped = count >= enough ? 1 : 0;

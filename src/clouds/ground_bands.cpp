@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/statistics.hpp"
+#include "ground/grid_cells.hpp"
 
 namespace excavplan {
 namespace {
@@ -73,17 +74,12 @@ GroundLevels find_levels(PointsByCell& points) {
 bool upper_level_goes_on(const Eigen::ArrayXXd& lowest, Index cell, double valley) {
   constexpr int enough_known = 4;  // with the cell itself; ours
   constexpr int enough_above = 2;  // ours
-  const Index column = cell / lowest.rows();
-  const Index row = cell % lowest.rows();
   int known = 0;
   int above = 0;
-  for (Index c = std::max<Index>(column - 1, 0); c <= std::min(column + 1, lowest.cols() - 1);
-       ++c) {
-    for (Index r = std::max<Index>(row - 1, 0); r <= std::min(row + 1, lowest.rows() - 1); ++r) {
-      known += std::isnan(lowest(r, c)) ? 0 : 1;
-      above += lowest(r, c) >= valley ? 1 : 0;
-    }
-  }
+  for_each_around(lowest, {cell % lowest.rows(), cell / lowest.rows()}, 1, [&](Cell n) {
+    known += std::isnan(lowest(n.row, n.col)) ? 0 : 1;
+    above += lowest(n.row, n.col) >= valley ? 1 : 0;
+  });
   return known < enough_known || above >= enough_above;
 }
 

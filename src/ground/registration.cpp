@@ -140,10 +140,7 @@ class Aligner {
 
   /// Median change of a slope; 0 if no cell is known in both.
   static double tilt_of(const Eigen::ArrayXXd& change) {
-    std::vector<double> known;
-    for (const double value : change.reshaped()) {
-      if (!std::isnan(value)) known.push_back(value);
-    }
+    std::vector<double> known = known_values(change);
     return known.empty() ? 0.0 : median(known);
   }
 

@@ -273,10 +273,7 @@ std::optional<PlaceDoubt> doubt_of_place(const Surface& surface) {
     if (!(inferred->misfit(told, extent) > most)) return std::nullopt;
     return PlaceDoubt{told, inferred->place()};
   }
-  std::vector<double> heights;
-  for (const double z : surface.height.z.reshaped()) {
-    if (!std::isnan(z)) heights.push_back(z);
-  }
+  std::vector<double> heights = known_values(surface.height.z);
   if (heights.empty()) return std::nullopt;
   if (told.z() > upper_quantile(heights, least_level)) return std::nullopt;
   return PlaceDoubt{told, std::nullopt};
