@@ -82,7 +82,7 @@ void state(double volume, double factor, double scans, VolumeChange& change) {
   const Eigen::Vector3d both(volume, 0.0, volume);
   change.errors.attribution += weight * both * both.transpose();
   change.warnings.push_back(
-      {"earlier_soil",
+      {WarningCode::earlier_soil,
        "the scan before shows " + readable(volume, 0.1 * volume) +
            " m^3 above the ground around, where the hole is, as steep as loose soil: if an earlier "
            "dig left it there, the bulking factor is " +

@@ -148,8 +148,9 @@ Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
                                    const Eigen::Vector4d& quaternion) {
   constexpr double tolerance = 1e-3;
   const double norm = quaternion.norm();
-  if (!translation.allFinite() || !quaternion.allFinite())
+  if (!translation.allFinite() || !quaternion.allFinite()) {
     refuse("pose of a scan: a number is not finite");
+  }
   if (std::abs(norm - 1.0) > tolerance) {
     refuse("pose of a scan: the quaternion's norm is " + number_text(norm) +
            ", must be 1 to 0.001");

@@ -126,7 +126,7 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
   std::vector<Warning> doubts = volumes.of_points;
   append(volumes.of_cover, doubts);
   for (const Warning& warning : change.warnings) {
-    if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
+    if (warning.code == WarningCode::sensor_place_doubtful) doubts.insert(doubts.begin(), warning);
   }
   with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
   state_water(surfaces.pairs(), change);
@@ -209,9 +209,10 @@ void add_work(const DensityOptions& options, const Surfaces& surfaces, LawsForDi
     const LoadedDig dig = {dug.machine, path, ground, *options.soil.kind, options.soil.scatter};
     laws.work = work_over_density(dig, laws.law.freed_form, options.threads);
   } catch (const Error& error) {
-    laws.warnings.push_back({"loads_not_used", std::string("the dig of the joint loads cannot be "
-                                                           "simulated on the scanned ground: ") +
-                                                   error.what()});
+    laws.warnings.push_back(
+        {WarningCode::loads_not_used, std::string("the dig of the joint loads cannot be "
+                                                  "simulated on the scanned ground: ") +
+                                          error.what()});
   }
 }
 
@@ -223,7 +224,7 @@ Warning warning_of(const BlockReport& report) {
   message += report.voids ? "; the voids between them were estimated and subtracted"
                           : "; the voids between them are part of the volume, and their size "
                             "cannot be estimated";
-  return {"blocks", message + ": the density is not trustworthy"};
+  return {WarningCode::blocks, message + ": the density is not trustworthy"};
 }
 
 /// Marks the estimate as not trustworthy where the scans do not support it.
@@ -233,7 +234,8 @@ void judge_scans(DensityEstimate& estimate) {
     estimate.trustworthy = false;
   }
   for (Warning& warning : estimate.warnings) {
-    const bool is_leant_on = warning.code == "little_stable_ground" && estimate.registration;
+    const bool is_leant_on =
+        warning.code == WarningCode::little_stable_ground && estimate.registration;
     if (is_leant_on) warning.ends_trust = true;
     if (warning.ends_trust) estimate.trustworthy = false;
   }

@@ -90,11 +90,10 @@ std::optional<Warning> implausible_work(const DigEfficiency& dig, double most) {
   constexpr double span = 6000.0;  // from the least to the most
   const double efficiency = dig.value().value;
   if (efficiency <= most && efficiency >= most / span) return std::nullopt;
-  return Warning{"implausible_energy",
+  return Warning{WarningCode::implausible_energy,
                  dig.file + ": " + readable(efficiency) + " " + dig.symbol() + " is outside " +
                      readable(most / span) + " .. " + readable(most) +
-                     ": check the units of power, time and payload",
-                 true};
+                     ": check the units of power, time and payload"};
 }
 
 /// More than a 12-t excavator could lift while it idles: 0.45 m^3 (of 1500 kg/m^3) in 8 s at 2 L/h.
@@ -106,20 +105,18 @@ std::optional<Warning> implausible(const DigEfficiency& dig) {
   const double most = is_volume ? 0.1 : 150.0;
   const double least = is_volume ? 0.0003 : 0.45;
   if (efficiency < least) {
-    return Warning{"implausible_fuel",
+    return Warning{WarningCode::implausible_fuel,
                    dig.file + ": " + readable(efficiency) + " " + dig.symbol() + " is below " +
                        readable(least) +
                        ", a hundredth of what excavators reach: check the units of time and fuel, "
-                       "and the dig's times",
-                   true};
+                       "and the dig's times"};
   }
   if (!(efficiency > most)) return std::nullopt;
-  return Warning{"implausible_fuel",
+  return Warning{WarningCode::implausible_fuel,
                  dig.file + ": " + readable(efficiency) + " " + dig.symbol() + " is above " +
                      readable(most) +
                      ", which a 12-t excavator would reach idling: check the unit of the fuel "
-                     "flow. The gain of one run over another of the same meter still holds",
-                 true};
+                     "flow. The gain of one run over another of the same meter still holds"};
 }
 
 }  // namespace

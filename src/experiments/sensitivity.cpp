@@ -45,7 +45,7 @@ class Reference {
 
  private:
   std::variant<PlannedDig, DigFailure> dig_from(const DigParameters& parameters, double x) const {
-    const auto path = layout_.path(parameters, x);
+    const auto path = layout_.path_from(parameters, x);
     if (const auto* stop = std::get_if<Infeasible>(&path)) return DigFailure(*stop);
     return dig_along(model_.machine, *simulator_, ground_, std::get<DigPath>(path),
                      model_.search.objective);

@@ -415,7 +415,7 @@ std::vector<std::string> change_table(const ChangeSheet& sheet) {
   add_left_out(sheet.change, notes);
   if (!sheet.warnings.empty()) notes.insert(notes.end(), {"", "warnings"});
   for (const Warning& warning : sheet.warnings) {
-    notes.push_back(warning.code + ": " + warning.message);
+    notes.push_back(code_text(warning.code) + ": " + warning.message);
   }
   add_errors(sheet.change, notes);
   return notes;

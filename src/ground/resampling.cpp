@@ -16,6 +16,7 @@ namespace excavplan {
 namespace {
 
 constexpr double rounding = 1e-9;  // of a cell
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Unknown cells in a row through one of them, which lies in a hole.
 /// @param step  (0, 1) along x, (1, 0) along y
@@ -41,8 +42,7 @@ HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell_s
   for (const std::vector<Cell>& hole : fill_holes(whole.z).cells) {
     for (const Cell& at : hole) {
       const auto width = std::min(gap_along(map.z, at, {0, 1}), gap_along(map.z, at, {1, 0}));
-      if (static_cast<double>(width) > most)
-        whole.z(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
+      if (static_cast<double>(width) > most) whole.z(at.row, at.col) = nan;
     }
   }
   HeightMap result = flat_ground(extent, cell_size);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <excavplan/machine/dig_path.hpp>
-#include <excavplan/planning/start_rule.hpp>
 
 #include "planning/front_room.hpp"
 
@@ -33,14 +32,12 @@ class DigLayout {
   /// @throws Error (bad_input) as require_machine() and require_terrain()
   DigLayout(const Machine& machine, const Terrain& terrain, const DigPathOptions& rules = {});
 
-  /// @throws Error (bad_input) if the start is to be searched
-  std::variant<DigPath, Infeasible> path(const DigParameters& parameters,
-                                         const StartRule& start) const;
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters,
                                               double start_x) const;
   /// The same by other rules.
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
                                               const DigPathOptions& rules) const;
+  std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
   /// The way down to a path, as way_down(), and clear of the ground with boom and arm.
   std::variant<std::vector<DigPose>, Infeasible> approach(const DigPath& path) const;
   /// From this start, or if it cannot be from that of the largest margin.
@@ -52,7 +49,6 @@ class DigLayout {
   const DigPathOptions& rules() const { return rules_; }
 
  private:
-  std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
   std::variant<DigPath, Infeasible> checked(std::variant<DigPath, Infeasible> found) const;
   std::optional<Infeasible> obstacle(const DigPose& pose, double x_max) const;
   std::optional<Infeasible> front_contact(const DigPose& pose) const;

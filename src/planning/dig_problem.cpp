@@ -16,6 +16,7 @@
 #include "optimisation/search_checkpoint.hpp"
 #include "planning/planned_digs.hpp"
 #include "planning/simulated_dig.hpp"
+#include "planning/start_rule.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -262,7 +263,7 @@ VectorXd DigProblem::point_of(const KnownDig& known) const {
   if (start_is_searched() && known.start_x) {
     append(point, *known.start_x);
   } else if (start_is_searched()) {
-    const auto path = layout_.path(dig, StartRule::Kind::least_work);
+    const auto path = path_by(layout_, dig, StartRule::Kind::least_work);
     const auto* drivable = std::get_if<DigPath>(&path);
     append(point,
            drivable ? drivable->start_x : 0.5 * (start_in(box().lower) + start_in(box().upper)));
@@ -273,8 +274,8 @@ VectorXd DigProblem::point_of(const KnownDig& known) const {
 /// The repair: an undrivable path is refused, the start of a drivable one is kept for later.
 std::variant<VectorXd, Evaluation> DigProblem::lay_out(const VectorXd& point) {
   const DigParameters parameters = to_dig_parameters(point);
-  const auto path = layout_.path(
-      parameters, start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
+  const auto path = path_by(layout_, parameters,
+                            start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
   if (const auto* stop = std::get_if<Infeasible>(&path)) {
     return Evaluation::infeasible(violation(*stop, parameters), stop->message);
   }
@@ -335,8 +336,8 @@ std::optional<double> DigProblem::start_of(const VectorXd& point) const {
 
 DigPath DigProblem::path_of(const VectorXd& point) const {
   const std::optional<double> start_x = start_of(point);
-  auto path =
-      layout_.path(to_dig_parameters(point), start_x ? StartRule(*start_x) : options_.start_rule);
+  auto path = path_by(layout_, to_dig_parameters(point),
+                      start_x ? StartRule(*start_x) : options_.start_rule);
   return std::get<DigPath>(std::move(path));
 }
 

@@ -4,6 +4,7 @@
 
 #include "planning/dig_layout.hpp"
 #include "planning/simulated_dig.hpp"
+#include "planning/start_rule.hpp"
 
 namespace excavplan {
 
@@ -12,7 +13,7 @@ std::variant<PlannedDig, DigFailure> evaluate_dig(const Machine& machine,
                                                   const Terrain& terrain,
                                                   const DigParameters& parameters,
                                                   const StartRule& start) {
-  const auto path = DigLayout(machine, terrain).path(parameters, start);
+  const auto path = path_by(DigLayout(machine, terrain), parameters, start);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
   return dig_along(machine, simulator, terrain, std::get<DigPath>(path));
 }

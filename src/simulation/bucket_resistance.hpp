@@ -93,6 +93,8 @@ class BucketResistance {
   double uncut_between(double x) const;
 
   Strip strip_at(Eigen::Index row, Eigen::Index col, double tip_z) const;
+  double passive_force(const Strip& strip, double loose, const FaceTerms& terms) const;
+  double shearing_force(const Strip& strip, double rise, const FaceTerms& terms) const;
   double loose_on_wedge(Eigen::Index row, Eigen::Index col, const Strip& strip,
                         const FaceTerms& terms) const;
   SoilState mean_soil_at(Eigen::Index col) const;

@@ -35,7 +35,7 @@ std::string read_urdf(const std::string& path) {
   const MachineFile file = load_machine_file(path);
   Said said;
   said.add("name", file.machine.name).add("numbers", fingerprint(file.machine));
-  for (const Warning& warning : file.warnings) said.add("warning", warning.code);
+  for (const Warning& warning : file.warnings) said.add("warning", code_text(warning.code));
   return said.text();
 }
 

@@ -422,7 +422,7 @@ std::vector<Warning> ignored_options(const std::vector<Arguments::Entry>& entrie
   }
   std::vector<Warning> warnings;
   for (const auto& [reason, names] : names_of_reason) {
-    warnings.push_back({"options_ignored", "without effect: " + names + "; " + reason});
+    warnings.push_back({WarningCode::options_ignored, "without effect: " + names + "; " + reason});
   }
   return warnings;
 }
@@ -452,7 +452,7 @@ std::string json_text(const About& about, const Outcome& outcome) {
   json.update(outcome.json);
   json["warnings"] = nlohmann::ordered_json::array();
   for (const Warning& warning : outcome.warnings) {
-    json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
+    json["warnings"].push_back({{"code", code_text(warning.code)}, {"message", warning.message}});
   }
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }

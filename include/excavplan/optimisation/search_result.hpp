@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
-#include <Eigen/Core>
-
 #include <excavplan/optimisation/search_problem.hpp>
 
 /// @file

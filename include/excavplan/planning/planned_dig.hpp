@@ -4,10 +4,8 @@
 
 #include <variant>
 
-#include <excavplan/machine/machine.hpp>
 #include <excavplan/planning/dig_outcome.hpp>
 #include <excavplan/planning/start_rule.hpp>
-#include <excavplan/simulation/soil_simulator.hpp>
 
 namespace excavplan {
 

@@ -34,9 +34,8 @@ struct SceneOptions {
 };
 
 /// The path that run_scene() digs.
-/// @throws Error (bad_input) if it cannot be driven, or the heap would reach the dig: the volumes
-/// of
-///         both would hide each other
+/// @throws Error (bad_input) if an argument breaks its rules, the path cannot be driven, or the
+///         heap would reach the dig: the volumes of both would hide each other
 DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& ground,
                    const SceneOptions& options = {});
 

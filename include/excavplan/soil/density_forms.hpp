@@ -4,9 +4,10 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 /// @file
-/// From the bulking factor k to the relative density d [%] and back.
+/// From the bulking factor k to the relative density d [%] and back: forms and their fits.
 ///
 /// The paper fits a straight line d = a k + b. Solids that are conserved give a hyperbola: soil of
 /// void ratio e that ends in one loose state has k = (1 + e_loose) / (1 + e), so
@@ -56,5 +57,31 @@ double residual_sd_at(const DensityForm& form, double density_percent);
 
 /// The formula of a form in the letters of its parameters: "d = a k + b".
 std::string formula(const DensityForm& form);
+
+/// One dig of known density.
+struct BulkingSample {
+  double bulking_factor = 0.0;   ///< [-]
+  double density_percent = 0.0;  ///< 0 .. 100
+};
+
+/// Least-squares line of d on k.
+/// @throws Error (bad_input) with fewer than 3 different factors, a factor that is not positive, a
+/// density outside 0 .. 100, or where none fits (k must grow with d)
+DensityLine fit_line(const std::vector<BulkingSample>& samples);
+
+/// Least-squares hyperbola of k on d (A and B linear, r by NLopt).
+/// @throws Error (bad_input) as fit_line(), with fewer than 4 different densities
+DensityClosedForm fit_closed_form(const std::vector<BulkingSample>& samples);
+
+/// A fitted form and its key in a law file.
+struct DensityFit {
+  std::string key;   ///< "closed_form_as_measured"
+  DensityForm form;  ///< as fitted
+};
+
+/// Fits every form. Their keys are "line" and "closed_form", followed by `key_ending`.
+/// @throws Error (bad_input) as the fits
+std::vector<DensityFit> fit_density_forms(const std::vector<BulkingSample>& samples,
+                                          const std::string& key_ending = "");
 
 }  // namespace excavplan
