@@ -60,7 +60,15 @@ if(EXCAVPLAN_SURVEY)
     LINKS -lopencv_imgcodecs -lopencv_core -lz)
   excavplan_install(robot
     SUMMARY "The dig cycle of a robot from its messages"
-    REQUIRES_PUBLIC excavplan-survey REQUIRES excavplan-recordings)
+    REQUIRES_PUBLIC excavplan-survey REQUIRES excavplan-recordings excavplan-results)
+endif()
+excavplan_install(results
+  SUMMARY "Results as JSON, and as maps of the ground"
+  REQUIRES_PUBLIC excavplan-survey excavplan-recordings)
+if(TARGET excavplan_figures)
+  excavplan_install(figures
+    SUMMARY "Results as figures: SVG, PNG and PDF"
+    REQUIRES_PUBLIC excavplan-results REQUIRES cairo fontconfig)
 endif()
 
 configure_package_config_file(cmake/excavplan-config.cmake.in excavplan-config.cmake

@@ -35,7 +35,7 @@ set(results_may_use ground change soil machine simulation sensing calibration pl
 set(maps_may_use ground change simulation sensing planning)
 set(drawing_may_use ground machine)
 set(figures_may_use
-  change soil machine simulation planning kit density experiments results drawing)
+  change soil machine simulation sensing planning kit density efficiency experiments results drawing)
 set(robot_may_use ground soil machine simulation planning kit clouds scans recording density results)
 
 # The rooms of the tools; what lies in the folder of a tool is its own.
@@ -53,7 +53,7 @@ set(third_party_places
   "^(src/images/depth_image|tests/images/depth_image_test)\\.cpp$"
   "^src/(soil|optimisation)/[a-z_]+\\.cpp$"
   "^(src/base/json\\.hpp|src/.*\\.[ch]pp|tools/.*|tests/.*)$"
-  "^tools/frame/tool\\.cpp$"
+  "^tools/frame/command_line\\.cpp$"
   "^src/images/depth_png\\.cpp$"
   "^(src/recording/sqlite_recording|tests/recording/containers_test)\\.cpp$"
   "^src/recording/compression\\.cpp$" "^src/recording/compression\\.cpp$"

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/planning/dig_search.hpp>
+#include <excavplan/planning/goal_words.hpp>
 #include <excavplan/planning/plan_motion.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
@@ -23,19 +24,19 @@ using py::arg;
 DigObjective objective_of(const std::string& word, const std::optional<double>& min_fill,
                           double swing, double dump_height, double rest_of_cycle,
                           double time_price) {
-  std::string known;
-  for (const DigGoalInfo& goal : dig_goals()) {
-    known += (known.empty() ? "" : ", ") + goal.word;
-    if (goal.word != word) continue;
-    DigObjective objective(goal.goal);
-    objective.min_fill = min_fill.value_or(objective.min_fill);
-    objective.swing = swing;
-    objective.dump_height = dump_height;
-    objective.rest_of_cycle = rest_of_cycle;
-    objective.time_price = time_price;
-    return objective;
+  const DigGoalInfo* const goal = goal_of_word(word);
+  if (!goal) {
+    std::string known;
+    for (const DigGoalInfo& each : dig_goals()) known += (known.empty() ? "" : ", ") + each.word;
+    throw Error(ErrorKind::bad_input, "the goal: '" + word + "' is none of " + known);
   }
-  throw Error(ErrorKind::bad_input, "the goal: '" + word + "' is none of " + known);
+  DigObjective objective(goal->goal);
+  objective.min_fill = min_fill.value_or(objective.min_fill);
+  objective.swing = swing;
+  objective.dump_height = dump_height;
+  objective.rest_of_cycle = rest_of_cycle;
+  objective.time_price = time_price;
+  return objective;
 }
 
 /// A word, a place [m] or nothing.

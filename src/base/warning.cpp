@@ -65,6 +65,7 @@ constexpr std::array code_rows = {
     CodeRow{WarningCode::law_of_other_machine, "law_of_other_machine", Trust::kept},
     CodeRow{WarningCode::law_of_other_path, "law_of_other_path", Trust::kept},
     CodeRow{WarningCode::law_of_other_soil, "law_of_other_soil", Trust::depends},
+    CodeRow{WarningCode::level_ground, "level_ground", Trust::depends},
     CodeRow{WarningCode::library_unreadable, "library_unreadable", Trust::kept},
     CodeRow{WarningCode::little_stable_ground, "little_stable_ground", Trust::depends},
     CodeRow{WarningCode::loads_disagree, "loads_disagree", Trust::ended},

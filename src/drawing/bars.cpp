@@ -12,7 +12,8 @@ constexpr double group_width = 0.72;       // of the distance of two groups
 constexpr std::size_t many_groups = 6;     // remarks may stand upright above more
 constexpr std::size_t most_outlined = 30;  // groups; outlines would hide the colours of more
 
-void draw_bar(Panel& panel, double left, double width, const Bar& bar, const BarSeries& series) {
+void draw_bar(Panel& panel, double left, double width, const DrawnBar& bar,
+              const BarSeries& series) {
   panel.polygon({{left, 0.0}, {left + width, 0.0}, {left + width, bar.value}, {left, bar.value}},
                 series.style, series.legend);
   if (!bar.interval || !std::isfinite(bar.interval->first)) return;
@@ -23,7 +24,7 @@ void draw_bar(Panel& panel, double left, double width, const Bar& bar, const Bar
 
 double top_of(const BarGroup& group) {
   double top = 0.0;
-  for (const Bar& bar : group.bars) {
+  for (const DrawnBar& bar : group.bars) {
     top = std::max(top, bar.value);
     if (bar.interval && std::isfinite(bar.interval->second)) {
       top = std::max(top, bar.interval->second);

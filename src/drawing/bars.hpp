@@ -12,15 +12,15 @@
 namespace excavplan {
 
 /// One bar of a group.
-struct Bar {
+struct DrawnBar {
   double value = 0.0;
   std::optional<std::pair<double, double>> interval = {};  ///< 95 %
 };
 
 struct BarGroup {
   std::string name;
-  std::vector<Bar> bars;    ///< in the order of the series
-  std::string remark = {};  ///< above the group: "+28 %"
+  std::vector<DrawnBar> bars;  ///< in the order of the series
+  std::string remark = {};     ///< above the group: "+28 %"
 };
 
 struct BarSeries {

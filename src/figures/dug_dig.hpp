@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include <excavplan/machine/dig_path.hpp>
-#include <excavplan/simulation/soil_simulator.hpp>
+#include <excavplan/planning/rehearsal.hpp>
+#include <excavplan/sensing/scene.hpp>
 
 namespace excavplan {
 
@@ -17,5 +17,10 @@ struct DugDig {
   GroundProfile before, after;  ///< ground in the plane of the boom
   std::string title;            ///< of the files
 };
+
+/// "Dig in loam at 40.0 % relative density"
+std::string scene_title(const DigScene& scene);
+/// "Planned dig in loam at 40.0 % relative density"
+std::string plan_title(const DigPlan& plan, const PlanSite& site);
 
 }  // namespace excavplan

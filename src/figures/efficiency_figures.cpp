@@ -26,9 +26,9 @@ std::string unit_text(std::string symbol) {
   return symbol;
 }
 
-Bar bar_of(const DigEfficiency& run) {
+DrawnBar bar_of(const DigEfficiency& run) {
   const Measured value = run.value();
-  Bar bar{value.value};
+  DrawnBar bar{value.value};
   if (std::isfinite(value.sd)) {
     bar.interval = {value.value - within_95 * value.sd, value.value + within_95 * value.sd};
   }

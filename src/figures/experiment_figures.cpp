@@ -80,7 +80,7 @@ std::vector<BarGroup> bar_groups(const Experiments& experiments, double per_si) 
   std::vector<BarGroup> groups;
   for (const auto& [condition, result] : experiments.done) {
     const auto worth = [&, &result = result](const PlannedDig& dig) {
-      return Bar{result.objective.worth(dig) * per_si};
+      return DrawnBar{result.objective.worth(dig) * per_si};
     };
     groups.push_back({name_of(condition, result.density_percent),
                       {worth(result.fixed), worth(result.planned)},

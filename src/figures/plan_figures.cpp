@@ -13,6 +13,7 @@
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"
 #include "planning/simulated_dig.hpp"
+#include "simulation/checked_dig.hpp"
 
 namespace excavplan {
 namespace {

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <system_error>
 
 #include <excavplan/planning/dig_cycle.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
-#include "base/read_double.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -57,26 +55,6 @@ const DigGoalInfo& info_of(DigObjective::Goal goal) {
                                   [&](const DigGoalInfo& info) { return info.goal == goal; });
   if (found == dig_goals().end()) refuse("objective: its goal is none of DigObjective::Goal");
   return *found;
-}
-
-DigObjective objective_named(const std::string& text) {
-  std::string known;
-  for (const DigGoalInfo& goal : dig_goals()) {
-    known += (known.empty() ? "" : ", ") + goal.word;
-    DigObjective objective(goal.goal);
-    if (!goal.parameter) {
-      if (text == goal.word) return objective;
-      continue;
-    }
-    known += ':' + goal.parameter_name;
-    const std::size_t word_end = goal.word.size() + 1;
-    if (text.compare(0, word_end, goal.word + ':') != 0) continue;
-    const char* end = text.data() + text.size();
-    double& number = objective.*goal.parameter;
-    const auto [after, error] = read_double(text.data() + word_end, end, number);
-    if (error == std::errc() && after == end) return objective;
-  }
-  refuse("the goal " + in_quotes(text) + " is none of " + known);
 }
 
 const std::vector<DigObjectiveParameter>& objective_parameters() {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include <excavplan/planning/goal_words.hpp>
+
 #include "base/text.hpp"
 #include "machine/dig_path_text.hpp"
 
@@ -82,10 +84,8 @@ nlohmann::ordered_json goal_json(const DigObjective& objective) {
 
 DigObjective read_goal(JsonObject& object) {
   const std::string word = object.text("goal");
-  const auto& goals = dig_goals();
-  const auto goal = std::find_if(goals.begin(), goals.end(),
-                                 [&](const DigGoalInfo& info) { return info.word == word; });
-  if (goal == goals.end()) object.fail("goal", "is " + in_quotes(word) + ", which is no goal");
+  const DigGoalInfo* const goal = goal_of_word(word);
+  if (!goal) object.fail("goal", "is " + in_quotes(word) + ", which is no goal");
   DigObjective objective(goal->goal);
   JsonObject numbers = object.object("goal_parameters");
   for (const DigObjectiveParameter& parameter : objective_parameters()) {

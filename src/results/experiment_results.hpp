@@ -6,12 +6,14 @@
 #include <vector>
 
 #include <excavplan/experiments/experiment.hpp>
+#include <excavplan/experiments/sensitivity.hpp>
 #include <excavplan/soil/density_fit.hpp>
 
 #include "base/json_fwd.hpp"
 
 /// @file
-/// What a simulated experiment of the paper gives.
+/// What the simulated experiments give: that of the paper's section 3, and best digs under other
+/// assumptions.
 
 namespace excavplan {
 
@@ -46,5 +48,8 @@ DensityRegression density_regression(const Machine& machine, const SoilKind& soi
 
 Json experiment_json(const NamedExperiment& experiment);
 Json regression_json(const DensityRegression& regression);
+
+/// The best dig under an assumption at a density, and what is lost by it.
+Json assumption_json(const AssumptionResult& result, const DigObjective& objective);
 
 }  // namespace excavplan

@@ -41,7 +41,4 @@ Json joint_loads_json(const Machine& machine, const JointLoads& loads);
 /// What a cylinder moved as a share of its stroke.
 double stroke_share(const Cylinder& cylinder, const CylinderUse& use);
 
-/// CSV, a row per step of the dig; columns: docs/formats.md#force-history.
-std::string force_history_csv(const Machine& machine, const DigScene& scene);
-
 }  // namespace excavplan

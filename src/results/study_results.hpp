@@ -17,7 +17,7 @@ Json mean_json(const StudyMean& mean);
 /// A condition with its errors of density and its gains.
 Json condition_json(const StudyResult& result);
 
-/// A row per run; columns: docs/formats.md#study.
+/// A row per run; columns: docs/formats.md#run-experiment.
 std::string runs_csv(const std::vector<StudyResult>& results);
 
 }  // namespace excavplan

@@ -294,7 +294,7 @@ ScannedTerrain DigCycleSession::State::terrain(const std::optional<Scan>& scan) 
   const double cell = settings.plan.cell_size.value_or(usual_cell(settings.machine));
   if (!scan) {
     return {level_planning_ground(settings.machine, cell),
-            {{"level_ground", "no scan came yet: the ground is taken to be level",
+            {{WarningCode::level_ground, "no scan came yet: the ground is taken to be level",
               !settings.level_ground}}};
   }
   ScannedTerrain ground = terrain_from_scan(*scan, planning_extent(settings.machine), cell);

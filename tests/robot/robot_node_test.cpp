@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/goal_words.hpp>
 #include <excavplan/robot/robot_node.hpp>
 
 #include <any>

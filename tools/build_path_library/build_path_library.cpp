@@ -4,10 +4,12 @@
 
 #include "build_path_library/entry_folder.hpp"
 #include "build_path_library/library_inputs.hpp"
-#include "build_path_library/library_results.hpp"
+#include "build_path_library/library_outcome.hpp"
 #include "build_path_library/ranks.hpp"
+#include "frame/stopwatch.hpp"
 #include "frame/tool.hpp"
-#include "results/results.hpp"
+#include "inputs/goal_inputs.hpp"
+#include "results/dig_lines.hpp"
 
 namespace excavplan::tools {
 namespace {

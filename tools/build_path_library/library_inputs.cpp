@@ -3,8 +3,9 @@
 #include "build_path_library/library_inputs.hpp"
 
 #include "base/text.hpp"
+#include "frame/console.hpp"
+#include "inputs/named_kinds.hpp"
 #include "inputs/search_method.hpp"
-#include "results/results.hpp"
 
 namespace excavplan::tools {
 

@@ -7,7 +7,7 @@
 
 #include <excavplan/planning/library_build.hpp>
 
-#include "frame/tool.hpp"
+#include "frame/console.hpp"
 #include "inputs/goal_inputs.hpp"
 #include "inputs/simulator_inputs.hpp"
 

@@ -10,9 +10,11 @@
 #include "calibrate_density/calibration_plots.hpp"
 #include "calibrate_density/difference_lines.hpp"
 #include "frame/tool.hpp"
+#include "inputs/named_kinds.hpp"
+#include "inputs/plots.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
-#include "results/results.hpp"
+#include "results/calibration_results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/density/density_estimate.hpp>
 
-#include "estimate_density/estimate.hpp"
+#include "estimate_density/estimate_outcome.hpp"
+#include "estimate_density/estimate_plots.hpp"
 #include "estimate_density/method_inputs.hpp"
 #include "estimate_density/second_densities.hpp"
 #include "estimate_density/soil_inputs.hpp"
 #include "estimate_density/survey_map_names.hpp"
 #include "estimate_density/survey_planning.hpp"
 #include "frame/tool.hpp"
+#include "inputs/named_kinds.hpp"
 #include "inputs/recordings.hpp"
 #include "inputs/scans.hpp"
-#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {

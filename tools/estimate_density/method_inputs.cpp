@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "frame/tool.hpp"
-
 namespace excavplan::tools {
 namespace {
 

@@ -9,7 +9,7 @@
 #include <excavplan/kit/kit_files.hpp>
 
 #include "base/text.hpp"
-#include "frame/tool.hpp"
+#include "inputs/named_kinds.hpp"
 
 namespace excavplan::tools {
 namespace {

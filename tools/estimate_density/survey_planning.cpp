@@ -10,7 +10,6 @@
 
 #include <excavplan/sensing/survey_plan.hpp>
 
-#include "base/json.hpp"
 #include "frame/quantity.hpp"
 #include "results/survey_results.hpp"
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/base/error.hpp>
 #include <excavplan/base/warning.hpp>
 
 /// @file

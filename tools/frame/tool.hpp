@@ -16,6 +16,7 @@
 
 #include "frame/arguments.hpp"
 #include "frame/console.hpp"
+#include "frame/help.hpp"
 #include "frame/page.hpp"
 
 /// @file
@@ -32,19 +33,6 @@
 /// stopped early. How signals end a tool: signals.hpp.
 
 namespace excavplan::tools {
-
-struct Example {
-  std::string command;
-  std::string meaning;
-};
-
-struct About {
-  std::string name;
-  std::string summary;  ///< a sentence or a few; wrapped in the help
-  std::vector<Example> examples;
-  bool can_be_untrustworthy = false;  ///< adds --strict
-  bool can_stop_early = false;        ///< an interrupt sets Console::stop_requested() instead
-};
 
 /// Result of a tool.
 struct Outcome {

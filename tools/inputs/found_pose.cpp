@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/json.hpp"
 #include "base/text.hpp"
-#include "results/pose_results.hpp"
+#include "results/scan_results.hpp"
 
 namespace excavplan::tools {
 namespace {

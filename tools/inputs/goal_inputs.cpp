@@ -5,16 +5,12 @@
 #include <algorithm>
 
 #include <excavplan/kit/machine_kit.hpp>
+#include <excavplan/planning/goal_words.hpp>
 
 #include "frame/quantity.hpp"
 
 namespace excavplan::tools {
 namespace {
-
-/// "energy", "priced:WATT"
-std::string usage(const DigGoalInfo& goal) {
-  return goal.word + (goal.parameter ? ":" + goal.parameter_name : "");
-}
 
 /// All goals, each as `text` puts it.
 template <typename Text>
@@ -49,20 +45,15 @@ std::size_t row_of(double DigObjective::*field) {
 }
 
 DigObjective goal_of(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::string word = text.substr(0, colon);
-  for (const DigGoalInfo& goal : dig_goals()) {
-    if (goal.word != word || (goal.parameter == nullptr) != (colon == std::string::npos)) continue;
-    DigObjective objective(goal.goal);
-    if (goal.parameter) {
-      const std::string option = "--goal " + word;
-      objective.*goal.parameter =
-          in_range(option, objective_parameters()[row_of(goal.parameter)],
-                   parse_quantity(option, text.substr(colon + 1), Quantity::ratio));
-    }
-    return objective;
-  }
-  usage_error("--goal: '" + text + "' is none of " + goals_text(", ", usage));
+  const auto written = written_goal(text);
+  if (!written) usage_error("--goal: '" + text + "' is none of " + goals_text(", ", usage));
+  const DigGoalInfo& goal = written->goal;
+  DigObjective objective(goal.goal);
+  if (!goal.parameter) return objective;
+  const std::string option = "--goal " + goal.word;
+  objective.*goal.parameter = in_range(option, objective_parameters()[row_of(goal.parameter)],
+                                       parse_quantity(option, written->number, Quantity::ratio));
+  return objective;
 }
 
 }  // namespace

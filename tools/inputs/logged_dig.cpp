@@ -11,6 +11,7 @@
 
 #include "base/read_double.hpp"
 #include "frame/quantity.hpp"
+#include "inputs/named_kinds.hpp"
 #include "logs/log_columns.hpp"
 
 namespace excavplan::tools {

@@ -8,7 +8,6 @@
 
 #include <excavplan/efficiency/efficiency.hpp>
 
-#include "frame/tool.hpp"
 #include "inputs/scans.hpp"
 
 namespace excavplan::tools {

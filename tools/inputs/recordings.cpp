@@ -9,11 +9,10 @@
 
 #include <excavplan/base/error.hpp>
 
-#include "base/json.hpp"
 #include "base/text.hpp"
 #include "frame/option_names.hpp"
 #include "recording/recording_file.hpp"
-#include "results/recording_results.hpp"
+#include "results/scan_results.hpp"
 
 namespace excavplan::tools {
 namespace {

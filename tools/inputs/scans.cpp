@@ -9,7 +9,9 @@
 
 #include "base/text.hpp"
 #include "frame/tool.hpp"
+#include "inputs/named_kinds.hpp"
 #include "inputs/recordings.hpp"
+#include "inputs/unit_inputs.hpp"
 
 namespace excavplan::tools {
 namespace {

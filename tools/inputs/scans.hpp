@@ -11,7 +11,6 @@
 #include "frame/arguments.hpp"
 #include "frame/tool.hpp"
 #include "inputs/found_pose.hpp"
-#include "inputs/unit_inputs.hpp"
 
 namespace excavplan::tools {
 

@@ -5,6 +5,10 @@
 #include <excavplan/simulation/foreign_simulators.hpp>
 
 #include "base/text.hpp"
+#include "frame/arguments.hpp"
+#include "frame/console.hpp"
+#include "frame/option_names.hpp"
+#include "frame/quantity.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -7,7 +7,8 @@
 
 #include <excavplan/simulation/simulators.hpp>
 
-#include "frame/tool.hpp"
+#include "frame/arguments.hpp"
+#include "frame/console.hpp"
 
 /// @file
 /// Which simulator digs: the same options in every tool that simulates.

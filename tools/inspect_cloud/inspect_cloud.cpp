@@ -11,7 +11,7 @@
 #include "inputs/unit_inputs.hpp"
 #include "inspect_cloud/cloud_lines.hpp"
 #include "inspect_cloud/recording_listing.hpp"
-#include "results/cloud_results.hpp"
+#include "results/scan_results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -6,11 +6,10 @@
 
 #include <excavplan/recording/recording.hpp>
 
-#include "base/json.hpp"
 #include "base/text.hpp"
 #include "inputs/recordings.hpp"
 #include "recording/recording_file.hpp"
-#include "results/recording_results.hpp"
+#include "results/scan_results.hpp"
 
 namespace excavplan::tools {
 namespace {

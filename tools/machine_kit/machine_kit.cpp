@@ -9,11 +9,12 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "frame/stopwatch.hpp"
 #include "frame/tool.hpp"
 #include "inputs/goal_inputs.hpp"
+#include "inputs/plots.hpp"
+#include "machine_kit/kit_outcome.hpp"
 #include "machine_kit/kit_plots.hpp"
-#include "machine_kit/kit_results.hpp"
-#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/json.hpp"
 #include "measure_efficiency/efficiency_lines.hpp"
 #include "measure_efficiency/run_sets.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/tool.hpp"
+#include "inputs/plots.hpp"
+#include "inputs/scans.hpp"
 #include "measure_efficiency/efficiency_plots.hpp"
 #include "measure_efficiency/efficiency_runs.hpp"
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include <excavplan/base/error.hpp>
-
 #include <excavplan/results/stated_density.hpp>
+
 #include "base/text.hpp"
 #include "results/plan_results.hpp"
 

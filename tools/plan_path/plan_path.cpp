@@ -5,18 +5,16 @@
 #include <excavplan/kit/kit_files.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 
-#include "base/text.hpp"
+#include "frame/stopwatch.hpp"
 #include "frame/tool.hpp"
+#include "inputs/named_kinds.hpp"
 #include "inputs/simulator_inputs.hpp"
-#include "inputs/site.hpp"
 #include "plan_path/density_input.hpp"
 #include "plan_path/motion_inputs.hpp"
 #include "plan_path/plan_lines.hpp"
-#include "plan_path/plan_map_names.hpp"
 #include "plan_path/plan_plots.hpp"
 #include "plan_path/search_inputs.hpp"
 #include "results/plan_results.hpp"
-#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {

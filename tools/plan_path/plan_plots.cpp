@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "base/text.hpp"
 #include "figures/dig_figures.hpp"
 #include "inputs/dig_plots.hpp"
+#include "inputs/map_names.hpp"
 #include "report/dig_report.hpp"
 
 namespace excavplan::tools {
@@ -43,8 +43,7 @@ void draw_plan(const Plots& plots, const std::optional<std::string>& report, Dra
   if (plots.files.empty() && !report) return;
   const PlanSite& site = drawn.site;
   const DigPlan& plan = drawn.plan;
-  const std::string title = (plan.dig ? "Planned dig in " : "No dig in ") + site.soil.name +
-                            " at " + readable(site.density_percent) + " % relative density";
+  const std::string title = plan_title(plan, site);
   std::optional<DigResult> dig;
   std::string section;
   if (plan.dig) {
@@ -66,6 +65,13 @@ void draw_plan(const Plots& plots, const std::optional<std::string>& report, Dra
   page.title = title;
   page.plot = section;
   outcome.page = page_of(std::move(page), *report);
+}
+
+std::vector<MapName> plan_map_names() {
+  std::vector<MapName> names = ground_map_names(4);
+  names.push_back({"footprint", "1 where the dig lowers the ground"});
+  names.push_back({"path", "path of the tip and outline of the cut, as .dxf or .ply", 0});
+  return names;
 }
 
 }  // namespace excavplan::tools

@@ -5,9 +5,11 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "figures/plan_figures.hpp"
 #include "frame/tool.hpp"
+#include "inputs/maps.hpp"
 #include "inputs/plots.hpp"
 
 namespace excavplan::tools {
@@ -20,5 +22,8 @@ FigureTable<DrawnPlan> plan_figures(const Arguments::Use& searches,
 /// is a file for it. Without a dig there is only the page.
 void draw_plan(const Plots& plots, const std::optional<std::string>& report, DrawnPlan drawn,
                Outcome& outcome);
+
+/// all, before, after, change, footprint and path.
+std::vector<MapName> plan_map_names();
 
 }  // namespace excavplan::tools

@@ -6,7 +6,9 @@
 #include <excavplan/base/error.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
 
+#include "frame/console.hpp"
 #include "frame/quantity.hpp"
+#include "results/dig_lines.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include "report/report_figures.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -7,10 +9,9 @@
 #include <optional>
 #include <set>
 
-#include "report/report_figures.hpp"
-
+#include "base/json.hpp"
 #include "base/text.hpp"
-#include "drawing/plot.hpp"
+#include "drawing/drawing.hpp"
 
 namespace excavplan::tools {
 namespace {

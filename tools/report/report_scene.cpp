@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/text.hpp"
+#include "planning/planned_digs.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -10,8 +10,8 @@
 #include <excavplan/kit/kit_files.hpp>
 
 #include "base/text.hpp"
+#include "frame/console.hpp"
 #include "inputs/site.hpp"
-#include "results/results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <excavplan/experiments/experiment.hpp>
 
-#include "frame/tool.hpp"
+#include "frame/console.hpp"
 #include "inputs/goal_inputs.hpp"
 #include "inputs/search_method.hpp"
 #include "inputs/simulator_inputs.hpp"

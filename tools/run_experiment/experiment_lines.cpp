@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_experiment/experiment_lines.hpp"
 
-#include "base/json.hpp"
 #include "base/text.hpp"
 #include "results/dig_lines.hpp"
 #include "run_experiment/experiment_inputs.hpp"

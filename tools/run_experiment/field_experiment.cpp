@@ -9,7 +9,11 @@
 #include <excavplan/experiments/field_experiment.hpp>
 
 #include "base/text.hpp"
-#include "results/results.hpp"
+#include "inputs/goal_inputs.hpp"
+#include "inputs/law_warnings.hpp"
+#include "inputs/named_kinds.hpp"
+#include "planning/planned_digs.hpp"
+#include "results/field_results.hpp"
 #include "run_experiment/study.hpp"
 
 namespace excavplan::tools {

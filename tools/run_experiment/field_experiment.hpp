@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "frame/arguments.hpp"
+#include "frame/console.hpp"
+#include "frame/tool.hpp"
 #include "run_experiment/experiment_inputs.hpp"
 
 /// @file

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/tool.hpp"
-#include "results/results.hpp"
+#include "inputs/named_kinds.hpp"
+#include "inputs/plots.hpp"
 #include "run_experiment/experiment_inputs.hpp"
+#include "run_experiment/experiment_plots.hpp"
+#include "run_experiment/field_experiment.hpp"
 #include "run_experiment/sensitivity.hpp"
 #include "run_experiment/simulation_experiment.hpp"
-#ifdef EXCAVPLAN_STUDY  // they simulate surveys
-#include "run_experiment/field_experiment.hpp"
 #include "run_experiment/study.hpp"
-#endif
 
 namespace excavplan::tools {
 namespace {
@@ -29,25 +29,11 @@ struct Inputs {
   ExperimentInputs experiment;
   Plots plots;
   std::optional<std::string> report;
-#ifdef EXCAVPLAN_STUDY
   StudyInputs study;
   FieldInputs field;
-#endif
   /// A study has conditions of its own.
-  bool is_study() const {
-#ifdef EXCAVPLAN_STUDY
-    return study.folder.has_value();
-#else
-    return false;
-#endif
-  }
-  bool is_field() const {
-#ifdef EXCAVPLAN_STUDY
-    return field.chosen();
-#else
-    return false;
-#endif
-  }
+  bool is_study() const { return study.folder.has_value(); }
+  bool is_field() const { return field.chosen(); }
   /// The paper's section 3.
   bool is_simulation() const { return !is_study() && !is_field() && !experiment.sensitivity; }
 };
@@ -67,11 +53,9 @@ void require_one_experiment(const Inputs& inputs) {
 std::vector<FigureName> figures_for(const Inputs& inputs) {
   std::vector<FigureName> names = names_of(experiment_figures(
       {[&inputs] { return inputs.is_simulation(); }, "only the experiment of section 3 has it"}));
-#ifdef EXCAVPLAN_STUDY
   names.push_back({"study",
                    "density error and gains of a --study by condition, with 95 % intervals",
                    {[&inputs] { return inputs.is_study(); }, "there is no --study"}});
-#endif
   return names;
 }
 
@@ -85,12 +69,10 @@ void declare(Arguments& arguments, Inputs& inputs) {
                                         [&] { arguments.report(inputs.report); });
                     });
   arguments.machine(inputs.experiment.machine);
-#ifdef EXCAVPLAN_STUDY
   declare_study(arguments, inputs.study);
   arguments.only_if({[&inputs] { return !inputs.is_study() && !inputs.experiment.sensitivity; },
                      "a study or a sensitivity is no experiment of the paper"},
                     [&] { declare_field(arguments, inputs.field); });
-#endif
   arguments.only_if({[&inputs] { return inputs.experiment.search || !inputs.is_simulation(); },
                      "nothing is searched without --search"},
                     [&] {
@@ -105,12 +87,10 @@ Outcome work(const Inputs& inputs, Console& console) {
   check(inputs.experiment.method);
   const Machine machine = machine_named(inputs.experiment.machine);
   const ExperimentInputs& experiment = inputs.experiment;
-#ifdef EXCAVPLAN_STUDY
   if (inputs.is_study()) {
     return study(machine, inputs.study, inputs.plots, experiment.seed, experiment.threads, console);
   }
   if (inputs.is_field()) return field_experiment(machine, inputs.field, experiment, console);
-#endif
   if (experiment.sensitivity) return sensitivity(machine, experiment, console);
   return simulation_experiment(machine, experiment, {inputs.plots, inputs.report}, console);
 }

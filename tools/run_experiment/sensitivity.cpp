@@ -7,7 +7,12 @@
 #include <excavplan/experiments/sensitivity.hpp>
 
 #include "base/text.hpp"
-#include "results/results.hpp"
+#include "inputs/goal_inputs.hpp"
+#include "inputs/named_kinds.hpp"
+#include "inputs/simulator_inputs.hpp"
+#include "planning/planned_digs.hpp"
+#include "results/dig_lines.hpp"
+#include "results/experiment_results.hpp"
 
 namespace excavplan::tools {
 namespace {

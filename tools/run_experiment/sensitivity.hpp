@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "frame/console.hpp"
+#include "frame/tool.hpp"
 #include "run_experiment/experiment_inputs.hpp"
 
 /// @file

@@ -2,13 +2,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_experiment/simulation_experiment.hpp"
 
-#include <memory>
 #include <utility>
 
+#include "inputs/goal_inputs.hpp"
+#include "inputs/law_warnings.hpp"
+#include "inputs/named_kinds.hpp"
+#include "planning/planned_digs.hpp"
+#include "report/report.hpp"
 #include "results/experiment_results.hpp"
-#include "results/results.hpp"
+#include "results/plan_results.hpp"
+#include "run_experiment/experiment_lines.hpp"
+#include "run_experiment/experiment_plots.hpp"
+#include "run_experiment/experiment_report.hpp"
 
 namespace excavplan::tools {
+namespace {
+
+/// A machine in a soil, and how both digs of a condition are made.
+struct Trial {
+  const Machine& machine;
+  const SoilKind& soil;
+  const DensityLaw& law;
+  const ExperimentOptions& options;
+};
+
+/// Digs in each condition; one that fails is in the result too.
+/// @throws Error (bad_input) if all of them fail
+Experiments dig_conditions(const Trial& trial, const std::vector<ExperimentCondition>& conditions,
+                           Console& console, Outcome& outcome) {
+  const OptionNames names = experiment_option_names();
+  Experiments experiments;
+  experiments.second = trial.options.second;
+  std::string failure;
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    const ExperimentCondition& condition = conditions[i];
+    console.progress(static_cast<double>(i) / static_cast<double>(conditions.size()),
+                     condition.name);
+    try {
+      experiments.done.push_back({condition.name, naming_options(names, [&] {
+                                    return run_experiment(trial.machine, trial.soil, trial.law,
+                                                          condition.density, trial.options);
+                                  })});
+      add(experiments.done.back(), outcome);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::bad_input) throw;
+      failure = error.what();
+      experiments.failed.push_back({condition.name, condition.density, experiments.done.size()});
+      add_failure(experiments.failed.back(), failure, outcome);
+    }
+  }
+  if (experiments.done.empty()) throw Error(ErrorKind::bad_input, failure);
+  return experiments;
+}
+
+}  // namespace
 
 Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& experiment,
                               const ExperimentPages& pages, Console& console) {
@@ -18,45 +65,26 @@ Outcome simulation_experiment(const Machine& machine, const ExperimentInputs& ex
   if (pages.report && options.second == SecondGround::left) {
     usage_error("--report shows digs on fresh ground, not with --second left");
   }
-  const std::vector<ExperimentCondition> conditions = conditions_of(experiment);
-  const OptionNames names = experiment_option_names();
-  Experiments experiments;
-  experiments.second = options.second;
-  std::vector<NamedExperiment>& done = experiments.done;
-  std::string failure;
   Outcome outcome;
   outcome.warnings = unlike_law(law, machine.name, soil.name);
   for (Warning& each : goal_warnings(experiment.goal, {machine})) {
     outcome.warnings.push_back(std::move(each));
   }
   outcome.json["conditions"] = nlohmann::ordered_json::array();
-  for (const ExperimentCondition& condition : conditions) {
-    const auto count = static_cast<double>(outcome.json["conditions"].size());
-    console.progress(count / static_cast<double>(conditions.size()), condition.name);
-    try {
-      done.push_back({condition.name, naming_options(names, [&] {
-                        return run_experiment(machine, soil, law, condition.density, options);
-                      })});
-      add(done.back(), outcome);
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::bad_input) throw;
-      failure = error.what();
-      experiments.failed.push_back({condition.name, condition.density, done.size()});
-      add_failure(condition.name, condition.density, failure, outcome);
-    }
-  }
-  if (done.empty()) throw Error(ErrorKind::bad_input, failure);
+  const Experiments experiments =
+      dig_conditions({machine, soil, law, options}, conditions_of(experiment), console, outcome);
+  const DensityRegression regression = density_regression(machine, soil, options);
   outcome.json["law"] = law.name;
-  outcome.json["regression"] = regression_json(machine, soil, options);
-  outcome.lines.push_back(regression_line(outcome.json["regression"]));
+  outcome.json["regression"] = regression_json(regression);
+  outcome.lines.push_back(regression_line(regression));
   outcome.json.update(goal_json(options.plan.search.objective));
   if (experiment.search) {
     outcome.json["search"] = search_settings_json(machine, options.plan.search);
   }
   outcome.json["start_rule"] =
       "fixed path: " + describe(StartRule()) + "; planned path: the start_rule of its condition";
-  write_plots(pages.plots, experiment_figures({}), {experiments, outcome.json["regression"], soil},
-              outcome.lines, outcome.warnings);
+  write_plots(pages.plots, experiment_figures({}), {experiments, regression, soil}, outcome.lines,
+              outcome.warnings);
   if (pages.report) {
     outcome.page =
         page_of(experiment_report(machine, soil, options.plan, experiments), *pages.report);

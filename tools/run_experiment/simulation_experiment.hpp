@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "figures/experiment_figures.hpp"
 #include "frame/tool.hpp"
+#include "inputs/plots.hpp"
 #include "run_experiment/experiment_inputs.hpp"
 
 /// @file

@@ -9,6 +9,7 @@
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "figures/study_figure.hpp"
+#include "results/study_results.hpp"
 
 namespace excavplan::tools {
 namespace {

@@ -3,19 +3,24 @@
 #include <tuple>
 
 #include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/results/force_history.hpp>
 #include <excavplan/sensing/scene.hpp>
 
 #include "base/files.hpp"
 #include "figures/dig_figures.hpp"
+#include "frame/stopwatch.hpp"
 #include "frame/tool.hpp"
+#include "inputs/dig_plots.hpp"
 #include "inputs/map_names.hpp"
+#include "inputs/named_kinds.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
 #include "machine/dig_path_text.hpp"
-#include "results/joint_loads.hpp"
-#include "results/results.hpp"
+#include "report/dig_report.hpp"
+#include "results/scene_results.hpp"
 #include "simulate_dig/block_inputs.hpp"
 #include "simulate_dig/fuel_log.hpp"
+#include "simulate_dig/scene_lines.hpp"
 #include "simulate_dig/scene_scans.hpp"
 
 namespace excavplan::tools {
@@ -94,9 +99,8 @@ void write_files(const Inputs& inputs, const Machine& machine, const DigScene& s
                  Outcome& outcome) {
   write_scans(inputs.scans, scene, inputs.seed);
   inputs.fuel_log.write(machine, scene, inputs.seed);
-  if (inputs.history) write_file(*inputs.history, to_csv(machine, scene));
-  const std::string title =
-      "Dig in " + scene.soil + " at " + readable(scene.density_percent) + " % relative density";
+  if (inputs.history) write_file(*inputs.history, force_history_csv(machine, scene));
+  const std::string title = scene_title(scene);
   const DugDig dug = {machine,
                       scene.path,
                       scene.dig,

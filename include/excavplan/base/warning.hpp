@@ -51,6 +51,7 @@ enum class WarningCode {
   law_of_other_machine,
   law_of_other_path,
   law_of_other_soil,
+  level_ground,
   library_unreadable,
   little_stable_ground,
   loads_disagree,

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/scans/scan_pose.hpp>
+#include <vector>
+
+#include <excavplan/base/warning.hpp>
 
 #include "base/json_fwd.hpp"
 
 namespace excavplan {
 
-/// A pose with its method and what is known of its error.
-Json pose_json(const LevelPose& pose);
-Json pose_json(const PointPose& pose);
+/// Key `warnings` of a result: code and message of each.
+Json warnings_json(const std::vector<Warning>& warnings);
 
 }  // namespace excavplan

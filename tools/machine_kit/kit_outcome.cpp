@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "machine_kit/kit_results.hpp"
+#include "machine_kit/kit_outcome.hpp"
 
 #include <excavplan/kit/kit_files.hpp>
 #include <excavplan/kit/workspace.hpp>
@@ -12,6 +12,7 @@
 #include "results/kit_results.hpp"
 
 namespace excavplan::tools {
+
 Outcome examined(const MachineFile& file, const std::string& folder) {
   const Machine& machine = file.machine;
   const Reach reach = reach_of(machine);

@@ -4,11 +4,19 @@
 
 #include <string>
 
+#include <excavplan/clouds/cloud.hpp>
 #include <excavplan/recording/recording.hpp>
+#include <excavplan/scans/scan_pose.hpp>
 
 #include "base/json_fwd.hpp"
 
 namespace excavplan {
+
+Json cloud_json(const CloudSummary& summary);
+
+/// A pose with its method and what is known of its error.
+Json pose_json(const LevelPose& pose);
+Json pose_json(const PointPose& pose);
 
 /// "single", "averaged" or "joined"
 const char* name(ScanMerge merge);

@@ -1,17 +1,45 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "results/recording_results.hpp"
+#include "results/scan_results.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "base/json.hpp"
 
 namespace excavplan {
 namespace {
 
+Json list_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 }  // namespace
+
+Json cloud_json(const CloudSummary& summary) {
+  return {{"points", summary.points},
+          {"width", summary.width},
+          {"height", summary.height},
+          {"finite_points", summary.finite_points},
+          {"left_out_points", summary.left_out},
+          {"centroid_m", list_of(summary.centroid)},
+          {"min_m", list_of(summary.min)},
+          {"max_m", list_of(summary.max)},
+          {"density_per_m2", summary.density},
+          {"frame_guess", summary.frame_guess}};
+}
+
+Json pose_json(const LevelPose& pose) {
+  return {{"method", "level"},
+          {"height_m", pose.height},
+          {"tilt_rad", pose.tilt},
+          {"residual_sd_m", pose.residual_sd},
+          {"ground_share", pose.ground_share}};
+}
+
+Json pose_json(const PointPose& pose) {
+  return {{"method", "points"}, {"residuals_m", pose.residuals}, {"residual_rms_m", pose.rms}};
+}
 
 const char* name(ScanMerge merge) {
   switch (merge) {

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "inputs/maps.hpp"
+#include <excavplan/density/density_estimate.hpp>
 
 namespace excavplan::tools {
 
-/// all, before, after, change, footprint and path.
-std::vector<MapName> plan_map_names();
+/// An estimate for people.
+std::vector<std::string> estimate_lines(const DensityEstimate& estimate);
 
 }  // namespace excavplan::tools

@@ -4,12 +4,10 @@
 
 #include <excavplan/density/density_estimate.hpp>
 
-#include "figures/change_figure.hpp"
 #include "frame/tool.hpp"
-#include "inputs/plots.hpp"
 
 /// @file
-/// Results of a density estimate, as JSON and as text lines.
+/// What estimate-density tells of an estimate.
 
 namespace excavplan::tools {
 
@@ -30,20 +28,6 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
 /// And those of unlike_law().
 void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
                           const Machine& machine, double unit, Outcome& outcome);
-
-/// An estimate as its figures show it.
-struct DrawnEstimate {
-  const DensityEstimate& estimate;
-  ChangeSheet sheet;
-};
-
-/// change and density.
-const FigureTable<DrawnEstimate>& estimate_figures();
-
-/// Writes the figures of an estimate that were asked for and adds the page about it to the outcome
-/// if there is a file for it.
-void draw_estimate(const Plots& plots, const std::optional<std::string>& report,
-                   const DensityEstimate& estimate, Outcome& outcome);
 
 /// Adds the result of the other method for the same scans.
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);

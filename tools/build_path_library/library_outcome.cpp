@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "build_path_library/library_results.hpp"
+#include "build_path_library/library_outcome.hpp"
 
 #include <filesystem>
 
@@ -9,8 +9,8 @@
 #include "base/files.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "inputs/goal_inputs.hpp"
-#include "results/results.hpp"
+#include "results/dig_lines.hpp"
+#include "results/library_results.hpp"
 
 namespace excavplan::tools {
 namespace {

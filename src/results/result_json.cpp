@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/results/result_json.hpp>
+
+#include "base/json.hpp"
+#include "results/density_results.hpp"
+#include "results/efficiency_results.hpp"
+#include "results/plan_results.hpp"
+#include "results/scan_results.hpp"
+#include "results/scene_results.hpp"
+#include "results/survey_results.hpp"
+
+namespace excavplan {
+
+std::string to_json(const DensityEstimate& estimate) {
+  Json json = estimate_json(estimate);
+  json.update(survey_json(estimate));
+  return json_text(json);
+}
+
+std::string to_json(const DigPlan& plan, const GroundDensity& density,
+                    const DigObjective& objective) {
+  return json_text(plan_json(plan, density, objective));
+}
+
+std::string to_json(const Machine& machine, const DigScene& scene) {
+  return json_text(scene_json(machine, scene));
+}
+
+std::string to_json(const DigEfficiency& run) { return json_text(run_json(run)); }
+
+std::string to_json(const SetComparison& sets) { return json_text(comparison_json(sets)); }
+
+std::string to_json(const CloudSummary& summary) { return json_text(cloud_json(summary)); }
+
+std::string to_json(const std::string& file, const RecordingContents& contents) {
+  return json_text(recording_json(file, contents));
+}
+
+std::string to_json(const SurveyPlan& plan, const SurveyForecast& forecast,
+                    const SurveyNeeds& needs, double target_sd_percent) {
+  return json_text(forecast_json(plan, forecast, needs, target_sd_percent));
+}
+
+}  // namespace excavplan
