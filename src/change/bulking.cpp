@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/check.hpp"
-#include "base/normal_mixture.hpp"
+#include "base/statistics.hpp"
 
 namespace excavplan {
 

@@ -8,13 +8,12 @@
 #include <optional>
 #include <string>
 
-#include <Eigen/Cholesky>
-
 #include <excavplan/change/bulking.hpp>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/plane_fit.hpp"
 #include "ground/slopes.hpp"
 
 namespace excavplan {
@@ -135,22 +134,15 @@ double commonest(std::vector<double> heights, double reach) {
 
 /// Root mean square of heights about a plane [m].
 double roughness(const HeightMap& map, const std::vector<Cell>& cells) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double squares = 0.0;
-  double count = 0.0;
+  PlaneFit fit;
   const double base = map.z(cells.front().row, cells.front().col);
   for (const Cell at : cells) {
     const double z = map.z(at.row, at.col) - base;
     if (std::isnan(z)) continue;
-    const Eigen::Vector3d terms(1.0, static_cast<double>(at.col), static_cast<double>(at.row));
-    normal += terms * terms.transpose();
-    right += z * terms;
-    squares += z * z;
-    count += 1.0;
+    fit.add(static_cast<double>(at.col), static_cast<double>(at.row), z);
   }
-  if (count < 4.0) return 0.0;
-  return std::sqrt(std::max(0.0, squares - right.dot(normal.ldlt().solve(right))) / count);
+  if (fit.count() < 4.0) return 0.0;
+  return std::sqrt(fit.squares_about(fit.plane()) / fit.count());
 }
 
 /// The lowest part of a hole, where that is as level and smooth as water.

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "change/low_objects.hpp"
 #include "ground/slopes.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/slopes.hpp"
 

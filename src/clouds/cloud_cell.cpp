@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "ground/grid_cells.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -68,9 +70,9 @@ struct Moments {
 };
 
 /// Mean and slope of weighted points.
-class PlaneFit {
+class CellPlane {
  public:
-  explicit PlaneFit(const Moments& m) : mean_(m.sum / m.count) {
+  explicit CellPlane(const Moments& m) : mean_(m.sum / m.count) {
     const Eigen::Vector2d centre = mean_.head<2>();
     spread_ = m.plan_products() / m.count - centre * centre.transpose();
     with_height_ = Eigen::Vector2d(m.xz, m.yz) / m.count - mean_.z() * centre;
@@ -123,7 +125,7 @@ class CellMean {
   /// else that of the surroundings.
   CellHeight result(const Eigen::Vector2d& slope_around) const {
     if (points_.empty()) return {};
-    const PlaneFit plane(shared_);
+    const CellPlane plane(shared_);
     if (!tells_slope(plane)) {
       return height_of(plane.mean(), slope_around, Eigen::Vector2d::Zero(), 1.0);
     }
@@ -137,14 +139,14 @@ class CellMean {
 
   /// Enough points, with at least half the standard deviation of an even spread, 1 / sqrt(12), in
   /// every direction.
-  bool tells_slope(const PlaneFit& plane) const {
+  bool tells_slope(const CellPlane& plane) const {
     constexpr double least_spread = 0.25 / 12.0;
     return points_.size() >= enough && plane.least_spread() >= least_spread;
   }
 
   /// About the plane through all points; 0 if they are too few for one.
   double residual_sd() const {
-    const PlaneFit plane(shared_);
+    const CellPlane plane(shared_);
     if (!tells_slope(plane)) return 0.0;
     const double constant = plane.mean().z() - plane.slope().dot(plane.mean().head<2>());
     return std::sqrt(std::max(0.0, all_.squares_about(constant, plane.slope())) /
@@ -245,14 +247,6 @@ Partition best_partition(const std::vector<float>& heights, std::size_t fewest) 
 
 }  // namespace
 
-double mean_median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const auto upper = static_cast<double>(*middle);
-  if (values.size() % 2 == 1) return upper;
-  return 0.5 * (upper + static_cast<double>(*std::max_element(values.begin(), middle)));
-}
-
 std::optional<Split> two_levels(CellRange points, double level, double gap,
                                 std::vector<float>& heights) {
   const std::size_t support = std::max<std::size_t>(3, points.size() / 10);
@@ -317,15 +311,11 @@ Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Ei
   };
   std::array<Neighbour, 9> around;
   std::size_t count = 0;
-  for (Eigen::Index c = std::max<Eigen::Index>(column - 1, 0);
-       c <= std::min(column + 1, levels.cols() - 1); ++c) {
-    for (Eigen::Index r = std::max<Eigen::Index>(row - 1, 0);
-         r <= std::min(row + 1, levels.rows() - 1); ++r) {
-      if (std::isnan(levels(r, c))) continue;
-      around[count++] = {levels(r, c), static_cast<double>(c - column),
-                         static_cast<double>(r - row)};
-    }
-  }
+  for_each_around(levels, {row, column}, 1, [&](Cell at) {
+    const double z = levels(at.row, at.col);
+    if (std::isnan(z)) return;
+    around[count++] = {z, static_cast<double>(at.col - column), static_cast<double>(at.row - row)};
+  });
   std::sort(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Neighbour& a, const Neighbour& b) { return a.z < b.z; });
   const std::size_t dropped = count >= enough ? 1 : 0;
@@ -335,7 +325,7 @@ Surroundings surroundings_of(const Eigen::ArrayXXd& levels, Eigen::Index row, Ei
   for (std::size_t i = 1; i + 1 < count; ++i) {
     kept.add({around[i].x, around[i].y, around[i].z - result.low}, 1.0);
   }
-  const PlaneFit plane(kept);
+  const CellPlane plane(kept);
   constexpr double nearly_in_a_row = 0.1;  // [cell^2]
   if (!(plane.least_spread() > nearly_in_a_row)) return result;
   result.slope = plane.slope();

@@ -44,9 +44,6 @@ struct CellRange {
   std::size_t size() const { return static_cast<std::size_t>(last - first); }
 };
 
-/// The mean of the two in the middle where the count is even. Reorders the values, at least one.
-double mean_median(std::vector<float>& values);
-
 /// Two separate levels among the points of one cell.
 struct Split {
   Eigen::Index cell = 0;

@@ -9,6 +9,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/statistics.hpp"
+#include "ground/grid_cells.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -25,7 +28,7 @@ double noise_of(std::vector<float>& heights, double level) {
     if (heights[i] > heights[i - 1]) step = std::min(step, heights[i] - heights[i - 1]);
   }
   for (float& value : heights) value = std::abs(value - static_cast<float>(level));
-  const double scatter = 1.4826 * mean_median(heights);
+  const double scatter = mad_to_sd * mean_median(heights);
   if (std::isinf(step)) return scatter;
   return std::max(scatter, static_cast<double>(step) / std::sqrt(12.0));
 }
@@ -63,9 +66,7 @@ GroundLevels find_levels(PointsByCell& points) {
     return levels;
   }
   if (noise.empty()) return levels;  // rounded to one height in every group
-  const auto quartile = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 4);
-  std::nth_element(noise.begin(), quartile, noise.end());
-  levels.noise = *quartile;
+  levels.noise = upper_quantile(noise, 0.25);
   return levels;
 }
 
@@ -73,17 +74,12 @@ GroundLevels find_levels(PointsByCell& points) {
 bool upper_level_goes_on(const Eigen::ArrayXXd& lowest, Index cell, double valley) {
   constexpr int enough_known = 4;  // with the cell itself; ours
   constexpr int enough_above = 2;  // ours
-  const Index column = cell / lowest.rows();
-  const Index row = cell % lowest.rows();
   int known = 0;
   int above = 0;
-  for (Index c = std::max<Index>(column - 1, 0); c <= std::min(column + 1, lowest.cols() - 1);
-       ++c) {
-    for (Index r = std::max<Index>(row - 1, 0); r <= std::min(row + 1, lowest.rows() - 1); ++r) {
-      known += std::isnan(lowest(r, c)) ? 0 : 1;
-      above += lowest(r, c) >= valley ? 1 : 0;
-    }
-  }
+  for_each_around(lowest, {cell % lowest.rows(), cell / lowest.rows()}, 1, [&](Cell n) {
+    known += std::isnan(lowest(n.row, n.col)) ? 0 : 1;
+    above += lowest(n.row, n.col) >= valley ? 1 : 0;
+  });
   return known < enough_known || above >= enough_above;
 }
 

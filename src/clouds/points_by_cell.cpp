@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "clouds/stream_sample.hpp"
 
 namespace excavplan {

@@ -10,7 +10,7 @@
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/change/bulking.hpp>
 
-#include "base/normal_mixture.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "density/density_in_soil.hpp"
 #include "density/joined_density.hpp"

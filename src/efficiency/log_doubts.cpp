@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -46,11 +47,10 @@ std::optional<Warning> gap_in(const DigLog& log) {
     }
   }
   const double longest = *std::max_element(steps.begin(), steps.end());
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  if (!(longest > most_usual_steps * *middle)) return std::nullopt;
+  const double usual = median(steps);
+  if (!(longest > most_usual_steps * usual)) return std::nullopt;
   return Warning{WarningCode::gap_in_log,
-                 log.file + ": no row for " + readable(longest) + " s, where " + readable(*middle) +
+                 log.file + ": no row for " + readable(longest) + " s, where " + readable(usual) +
                      " s are usual: the consumption during the gap is interpolated"};
 }
 

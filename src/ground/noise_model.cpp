@@ -8,9 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "base/angles.hpp"
+#include "base/normal_equations.hpp"
 
 namespace excavplan {
 namespace {
@@ -77,21 +76,18 @@ NoiseModel fit(const Covariances& covariances, double cell_size) {
   for (const double power : {1.0, 1.25, 1.5, 1.75, 2.0}) {  // this grid is ours
     for (double length = 0.4 * cell_size; length < longest; length *= 1.06) {
       const NoiseModel shape{0.0, 1.0, length, power};
-      Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-      Eigen::Vector2d right = Eigen::Vector2d::Zero();
-      double squares = 0.0;
+      NormalEquations<2> equations;
       for (std::size_t lag = 1; lag < covariances.at_lag.size(); ++lag) {
         const double value = variance - covariances.at_lag[lag].mean();
-        const Eigen::Vector2d terms(1.0, 1.0 - shape.at(cell_size * static_cast<double>(lag)));
-        const double weight = 1.0 / std::max(value * value, 1e-4 * variance * variance);
-        normal += weight * terms * terms.transpose();
-        right += weight * value * terms;
-        squares += weight * value * value;
+        equations.add({1.0, 1.0 - shape.at(cell_size * static_cast<double>(lag))}, value,
+                      1.0 / std::max(value * value, 1e-4 * variance * variance));
       }
-      Eigen::Vector2d sills = normal.ldlt().solve(right);
+      const Eigen::Matrix2d& normal = equations.matrix();
+      const Eigen::Vector2d& right = equations.right();
+      Eigen::Vector2d sills = equations.solution();
       if (sills.x() < 0.0) sills = {0.0, right.y() / normal(1, 1)};
       if (!(sills.y() > 0.0)) continue;
-      const double error = squares - 2.0 * sills.dot(right) + sills.dot(normal * sills);
+      const double error = equations.squares() - 2.0 * sills.dot(right) + sills.dot(normal * sills);
       if (error >= least) continue;
       least = error;
       best = {sills.x(), sills.y(), length, power};

@@ -14,7 +14,8 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
-#include "base/robust.hpp"
+#include "base/normal_equations.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
 #include "ground/noise_model.hpp"
@@ -139,10 +140,7 @@ class Aligner {
 
   /// Median change of a slope; 0 if no cell is known in both.
   static double tilt_of(const Eigen::ArrayXXd& change) {
-    std::vector<double> known;
-    for (const double value : change.reshaped()) {
-      if (!std::isnan(value)) known.push_back(value);
-    }
+    std::vector<double> known = known_values(change);
     return known.empty() ? 0.0 : median(known);
   }
 
@@ -155,9 +153,7 @@ class Aligner {
       away.push_back(std::abs(samples_[i].change - samples_[i].effect.dot(motion)));
     }
     std::vector<double> sorted = away;
-    const auto quarter = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 4);
-    std::nth_element(sorted.begin(), quarter, sorted.end());
-    scale_ = std::max(quartile_to_sd * *quarter, least_noise);
+    scale_ = std::max(quartile_to_sd * upper_quantile(sorted, 0.25), least_noise);
     const double bend_sd = std::max(scale_ / (std::sqrt(6.0) * map_.cell_size), least_bend);
     for (std::size_t i = 0; i < away.size(); ++i) {
       Sample& sample = samples_[i * stride_];
@@ -265,7 +261,7 @@ class Aligner {
                                                which[static_cast<std::size_t>(j)]);
       }
     }
-    return motion.dot(covariance.ldlt().solve(motion)) > significant;
+    return squared_by(covariance, motion) > significant;
   }
 
   const HeightMap& map_;

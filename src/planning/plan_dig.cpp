@@ -15,7 +15,7 @@
 
 #include "base/check.hpp"
 #include "base/files.hpp"
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "ground/terrain.hpp"
 #include "machine/dig_path_text.hpp"

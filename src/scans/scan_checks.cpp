@@ -9,15 +9,16 @@
 #include <set>
 #include <string>
 
-#include <Eigen/Cholesky>
-
 #include <excavplan/change/change_options.hpp>
 
 #include "base/angles.hpp"
+#include "base/normal_equations.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
 #include "clouds/points_by_cell.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/plane_fit.hpp"
 #include "ground/slopes.hpp"
 
 namespace excavplan {
@@ -32,15 +33,6 @@ std::string degrees(double angle) { return readable(angle / degree, 2) + " degre
 
 std::string size_of(const Rectangle& r) {
   return readable(r.x_max - r.x_min) + " x " + readable(r.y_max - r.y_min);
-}
-
-/// The value that a share of all is not above; 0 for none.
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return 0.0;
-  const auto place =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
 }
 
 // ---- Units --------------------------------------------------------------------------------------
@@ -125,25 +117,16 @@ std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
                      give_frames + "; if z is up, say so by --frame lidar"};
 }
 
-struct Plane {
-  double slope_x = 0.0;
-  double slope_y = 0.0;
-  double tilt() const { return std::atan(std::hypot(slope_x, slope_y)); }
-};
-
-Plane plane_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+/// Of the plane through the ground that did not change.
+double tilt_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
+  PlaneFit fit;
   for_each_cell(zone, [&](Cell at) {
     const double z = ground.z(at.row, at.col);
     if (zone(at.row, at.col) >= 0 || std::isnan(z)) return;
-    const Eigen::Vector3d terms(1.0, ground.x(at.col) - ground.origin.x(),
-                                ground.y(at.row) - ground.origin.y());
-    normal += terms * terms.transpose();
-    right += z * terms;
+    fit.add(ground.x(at.col) - ground.origin.x(), ground.y(at.row) - ground.origin.y(), z);
   });
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
-  return {plane.y(), plane.z()};
+  const Eigen::Vector2d gradient = fit.plane().gradient();
+  return std::atan(std::hypot(gradient.x(), gradient.y()));
 }
 
 /// Ground z = a + b x + c y + d x^2 + e x y + f y^2 that did not change, about its middle.
@@ -156,30 +139,25 @@ struct Bowl {
 };
 
 Bowl bowl_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
-  using Terms = Eigen::Matrix<double, 6, 1>;
   const Rectangle extent = ground.extent();
   const Eigen::Vector2d middle(0.5 * (extent.x_min + extent.x_max),
                                0.5 * (extent.y_min + extent.y_max));
-  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-  Terms right = Terms::Zero();
-  double squares = 0.0;
+  NormalEquations<6> equations;
   for_each_cell(zone, [&](Cell at) {
     const double z = ground.z(at.row, at.col);
     if (zone(at.row, at.col) >= 0 || std::isnan(z)) return;
     const double x = ground.x(at.col) - middle.x();
     const double y = ground.y(at.row) - middle.y();
-    Terms terms;
+    NormalEquations<6>::Vector terms;
     terms << 1.0, x, y, x * x, x * y, y * y;
-    normal += terms * terms.transpose();
-    right += z * terms;
-    squares += z * z;
+    equations.add(terms, z);
   });
-  const Terms found = normal.ldlt().solve(right);
+  const auto found = equations.solution();
   Bowl bowl{2.0 * found(5), 2.0 * found(3), found(4), 0.0, 0.0};
   const double half = 0.5 * std::max(extent.x_max - extent.x_min, extent.y_max - extent.y_min);
   bowl.sagitta = 0.25 * std::abs(bowl.across + bowl.along) * half * half;
-  const double left = squares - found.dot(right);
-  bowl.rest_sd = std::sqrt(std::max(0.0, left) / std::max(1.0, normal(0, 0)));
+  const double left = equations.squares_about(found);
+  bowl.rest_sd = std::sqrt(std::max(0.0, left) / std::max(1.0, equations.matrix()(0, 0)));
   return bowl;
 }
 
@@ -378,7 +356,7 @@ std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfac
   constexpr double largest = 17.0 * degree;   // ours: slopes of 15 degrees are dug
   constexpr double upright = 93.0 * degree;   // ours: from pits that were tilted by a known angle
   if (scans.before.site_from_scan != Eigen::Matrix4d::Identity()) return {};
-  const double tilt = plane_of_stable(surfaces.before.height, area.zone).tilt();
+  const double tilt = tilt_of_stable(surfaces.before.height, area.zone);
   if (!(tilt > noted)) return {};
   const Walls walls = walls_of(change, area, surfaces.after.height);
   const bool may_overhang = walls.angle + tilt > upright || (tilt > doubtful && !walls.resolved);

@@ -12,9 +12,10 @@
 
 #include "base/check.hpp"
 #include "base/parallel.hpp"
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "ground/coarse_motion.hpp"
+#include "ground/grid_cells.hpp"
 #include "ground/sampling_gaps.hpp"
 #include "ground/too_few_cells.hpp"
 #include "scans/scan_reading.hpp"
@@ -148,10 +149,7 @@ bool leaves_difference(const SurfacePair& pair) {
   constexpr double least = 0.010;    // ours: below it the volumes hardly suffer [m]
   constexpr double explained = 3.0;  // ours: neighbouring points err alike, which no scatter shows
   const Eigen::ArrayXXd variance = pair.before.variance + pair.after.variance;
-  std::vector<double> known;
-  for (const double value : variance.reshaped()) {
-    if (!std::isnan(value)) known.push_back(value);
-  }
+  std::vector<double> known = known_values(variance);
   const double expected = known.empty() ? 0.0 : std::sqrt(median(known));
   return pair.alignment.residual_sd > std::max(least, explained * expected);
 }

@@ -8,7 +8,7 @@
 
 #include "base/check.hpp"
 #include "base/json.hpp"
-#include "base/normal_mixture.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "soil/density_forms.hpp"
 

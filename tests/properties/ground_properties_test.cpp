@@ -10,7 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "ground/hole_filling.hpp"
 #include "support/cases.hpp"
 
