@@ -15,6 +15,7 @@
 
 #include "base/parallel.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/dig_problem.hpp"
 
 namespace excavplan {
 namespace {

@@ -7,7 +7,8 @@ cmake_minimum_required(VERSION 3.24)
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
 set(rooms base optimisation ground change soil machine simulation sensing calibration planning kit
-  clouds scans logs efficiency recording images density paper experiments results figures robot)
+  clouds scans logs efficiency recording images density paper experiments results maps drawing figures
+  robot)
 set(base_may_use "")
 set(optimisation_may_use "")
 set(ground_may_use "")
@@ -29,7 +30,19 @@ set(density_may_use ground change soil machine simulation calibration scans logs
 set(paper_may_use change clouds scans density)
 set(experiments_may_use
   ground change soil machine simulation sensing calibration planning scans density)
+set(results_may_use ground change soil machine simulation sensing calibration planning kit clouds scans
+  efficiency recording density experiments)
+set(maps_may_use ground change simulation sensing planning)
+set(drawing_may_use ground machine)
+set(figures_may_use
+  change soil machine simulation planning kit density experiments results drawing)
 set(robot_may_use ground soil machine simulation planning kit clouds scans recording density results)
+
+# The rooms of the tools; what lies in the folder of a tool is its own.
+set(tool_rooms frame report inputs)
+set(frame_may_use "")
+set(report_may_use frame)
+set(inputs_may_use frame)
 
 # Where a third-party header may be included: in no public header any of them, and in every benchmark,
 # which stands beside its peers.
@@ -40,7 +53,7 @@ set(third_party_places
   "^(src/images/depth_image|tests/images/depth_image_test)\\.cpp$"
   "^src/(soil|optimisation)/[a-z_]+\\.cpp$"
   "^(src/base/json\\.hpp|src/.*\\.[ch]pp|tools/.*|tests/.*)$"
-  "^tools/shared/tool\\.cpp$"
+  "^tools/frame/tool\\.cpp$"
   "^src/images/depth_png\\.cpp$"
   "^(src/recording/sqlite_recording|tests/recording/containers_test)\\.cpp$"
   "^src/recording/compression\\.cpp$" "^src/recording/compression\\.cpp$"
@@ -117,6 +130,21 @@ function(walk module)
   set_property(GLOBAL PROPERTY walked:${module} TRUE)
 endfunction()
 
+# Of the tools a file includes the rooms below its own, a tool all of them and no other tool.
+function(check_tool_rooms file line)
+  string(REGEX MATCH "^tools/([a-z_]+)/" folder ${file})
+  set(room ${CMAKE_MATCH_1})
+  if(NOT line MATCHES "\"([a-z_]+)/([a-z_]+)\\.hpp\"")
+    return()
+  endif()
+  set(used ${CMAKE_MATCH_1})
+  if(used STREQUAL room OR NOT IS_DIRECTORY ${ROOT}/tools/${used})
+    return()
+  elseif(NOT used IN_LIST tool_rooms OR (room IN_LIST tool_rooms AND NOT used IN_LIST ${room}_may_use))
+    message(SEND_ERROR "${file}: must not use the room ${used} of the tools: ${line}")
+  endif()
+endfunction()
+
 # The library answers by values and exceptions: it prints nothing and never ends the program.
 function(check_manners file)
   file(STRINGS ${ROOT}/${file} lines
@@ -145,6 +173,9 @@ foreach(file IN LISTS sources)
     check_third_parties(${file} "${line}")
     if(file MATCHES "^(include|src)/")
       check_rooms(${file} "${line}")
+    endif()
+    if(file MATCHES "^tools/")
+      check_tool_rooms(${file} "${line}")
     endif()
     if(file MATCHES "^(include|src|tools)/")
       collect_uses(${file} "${line}")

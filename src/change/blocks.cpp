@@ -14,9 +14,9 @@
 #include "base/angles.hpp"
 #include "base/check.hpp"
 #include "base/text.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {

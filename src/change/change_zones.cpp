@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/robust.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
+#include "ground/noise_model.hpp"
 
 namespace excavplan {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/noise_model.hpp"
 
 namespace excavplan {
 namespace {

@@ -12,8 +12,8 @@
 #include "base/robust.hpp"
 #include "base/text.hpp"
 #include "change/zone_shape.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -118,7 +118,7 @@ void state(double volume, double factor, double scans, VolumeChange& change) {
   const Eigen::Vector3d both(volume, 0.0, volume);
   change.errors.attribution += weight * both * both.transpose();
   change.warnings.push_back(
-      {"earlier_soil",
+      {WarningCode::earlier_soil,
        "the scan before shows " + readable(volume, 0.1 * volume) +
            " m^3 above the ground around, where the hole is, as steep as loose soil: if an earlier "
            "dig left it there, the bulking factor is " +

@@ -7,9 +7,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
+#include "ground/noise_model.hpp"
 
 namespace excavplan {
 namespace {

@@ -10,9 +10,9 @@
 #include <Eigen/Cholesky>
 
 #include "base/robust.hpp"
-#include "ground/error_field.hpp"
 #include "ground/hole_filling.hpp"
 #include "ground/sight_lines.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/robust.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {

@@ -9,8 +9,9 @@
 
 #include "base/robust.hpp"
 #include "change/zone_shape.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/noise_model.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {

@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "experiments/experiment_site.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -151,10 +152,17 @@ std::string hold_if_moved(Experiment& experiment, const DigParameters& path) {
   return why;
 }
 
+void check(const Machine& machine, const SoilKind& soil, const ExperimentOptions& options) {
+  require_machine(machine);
+  require_soil(soil);
+  if (options.plan.cell_size) require_simulated_cell(*options.plan.cell_size);
+}
+
 }  // namespace
 
 DigScene first_dig(const Machine& machine, const SoilKind& soil, double density_percent,
                    const ExperimentOptions& options) {
+  check(machine, soil, options);
   Experiment experiment(machine, soil, density_percent, options);
   hold_if_moved(experiment, options.fixed_path);
   return experiment.scene(experiment.dig(options.fixed_path, {}).dig);
@@ -173,9 +181,7 @@ double ExperimentResult::start_gain_percent() const {
 
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options) {
-  require_machine(machine);
-  require_soil(soil);
-  if (options.plan.cell_size) require_simulated_cell(*options.plan.cell_size);
+  check(machine, soil, options);
   Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
   result.held_because = hold_if_moved(experiment, options.fixed_path);

@@ -14,6 +14,7 @@
 
 #include "base/parallel.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {

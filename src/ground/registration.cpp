@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/ground/registration.hpp>
+#include "ground/registration.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,10 @@
 
 #include "base/check.hpp"
 #include "base/robust.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
+#include "ground/noise_model.hpp"
+#include "ground/slopes.hpp"
 #include "ground/too_few_cells.hpp"
 
 namespace excavplan {
@@ -295,6 +296,12 @@ double slope(double low, double here, double high, double cell_size) {
 }
 
 }  // namespace
+
+void require_alignment(const Alignment& alignment, const char* what) {
+  const bool finite =
+      alignment.centre.allFinite() && alignment.motion.allFinite() && alignment.left.allFinite();
+  if (!finite) refuse(std::string(what) + ": a number of the alignment is not finite");
+}
 
 MotionCovariance Alignment::default_left() {
   MotionCovariance left = MotionCovariance::Zero();

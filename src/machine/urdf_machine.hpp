@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/machine/machine_file.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/json.hpp"
 

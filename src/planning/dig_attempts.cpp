@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 
 namespace excavplan {
 

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
-#include <excavplan/machine/trajectory.hpp>
-#include <excavplan/planning/dig_cycle.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/machine/kinematics.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
-#include "ground/terrain_check.hpp"
-#include "simulation/checked_dig.hpp"
+#include "ground/terrain.hpp"
 #include "simulation/swath.hpp"
 
 namespace excavplan {
@@ -23,29 +23,78 @@ using Eigen::Index;
 // How far ahead of the lip the simulator reads the ground [m].
 constexpr double looked_ahead = 0.25;
 
-/// Remaining share of one phase, 0 .. 1.
-double rest_of_phase(const Infeasible& stop, const DigParameters& parameters) {
-  const auto rest = [&](double length) {
-    return length > 0.0 ? std::clamp(1.0 - stop.distance / length, 0.0, 1.0) : 1.0;
-  };
-  switch (stop.phase) {
-    case DigPhase::penetrate:
-      return rest(parameters.penetration_length);
-    case DigPhase::drag:
-      return rest(parameters.drag_length);
-    default:
-      return std::clamp(std::abs(stop.value - stop.limit), 0.0, 1.0);
-  }
-}
+constexpr double start_grid = 0.2;      // of the starts compared first [m]; ours
+constexpr double start_within = 0.002;  // [m]; ours
+// Of the joints from their limits, for a machine that does not track exactly [rad]; ours.
+constexpr double joint_clearance = 0.035;
+constexpr double coarse_step = 0.2;  // tip travel between poses while starts are compared [m]
 
 const Machine& required(const Machine& machine) {
   require_machine(machine);
   return machine;
 }
 
-double left_to_drive(const Infeasible& stop, const DigParameters& parameters) {
-  const double phases = static_cast<double>(DigPhase::lift) - static_cast<double>(stop.phase);
-  return 1.0 + phases + rest_of_phase(stop, parameters);
+/// Positive work of the joints against the weight of the links while they dig [J].
+double link_work(const Machine& machine, const DigPath& path) {
+  double work = 0.0;
+  for (std::size_t i = 1; i < path.poses.size(); ++i) {
+    if (path.poses[i].phase == DigPhase::lift) break;
+    const JointAngles& from = path.poses[i - 1].joints;
+    const JointAngles& to = path.poses[i].joints;
+    const JointAngles torque =
+        torque_against_link_weight(machine, link_positions(machine, 0.5 * (from + to)));
+    work += (torque.array() * (to - from).array()).max(0.0).sum();
+  }
+  return work;
+}
+
+/// True if the joints keep off their limits while they dig.
+bool keeps_off_limits(const Machine& machine, const DigPath& path) {
+  return std::all_of(path.poses.begin(), path.poses.end(), [&](const DigPose& pose) {
+    return pose.phase == DigPhase::lift ||
+           limit_margin(machine, pose.joints).margin >= joint_clearance;
+  });
+}
+
+/// By halving steps around the best point of a grid: the work has one valley where the machine
+/// reaches, and its end is sharp where the reach ends.
+std::optional<double> least_work_start(const DigLayout& layout, const DigParameters& parameters,
+                                       const DigPathOptions& options) {
+  const Machine& machine = layout.machine();
+  std::optional<double> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto compare = [&](double x) {
+    const auto path = layout.path_from(parameters, x, options);
+    const auto* drivable = std::get_if<DigPath>(&path);
+    if (!drivable || !keeps_off_limits(machine, *drivable)) return;
+    const double work = link_work(machine, *drivable);
+    if (!(work < least)) return;
+    least = work;
+    best = x;
+  };
+  const double reach = machine.full_length();
+  const double nearest = std::max(machine.track_front, machine.boom_pin.x() - reach);
+  for (double x = nearest; x <= machine.boom_pin.x() + reach; x += start_grid) compare(x);
+  for (double step = 0.5 * start_grid; best && step >= start_within; step *= 0.5) {
+    const double middle = *best;
+    compare(middle - step);
+    compare(middle + step);
+  }
+  return best;
+}
+
+/// @return nothing where no start keeps the joints off their limits
+std::optional<DigPath> path_of_least_work(const DigLayout& layout,
+                                          const DigParameters& parameters) {
+  DigPathOptions coarse = layout.rules();
+  coarse.step = coarse_step;
+  for (const DigPathOptions& options : {coarse, layout.rules()}) {
+    const auto start_x = least_work_start(layout, parameters, options);
+    if (!start_x) continue;
+    auto path = layout.path_from(parameters, *start_x);
+    if (auto* drivable = std::get_if<DigPath>(&path)) return std::move(*drivable);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -79,6 +128,22 @@ DigLayout::DigLayout(const Machine& machine, const Terrain& terrain, const DigPa
       ground_(boom_plane_profile(terrain)),
       strip_(terrain, machine),
       room_(terrain, machine) {}
+
+std::variant<DigPath, Infeasible> DigLayout::path(const DigParameters& parameters,
+                                                  const StartRule& start) const {
+  switch (start.kind) {
+    case StartRule::Kind::given:
+      return path_from(parameters, start.x);
+    case StartRule::Kind::searched:
+      throw Error(ErrorKind::bad_input, "the start of a single dig cannot be searched");
+    case StartRule::Kind::least_work:
+      if (auto path = path_of_least_work(*this, parameters)) return std::move(*path);
+      break;
+    case StartRule::Kind::largest_margin:
+      break;
+  }
+  return path_of_largest_margin(parameters);
+}
 
 std::variant<DigPath, Infeasible> DigLayout::path_from(const DigParameters& parameters,
                                                        double start_x,
@@ -162,39 +227,6 @@ std::vector<double> starts_along_reach(const Machine& machine) {
   const double reach = machine.boom_pin.x() + machine.full_length();
   for (double x = machine.track_front; x < reach; x += step) starts.push_back(x);
   return starts;
-}
-
-double violation(const DigFailure& failure, const DigParameters& parameters) {
-  if (const auto* stop = std::get_if<Infeasible>(&failure)) {
-    return left_to_drive(*stop, parameters);
-  }
-  const double length = parameters.penetration_length + parameters.drag_length;
-  return length > 0.0 ? std::clamp(1.0 - std::get<Stall>(failure).travelled / length, 0.01, 1.0)
-                      : 1.0;
-}
-
-std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
-                                               const SoilSimulator& simulator,
-                                               const Terrain& terrain, const DigPath& path,
-                                               const CycleOptions& cycle) {
-  DigOptions unsettled;  // what slides after the bucket is out changes neither load nor energy
-  unsettled.settle = false;
-  const DigResult result = checked_dig(simulator, machine, terrain, path, unsettled);
-  if (result.stall) return DigFailure(*result.stall);
-  PlannedDig dig{
-      path.parameters,     path.start_x,
-      result.payload_mass, result.payload_volume,
-      result.energy.total, time_dig_path(machine, path, {}, result.torques).dig_duration()};
-  dig.fill = dig.payload_volume / heaped_capacity(machine);
-  add_cycle(dig, machine, path, cycle);
-  return dig;
-}
-
-void add_cycle(PlannedDig& dig, const Machine& machine, const DigPath& path,
-               const CycleOptions& options) {
-  const CycleShare total = cycle_of(machine, path, dig, options).value_or(DigCycle{}).total;
-  dig.cycle_energy = total.energy;
-  dig.cycle_time = total.time;
 }
 
 }  // namespace excavplan

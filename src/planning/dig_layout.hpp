@@ -6,7 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/planning/start_rule.hpp>
 
 #include "planning/front_room.hpp"
 
@@ -65,18 +66,5 @@ class DigLayout {
 
 /// Where a path whose start is free is tried along the reach [m], 0.25 m apart; ours.
 std::vector<double> starts_along_reach(const Machine& machine);
-
-/// How far a dig is from feasible, >= 0: the share of the path that a stall leaves; more than 1 for
-/// a path that cannot be driven, more the earlier it fails.
-double violation(const DigFailure& failure, const DigParameters& parameters);
-
-/// Digs a path that was laid out.
-std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
-                                               const SoilSimulator& simulator,
-                                               const Terrain& terrain, const DigPath& path,
-                                               const CycleOptions& cycle = {});
-/// Sets the figures of its cycle.
-void add_cycle(PlannedDig& dig, const Machine& machine, const DigPath& path,
-               const CycleOptions& options);
 
 }  // namespace excavplan

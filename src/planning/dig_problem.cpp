@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planning/dig_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
+#include <excavplan/optimisation/search.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "optimisation/search_checkpoint.hpp"
 #include "planning/planned_digs.hpp"
+#include "planning/simulated_dig.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -113,7 +117,36 @@ std::string identity_of(const SoilSimulator& simulator, const Machine& machine) 
   return "a simulator of digs " + digs.text();
 }
 
+/// Remaining share of one phase, 0 .. 1.
+double rest_of_phase(const Infeasible& stop, const DigParameters& parameters) {
+  const auto rest = [&](double length) {
+    return length > 0.0 ? std::clamp(1.0 - stop.distance / length, 0.0, 1.0) : 1.0;
+  };
+  switch (stop.phase) {
+    case DigPhase::penetrate:
+      return rest(parameters.penetration_length);
+    case DigPhase::drag:
+      return rest(parameters.drag_length);
+    default:
+      return std::clamp(std::abs(stop.value - stop.limit), 0.0, 1.0);
+  }
+}
+
+double left_to_drive(const Infeasible& stop, const DigParameters& parameters) {
+  const double phases = static_cast<double>(DigPhase::lift) - static_cast<double>(stop.phase);
+  return 1.0 + phases + rest_of_phase(stop, parameters);
+}
+
 }  // namespace
+
+double violation(const DigFailure& failure, const DigParameters& parameters) {
+  if (const auto* stop = std::get_if<Infeasible>(&failure)) {
+    return left_to_drive(*stop, parameters);
+  }
+  const double length = parameters.penetration_length + parameters.drag_length;
+  return length > 0.0 ? std::clamp(1.0 - std::get<Stall>(failure).travelled / length, 0.01, 1.0)
+                      : 1.0;
+}
 
 void check(const std::vector<PossibleSoil>& soils) {
   double sum = 0.0;
@@ -324,6 +357,13 @@ std::string DigProblem::fingerprint() const {
             identity_of(*soil.simulator, machine);
   }
   return text;
+}
+
+void require_own_checkpoint(const Machine& machine, const SoilSimulator& simulator,
+                            const Terrain& terrain, const DigSearchOptions& options) {
+  if (!options.resume) return;
+  const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
+  DigProblem(machine, soils, terrain, options).require_own_checkpoint();
 }
 
 }  // namespace excavplan

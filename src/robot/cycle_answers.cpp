@@ -11,7 +11,7 @@ namespace {
 nlohmann::ordered_json list_of(const std::vector<Warning>& warnings) {
   auto list = nlohmann::ordered_json::array();
   for (const Warning& warning : warnings) {
-    list.push_back({{"code", warning.code}, {"message", warning.message}});
+    list.push_back({{"code", code_text(warning.code)}, {"message", warning.message}});
   }
   return list;
 }

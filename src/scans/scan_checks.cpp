@@ -11,12 +11,14 @@
 
 #include <Eigen/Cholesky>
 
+#include <excavplan/change/change_options.hpp>
+
 #include "base/angles.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
-#include "ground/error_field.hpp"
+#include "clouds/points_by_cell.hpp"
 #include "ground/grid_cells.hpp"
-#include "scans/points_by_cell.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -65,12 +67,11 @@ std::optional<Warning> other_units(const OutlinedPair& pair) {
     return std::nullopt;
   }
   if (std::abs(points) > std::abs(factor)) return std::nullopt;  // it shows more ground
-  return Warning{"units",
+  return Warning{WarningCode::units,
                  "the scans show " + size_of(a) + " m before and " + size_of(b) +
                      " m after, in both directions a factor of " +
                      readable(std::exp(std::abs(factor))) +
-                     ": one of them is in other units: give --before-unit or --after-unit",
-                 true};
+                     ": one of them is in other units: give --before-unit or --after-unit"};
 }
 
 std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
@@ -78,11 +79,11 @@ std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
   const bool is_after = pair.after.height_step > pair.before.height_step;
   const double step = std::max(pair.before.height_step, pair.after.height_step);
   if (!(step > most)) return std::nullopt;
-  return Warning{"coarse_heights",
-                 name_of(is_after ? pair.scans.after : pair.scans.before) +
-                     ": all heights are multiples of " + readable(step) +
-                     " m: volumes of a dig need finer ones; write the coordinates with more digits",
-                 true};
+  return Warning{
+      WarningCode::coarse_heights,
+      name_of(is_after ? pair.scans.after : pair.scans.before) + ": all heights are multiples of " +
+          readable(step) +
+          " m: volumes of a dig need finer ones; write the coordinates with more digits"};
 }
 
 /// Of a machine that takes nothing out of scans, or most of them.
@@ -93,14 +94,14 @@ std::optional<Warning> not_in_view(const OutlinedPair& pair) {
   for (const ScanOutline* seen : {&pair.before, &pair.after}) {
     const auto of_machine = static_cast<double>(seen->machine_points);
     if (of_machine > most * (of_machine + static_cast<double>(seen->finite_points))) {
-      return Warning{"machine_pose",
+      return Warning{WarningCode::machine_pose,
                      "more than half of the points of a scan lie in the machine as it is said to "
                      "have stood: its pose or the frame of the scans is wrong",
                      true};
     }
   }
   if (pair.machine_points() > 0) return std::nullopt;
-  return Warning{"machine_pose",
+  return Warning{WarningCode::machine_pose,
                  "no point lies in the machine as it is said to have stood: it is not in view, or "
                  "its pose or the frame of the scans is wrong, and it is still in them"};
 }
@@ -112,19 +113,16 @@ std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
   constexpr double steepest = 45.0 * degree;  // ours: no ground to dig in
   const double off = std::acos(std::min(seen.normal.z(), 1.0));
   if (off > steepest) {
-    return Warning{"frame",
-                   name_of(scan) + ": the ground lies at " + degrees(off) +
-                       " to level, so z is not up: " + give_frames,
-                   true};
+    return Warning{WarningCode::frame, name_of(scan) + ": the ground lies at " + degrees(off) +
+                                           " to level, so z is not up: " + give_frames};
   }
   if (scan.z_is_up || scan.site_from_scan != Eigen::Matrix4d::Identity()) return std::nullopt;
   if (!(seen.seen_along_z >= nearly_all)) return std::nullopt;
-  return Warning{"frame",
+  return Warning{WarningCode::frame,
                  name_of(scan) +
                      ": all points lie ahead of the origin along z, as in the frame of a camera, "
                      "where hole and heap are exchanged: " +
-                     give_frames + "; if z is up, say so by --frame lidar",
-                 true};
+                     give_frames + "; if z is up, say so by --frame lidar"};
 }
 
 struct Plane {
@@ -283,7 +281,7 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
   const bool lost = lost_beside_heap(change) > least_lost * change.excavated.value;
   if (!(heap > loose && hole < gentle) && !(lost && heap > steeper * hole)) return std::nullopt;
   return Warning{
-      "looks_swapped",
+      WarningCode::looks_swapped,
       "the heap is as steep as " + degrees(std::atan(heap)) + ", the hole " +
           degrees(std::atan(hole)) + (lost ? ", and ground beside the heap fell" : "") +
           ", as if hole and heap were exchanged: check the order of BEFORE and AFTER, and if z "
@@ -296,35 +294,37 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
 
 std::vector<Warning> causes_of(std::vector<Warning> warnings) {
   struct Cause {
-    std::string code;
-    std::set<std::string> effects;
+    WarningCode code;
+    std::set<WarningCode> effects;
   };
   // What is judged by lengths, and by heights above a plane.
   static const std::vector<Cause> causes = {
-      {"units",
-       {"blocks",
-        "coarse_heights",
-        "curved_ground",
-        "dug_path_doubtful",
-        "flat_water",
-        "floor_cut",
-        "grass",
-        "hole_in_shadow",
-        "implausible_energy",
-        "implausible_fuel",
-        "loads_disagree",
-        "loads_not_used",
-        "machine_pose",
-        "object_on_soil",
-        "object_taken_out",
-        "payload_disagrees",
-        "registration_beyond_prior",
-        "scans_do_not_fit",
-        "sensor_place_doubtful",
-        "sensor_place_inferred",
-        "systematic_errors",
-        "zone_partly_unseen"}},
-      {"frame", {"object_taken_out", "scans_do_not_fit", "zone_partly_unseen"}}};
+      {WarningCode::units,
+       {WarningCode::blocks,
+        WarningCode::coarse_heights,
+        WarningCode::curved_ground,
+        WarningCode::dug_path_doubtful,
+        WarningCode::flat_water,
+        WarningCode::floor_cut,
+        WarningCode::grass,
+        WarningCode::hole_in_shadow,
+        WarningCode::implausible_energy,
+        WarningCode::implausible_fuel,
+        WarningCode::loads_disagree,
+        WarningCode::loads_not_used,
+        WarningCode::machine_pose,
+        WarningCode::object_on_soil,
+        WarningCode::object_taken_out,
+        WarningCode::payload_disagrees,
+        WarningCode::registration_beyond_prior,
+        WarningCode::scans_do_not_fit,
+        WarningCode::sensor_place_doubtful,
+        WarningCode::sensor_place_inferred,
+        WarningCode::systematic_errors,
+        WarningCode::zone_partly_unseen}},
+      {WarningCode::frame,
+       {WarningCode::object_taken_out, WarningCode::scans_do_not_fit,
+        WarningCode::zone_partly_unseen}}};
   for (const Cause& cause : causes) {
     const bool is_there = std::any_of(warnings.begin(), warnings.end(), [&](const Warning& w) {
       return w.code == cause.code && w.ends_trust;
@@ -359,12 +359,12 @@ std::vector<Warning> check_registration(const RegisteredPair& pair) {
                         readable(moved.shift, 2) + " m and " + degrees(moved.turn) +
                         ", more than one standpoint explains";
   if (!leaves_difference(pair.surfaces)) {
-    return {{"registration_beyond_prior",
+    return {{WarningCode::registration_beyond_prior,
              message +
                  "; it was brought back by the ground that did not change, which then fits to " +
                  readable(1000.0 * found.residual_sd, 2) + " mm"}};
   }
-  return {{"registration_beyond_prior",
+  return {{WarningCode::registration_beyond_prior,
            message + ", and the ground that did not change still differs by " +
                readable(1000.0 * found.residual_sd, 2) +
                " mm: give the transform of the scan after by --after-frame",
@@ -383,7 +383,7 @@ std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfac
   const Walls walls = walls_of(change, area, surfaces.after.height);
   const bool may_overhang = walls.angle + tilt > upright || (tilt > doubtful && !walls.resolved);
   const bool ends = tilt > largest || may_overhang;
-  return {{"tilted",
+  return {{WarningCode::tilted,
            "the ground lies at " + degrees(tilt) + " to the plane z = 0" +
                (ends ? ", and walls of " + degrees(walls.angle) +
                            " may overhang there, which hides soil"
@@ -403,7 +403,7 @@ std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeCha
     if (zone.unknown_share < most_hidden || std::abs(zone.volume.value) < least_volume * all) {
       continue;
     }
-    return {{"machine_pose",
+    return {{WarningCode::machine_pose,
              readable(100.0 * zone.unknown_share, 2) + " % of the " + (is_dig ? "hole" : "heap") +
                  " are unseen with the machine taken out, " + std::to_string(machine_points) +
                  " points: its pose is wrong, or it hides what counts; scan with the machine aside",
@@ -494,7 +494,7 @@ std::vector<Warning> warning_of_overlays(const DoubtfulVolume& doubt, const Volu
   constexpr double doubtful = 0.03;  // ours, likewise
   const double share = doubt.share_of(change);
   if (!(share > noted)) return {};
-  return {{"two_surfaces",
+  return {{WarningCode::two_surfaces,
            std::string("points of the scan ") + doubt.scan() +
                " lie on two surfaces, one above the other, which leaves " +
                readable(doubt.hole, 2) + " m^3 of the hole and " + readable(doubt.soil, 2) +
@@ -526,7 +526,7 @@ std::vector<Warning> warning_of_outliers(const DoubtfulVolume& doubt, const Volu
   const double share = doubt.share_of(change);
   if (!(share > noted)) return {};
   const bool are_above = (doubt.sum() > 0.0) == (doubt.in_after > doubt.in_before);
-  return {{"outliers",
+  return {{WarningCode::outliers,
            std::string("points of the scan ") + doubt.scan() + " lie off the ground, " +
                (are_above ? "above" : "below") +
                " it in the main; where it is uneven they are not told from it, which may change "
@@ -581,12 +581,11 @@ std::optional<Warning> floor_cut(const SurfacePair& surfaces, const VolumeChange
       static_cast<double>(at_edge) < most * static_cast<double>(up_to(floor * noise))) {
     return {};
   }
-  return Warning{"floor_cut",
+  return Warning{WarningCode::floor_cut,
                  "the lowest points of " + std::to_string(at_edge) + " cells of the hole lie at " +
                      readable(lowest[blunders], 4) +
                      " m, as where a limit of heights or depths cuts "
-                     "the floor off: what lies deeper is missing; widen the limit",
-                 true};
+                     "the floor off: what lies deeper is missing; widen the limit"};
 }
 
 }  // namespace
@@ -622,11 +621,10 @@ std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChan
     return {};
   }
   return {
-      {"curved_ground",
+      {WarningCode::curved_ground,
        "the ground is part of a ball of " + readable(1.0 / std::abs(mean), 2) +
            " m radius, as where ranges are read as depths or depths as ranges: lengths are wrong "
-           "by another factor in each part of the scan",
-       true}};
+           "by another factor in each part of the scan"}};
 }
 
 std::vector<Warning> check_volumes(const VolumeChange& change, double unit) {
@@ -646,7 +644,7 @@ void refuse_swapped(const VolumeChange& change, const std::string& names, double
                 names + ": " + message + (units ? "; " + units->message : std::string()));
   };
   for (const Warning& warning : change.warnings) {
-    if (warning.code == "looks_swapped") refuse(warning.message);
+    if (warning.code == WarningCode::looks_swapped) refuse(warning.message);
   }
   constexpr double much_lost = 0.2;  // ours, of the hole
   const double lost = lost_beside_heap(change);

@@ -13,7 +13,7 @@
 #include "base/random.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
-#include "clouds/cloud_outline.hpp"
+#include "clouds/stream_sample.hpp"
 #include "scans/scan_reading.hpp"
 
 namespace excavplan {
@@ -302,20 +302,6 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
   }
   pose.rms = std::sqrt(squares / static_cast<double>(in_scan.size()));
   check_fit(pose, spread);
-  return pose;
-}
-
-Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
-                                   const Eigen::Vector4d& quaternion) {
-  constexpr double tolerance = 1e-3;
-  const double norm = quaternion.norm();
-  if (!translation.allFinite() || !quaternion.allFinite()) refuse("a number is not finite");
-  if (std::abs(norm - 1.0) > tolerance) {
-    refuse("the quaternion's norm is " + number_text(norm) + ", must be 1 to 0.001");
-  }
-  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
-  pose.topLeftCorner<3, 3>() = Eigen::Quaterniond(quaternion / norm).toRotationMatrix();
-  pose.topRightCorner<3, 1>() = translation;
   return pose;
 }
 

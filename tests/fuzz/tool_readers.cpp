@@ -9,10 +9,10 @@
 
 #include "base/table.hpp"
 #include "fuzz/file_readers.hpp"
-#include "shared/plan_results.hpp"
-#include "shared/quantity.hpp"
-#include "shared/settings_file.hpp"
-#include "shared/stated_density.hpp"
+#include "plan_path/plan_results.hpp"
+#include "frame/quantity.hpp"
+#include "frame/settings_file.hpp"
+#include <excavplan/results/stated_density.hpp>
 
 namespace excavplan::test {
 namespace {

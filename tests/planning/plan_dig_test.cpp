@@ -86,7 +86,7 @@ class PlanDig : public testing::Test {
   }
   static bool warns(const DigPlan& plan, const std::string& code) {
     return std::any_of(plan.warnings.begin(), plan.warnings.end(),
-                       [&](const Warning& warning) { return warning.code == code; });
+                       [&](const Warning& warning) { return code_text(warning.code) == code; });
   }
   /// All that a controller executes, to the last bit.
   static std::string bytes(const DigPlan& plan) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/base/error.hpp>
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/change/volume_change.hpp>
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/ground/terrain.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "shared/quantity.hpp"
+#include "frame/quantity.hpp"
 
 #include "support/cases.hpp"
 #include "support/errors.hpp"

@@ -82,7 +82,7 @@ struct Answer {
   const Warning* warning(const std::string& code) const {
     if (!estimate) return nullptr;
     for (const Warning& each : estimate->warnings) {
-      if (each.code == code) return &each;
+      if (code_text(each.code) == code) return &each;
     }
     return nullptr;
   }

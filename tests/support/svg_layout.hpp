@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/drawing.hpp"
+#include "drawing/drawing.hpp"
 
 /// @file
 /// Whether the texts of a figure can be read: their size, and that none lies on another.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 /// @file
 /// Inputs of a wrong meaning, and whether what becomes of them can be accepted.
@@ -25,14 +26,14 @@ struct Verdict {
   std::string text() const {
     if (!error.empty()) return "error: " + error;
     std::string text = std::string(right ? "right" : "wrong") + (trusted ? ", trusted" : "");
-    for (const Warning& warning : warnings) text += ", " + warning.code;
+    for (const Warning& warning : warnings) text += ", " + code_text(warning.code);
     return text;
   }
   /// The error holds it, or it is the code of a warning.
   bool says(const std::string& reason) const {
     return error.find(reason) != std::string::npos ||
            std::any_of(warnings.begin(), warnings.end(),
-                       [&](const Warning& warning) { return warning.code == reason; });
+                       [&](const Warning& warning) { return code_text(warning.code) == reason; });
   }
 };
 

@@ -9,8 +9,8 @@
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
-#include "shared/dig_timing.hpp"
-#include "shared/study_figure.hpp"
+#include "results/dig_timing.hpp"
+#include "figures/study_figure.hpp"
 #include "support/svg_figure.hpp"
 #include "support/svg_layout.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "shared/plot.hpp"
+#include "drawing/plot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <limits>
 #include <set>
 
-#include "shared/change_figure.hpp"
-#include "shared/dig_figures.hpp"
-#include "shared/machine_outline.hpp"
-#include "shared/render.hpp"
+#include "figures/change_figure.hpp"
+#include "figures/dig_figures.hpp"
+#include "figures/machine_outline.hpp"
+#include "drawing/render.hpp"
 #include "support/svg_layout.hpp"
 
 namespace excavplan::tools {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "shared/report.hpp"
+#include "report/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/sensing/scene.hpp>
 
-#include "shared/dig_report.hpp"
+#include "report/dig_report.hpp"
 #include "support/report_page.hpp"
 
 /// @file

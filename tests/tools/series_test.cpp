@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "shared/quantity.hpp"
-#include "shared/results.hpp"
+#include "frame/quantity.hpp"
+#include "results/results.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::tools {

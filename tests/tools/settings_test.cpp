@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "shared/settings_file.hpp"
+#include "frame/settings_file.hpp"
 
 #include <gtest/gtest.h>
 
-#include "shared/simulator_inputs.hpp"
+#include "inputs/simulator_inputs.hpp"
 #include "support/errors.hpp"
 #include "support/tool_answers.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "shared/tool.hpp"
+#include "frame/tool.hpp"
 
-#include "shared/plots.hpp"
+#include "inputs/plots.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 
 #include <excavplan/base/data_files.hpp>
 
-#include "shared/stack.hpp"
+#include "frame/stack.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::tools {

@@ -21,9 +21,6 @@ struct BulkingSample {
   double density_percent = 0.0;  ///< 0 .. 100
 };
 
-/// End of the key of a form fitted to k as height maps give it, not corrected for fallback.
-inline constexpr const char* as_measured = "_as_measured";
-
 /// Least-squares line of d on k.
 /// @throws Error (bad_input) with fewer than 3 different factors, a factor that is not positive, a
 /// density outside 0 .. 100, or where none fits (k must grow with d)

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "figures/plan_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "base/angles.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
+
+namespace excavplan {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string worth_label(const DigObjective& objective) {
+  const DigGoalInfo& goal = info_of(objective.goal);
+  return goal.description + " [" + goal.unit + "]";
+}
+
+/// A number of a path as a figure shows it.
+struct ShownNumber {
+  const DigParameterInfo* info;
+  std::string label;
+  double per_si = 1.0;
+
+  explicit ShownNumber(const DigParameterInfo& of) : info(&of) {
+    const bool is_angle = std::string(of.unit) == "rad";
+    if (is_angle) per_si = 180.0 / pi;
+    label = std::string(of.text) + (is_angle ? " [deg]" : " [m]");
+  }
+  double of(const DigParameters& dig) const { return per_si * (dig.*info->field); }
+};
+
+/// One section: two numbers on their search ranges, the others as planned.
+class Section {
+ public:
+  Section(const DrawnPlan& drawn, std::size_t x, std::size_t y)
+      : drawn_(drawn),
+        x_(dig_parameter_table()[x]),
+        y_(dig_parameter_table()[y]),
+        bounds_(machine_bounds(drawn.machine, drawn.search.bounds)) {}
+
+  static constexpr Eigen::Index across = 20;  ///< cells a side
+  static constexpr std::size_t count = across * across;
+
+  DigParameters dig(std::size_t cell) const {
+    DigParameters dig = drawn_.plan.dig->parameters;
+    dig.*x_.info->field = at(x_, cell % across);
+    dig.*y_.info->field = at(y_, cell / across);
+    return dig;
+  }
+
+  Panel panel(const std::vector<double>& worth, const ColourScale& scale) const {
+    Panel panel("", x_.label, y_.label);
+    const Eigen::Vector2d low(x_.of(bounds_.lower), y_.of(bounds_.lower));
+    const Eigen::Vector2d high(x_.of(bounds_.upper), y_.of(bounds_.upper));
+    Grid grid{low, (high - low) / static_cast<double>(across), Eigen::ArrayXXd(across, across)};
+    for (std::size_t i = 0; i < count; ++i) {
+      grid.z(static_cast<Eigen::Index>(i / across), static_cast<Eigen::Index>(i % across)) =
+          worth[i];
+    }
+    panel.map(grid, scale, "cannot be dug");
+    const DigParameters& best = drawn_.plan.dig->parameters;
+    panel.dots({{x_.of(best), y_.of(best)}}, 2.6, {"#000000", 0.9, "#ffffff"}, "planned dig");
+    panel.shape(0.85);
+    return panel;
+  }
+
+ private:
+  double at(const ShownNumber& number, std::size_t place) const {
+    const double lower = bounds_.lower.*number.info->field;
+    const double upper = bounds_.upper.*number.info->field;
+    return lower +
+           (upper - lower) * (static_cast<double>(place) + 0.5) / static_cast<double>(across);
+  }
+
+  const DrawnPlan& drawn_;
+  ShownNumber x_, y_;
+  DigBounds bounds_;
+};
+
+/// Worths of digs from the planned start, in the unit shown; NaN where one cannot be dug.
+std::vector<double> worths(const DrawnPlan& drawn, const std::vector<Section>& sections) {
+  const PlanSite& site = drawn.site;
+  const Machine& machine = drawn.machine;
+  const DigObjective& objective = drawn.search.objective;
+  const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
+  const DigLayout layout(machine, site.ground);
+  std::vector<double> found(sections.size() * Section::count, nan);
+  parallel_for(found.size(), drawn.search.threads, [&](std::size_t i) {
+    const DigParameters dig = sections[i / Section::count].dig(i % Section::count);
+    const auto path = layout.path(dig, StartRule(drawn.plan.dig->start_x));
+    if (!std::holds_alternative<DigPath>(path)) return;
+    const auto dug =
+        dig_along(machine, *simulator, site.ground, std::get<DigPath>(path), objective);
+    if (const auto* done = std::get_if<PlannedDig>(&dug)) {
+      found[i] = objective.worth(*done) * info_of(objective.goal).per_si;
+    }
+  });
+  return found;
+}
+
+/// What the dots do not show.
+std::string search_note(const DrawnPlan& drawn, bool is_uncertain) {
+  std::string note;
+  if (is_uncertain) {
+    note =
+        "The worth is the mean over the possible densities, at each of which a path is dug. With "
+        "the searches at single densities, not shown, " +
+        std::to_string(drawn.plan.evaluations) + " digs were simulated. ";
+  }
+  if (drawn.search.objective.min_fill > 0.0) {
+    note += "Digs that fill the bucket less than asked count for less. ";
+  }
+  if (drawn.plan.search->refused > 0) {
+    note += std::to_string(drawn.plan.search->refused) +
+            " more cannot be driven and were not simulated.";
+  }
+  return note;
+}
+
+}  // namespace
+
+Figure search_figure(const DrawnPlan& drawn) {
+  const DigGoalInfo& goal = info_of(drawn.search.objective.goal);
+  const std::vector<double>& ranks = drawn.plan.search->ranks;
+  const bool is_uncertain = drawn.plan.evaluations > static_cast<int>(ranks.size());
+  Panel panel("", is_uncertain ? "paths evaluated" : "digs evaluated",
+              worth_label(drawn.search.objective));
+  Points digs, failed, best;
+  double highest = nan;
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    const auto number = static_cast<double>(i + 1);
+    const double worth = ranks[i] * goal.per_si;
+    if (!std::isfinite(worth)) {
+      failed.emplace_back(number, 0.0);
+      continue;
+    }
+    digs.emplace_back(number, worth);
+    if (!(worth <= highest)) {
+      if (std::isfinite(highest)) best.emplace_back(number, highest);
+      highest = worth;
+      best.emplace_back(number, highest);
+    }
+  }
+  if (!best.empty()) best.emplace_back(static_cast<double>(ranks.size()), highest);
+  panel.dots(digs, 0.9, {"none", 0.0, colours::sky}, is_uncertain ? "a path" : "a dig");
+  if (!failed.empty()) {
+    panel.dots(failed, 0.9, {colours::grey, 0.5, "#ffffff"}, "the machine stalls");
+  }
+  panel.line(best, {colours::vermilion, 1.3}, "best so far");
+  panel.view({0.0, 0.0, static_cast<double>(ranks.size()) + 1.0,
+              1.06 * (std::isfinite(highest) ? highest : 1.0)});
+  panel.shape(0.5);
+  Figure figure;
+  figure.title = "Search: " + drawn.dug->title;
+  figure.rows = {{panel}};
+  figure.note = search_note(drawn, is_uncertain);
+  return figure;
+}
+
+Figure landscape_figure(const DrawnPlan& drawn) {
+  const std::vector<Section> sections = {Section(drawn, 0, 1), Section(drawn, 1, 2)};
+  const std::vector<double> worth = worths(drawn, sections);
+  ColourScale scale;
+  scale.high = 0.0;
+  for (const double each : worth) {
+    if (std::isfinite(each)) scale.high = std::max(scale.high, each);
+  }
+  if (!(scale.high > 0.0)) scale.high = 1.0;
+  Figure figure;
+  figure.title = "Worth about the planned dig: " + drawn.dug->title;
+  figure.colour_bar = ColourBar{scale, worth_label(drawn.search.objective)};
+  figure.rows.emplace_back();
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const auto first = worth.begin() + static_cast<std::ptrdiff_t>(i * Section::count);
+    figure.rows.back().push_back(
+        sections[i].panel({first, first + static_cast<std::ptrdiff_t>(Section::count)}, scale));
+  }
+  return figure;
+}
+
+}  // namespace excavplan

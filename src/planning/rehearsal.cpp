@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/rehearsal.hpp>
+
+#include "simulation/checked_dig.hpp"
+
+namespace excavplan {
+
+DigResult rehearse(const Machine& machine, const DigPlan& plan, const PlanSite& site) {
+  const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
+  DigOptions options;
+  options.history = true;
+  return checked_dig(*simulator, machine, site.ground, plan.path, options);
+}
+
+}  // namespace excavplan

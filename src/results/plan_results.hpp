@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <excavplan/planning/plan_dig.hpp>
+
+#include "base/json_fwd.hpp"
+
+namespace excavplan {
+
+/// Why there is no dig, with what came nearest to one.
+std::string reason_of(const DigPlan& plan);
+
+/// All keys of plan-path but those of its inputs and the time it took; "path" is null if there is
+/// no dig. @param objective  that the dig was searched for
+Json plan_json(const DigPlan& plan, const GroundDensity& density, const DigObjective& objective);
+
+/// Key `search` of a result: all that a search was set to.
+Json search_settings_json(const Machine& machine, const DigSearchOptions& options);
+
+}  // namespace excavplan

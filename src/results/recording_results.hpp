@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <excavplan/recording/recording.hpp>
+
+#include "base/json_fwd.hpp"
+
+namespace excavplan {
+
+/// "single", "averaged" or "joined"
+const char* name(ScanMerge merge);
+
+/// A scan out of a recording. @param text  that named it
+Json recorded_scan_json(const std::string& text, const RecordedScan& scan);
+
+/// What a recording holds. @param file  its name
+Json recording_json(const std::string& file, const RecordingContents& contents);
+
+}  // namespace excavplan

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <excavplan/density/density_estimate.hpp>
+
+#include "figures/change_figure.hpp"
+#include "frame/tool.hpp"
+#include "inputs/plots.hpp"
+
+/// @file
+/// Results of a density estimate, as JSON and as text lines.
+
+namespace excavplan::tools {
+
+/// The options of what estimate_density() names in its messages.
+inline const OptionNames estimate_options = {
+    {"path that was dug", "--dug-path"}, {"inside the area", "inside --area"},
+    {"cell_size is", "--cell is"},       {"water_content", "--moisture"},
+    {"payload_mass", "--payload-mass"},  cell_option.back()};
+
+/// @param soil  what was known of it
+Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& soil);
+
+/// Code many_buckets, for a hole of more than ten heaped buckets of the machine: one dig fills one.
+/// The coordinates may be in another unit; no other check can tell feet from metres, 35 times the
+/// volume. None where they are known to be (code units). It does not end trust. A pit of many digs
+/// is measured as well as that of one, and bulking factor and density have no unit.
+/// @param unit  that was taken for that of the coordinates [m]
+/// And those of unlike_law().
+void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
+                          const Machine& machine, double unit, Outcome& outcome);
+
+/// An estimate as its figures show it.
+struct DrawnEstimate {
+  const DensityEstimate& estimate;
+  ChangeSheet sheet;
+};
+
+/// change and density.
+const FigureTable<DrawnEstimate>& estimate_figures();
+
+/// Writes the figures of an estimate that were asked for and adds the page about it to the outcome
+/// if there is a file for it.
+void draw_estimate(const Plots& plots, const std::optional<std::string>& report,
+                   const DensityEstimate& estimate, Outcome& outcome);
+
+/// Adds the result of the other method for the same scans.
+void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome);
+
+}  // namespace excavplan::tools

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "inputs/recordings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <excavplan/base/error.hpp>
+
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "frame/option_names.hpp"
+#include "recording/recording_file.hpp"
+#include "results/recording_results.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+/// "2 messages at 0.25 .. 1.15 s, joined, in frame map"
+std::string line_of(const RecordedScan& scan) {
+  std::string line =
+      std::to_string(scan.messages) + (scan.messages == 1 ? " message" : " messages");
+  line += " at " + decimals(scan.first, 3);
+  if (scan.last > scan.first) line += " .. " + decimals(scan.last, 3);
+  line += " s";
+  if (scan.merge != ScanMerge::single) line += std::string(", ") + name(scan.merge);
+  if (scan.frame_sd > 0.0) line += ", one frame to " + readable(1e3 * scan.frame_sd, 2) + " mm";
+  return line + (scan.frame.empty() ? "" : ", in frame " + safe_text(scan.frame, longest_frame));
+}
+
+}  // namespace
+
+std::optional<RecordedInput> recorded_input(const std::string& text, const std::string& tf_frame) {
+  std::optional<RecordingQuery> query = parse_recording_spec(text);
+  if (!query && is_recording(text)) query = RecordingQuery{text, {}, {}, 0.0, {}};
+  if (!query) return std::nullopt;
+  query->frame = tf_frame;
+  RecordedInput input;
+  input.path = query->path;
+  const OptionNames names = {{"name the frame", "--tf-frame: name the frame"}};
+  input.scan = naming_options(names, [&] { return read_recorded_scan(*query); });
+  const RecordedScan& scan = input.scan;
+  input.json = recorded_scan_json(text, scan);
+  input.line = text + ": " + line_of(scan);
+  return input;
+}
+
+Scan scan_of_input(const std::string& text, std::optional<RecordedInput>& recorded) {
+  Scan scan;
+  if (recorded) {
+    scan.name = text;
+    scan.clouds = {std::make_shared<const Cloud>(std::move(recorded->scan.cloud))};
+    scan.doubts = recorded->scan.warnings;
+  } else {
+    scan.files = {text};
+  }
+  return scan;
+}
+
+MachinePosture recorded_posture(const RecordedInput& input) {
+  auto joints = joint_positions(input.path, input.scan.first);
+  std::string names;
+  for (const auto& [name, position] : joints) names += (names.empty() ? "" : ", ") + name;
+  // "arm" last: names such as front_arm_boom hold it too.
+  const auto angle = [&](const std::vector<std::string>& words) {
+    const auto holds = [&](const auto& joint) {
+      const std::string name = small_letters(joint.first);
+      return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+        return name.find(word) != std::string::npos;
+      });
+    };
+    const auto found = std::find_if(joints.begin(), joints.end(), holds);
+    if (std::count_if(joints.begin(), joints.end(), holds) != 1) {
+      throw Error(ErrorKind::bad_file, input.path + ": joint states: found " + names +
+                                           ", expected one joint whose name holds " +
+                                           words.front());
+    }
+    const double position = found->second;
+    joints.erase(found);
+    return position;
+  };
+  MachinePosture posture;
+  posture.swing = angle({"swing"});
+  posture.joints(0) = angle({"boom"});
+  posture.joints(2) = angle({"bucket"});
+  posture.joints(1) = angle({"stick", "arm"});
+  return posture;
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "inputs/site.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include <excavplan/scans/scan_terrain.hpp>
+
+#include "inputs/found_pose.hpp"
+#include "inputs/scans.hpp"
+#include "inputs/unit_inputs.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+/// FILE:TOPIC@TIME of a file that is there: what reads recordings is not part of the tools that
+/// plan.
+void refuse_recording(const TerrainInput& terrain) {
+  namespace fs = std::filesystem;
+  const std::string& text = *terrain.cloud;
+  std::error_code ignored;
+  const std::size_t end = text.find_first_of(":@", 1);
+  if (end == text.npos || fs::exists(text, ignored) || !fs::exists(text.substr(0, end), ignored)) {
+    return;
+  }
+  throw Error(ErrorKind::bad_file, text + ": " + terrain.option +
+                                       " takes a cloud, no scan of a recording; inspect-cloud "
+                                       "FILE:TOPIC@TIME+SPAN --out scan.pcd writes one as a cloud");
+}
+
+/// @param read  a ScannedTerrain from a scan
+template <typename Read>
+Site scanned(const TerrainInput& terrain, const Read& read) {
+  refuse_recording(terrain);
+  Scan scan;
+  scan.files = {*terrain.cloud};
+  scan.unit = unit_length(terrain.unit);
+  if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
+  ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
+                                        [&] { return read(scan); });
+  return {std::move(seen.terrain), std::move(seen.warnings)};
+}
+
+}  // namespace
+
+void declare_terrain(Arguments& arguments, TerrainInput& terrain) {
+  arguments.file("terrain", terrain.cloud,
+                 "cloud of the ground in the site frame (default: level)");
+  arguments.text(
+      "terrain-frame", "FRAME", terrain.frame,
+      std::string("transforms the terrain cloud into the site frame, of which the origin "
+                  "is on the swing axis at ground level, x forward, z up: ") +
+          frame_forms);
+  declare_unit(arguments, "unit", terrain.unit, "unit of the coordinates in the terrain cloud");
+}
+
+void declare_cell(Arguments& arguments, std::optional<double>& cell_size) {
+  arguments.option("cell", cell_size, Quantity::length,
+                   "cell size of the simulated ground (default: 5 cm for the zx120, else in "
+                   "proportion to the bucket)");
+}
+
+Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size) {
+  if (terrain.frame && !terrain.cloud) {
+    usage_error("--terrain-frame needs --terrain");
+  }
+  if (terrain.unit != TerrainInput{}.unit && !terrain.cloud) usage_error("--unit needs --terrain");
+  return naming_options(cell_option, [&] {
+    require_simulated_cell(cell_size);
+    if (!terrain.cloud) return Site{undisturbed(flat_ground(extent, cell_size)), {}};
+    return scanned(terrain,
+                   [&](const Scan& scan) { return terrain_from_scan(scan, extent, cell_size); });
+  });
+}
+
+Terrain make_swing_ground(const TerrainInput& terrain, const Machine& machine) {
+  if (!terrain.cloud) return level_swing_ground(machine);
+  return scanned(terrain, [&](const Scan& scan) { return swing_terrain_from_scan(scan, machine); })
+      .ground;
+}
+
+}  // namespace excavplan::tools

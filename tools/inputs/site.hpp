@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "frame/arguments.hpp"
+
+namespace excavplan::tools {
+
+/// A measured ground from the command line.
+struct TerrainInput {
+  std::optional<std::string> cloud;
+  const char* option = "--terrain";  ///< of the cloud
+  std::optional<std::string>
+      frame;  ///< that transforms the cloud into the site frame, as frame_named() takes it
+  std::string unit = "m";  ///< of the coordinates in the cloud
+};
+
+/// --terrain, --terrain-frame and --unit.
+void declare_terrain(Arguments& arguments, TerrainInput& terrain);
+
+/// Option --cell of tools that simulate digs of a machine; by default usual_cell() of the machine.
+void declare_cell(Arguments& arguments, std::optional<double>& cell_size);
+
+/// Ground to dig on, with its warnings.
+struct Site {
+  Terrain ground;
+  std::vector<Warning> warnings;
+};
+
+/// Ground that a motion must be clear of: swing_terrain_from_scan() of a cloud, else level.
+/// @throws Error as make_site()
+Terrain make_swing_ground(const TerrainInput& terrain, const Machine& machine);
+
+/// The ground of `extent` on cells of this size: terrain_from_scan() if a cloud is given, else
+/// level.
+///
+/// @throws Error (bad_file) if the cloud cannot be read or holds hardly a point in the extent
+/// @throws Error (bad_input) if a frame or a unit is given without a cloud
+Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell_size);
+
+}  // namespace excavplan::tools

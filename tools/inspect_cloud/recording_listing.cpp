@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "inspect_cloud/recording_listing.hpp"
+
+#include <algorithm>
+
+#include <excavplan/recording/recording.hpp>
+
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "inputs/recordings.hpp"
+#include "recording/recording_file.hpp"
+#include "results/recording_results.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+/// "* /points  sensor_msgs/PointCloud2, 12 at 0.000 .. 1.100 s, frame 'lidar'"
+std::string topic_line(const RecordingTopic& topic) {
+  std::string line = std::string(topic.is_scan ? "* " : "  ") + topic.name + "  " + topic.type +
+                     ", " + std::to_string(topic.messages);
+  if (topic.messages > 0) {
+    line += " at " + decimals(topic.first, 3) + " .. " + decimals(topic.last, 3) + " s";
+  }
+  return line + (topic.frame.empty() ? "" : ", frame " + in_quotes(topic.frame));
+}
+
+}  // namespace
+
+std::optional<RecordingListing> recording_listing(const std::string& text) {
+  if (!is_recording(text)) return std::nullopt;
+  const RecordingContents contents = describe_recording(text);
+  RecordingListing listing;
+  listing.lines = {text + ": " + readable(contents.duration, 4) + " s"};
+  for (const RecordingTopic& topic : contents.topics) {
+    listing.lines.push_back(topic_line(topic));
+  }
+  if (contents.is_cut_off) listing.lines.push_back("its end is missing");
+  const auto is_scan = [](const RecordingTopic& topic) { return topic.is_scan; };
+  const bool has_scans = std::any_of(contents.topics.begin(), contents.topics.end(), is_scan);
+  listing.lines.push_back(has_scans ? "* scans: name one as " + text + ":TOPIC@TIME+SPAN"
+                                    : "no topic holds scans");
+  if (!contents.frames.empty()) {
+    std::string frames;
+    for (const std::string& frame : contents.frames) {
+      frames += (frames.empty() ? "" : ", ") + safe_text(frame, longest_frame);
+    }
+    listing.lines.push_back("frames for --tf-frame: " + frames);
+  }
+  listing.json = recording_json(text, contents);
+  return listing;
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "machine_kit/kit_plots.hpp"
+
+#include "figures/reach_figure.hpp"
+
+namespace excavplan::tools {
+
+const FigureTable<Machine>& kit_figures() {
+  static const FigureTable<Machine> figures = {
+      {{"reach", "the machine, how far its tip comes and how hard it digs there"}, reach_figure}};
+  return figures;
+}
+
+}  // namespace excavplan::tools

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <excavplan/kit/machine_kit.hpp>
+#include <excavplan/machine/machine_file.hpp>
+
+#include "frame/tool.hpp"
+
+/// @file
+/// What machine-kit writes and prints.
+
+namespace excavplan::tools {
+
+/// What the file says of the machine, checked; `folder` is that of its kit.
+Outcome examined(const MachineFile& file, const std::string& folder);
+
+/// Names and files between commas. @throws Error (bad_input) or (bad_file)
+std::vector<SoilKind> soils_named(const std::string& list);
+
+/// Writes law and library of a soil to the folder.
+void add_kit(const KitSoil& kit, const Machine& machine, const SoilKind& soil,
+             const std::string& folder, Outcome& outcome);
+
+}  // namespace excavplan::tools

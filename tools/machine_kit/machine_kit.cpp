@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <system_error>
+
+#include <excavplan/kit/kit_files.hpp>
+#include <excavplan/kit/machine_kit.hpp>
+
+#include "base/files.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "frame/tool.hpp"
+#include "inputs/goal_inputs.hpp"
+#include "machine_kit/kit_plots.hpp"
+#include "machine_kit/kit_results.hpp"
+#include "results/results.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+const About about = {
+    "machine-kit",
+    "makes all that your own machine needs before plan-path: checks its file, draws where it "
+    "reaches and how hard it digs, fits density laws and builds path libraries for the soils, in "
+    "about a minute. plan-path, estimate-density and run-experiment find them by --machine.",
+    {{"machine-kit digger.json", "into the folder digger-kit"},
+     {"plan-path --machine digger.json --density 40", "finds digger-kit beside it"},
+     {"machine-kit digger.urdf --soil loam", "from a URDF, with digger.json beside it if there"},
+     {"machine-kit zx200 --output kit", "of a shipped machine; then --machine kit"}},
+    true,
+    true};
+
+struct Inputs {
+  std::string machine;
+  std::optional<std::string> output;
+  std::string soils = "loam,sand,clay,gravel";
+  GoalInputs goal;
+  std::string densities = "0:10:100";
+  std::string slopes = "-15deg:7.5deg:15deg";
+  KitOptions kit;
+  std::uint64_t threads = 0;
+  Plots plots;
+
+  std::string folder() const { return output.value_or(default_kit(machine)); }
+};
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  arguments.positional("machine", inputs.machine, "machine file, URDF, or a shipped machine");
+  arguments.folder(
+      "output", inputs.output,
+      "folder for machine.json, reach.svg, laws and libraries (default: NAME-kit beside "
+      "the machine)");
+  arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
+  declare_goal(arguments, inputs.goal);
+  arguments.text("densities", "FIRST:STEP:LAST", inputs.densities,
+                 "relative densities of the libraries [%], or a list a,b,c");
+  arguments.text("slopes", "LIST", inputs.slopes,
+                 "slopes of the libraries, as of build-path-library "
+                 "[rad]");
+  arguments.option("draws", inputs.kit.draws, "digs in drawn soils, for the scatter of a law");
+  arguments.option("seed", inputs.kit.seed, "seed of the searches");
+  arguments.threads(inputs.threads, "; same files for any");
+  declare_plots(arguments, inputs.plots, names_of(kit_figures()));
+}
+
+KitOptions options_of(const Inputs& inputs, const Machine& machine, Console& console) {
+  KitOptions options = inputs.kit;
+  options.objective = objective_of(inputs.goal, {machine});
+  options.densities_percent = parse_densities("--densities", inputs.densities);
+  options.slopes = parse_series("--slopes", inputs.slopes, Quantity::angle);
+  options.threads = static_cast<unsigned>(inputs.threads);
+  options.progress = [&console](double done, const std::string& what) {
+    console.progress(done, what);
+    return !console.stop_requested();
+  };
+  return options;
+}
+
+/// Of a machine that digs.
+void write_machine(const Inputs& inputs, const MachineFile& file, Outcome& outcome) {
+  write_file(inputs.folder() + "/" + kit_machine, file.text);
+  Plots plots = inputs.plots;
+  plots.files.push_back({"reach", inputs.folder() + "/reach.svg"});
+  write_plots(plots, kit_figures(), file.machine, outcome.lines, outcome.warnings);
+}
+
+/// Runs `work`, which writes into a folder that is made now; one that it leaves empty is removed.
+template <typename Work>
+void in_folder(const std::string& folder, const Work& work) {
+  std::error_code unknown;
+  const bool is_new = !std::filesystem::exists(folder, unknown);
+  make_folder(folder);
+  try {
+    work();
+  } catch (const Error&) {
+    if (is_new) std::filesystem::remove(folder, unknown);
+    throw;
+  }
+}
+
+void make_kits(const Inputs& inputs, const MachineFile& file, Console& console, Outcome& outcome) {
+  const std::vector<SoilKind> soils = soils_named(inputs.soils);
+  const KitOptions options = options_of(inputs, file.machine, console);
+  const std::string path = machine_path(inputs.machine);
+  const OptionNames names = {{"this dig", path + ": a dig of its size"},
+                             {"machine kit: ", path + ": "}};
+  for (const SoilKind& soil : soils) {
+    const KitSoil kit =
+        naming_options(names, [&] { return make_kit(file.machine, soil, options); });
+    outcome.stopped_early = kit.stopped;
+    if (kit.stopped) return;
+    if (outcome.json["soils"].empty()) write_machine(inputs, file, outcome);
+    add_kit(kit, file.machine, soil, inputs.folder(), outcome);
+  }
+}
+
+Outcome work(const Inputs& inputs, Console& console) {
+  const Stopwatch watch;
+  const MachineFile file = load_machine_file(machine_path(inputs.machine));
+  Outcome outcome = examined(file, inputs.folder());
+  for (Warning& each : goal_warnings(inputs.goal, {file.machine})) {
+    outcome.warnings.push_back(std::move(each));
+  }
+  outcome.json["soils"] = nlohmann::ordered_json::array();
+  in_folder(inputs.folder(), [&] { make_kits(inputs, file, console, outcome); });
+  outcome.json["wall_time_s"] = watch.seconds();
+  if (!outcome.stopped_early) {
+    outcome.lines.push_back("next: plan-path --machine " +
+                            (inputs.output ? *inputs.output : inputs.machine) + " --density 40");
+  }
+  return outcome;
+}
+
+}  // namespace
+}  // namespace excavplan::tools
+
+int main(int argc, char** argv) {
+  using namespace excavplan::tools;
+  return tool_main(argc, argv, about, declare, work);
+}

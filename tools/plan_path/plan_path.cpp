@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include <excavplan/kit/kit_files.hpp>
+#include <excavplan/planning/plan_dig.hpp>
+
+#include "base/text.hpp"
+#include "frame/tool.hpp"
+#include "inputs/simulator_inputs.hpp"
+#include "inputs/site.hpp"
+#include "plan_path/density_input.hpp"
+#include "plan_path/motion_inputs.hpp"
+#include "plan_path/plan_lines.hpp"
+#include "plan_path/plan_map_names.hpp"
+#include "plan_path/plan_plots.hpp"
+#include "plan_path/search_inputs.hpp"
+#include "results/plan_results.hpp"
+#include "results/results.hpp"
+
+namespace excavplan::tools {
+namespace {
+
+const About about = {
+    "plan-path",
+    "plans the dig with the highest mass of soil per energy of the whole cycle, or for another "
+    "goal, at a given relative density, by look-up in a path library or by a search in the "
+    "simulator.",
+    {{"plan-path --density 40", "look up the path in the shipped library"},
+     {"plan-path --density-from result.json --trajectory dig.csv",
+      "use a result of estimate-density --json, write the joint trajectory"},
+     {"plan-path --density 40 --joints -40deg,90deg,40deg --whole-cycle --trajectory dig.yaml",
+      "from these joints over the dig, swing, dump and back, as a ROS 2 JointTrajectory"},
+     {"plan-path --density 40 --search --terrain after.pcd", "search on scanned ground"},
+     {"plan-path --density 40 --goal energy", "most mass per energy of the dig, as in the paper"},
+     {"plan-path --density 40 --density-sd 8 --search",
+      "the path of highest expected efficiency, and the value of knowing the density"}},
+    true,
+    true};
+
+struct Inputs {
+  DensityInput density;
+  std::optional<std::string> library;
+  bool search = false;
+  TerrainInput terrain;
+  std::string soil = "loam";
+  std::string machine = "zx120";
+  SimulatorInputs simulator;
+  std::optional<double> cell_size;
+  SearchInputs dig_search;
+  MotionInputs motion;
+  Plots plots;
+  Maps maps;
+  std::optional<std::string> report;
+};
+
+SearchUse use_of(const Inputs& inputs) {
+  if (inputs.search) return SearchUse::all;
+  return inputs.terrain.cloud ? SearchUse::start_only : SearchUse::none;
+}
+
+/// Whether any dig is simulated; a density from a file mostly has an error.
+bool simulates(const Inputs& inputs) {
+  const double sd = inputs.density.sd.value_or(inputs.density.file ? 1.0 : 0.0);
+  return use_of(inputs) != SearchUse::none || sd > 0.0 || !is_default(inputs.simulator);
+}
+
+void declare(Arguments& arguments, Inputs& inputs) {
+  declare_density(arguments, inputs.density);
+  arguments.file(
+      "library", inputs.library,
+      "path library (default: that of machine-kit, or the shipped one, of machine, soil and goal)");
+  arguments.flag("search", inputs.search, "search for the path instead of looking it up");
+  declare_terrain(arguments, inputs.terrain);
+  arguments.soil(inputs.soil);
+  arguments.machine(inputs.machine);
+  declare_simulator(arguments, inputs.simulator);
+  arguments.only_if({[&inputs] { return simulates(inputs); },
+                     "nothing is simulated: a library has the digs of level ground"},
+                    [&] { declare_cell(arguments, inputs.cell_size); });
+  declare_search(arguments, inputs.dig_search, [&inputs] { return use_of(inputs); });
+  declare_motion(arguments, inputs.motion);
+  const Arguments::Use searches = {[&inputs] { return inputs.search; }, "nothing is searched"};
+  declare_plots(
+      arguments, inputs.plots,
+      names_of(plan_figures(searches, [&inputs] { return machine_named(inputs.machine); })));
+  declare_maps(arguments, inputs.maps, plan_map_names());
+  arguments.report(inputs.report);
+}
+
+PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
+                       Console& console) {
+  PlanOptions options;
+  options.method = inputs.search ? PlanMethod::search : PlanMethod::library;
+  options.search = search_options(inputs.dig_search, machine, use_of(inputs), console);
+  if (inputs.library) {
+    options.library = std::make_shared<PathLibrary>(load_path_library(*inputs.library));
+  } else {
+    options.library = kit_library(inputs.machine, machine, soil.name,
+                                  inputs.dig_search.goal.numbers, options.search.objective);
+  }
+  options.simulator = simulator_of(inputs.simulator, console);
+  options.cell_size = inputs.cell_size;
+  return options;
+}
+
+Outcome work(const Inputs& inputs, Console& console) {
+  const Stopwatch watch;
+  check(inputs.density);
+  check(inputs.dig_search);
+  const GroundDensity density = density_of(inputs.density);
+  const Machine machine = machine_named(inputs.machine);
+  const SoilKind soil = soil_named(inputs.soil);
+  const Site site = make_site(inputs.terrain, planning_extent(machine),
+                              inputs.cell_size.value_or(usual_cell(machine)));
+  const PlanOptions options = options_of(inputs, machine, soil, console);
+  const Site area = motion_ground(inputs.motion, machine, inputs.terrain, options.search.objective);
+  DigPlan plan = naming_options(search_option_names, [&] {
+    return inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
+                                : plan_dig(machine, soil, density, options);
+  });
+  Outcome outcome;
+  outcome.stopped_early = plan.stopped;
+  outcome.trustworthy = plan.trustworthy && plan.reason.empty();
+  outcome.warnings = plan_warnings(plan, inputs.density, inputs.terrain.cloud.has_value());
+  for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), site.warnings}) {
+    outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
+  }
+  outcome.lines = plan_lines(plan, density, soil.name, options.search.objective);
+  outcome.json = plan_json(plan, density, options.search.objective);
+  outcome.json.update({{"trustworthy", outcome.trustworthy},
+                       {"soil", soil.name},
+                       {"machine", machine.name},
+                       {"simulator", options.simulator.word},
+                       {"wall_time_s", watch.seconds()}});
+  if (inputs.search) outcome.json["search"] = search_settings_json(machine, options.search);
+  const PlanSite dug = {soil, density.percent, site.ground, options.simulator};
+  write_motion(inputs.motion, {machine, area, plan, options.search.objective}, outcome);
+  if (plan.dig && inputs.report) plan.trajectory = dig_motion(inputs.motion, machine, plan);
+  draw_plan(inputs.plots, inputs.report, {machine, plan, dug, options.search}, outcome);
+  write_maps(
+      inputs.maps, [&] { return plan_maps(machine, plan, dug); }, outcome);
+  return outcome;
+}
+
+}  // namespace
+}  // namespace excavplan::tools
+
+int main(int argc, char** argv) {
+  using namespace excavplan::tools;
+  return tool_main(argc, argv, about, declare, work);
+}

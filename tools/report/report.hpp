@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frame/page.hpp"
+#include "report/report_scene.hpp"
+
+/// @file
+/// The page that --report writes (docs/report.md).
+
+namespace excavplan::tools {
+
+/// What a tool adds to its outcome for a page about it.
+struct Report {
+  std::string title;
+  std::vector<std::string> headline;  ///< keys of the result that come first, "cycle.energy_kj"
+  std::string plot;          ///< SVG; on paper and where nothing can be drawn in three dimensions
+  bool plot_always = false;  ///< the plot shows what nothing else on the page does
+  ReportScene scene = {};
+  std::string fault = {};  ///< "The dig stalled."; empty if nothing failed
+  std::string note = {};   ///< what ground and loads of the scene are
+};
+
+/// One page of HTML with all that it needs inside: it loads nothing and runs no script but its own,
+/// whatever the texts in it. Equal arguments give equal bytes.
+/// @throws Error (bad_file) if data/report cannot be read
+std::string html_page(const Report& report, const ReportedRun& run);
+
+/// The page of a report, for Outcome::page.
+Page page_of(Report report, const std::string& file);
+
+}  // namespace excavplan::tools

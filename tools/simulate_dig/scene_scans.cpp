@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate_dig/scene_scans.hpp"
+
+#include <utility>
+
+#include <excavplan/clouds/cloud.hpp>
+
+namespace excavplan::tools {
+namespace {
+
+/// One camera's place is that of the scan.
+void write_scan(const std::optional<std::string>& file, std::vector<Eigen::Vector3d> points,
+                const std::vector<CameraPlace>& places) {
+  if (!file) return;
+  Cloud cloud;
+  if (places.size() == 1) cloud.sensor_origin = places.front().position;
+  cloud.points = std::move(points);
+  cloud.width = cloud.points.size();
+  write_cloud(*file, cloud, cloud_format_of_name(*file));
+}
+
+}  // namespace
+
+void declare_scans(Arguments& arguments, SceneScanInputs& inputs) {
+  arguments.output("before", inputs.before,
+                   "write a depth-camera scan of the ground before the dig");
+  arguments.output("after", inputs.after, "write a depth-camera scan after the dig");
+  arguments.option("camera", inputs.places,
+                   "place of a camera of the scans and point it faces; repeated for several "
+                   "(default: one over the dig and one over the heap)");
+  arguments.only_if({[&inputs] { return inputs.any(); }, "no scans are written"}, [&] {
+    arguments.option("noise", inputs.camera.noise, Quantity::length,
+                     "depth noise of the scans at 1 m; grows with range squared");
+  });
+}
+
+void check_scans(const SceneScanInputs& inputs) {
+  if (!inputs.places.empty() && !inputs.any()) {
+    usage_error("--camera needs --before or --after");
+  }
+  for (const auto& file : {inputs.before, inputs.after}) {
+    if (file) cloud_format_of_name(*file);
+  }
+}
+
+void write_scans(const SceneScanInputs& inputs, const DigScene& scene, std::uint64_t seed) {
+  if (!inputs.any()) return;
+  SceneScans scans = naming_options({{"the camera at", "--camera: the one at"}}, [&] {
+    return scan_scene(scene, inputs.camera, seed, inputs.places);
+  });
+  write_scan(inputs.before, std::move(scans.before), inputs.places);
+  write_scan(inputs.after, std::move(scans.after), inputs.places);
+}
+
+}  // namespace excavplan::tools
