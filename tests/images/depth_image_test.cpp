@@ -265,14 +265,14 @@ TEST_F(DepthPng, WhatIsWrongWithRightSumsIsRefusedInSilence) {
     EXPECT_NE(damage(png_with(header, flipped)), "") << i;
     EXPECT_NE(damage(png_with(header, packed.substr(0, i))), "") << i;
   }
-  EXPECT_EQ(damage(png_with(header, packed + "x")), "damaged pixels");
-  EXPECT_EQ(damage(png_with(header_of(3, 3, kind_), packed)), "damaged pixels");
-  EXPECT_EQ(damage(png_with(header_of(2, 2, kind_), packed)), "damaged pixels");
-  EXPECT_EQ(damage(png_with(header_of(3, 0, kind_), packed)), "a damaged header");
-  EXPECT_EQ(damage(png_with(header_of(3, 2, {16, 0, 1, 0, 0}), packed)), "a damaged header");
-  EXPECT_EQ(damage(png_with(header_of(3, 2, {16, 0, 0, 0, 2}), packed)), "a damaged header");
+  EXPECT_EQ(damage(png_with(header, packed + "x")), "IDAT: Extra compressed data");
+  EXPECT_EQ(damage(png_with(header_of(3, 3, kind_), packed)), "Not enough image data");
+  EXPECT_EQ(damage(png_with(header_of(2, 2, kind_), packed)), "IDAT: Too much image data");
+  EXPECT_EQ(damage(png_with(header_of(3, 0, kind_), packed)), "Invalid IHDR data");
+  EXPECT_EQ(damage(png_with(header_of(3, 2, {16, 0, 1, 0, 0}), packed)), "Invalid IHDR data");
+  EXPECT_EQ(damage(png_with(header_of(3, 2, {16, 0, 0, 0, 2}), packed)), "Invalid IHDR data");
   const string palette = test::png_chunk("PLTE" + string(6, 'x'));
-  EXPECT_EQ(damage(png_with(header, packed, palette)), "a chunk 'PLTE'");
+  EXPECT_EQ(damage(png_with(header, packed, palette)), "PLTE: ignored in grayscale PNG");
 }
 
 /// A zlib stream of two rows of 258 black pixels, 1034 zeros: 776 of them in a stored block, the
@@ -297,13 +297,14 @@ string black_rows(const string& zlib_header) {
 TEST_F(DepthPng, AStreamKeepsToTheWindowThatItStates) {
   const string header = header_of(258, 2, kind_);
   EXPECT_EQ(said(png_with(header, black_rows("\x78\x01"))), "no error") << "32 KiB";
-  EXPECT_EQ(damage(png_with(header, black_rows("\x08\x1d"))), "damaged pixels") << "256 bytes";
+  EXPECT_EQ(damage(png_with(header, black_rows("\x08\x1d"))), "IDAT: invalid distance too far back")
+      << "256 bytes";
 }
 
 TEST_F(DepthPng, AnEndWithDataIsRefused) {
   const string png = whole_.substr(0, whole_.size() - 12);
   EXPECT_EQ(said(png + test::png_chunk("IEND")), "no error");
-  EXPECT_EQ(damage(png + test::png_chunk("IENDx")), "an end with data");
+  EXPECT_EQ(damage(png + test::png_chunk("IENDx")), "IEND: invalid");
 }
 
 TEST_F(DepthPng, ChunksThatAreNotNeededDoNotMatter) {
@@ -326,7 +327,7 @@ TEST_F(DepthPng, PixelsBeyondTheCeilingAreRefusedBeforeTheyAreUnpacked) {
   const string limit = " pixels, expected at most 65535 a side and 16777216 in all";
   EXPECT_EQ(said(png_with(header_of(4097, 4096, kind_), "")), "found 4097 x 4096" + limit);
   EXPECT_EQ(said(png_with(header_of(65536, 1, kind_), "")), "found 65536 x 1" + limit);
-  EXPECT_EQ(damage(png_with(header_of(4096, 4096, kind_), "")), "damaged pixels");
+  EXPECT_EQ(damage(png_with(header_of(4096, 4096, kind_), "")), "Not enough image data");
   write(whole_);
   const std::vector<string> many(10000, path_);
   EXPECT_NO_THROW(average_depth_images({path_, path_}, camera_));
