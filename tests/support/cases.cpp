@@ -4,12 +4,18 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <string>
 
 #include <Eigen/Core>
 
 namespace excavplan::test {
+
+int tried_of(int all) {
+  const char* const asked = std::getenv("EXCAVPLAN_TESTS");
+  return asked != nullptr && std::string(asked) == "all" ? all : all / 10;
+}
 
 int drawn_int(Random& random, int least, int most) {
   return least + static_cast<int>(random.index(static_cast<std::uint64_t>(most - least + 1)));

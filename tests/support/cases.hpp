@@ -20,7 +20,11 @@
 
 namespace excavplan::test {
 
-constexpr int many = 10000;
+/// As many of the cases as are tried: all with EXCAVPLAN_TESTS=all in the environment, as the scripts
+/// of scripts/check.d have it, else a tenth.
+int tried_of(int all);
+
+inline const int many = tried_of(10000);
 
 /// Calls `body` with the random numbers of each case until one fails, and names that case.
 template <typename Body>

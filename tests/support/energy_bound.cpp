@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <excavplan/soil/soil.hpp>
+
 namespace excavplan::test {
 
 double share_of_lifting(const Machine& machine, const DigPath& path, const DigResult& result) {
