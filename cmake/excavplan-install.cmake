@@ -10,13 +10,17 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/excavplan)
 set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH pkgconfig_prefix ${CMAKE_INSTALL_PREFIX}/${pkgconfig_dir} ${CMAKE_INSTALL_PREFIX})
 
-# excavplan_install(NAME SUMMARY text REQUIRES_PUBLIC packages... REQUIRES packages... LINKS flags...):
-# library, headers, CMake targets and pkg-config file of one component. Compiling against it needs
-# the pkg-config packages REQUIRES_PUBLIC, linking also REQUIRES and LINKS.
+# excavplan_install(NAME SUMMARY text REQUIRES_PUBLIC packages... REQUIRES packages... LINKS flags...
+# RUNTIME component): library, headers, CMake targets and pkg-config file of one component. Compiling
+# against it needs the pkg-config packages REQUIRES_PUBLIC, linking also REQUIRES and LINKS. A shared
+# library is installed with RUNTIME, by default Runtime.
 function(excavplan_install name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SUMMARY" "REQUIRES_PUBLIC;REQUIRES;LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SUMMARY;RUNTIME" "REQUIRES_PUBLIC;REQUIRES;LINKS")
+  if(NOT arg_RUNTIME)
+    set(arg_RUNTIME Runtime)
+  endif()
   install(TARGETS excavplan_${name} EXPORT excavplan-${name}-targets
-    LIBRARY COMPONENT Runtime NAMELINK_COMPONENT Development
+    LIBRARY COMPONENT ${arg_RUNTIME} NAMELINK_COMPONENT Development
     ARCHIVE COMPONENT Development
     FILE_SET HEADERS COMPONENT Development)
   install(EXPORT excavplan-${name}-targets NAMESPACE excavplan:: DESTINATION ${package_dir}
@@ -52,24 +56,36 @@ endif()
 excavplan_install(recordings
   SUMMARY "Scans from rosbag2, MCAP and ROS 1 recordings"
   REQUIRES_PUBLIC excavplan-clouds LINKS ${recordings_links})
-if(EXCAVPLAN_SURVEY)
-  excavplan_install(survey
-    SUMMARY "Density from scans, survey planning and depth images"
-    REQUIRES_PUBLIC excavplan-clouds
+excavplan_install(images
+  SUMMARY "Clouds from depth images"
+  REQUIRES_PUBLIC excavplan-clouds REQUIRES libpng)
+excavplan_install(survey
+  SUMMARY "Density from scans, and experiments"
+  REQUIRES_PUBLIC excavplan-clouds)
+if(TARGET excavplan_paper)
+  set(runtime Runtime)
+  if(EXCAVPLAN_PAPER_APART)
+    set(runtime Paper)
+  endif()
+  excavplan_install(paper
+    SUMMARY "The paper's own way to measure volumes"
+    REQUIRES_PUBLIC excavplan-survey
     REQUIRES pcl_filters pcl_search pcl_octree pcl_common
-    LINKS -lopencv_imgcodecs -lopencv_core -lz)
-  excavplan_install(robot
-    SUMMARY "The dig cycle of a robot from its messages"
-    REQUIRES_PUBLIC excavplan-survey REQUIRES excavplan-recordings excavplan-results)
+    RUNTIME ${runtime})
 endif()
 excavplan_install(results
   SUMMARY "Results as JSON, and as maps of the ground"
   REQUIRES_PUBLIC excavplan-survey excavplan-recordings)
-if(TARGET excavplan_figures)
-  excavplan_install(figures
-    SUMMARY "Results as figures: SVG, PNG and PDF"
-    REQUIRES_PUBLIC excavplan-results REQUIRES cairo fontconfig)
+set(requires "")
+if(excavplan_with_cairo)
+  set(requires cairo fontconfig)
 endif()
+excavplan_install(figures
+  SUMMARY "Results as figures"
+  REQUIRES_PUBLIC excavplan-results REQUIRES ${requires})
+excavplan_install(robot
+  SUMMARY "The dig cycle of a robot from its messages"
+  REQUIRES_PUBLIC excavplan-survey REQUIRES excavplan-recordings excavplan-results)
 
 configure_package_config_file(cmake/excavplan-config.cmake.in excavplan-config.cmake
   INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_DATADIR)
@@ -78,7 +94,6 @@ install(
   FILES
     ${PROJECT_BINARY_DIR}/excavplan-config.cmake
     ${PROJECT_BINARY_DIR}/excavplan-config-version.cmake
-    cmake/excavplan-opencv.cmake
   DESTINATION ${package_dir} COMPONENT Development)
 install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/excavplan COMPONENT Runtime)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT Runtime)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Debian packages by `cpack` in the build folder: excavplan (tools, data, shared libraries),
-# libexcavplan-dev (headers, libraries to link, CMake and pkg-config files), python3-excavplan and
-# excavplan-doc.
+# excavplan-paper (what needs PCL), libexcavplan-dev (headers, libraries to link, CMake and pkg-config
+# files), python3-excavplan and excavplan-doc.
 # scripts/packages makes them in a way that gives the same bytes again.
 
 set(CPACK_GENERATOR DEB)
@@ -29,12 +29,23 @@ set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
 Estimates the density of the ground from scans of a dig and plans the next dig of an excavator.
 With machines, soils, laws and path libraries.")
 
+if(TARGET estimate-density-paper)
+  list(APPEND CPACK_COMPONENTS_ALL Paper)
+  set(CPACK_DEBIAN_PAPER_PACKAGE_NAME excavplan-paper)
+  set(CPACK_DEBIAN_PAPER_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PAPER_PACKAGE_DEPENDS "excavplan (= ${PROJECT_VERSION})")  # data
+  set(CPACK_COMPONENT_PAPER_DESCRIPTION
+"soil-adaptive planning of excavation - the paper's own method
+estimate-density-paper, which is estimate-density with --method paper, by the Point Cloud Library.")
+endif()
+
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libexcavplan-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "excavplan (= ${PROJECT_VERSION}), "  # data
-  "libeigen3-dev, libnlopt-dev, libnlopt-cxx-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, libbz2-dev")
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS  # excavplan::survey
-  "libpcl-dev, libopencv-core-dev, libopencv-imgcodecs-dev, zlib1g-dev")
+  "libeigen3-dev, libnlopt-dev, libnlopt-cxx-dev, libpng-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, "
+  "libbz2-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS  # excavplan::figures, excavplan::paper
+  "libcairo2-dev, libfontconfig-dev, libpcl-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "soil-adaptive planning of excavation - C++ development files
 Headers, static libraries, CMake and pkg-config files.")

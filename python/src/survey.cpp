@@ -4,6 +4,7 @@
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/clouds/cloud.hpp>
 #include <excavplan/density/density_estimate.hpp>
+#include <excavplan/paper/paper_change.hpp>
 #include <excavplan/scans/scan_pose.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
 
@@ -326,6 +327,9 @@ DensityEstimate estimated(const py::object& before, const py::object& after, con
   DensityOptions options;
   options.method = of_word<VolumeMethod>(
       "the method", method, {{"surface", VolumeMethod::surface}, {"paper", VolumeMethod::paper}});
+#ifdef EXCAVPLAN_PAPER
+  options.paper = paper_change();
+#endif
   options.cell_size = cell_size;
   options.registered = registered;
   options.change.dig_area = dig_area;

@@ -82,7 +82,7 @@ constexpr std::array code_rows = {
     CodeRow{WarningCode::no_blocks, "no_blocks", Trust::kept},
     CodeRow{WarningCode::no_body, "no_body", Trust::kept},
     CodeRow{WarningCode::no_cycle, "no_cycle", Trust::kept},
-    CodeRow{WarningCode::no_dig, "no_dig", Trust::kept},
+    CodeRow{WarningCode::no_dig, "no_dig", Trust::ended},
     CodeRow{WarningCode::no_dumped_soil, "no_dumped_soil", Trust::kept},
     CodeRow{WarningCode::no_finite_points, "no_finite_points", Trust::kept},
     CodeRow{WarningCode::no_hole_found, "no_hole_found", Trust::kept},

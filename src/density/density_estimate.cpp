@@ -18,7 +18,6 @@
 #include "change/cover.hpp"
 #include "density/density_of_volumes.hpp"
 #include "ground/too_few_cells.hpp"
-#include "paper/paper_change.hpp"
 #include "scans/scan_checks.hpp"
 #include "scans/scan_pairs.hpp"
 #include "soil/density_forms.hpp"
@@ -135,9 +134,9 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
 
 VolumeChange paper_volumes_of(const OutlinedScans& seen, const VolumeChange& surface,
                               const DensityOptions& options) {
-  const PaperScans scans = {seen.dig.scans, seen.dump ? &seen.dump->scans : nullptr};
-  const PaperSettings settings = {options.change, seen.cell_size, options.paper};
-  return about(seen, [&] { return paper_change(scans, surface, settings); });
+  const SurveyedDig dig = {seen.dig.scans, seen.dump ? &seen.dump->scans : nullptr, surface,
+                           options.change, seen.cell_size};
+  return about(seen, [&] { return options.paper(dig); });
 }
 
 // ---- Whether the scans can be what they are taken for ------------------------------------------
@@ -284,11 +283,20 @@ void check(const DensityLaw& law, const DensityOptions& options) {
   }
 }
 
+void require_volumes(const DensityOptions& options, std::initializer_list<VolumeMethod> methods) {
+  const bool has_paper =
+      std::find(methods.begin(), methods.end(), VolumeMethod::paper) != methods.end();
+  require(!has_paper || options.paper,
+          "VolumeMethod::paper needs DensityOptions::paper, the volumes by paper_change() of "
+          "excavplan::paper, which is built where PCL is found (libpcl-dev)");
+}
+
 /// The method, in the order of the paper, for each way to find the volumes.
 std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& law,
                                        const DensityOptions& options,
                                        std::initializer_list<VolumeMethod> methods) {
   check(law, options);
+  require_volumes(options, methods);
   const OutlinedScans seen = outline_scans(scans, options);  // extent, density of points, cell
   std::vector<Warning> doubts = doubts_about(seen);
   Surfaces surfaces;

@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drawing/render.hpp"
 
-#include <cairo-pdf.h>
-#include <cairo.h>
-#include <fontconfig/fontconfig.h>
-
 #include <charconv>
 #include <filesystem>
 #include <memory>
 #include <new>
+
+#ifdef EXCAVPLAN_WITH_CAIRO
+#include <cairo-pdf.h>
+#include <cairo.h>
+#include <fontconfig/fontconfig.h>
+#endif
 
 #include <excavplan/base/error.hpp>
 
@@ -19,6 +21,11 @@
 namespace excavplan {
 namespace {
 
+std::string ending_of(const std::string& file) {
+  return small_letters(std::filesystem::path(file).extension().string());
+}
+
+#ifdef EXCAVPLAN_WITH_CAIRO
 constexpr double dots_per_inch = 300.0;
 
 struct Free {
@@ -34,10 +41,6 @@ void require(cairo_status_t status) {
   if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
   throw Error(ErrorKind::bad_input,
               std::string("the plot cannot be drawn: ") + cairo_status_to_string(status));
-}
-
-std::string ending_of(const std::string& file) {
-  return small_letters(std::filesystem::path(file).extension().string());
 }
 
 double channel(const std::string& colour, std::size_t place) {
@@ -186,6 +189,25 @@ std::string pdf(const Drawing& drawing) {
   return content;
 }
 
+// Without a font, cairo draws one of its own without most letters.
+void require_fonts() {
+  const FcFontSet* fonts = FcConfigGetFonts(nullptr, FcSetSystem);
+  if (fonts != nullptr && fonts->nfont > 0) return;
+  throw Error(ErrorKind::bad_input,
+              "--plot: no font is installed, which PNG and PDF need for their texts; install one, "
+              "such as fonts-dejavu-core, or write .svg");
+}
+#else
+[[noreturn]] void require_fonts() {
+  throw Error(
+      ErrorKind::bad_input,
+      "--plot: PNG and PDF need cairo, which this program was built without; build it where "
+      "pkg-config, libcairo2-dev and libfontconfig-dev are installed, or write .svg");
+}
+std::string png(const Drawing& /*drawing*/) { require_fonts(); }
+std::string pdf(const Drawing& /*drawing*/) { require_fonts(); }
+#endif
+
 }  // namespace
 
 const std::vector<std::string>& image_endings() {
@@ -193,19 +215,13 @@ const std::vector<std::string>& image_endings() {
   return endings;
 }
 
-// Without a font, cairo draws one of its own without most letters.
 void require_fonts(const std::string& file) {
-  if (ending_of(file) == ".svg") return;
-  const FcFontSet* fonts = FcConfigGetFonts(nullptr, FcSetSystem);
-  if (fonts != nullptr && fonts->nfont > 0) return;
-  throw Error(ErrorKind::bad_input,
-              "--plot: no font is installed, which PNG and PDF need for their texts; install one, "
-              "such as fonts-dejavu-core, or write .svg");
+  if (ending_of(file) != ".svg") require_fonts();
 }
 
 std::string image_of(const Drawing& drawing, const std::string& file) {
   if (ending_of(file) == ".svg") return to_svg(drawing);
-  require_fonts(file);
+  require_fonts();
   return ending_of(file) == ".png" ? png(drawing) : pdf(drawing);
 }
 

@@ -16,7 +16,8 @@ namespace excavplan {
 const std::vector<std::string>& image_endings();
 
 /// For a check before long work.
-/// @throws Error (bad_input) if a file of this name is PNG or PDF and the system has no font
+/// @throws Error (bad_input) if a file of this name is PNG or PDF and the system has no font or the
+/// library was built without cairo
 void require_fonts(const std::string& file);
 
 /// The content of the file of a name with one of image_endings(), in letters of either size. PNG

@@ -7,9 +7,6 @@
 #include <limits>
 #include <string>
 
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
@@ -38,22 +35,6 @@ void require_valid(const DepthIntrinsics& intrinsics) {
           "> min_depth");
 }
 
-cv::Mat read_depth_image(const std::string& path) {
-  std::string content = read_depth_png(path);
-  cv::Mat image;
-  try {
-    // not imread(), which writes to the console
-    const cv::Mat bytes(1, static_cast<int>(content.size()), CV_8UC1, content.data());
-    image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception& e) {
-    throw Error(ErrorKind::bad_file, path + ": cannot be decoded: " + e.what());
-  }
-  if (image.empty() || image.type() != CV_16UC1) {
-    throw Error(ErrorKind::bad_file, path + ": damaged PNG image");
-  }
-  return image;
-}
-
 /// Refuses bad intrinsics once, then turns counts into depths and pixels into points.
 class Camera {
  public:
@@ -68,7 +49,7 @@ class Camera {
     return {(u - intrinsics_.cx) / intrinsics_.fx * z, (v - intrinsics_.cy) / intrinsics_.fy * z,
             z};
   }
-  Eigen::Vector3d point_of_counts(int u, int v, double counts) const {
+  Eigen::Vector3d point_of_counts(double u, double v, double counts) const {
     return point(u, v, counts * intrinsics_.depth_unit);
   }
 
@@ -76,33 +57,35 @@ class Camera {
   DepthIntrinsics intrinsics_;
 };
 
-void require_size(const cv::Mat& image, const std::string& path, const cv::Size& size,
-                  const std::string& as_in) {
-  if (image.size() == size) return;
-  throw Error(ErrorKind::bad_file, path + ": found " + std::to_string(image.cols) + " x " +
-                                       std::to_string(image.rows) + " pixels, expected " +
-                                       std::to_string(size.width) + " x " +
-                                       std::to_string(size.height) + " as in " + as_in);
+void require_size(const DepthPng& image, const std::string& path, std::size_t width,
+                  std::size_t height, const std::string& as_in) {
+  if (image.width == width && image.height == height) return;
+  throw Error(ErrorKind::bad_file, path + ": found " + std::to_string(image.width) + " x " +
+                                       std::to_string(image.height) + " pixels, expected " +
+                                       std::to_string(width) + " x " + std::to_string(height) +
+                                       " as in " + as_in);
 }
 
-std::vector<cv::Mat> read_frames(const std::vector<std::string>& paths,
-                                 const DepthIntrinsics& intrinsics) {
+std::vector<DepthPng> read_frames(const std::vector<std::string>& paths,
+                                  const DepthIntrinsics& intrinsics) {
   constexpr std::size_t most_frames = 10000;
   constexpr std::size_t most_pixels = 500000000;  // of all frames, which are held at once; ours
   if (paths.empty() || paths.size() > most_frames) {
     throw Error(ErrorKind::bad_input,
                 "depth images: " + std::to_string(paths.size()) + " frames, must be 1 to 10000");
   }
-  std::vector<cv::Mat> frames;
+  std::vector<DepthPng> frames;
   for (const std::string& path : paths) {
-    frames.push_back(read_depth_image(path));
-    require_size(frames.back(), path, frames.front().size(), paths.front());
+    frames.push_back(read_depth_png(path));
+    const DepthPng& first = frames.front();
+    require_size(frames.back(), path, first.width, first.height, paths.front());
     if (intrinsics.width > 0) {
-      require_size(frames.back(), path, {intrinsics.width, intrinsics.height}, "the intrinsics");
+      require_size(frames.back(), path, static_cast<std::size_t>(intrinsics.width),
+                   static_cast<std::size_t>(intrinsics.height), "the intrinsics");
     }
-    if (paths.size() * frames.front().total() > most_pixels) {
+    if (paths.size() * first.pixels() > most_pixels) {
       throw Error(ErrorKind::bad_input, "depth images: " + std::to_string(paths.size()) +
-                                            " frames of " + std::to_string(frames.front().total()) +
+                                            " frames of " + std::to_string(first.pixels()) +
                                             " pixels, must be at most " +
                                             std::to_string(most_pixels) + " in all");
     }
@@ -119,27 +102,28 @@ Cloud depth_image_to_cloud(const std::string& image_path, const DepthIntrinsics&
 AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
                                    const DepthIntrinsics& intrinsics) {
   const Camera camera(intrinsics);
-  const std::vector<cv::Mat> frames = read_frames(image_paths, intrinsics);
+  const std::vector<DepthPng> frames = read_frames(image_paths, intrinsics);
+  const DepthPng& first = frames.front();
   AveragedDepth average;
-  average.cloud.width = static_cast<std::size_t>(frames.front().cols);
-  average.cloud.height = static_cast<std::size_t>(frames.front().rows);
-  average.cloud.points.reserve(frames.front().total());
-  average.frames.reserve(frames.front().total());
+  average.cloud.width = first.width;
+  average.cloud.height = first.height;
+  average.cloud.points.reserve(first.pixels());
+  average.frames.reserve(first.pixels());
   std::vector<double> counts;
-  for (int row = 0; row < frames.front().rows; ++row) {
-    for (int column = 0; column < frames.front().cols; ++column) {
-      counts.clear();
-      for (const cv::Mat& frame : frames) {
-        const std::uint16_t count = frame.ptr<std::uint16_t>(row)[column];
-        if (camera.sees(count)) counts.push_back(count);
-      }
-      const RobustMean mean = robust_mean(counts, 1.0);
-      const bool is_known =
-          mean.count > 0 && 2 * static_cast<std::size_t>(mean.count) >= frames.size();
-      average.frames.push_back(is_known ? mean.count : 0);
-      average.cloud.points.push_back(is_known ? camera.point_of_counts(column, row, mean.value)
-                                              : Eigen::Vector3d::Constant(unknown));
+  for (std::size_t pixel = 0; pixel < first.pixels(); ++pixel) {
+    counts.clear();
+    for (const DepthPng& frame : frames) {
+      const std::uint16_t count = frame.count(pixel);
+      if (camera.sees(count)) counts.push_back(count);
     }
+    const RobustMean mean = robust_mean(counts, 1.0);
+    const bool is_known =
+        mean.count > 0 && 2 * static_cast<std::size_t>(mean.count) >= frames.size();
+    const auto column = static_cast<double>(pixel % first.width);
+    const auto row = static_cast<double>(pixel / first.width);
+    average.frames.push_back(is_known ? mean.count : 0);
+    average.cloud.points.push_back(is_known ? camera.point_of_counts(column, row, mean.value)
+                                            : Eigen::Vector3d::Constant(unknown));
   }
   return average;
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include "paper/paper_change.hpp"
+#include <excavplan/paper/paper_change.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -103,26 +103,29 @@ Inside inside_but(const std::optional<Rectangle>& area, const VolumeChange& surf
   };
 }
 
+VolumeChange measured(const SurveyedDig& dig, const PaperOptions& options) {
+  const Areas areas = areas_of(dig.surface, dig.options, !dig.dump);
+  CloudPair hole;
+  CloudPair heap;
+  if (dig.dump) {
+    hole = levelled(dig.scans, inside_of(areas.dig));
+    heap = levelled(*dig.dump, inside_of(areas.dump));
+  } else {
+    hole = levelled(dig.scans, inside_but(areas.dig, dig.surface, false));
+    heap = areas.dump ? levelled(dig.scans, inside_but(areas.dump, dig.surface, true))
+                      : CloudPair{hole.before, hole.before};  // nothing rises in it
+  }
+  VolumeChange change = paper_volumes(hole, heap, dig.cell_size, options);
+  change.zones = dig.surface.zones;
+  change.areas = dig.surface.areas;
+  change.warnings = dig.surface.warnings;
+  return change;
+}
+
 }  // namespace
 
-VolumeChange paper_change(const PaperScans& scans, const VolumeChange& surface,
-                          const PaperSettings& settings) {
-  const Areas areas = areas_of(surface, settings.change, !scans.dump);
-  CloudPair dig;
-  CloudPair dump;
-  if (scans.dump) {
-    dig = levelled(scans.dig, inside_of(areas.dig));
-    dump = levelled(*scans.dump, inside_of(areas.dump));
-  } else {
-    dig = levelled(scans.dig, inside_but(areas.dig, surface, false));
-    dump = areas.dump ? levelled(scans.dig, inside_but(areas.dump, surface, true))
-                      : CloudPair{dig.before, dig.before};  // nothing rises in it
-  }
-  VolumeChange change = paper_volumes(dig, dump, settings.leaf, settings.paper);
-  change.zones = surface.zones;
-  change.areas = surface.areas;
-  change.warnings = surface.warnings;
-  return change;
+OtherVolumes paper_change(const PaperOptions& options) {
+  return [options](const SurveyedDig& dig) { return measured(dig, options); };
 }
 
 }  // namespace excavplan

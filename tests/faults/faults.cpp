@@ -19,7 +19,7 @@ namespace excavplan::test {
 namespace {
 
 struct Count {
-  int runs = 0, right = 0, refused = 0, foreign = 0, findings = 0;
+  int runs = 0, right = 0, refused = 0, findings = 0;
   double longest = 0.0;  ///< [s]
 };
 
@@ -140,21 +140,11 @@ class Faults {
     report(job, "signals", count);
   }
 
-  /// OpenCV loads GDAL at its first image, which crashes, or writes lines of its own, if an
-  /// allocation fails while it starts.
-  static bool is_of_gdal(const Job& job, const std::string& what, const JobResult& result) {
-    const bool fails = WIFSIGNALED(result.status) || result.err.find("CPL") != std::string::npos;
-    return job.tool == "depth-to-cloud" && what.rfind("malloc", 0) == 0 && fails && !result.hung;
-  }
-
   void judge(const Job& job, const std::string& what, const JobResult& result, Count& count) {
     ++count.runs;
     ++(exit_code(result.status) == 0 ? count.right : count.refused);
     count.longest = std::max(count.longest, result.seconds);
-    const bool is_foreign = is_of_gdal(job, what, result);
-    count.foreign += is_foreign ? 1 : 0;
-    const std::string fault = is_foreign ? folder_.fault_in_files(job, whole_, false)
-                                         : folder_.fault_in(job, result, whole_);
+    const std::string fault = folder_.fault_in(job, result, whole_);
     if (!fault.empty()) found(job, what, fault, count);
     folder_.clear_leftovers(job);
   }
@@ -175,9 +165,8 @@ class Faults {
     runs_ += count.runs;
     if (count.runs == 0) return;
     std::printf("%-20s %-10s %5d runs: %5d done, %5d refused, %d findings, at most %.2f s",
-                job.tool.c_str(), kind.c_str(), count.runs, count.right,
-                count.refused - count.foreign, count.findings, count.longest);
-    if (count.foreign > 0) std::printf(", %d by GDAL", count.foreign);
+                job.tool.c_str(), kind.c_str(), count.runs, count.right, count.refused,
+                count.findings, count.longest);
     std::printf("\n");
     std::fflush(stdout);
   }

@@ -61,6 +61,7 @@ TEST(HostileEstimate, OptionsAreRefusedByName) {
   const auto refused = [&](const std::function<void(DensityOptions&)>& spoil, const char* what) {
     DensityOptions options;
     options.threads = 1;
+    options.paper = [](const SurveyedDig& dig) { return dig.surface; };
     spoil(options);
     const auto one = refuses([&] { estimate_density(scans(), law, options); }, what);
     return one ? refuses([&] { estimate_by_both(scans(), law, options); }, what) : one;

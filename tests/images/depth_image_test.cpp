@@ -16,8 +16,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include <excavplan/base/error.hpp>
 #include "base/random.hpp"
@@ -31,11 +29,30 @@ namespace {
 
 using std::string;
 
+/// Counts row by row.
+struct Image {
+  std::uint32_t columns = 0;
+  std::vector<std::uint16_t> counts;
+
+  std::uint16_t& at(std::size_t row, std::size_t column) { return counts[row * columns + column]; }
+  string png() const { return test::png_of(columns, counts); }
+};
+
+/// With its sums right, whatever stands in it.
+string png_with(const string& header, const string& packed, const string& between = "") {
+  return "\x89PNG\r\n\x1a\n" + test::png_chunk("IHDR" + header) + between +
+         test::png_chunk("IDAT" + packed) + test::png_chunk("IEND");
+}
+
+string header_of(std::uint32_t width, std::uint32_t height, const string& kind) {
+  return test::big_endian(width) + test::big_endian(height) + kind;
+}
+
 class DepthImage : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path_); }
 
-  void write(const cv::Mat& image) const { cv::imwrite(path_, image); }
+  void write(const Image& image) const { write(image.png()); }
   void write(const string& content) const { std::ofstream(path_, std::ios::binary) << content; }
   string content() const {
     std::ifstream in(path_, std::ios::binary);
@@ -54,14 +71,10 @@ class DepthImage : public testing::Test {
   DepthIntrinsics camera_{100.0, 200.0, 1.5, 0.5};
 };
 
-cv::Mat depths() {
-  cv::Mat image(2, 3, CV_16UC1, cv::Scalar(0));
-  image.at<std::uint16_t>(0, 0) = 1000;
-  image.at<std::uint16_t>(0, 2) = 2000;
-  image.at<std::uint16_t>(1, 0) = 50;     // too near
-  image.at<std::uint16_t>(1, 1) = 20000;  // just far enough
-  image.at<std::uint16_t>(1, 2) = 20001;  // too far
-  return image;
+Image depths() {
+  return {3,
+          {1000, 0, 2000,       //
+           50, 20000, 20001}};  // too near, just far enough, too far
 }
 
 TEST_F(DepthImage, PixelsBecomePointsOfTheCameraFrame) {
@@ -89,15 +102,14 @@ class DepthFrames : public DepthImage {
   void TearDown() override {
     for (const string& path : paths_) std::filesystem::remove(path);
   }
-  void add(const cv::Mat& image) {
+  void add(const Image& image) {
     paths_.push_back(path_ + std::to_string(paths_.size()) + ".png");
-    cv::imwrite(paths_.back(), image);
+    std::ofstream(paths_.back(), std::ios::binary) << image.png();
   }
-  cv::Mat frame(int depth, double noise, Random& random) const {
-    cv::Mat image(12, 16, CV_16UC1);
-    for (int i = 0; i < 12 * 16; ++i) {
-      image.at<std::uint16_t>(i) =
-          static_cast<std::uint16_t>(std::lround(depth + noise * random.normal()));
+  Image frame(int depth, double noise, Random& random) const {
+    Image image{16, std::vector<std::uint16_t>(16 * 12)};
+    for (std::uint16_t& count : image.counts) {
+      count = static_cast<std::uint16_t>(std::lround(depth + noise * random.normal()));
     }
     return image;
   }
@@ -128,10 +140,10 @@ TEST_F(DepthFrames, NoiseFallsWithTheSquareRootOfTheFrames) {
 TEST_F(DepthFrames, StrayDepthsAreLeftOutAndMostlyUnseenPixelsUnknown) {
   Random random(3);
   for (int i = 0; i < 10; ++i) {
-    cv::Mat image = frame(2000, 2.0, random);
-    if (i < 3) image.at<std::uint16_t>(0, 0) = 9000;  // a bird
-    if (i < 5) image.at<std::uint16_t>(0, 1) = 0;
-    if (i < 6) image.at<std::uint16_t>(0, 2) = 0;
+    Image image = frame(2000, 2.0, random);
+    if (i < 3) image.at(0, 0) = 9000;  // a bird
+    if (i < 5) image.at(0, 1) = 0;
+    if (i < 6) image.at(0, 2) = 0;
     add(image);
   }
   const AveragedDepth average = average_depth_images(paths_, camera_);
@@ -155,8 +167,8 @@ TEST_F(DepthFrames, FramesOfDifferentSizeAreRefused) {
 
 TEST_F(DepthFrames, PointAtAPixelIsTheMedianOfItsNeighboursOnItsRay) {
   Random random(5);
-  cv::Mat image = frame(2000, 0.0, random);
-  image.at<std::uint16_t>(5, 7) = 500;
+  Image image = frame(2000, 0.0, random);
+  image.at(5, 7) = 500;
   add(image);
   const Cloud cloud = depth_image_to_cloud(paths_[0], camera_);
   const Eigen::Vector3d p = point_at_pixel(cloud, camera_, 7.25, 5.0);
@@ -174,10 +186,10 @@ TEST_F(DepthFrames, PointAtAPixelIsTheMedianOfItsNeighboursOnItsRay) {
 
 TEST_F(DepthImage, OtherFilesAreRefused) {
   EXPECT_EQ(image_error(), "cannot be opened: No such file or directory");
-  write(cv::Mat(2, 3, CV_8UC1, cv::Scalar(7)));
+  write(png_with(header_of(3, 2, {8, 0, 0, 0, 0}), test::zlib_stored(string(2 * 4, '\0'))));
   EXPECT_EQ(image_error(),
             "found 8 bits of colour type 0, expected a 16-bit single-channel PNG image");
-  write(cv::Mat(2, 3, CV_16UC3, cv::Scalar(7)));
+  write(png_with(header_of(3, 2, {16, 2, 0, 0, 0}), test::zlib_stored(string(2 * 19, '\0'))));
   EXPECT_EQ(image_error(),
             "found 16 bits of colour type 2, expected a 16-bit single-channel PNG image");
   write(string("VERSION 0.7\nFIELDS x y z\n"));
@@ -188,34 +200,25 @@ TEST_F(DepthImage, OtherFilesAreRefused) {
 }
 
 TEST_F(DepthImage, DamagedFilesAreRefused) {
-  cv::Mat image(64, 64, CV_16UC1);
-  cv::randu(image, 0, 65535);
+  Image image{64, std::vector<std::uint16_t>(64 * 64)};
+  Random random(6);
+  for (std::uint16_t& count : image.counts) count = static_cast<std::uint16_t>(random.index(65536));
   write(image);
   const string whole = content();
   for (const std::size_t size : {whole.size() / 2, whole.size() / 8, std::size_t{20}}) {
     write(whole.substr(0, size));
-    EXPECT_NE(image_error().find(size < 33 ? "not a PNG" : "the end of the file at byte"),
+    EXPECT_NE(image_error().find("the end of the file at byte " + std::to_string(size)),
               string::npos)
         << size;
   }
   string flipped = whole;
   flipped[whole.size() / 2] = static_cast<char>(~flipped[whole.size() / 2]);
   write(flipped);
-  EXPECT_NE(image_error().find("found damage behind byte"), string::npos);
+  EXPECT_NE(image_error().find("found damage before byte"), string::npos);
   string huge = whole;
   huge[16] = huge[20] = '\x7f';
   write(huge);
-  EXPECT_NE(image_error().find("pixels, expected"), string::npos);
-}
-
-/// With its sums right, whatever stands in it.
-string png_with(const string& header, const string& packed, const string& between = "") {
-  return "\x89PNG\r\n\x1a\n" + test::png_chunk("IHDR" + header) + between +
-         test::png_chunk("IDAT" + packed) + test::png_chunk("IEND");
-}
-
-string header_of(std::uint32_t width, std::uint32_t height, const string& kind) {
-  return test::big_endian(width) + test::big_endian(height) + kind;
+  EXPECT_NE(image_error().find("found damage before byte 33 (IHDR: CRC error)"), string::npos);
 }
 
 /// Packed data of a whole image.
@@ -240,6 +243,14 @@ class DepthPng : public DepthImage {
     return at == string::npos ? error : error.substr(0, at);
   }
 
+  /// libpng's words about it; empty if it is not damaged.
+  string damage(const string& content) {
+    const string error = said(content);
+    const auto at = error.find(" (");
+    if (error.rfind("found damage before byte ", 0) != 0 || at == string::npos) return "";
+    return error.substr(at + 2, error.size() - at - 3);
+  }
+
   const string kind_ = {16, 0, 0, 0, 0};
   const string whole_ = test::png_of(3, {1, 2, 3, 4, 5, 6});
 };
@@ -251,17 +262,17 @@ TEST_F(DepthPng, WhatIsWrongWithRightSumsIsRefusedInSilence) {
   for (std::size_t i = 0; i < packed.size(); ++i) {
     string flipped = packed;
     flipped[i] = static_cast<char>(flipped[i] ^ 1);
-    EXPECT_EQ(said(png_with(header, flipped)), "found damaged pixels") << i;
-    EXPECT_EQ(said(png_with(header, packed.substr(0, i))), "found damaged pixels") << i;
+    EXPECT_NE(damage(png_with(header, flipped)), "") << i;
+    EXPECT_NE(damage(png_with(header, packed.substr(0, i))), "") << i;
   }
-  EXPECT_EQ(said(png_with(header, packed + "x")), "found damaged pixels");
-  EXPECT_EQ(said(png_with(header_of(3, 3, kind_), packed)), "found damaged pixels");
-  EXPECT_EQ(said(png_with(header_of(2, 2, kind_), packed)), "found damaged pixels");
-  EXPECT_EQ(said(png_with(header_of(3, 0, kind_), packed)), "found a damaged header");
-  EXPECT_EQ(said(png_with(header_of(3, 2, {16, 0, 1, 0, 0}), packed)), "found a damaged header");
-  EXPECT_EQ(said(png_with(header_of(3, 2, {16, 0, 0, 0, 2}), packed)), "found a damaged header");
+  EXPECT_EQ(damage(png_with(header, packed + "x")), "IDAT: Extra compressed data");
+  EXPECT_EQ(damage(png_with(header_of(3, 3, kind_), packed)), "Not enough image data");
+  EXPECT_EQ(damage(png_with(header_of(2, 2, kind_), packed)), "IDAT: Too much image data");
+  EXPECT_EQ(damage(png_with(header_of(3, 0, kind_), packed)), "Invalid IHDR data");
+  EXPECT_EQ(damage(png_with(header_of(3, 2, {16, 0, 1, 0, 0}), packed)), "Invalid IHDR data");
+  EXPECT_EQ(damage(png_with(header_of(3, 2, {16, 0, 0, 0, 2}), packed)), "Invalid IHDR data");
   const string palette = test::png_chunk("PLTE" + string(6, 'x'));
-  EXPECT_EQ(said(png_with(header, packed, palette)), "found a chunk 'PLTE'");
+  EXPECT_EQ(damage(png_with(header, packed, palette)), "PLTE: ignored in grayscale PNG");
 }
 
 /// A zlib stream of two rows of 258 black pixels, 1034 zeros: 776 of them in a stored block, the
@@ -286,13 +297,14 @@ string black_rows(const string& zlib_header) {
 TEST_F(DepthPng, AStreamKeepsToTheWindowThatItStates) {
   const string header = header_of(258, 2, kind_);
   EXPECT_EQ(said(png_with(header, black_rows("\x78\x01"))), "no error") << "32 KiB";
-  EXPECT_EQ(said(png_with(header, black_rows("\x08\x1d"))), "found damaged pixels") << "256 bytes";
+  EXPECT_EQ(damage(png_with(header, black_rows("\x08\x1d"))), "IDAT: invalid distance too far back")
+      << "256 bytes";
 }
 
 TEST_F(DepthPng, AnEndWithDataIsRefused) {
   const string png = whole_.substr(0, whole_.size() - 12);
   EXPECT_EQ(said(png + test::png_chunk("IEND")), "no error");
-  EXPECT_EQ(said(png + test::png_chunk("IENDx")), "found an end with data");
+  EXPECT_EQ(damage(png + test::png_chunk("IENDx")), "IEND: invalid");
 }
 
 TEST_F(DepthPng, ChunksThatAreNotNeededDoNotMatter) {
@@ -315,11 +327,11 @@ TEST_F(DepthPng, PixelsBeyondTheCeilingAreRefusedBeforeTheyAreUnpacked) {
   const string limit = " pixels, expected at most 65535 a side and 16777216 in all";
   EXPECT_EQ(said(png_with(header_of(4097, 4096, kind_), "")), "found 4097 x 4096" + limit);
   EXPECT_EQ(said(png_with(header_of(65536, 1, kind_), "")), "found 65536 x 1" + limit);
-  EXPECT_EQ(said(png_with(header_of(4096, 4096, kind_), "")), "found damaged pixels");
+  EXPECT_EQ(damage(png_with(header_of(4096, 4096, kind_), "")), "Not enough image data");
   write(whole_);
   const std::vector<string> many(10000, path_);
   EXPECT_NO_THROW(average_depth_images({path_, path_}, camera_));
-  write(cv::Mat(250, 201, CV_16UC1, cv::Scalar(0)));
+  write(Image{201, std::vector<std::uint16_t>(250 * 201)});
   EXPECT_EQ(error_of([&] { average_depth_images(many, camera_); }, ErrorKind::bad_input),
             "depth images: 10000 frames of 50250 pixels, must be at most 500000000 in all");
 }
@@ -465,14 +477,14 @@ class DepthTool : public testing::Test {
     std::filesystem::create_directory(folder_.file("frames"));
     Random random(1);
     for (int i = 0; i < 9; ++i) {
-      cv::Mat image(rows, columns, CV_16UC1);
+      Image image{columns, {}};
       for (int v = 0; v < rows; ++v) {
         for (int u = 0; u < columns; ++u) {
           const double z = depth(v) * (1.0 + 0.004 * depth(v) * random.normal());
-          image.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(std::lround(1000.0 * z));
+          image.counts.push_back(static_cast<std::uint16_t>(std::lround(1000.0 * z)));
         }
       }
-      cv::imwrite(folder_.file("frames/" + std::to_string(i) + ".png"), image);
+      folder_.write("frames/" + std::to_string(i) + ".png", image.png());
     }
     folder_.write("camera.json",
                   R"({"format": "excavplan-depth-intrinsics", "version": 1,

@@ -401,7 +401,7 @@ TEST(CycleWay, WarnsOfWhatTheMachineCannotHold) {
 
 TEST(CycleWay, AllShippedMachinesHoldAFullBucketToEitherSide) {
   for (const char* name : {"zx120", "zx200", "generic-20t", "generic-mini"}) {
-    const Machine machine = shipped(name);
+    const Machine machine = shipped_machine(name);
     const double size = machine.full_length() / zx120().full_length();
     DigParameters dig = paper_fixed_path();
     dig.penetration_length *= size;

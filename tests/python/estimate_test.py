@@ -64,10 +64,16 @@ class Estimates(unittest.TestCase):
         self.assertEqual(estimate.payload.mass.value, told["payload"]["mass_kg"])
 
     def test_the_papers_method(self):
+        try:
+            estimate = ex.estimate_density(BEFORE, AFTER, soil="loam", method="paper",
+                                           law=ex.load_density_law("zx120-loam"))
+        except ex.Error as error:
+            if "libpcl-dev" in str(error):
+                self.skipTest("built without PCL")
+            raise
         told = result_of("estimate-density", BEFORE, AFTER, "--soil", "loam", "--law", "zx120-loam",
                          "--method", "paper")
-        self.compare(ex.estimate_density(BEFORE, AFTER, soil="loam", method="paper",
-                                         law=ex.load_density_law("zx120-loam")), told)
+        self.compare(estimate, told)
 
     def test_the_dug_path(self):
         told = result_of("estimate-density", BEFORE, AFTER, "--soil", "loam",

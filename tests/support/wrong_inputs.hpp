@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include <excavplan/base/error.hpp>
 #include <excavplan/base/warning.hpp>
 
@@ -47,27 +45,9 @@ struct WrongInput {
   bool may_be_right = false;         ///< without a word, as it changes nothing that counts
 };
 
-inline Verdict verdict_of(const std::function<Verdict()>& work) {
-  try {
-    return work();
-  } catch (const Error& error) {
-    Verdict refused;
-    refused.error = error.what();
-    return refused;
-  }
-}
+Verdict verdict_of(const std::function<Verdict()>& work);
 
 /// Prints what becomes of each, one a line.
-inline void expect_no_wrong_answer(const std::vector<WrongInput>& inputs) {
-  for (const WrongInput& input : inputs) {
-    const Verdict verdict = verdict_of(input.made);
-    std::cout << input.name << " | " << verdict.text() << std::endl;
-    const bool is_silent = verdict.trusted && verdict.right && input.may_be_right;
-    const bool is_said =
-        !verdict.trusted && std::any_of(input.reasons.begin(), input.reasons.end(),
-                                        [&](const auto& reason) { return verdict.says(reason); });
-    EXPECT_TRUE(is_silent || is_said) << input.name << ": " << verdict.text();
-  }
-}
+void expect_no_wrong_answer(const std::vector<WrongInput>& inputs);
 
 }  // namespace excavplan::test

@@ -109,13 +109,6 @@ const std::vector<Contract>& contracts() {
 
 class EveryTool : public testing::TestWithParam<Contract> {
  protected:
-  void SetUp() override {
-    if (GetParam().tool == "depth-to-cloud" &&
-        !fs::exists(std::string(EXCAVPLAN_BIN) + "/depth-to-cloud")) {
-      GTEST_SKIP() << "built without EXCAVPLAN_SURVEY";
-    }
-  }
-
   const std::string& tool = GetParam().tool;
   TemporaryFolder folder;
 };

@@ -102,6 +102,7 @@ DigScans scans_of(const Inputs& inputs, ScanReport& report) {
 }
 
 Outcome work_on_scans(const Inputs& inputs) {
+  check_method(inputs.method);
   if (inputs.dump_before.has_value() != inputs.dump_after.has_value()) {
     usage_error("--dump-before and --dump-after must be given together");
   }

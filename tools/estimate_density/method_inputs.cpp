@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <excavplan/paper/paper_change.hpp>
+
 namespace excavplan::tools {
 namespace {
 
@@ -31,6 +33,14 @@ PaperOptions paper_options(const MethodInputs& inputs) {
   return options;
 }
 
+OtherVolumes paper_volumes([[maybe_unused]] const PaperOptions& options) {
+#ifdef EXCAVPLAN_PAPER
+  return paper_change(options);
+#else
+  return nullptr;
+#endif
+}
+
 }  // namespace
 
 bool MethodInputs::uses(const std::string& word) const { return compare || method == word; }
@@ -51,6 +61,14 @@ void declare_method(Arguments& arguments, MethodInputs& inputs) {
   arguments.flag("compare-methods", inputs.compare, "show the results of both methods");
 }
 
+void check_method(const MethodInputs& inputs) {
+  if (!inputs.uses("paper") || paper_volumes({})) return;
+  usage_error(
+      "--method paper and --compare-methods need the Point Cloud Library, which this program was "
+      "built without: build it where libpcl-dev is installed, or run estimate-density-paper of the "
+      "package excavplan-paper");
+}
+
 void declare_dug_path(Arguments& arguments, MethodInputs& inputs) {
   arguments.option("dug-path", inputs.dug_path,
                    "the path that was dug: the law is then one of digs along it");
@@ -63,7 +81,7 @@ void apply_method(const MethodInputs& inputs, const Machine& machine, DensityOpt
   if (inputs.dug_start && !inputs.dug_path) usage_error("--dug-start needs --dug-path");
   if (inputs.dug_path) options.dug_path = DugPath{machine, *inputs.dug_path, inputs.dug_start};
   if (inputs.method == "paper") options.method = VolumeMethod::paper;
-  options.paper = paper_options(inputs);
+  options.paper = paper_volumes(paper_options(inputs));
 }
 
 BothEstimates estimate(const MethodInputs& inputs, const DigScans& scans, const DensityLaw& law,

@@ -24,6 +24,8 @@ struct MethodInputs {
 };
 
 void declare_method(Arguments& arguments, MethodInputs& inputs);
+/// @throws Error (bad_input) if this program was built without the method
+void check_method(const MethodInputs& inputs);
 /// --dug-path and --dug-start.
 void declare_dug_path(Arguments& arguments, MethodInputs& inputs);
 

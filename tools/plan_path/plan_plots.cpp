@@ -6,7 +6,6 @@
 
 #include "figures/dig_figures.hpp"
 #include "inputs/dig_plots.hpp"
-#include "inputs/map_names.hpp"
 #include "report/dig_report.hpp"
 
 namespace excavplan::tools {

@@ -97,6 +97,19 @@ void add(const std::string& name, const FieldResult& result, Outcome& outcome) {
                                   "where they are not"});
 }
 
+FieldOptions field_options(const Machine& machine, const SoilKind& soil, const FieldInputs& field,
+                           const ExperimentInputs& inputs, Console& console) {
+  FieldOptions options;
+  const DigParameters path = inputs.path.value_or(options.experiment.fixed_path);
+  options.experiment = options_of(inputs, machine, soil, console);
+  options.experiment.fixed_path = path;
+  options.fuel = load_fuel_model(shipped_or_file("engines", field.fuel));
+  options.digs = field.digs;
+  options.seed = inputs.seed;
+  options.threads = static_cast<unsigned>(inputs.threads);
+  return options;
+}
+
 }  // namespace
 
 void declare_field(Arguments& arguments, FieldInputs& inputs) {
@@ -116,14 +129,7 @@ Outcome field_experiment(const Machine& machine, const FieldInputs& field,
   const std::vector<ExperimentCondition> conditions = field_conditions(inputs);
   std::vector<double> densities;
   for (const ExperimentCondition& condition : conditions) densities.push_back(condition.density);
-  FieldOptions options;
-  const DigParameters path = inputs.path.value_or(options.experiment.fixed_path);
-  options.experiment = options_of(inputs, machine, soil, console);
-  options.experiment.fixed_path = path;
-  options.fuel = load_fuel_model(shipped_or_file("engines", field.fuel));
-  options.digs = field.digs;
-  options.seed = inputs.seed;
-  options.threads = static_cast<unsigned>(inputs.threads);
+  FieldOptions options = field_options(machine, soil, field, inputs, console);
   std::mutex one_line;
   options.progress = [&](double done) {
     const std::lock_guard<std::mutex> lock(one_line);

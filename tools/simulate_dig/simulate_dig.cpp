@@ -11,7 +11,7 @@
 #include "frame/stopwatch.hpp"
 #include "frame/tool.hpp"
 #include "inputs/dig_plots.hpp"
-#include "inputs/map_names.hpp"
+#include "inputs/maps.hpp"
 #include "inputs/named_kinds.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"

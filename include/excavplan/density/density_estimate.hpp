@@ -28,7 +28,7 @@ namespace excavplan {
 ///
 /// @throws Error (bad_file) naming the scans if one cannot be read, holds fewer than 100 finite
 /// points, or they do not overlap (FrameError) or are probably swapped; (bad_input) if an option is
-/// out of range or the path that was dug cannot be driven
+/// out of range, the path that was dug cannot be driven or VolumeMethod::paper lacks its volumes
 DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
                                  const DensityOptions& options = {});
 
@@ -43,7 +43,7 @@ struct BothEstimates {
   DensityEstimate paper;    ///< by VolumeMethod::paper
 };
 
-/// As estimate_density() by both methods; `options.method` is ignored.
+/// As estimate_density() by both methods; `options.method` is ignored, `options.paper` needed.
 BothEstimates estimate_by_both(const DigScans& scans, const DensityLaw& law,
                                const DensityOptions& options = {});
 

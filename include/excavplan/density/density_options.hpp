@@ -5,11 +5,11 @@
 #include <optional>
 
 #include <excavplan/change/volume_change.hpp>
+#include <excavplan/density/other_volumes.hpp>
 #include <excavplan/density/soil_answers.hpp>
 #include <excavplan/density/successive_density.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/paper/paper_options.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 
 /// @file
@@ -27,7 +27,7 @@ struct DigScans {
 /// How volumes are found.
 enum class VolumeMethod {
   surface,  ///< signed change of one height map, measure_change()
-  paper,    ///< paper_volumes(), as published, in the areas that the first finds
+  paper,    ///< DensityOptions::paper, as published, in the areas that the first finds
 };
 
 /// The dig as driven, for a law of digs along this path. With its start, which needs scans in the
@@ -45,7 +45,7 @@ struct DensityOptions {
                                     ///< else cell_for() the sparsest scan
   bool registered = true;           ///< false: the sensor did not move, scans are not registered
   ChangeOptions change;             ///< dig area, dump area and more
-  PaperOptions paper;               ///< of VolumeMethod::paper
+  OtherVolumes paper;               ///< of VolumeMethod::paper: paper_change()
   std::optional<DugPath> dug_path;  ///< if it is known
   SoilKnowledge soil;               ///< its kind, or the kinds that it may be
   std::optional<Measured> payload_mass;  ///< moist soil that was dumped, if it was weighed [kg]

@@ -13,7 +13,7 @@
 
 namespace excavplan {
 
-/// Turns a 16-bit single-channel image (PNG, at most 2^24 pixels; read by OpenCV) into an organised
+/// Turns a 16-bit single-channel image (PNG, at most 2^24 pixels; read by libpng) into an organised
 /// cloud in the camera frame (x right, y down, z forward), NaN where the count is 0 or out of
 /// range.
 /// @throws Error (bad_file) if the file is not such an image or of another size than the intrinsics
