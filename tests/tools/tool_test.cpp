@@ -18,6 +18,7 @@
 #include <excavplan/base/data_files.hpp>
 
 #include "frame/stack.hpp"
+#include "inputs/named_kinds.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::tools {
@@ -320,7 +321,7 @@ TEST(Tool, WithoutMemoryItSaysSo) {
 TEST(Tool, ForeignTextCannotSpeakToATerminal) {
   Outcome outcome;
   outcome.lines = {"topic \033]0;owned\007"};
-  outcome.warnings = {{"odd", "frame \033[2J\xc2\x9b and ä"}};
+  outcome.warnings = {{WarningCode::frame, "frame \033[2J\xc2\x9b and ä"}};
   const Probe probe = run({"a", "--density", "4"}, outcome);
   EXPECT_EQ(probe.out, "topic ?]0;owned?\n");
   EXPECT_EQ(probe.err, "working\nprobe: warning: frame ?[2J? and ä\n");
