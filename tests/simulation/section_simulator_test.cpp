@@ -11,9 +11,11 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/angles.hpp"
+#include "base/random.hpp"
 #include "simulation/section_bucket.hpp"
 #include "simulation/soil_section.hpp"
 #include "support/errors.hpp"
