@@ -15,6 +15,8 @@
 
 #include "base/parallel.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/dig_problem.hpp"
+#include "planning/start_rule.hpp"
 
 namespace excavplan {
 namespace {
@@ -47,14 +49,14 @@ struct Site {
 
   /// 0 for what cannot be dug.
   double efficiency(const VectorXd& u) const {
-    const auto path = layout.path(at(u), StartRule::Kind::least_work);
+    const auto path = path_by(layout, at(u), StartRule::Kind::least_work);
     if (std::holds_alternative<Infeasible>(path)) return 0.0;
     const DigResult dig = simulator.dig(ground, std::get<DigPath>(path));
     return dig.stall ? 0.0 : dig.efficiency();
   }
 
   std::optional<double> refused(const VectorXd& u) const {
-    const auto path = layout.path(at(u), StartRule::Kind::least_work);
+    const auto path = path_by(layout, at(u), StartRule::Kind::least_work);
     const auto* stop = std::get_if<Infeasible>(&path);
     if (!stop) return std::nullopt;
     return violation(*stop, at(u));

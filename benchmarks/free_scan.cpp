@@ -28,6 +28,7 @@
 #include "base/angles.hpp"
 #include "base/random.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 
 namespace excavplan {
 namespace {

@@ -99,8 +99,8 @@ void take(const Family& family, const DensityEstimate& estimate, Record& record)
   record.found = {change.excavated.value, change.spilled.value, change.dumped.value};
   record.trusted = estimate.trustworthy;
   for (const Warning& warning : estimate.warnings) {
-    record.codes += (record.codes.empty() ? "" : "+") + warning.code;
-    record.has_reason = record.has_reason || is_reason(family, warning.code);
+    record.codes += (record.codes.empty() ? "" : "+") + code_text(warning.code);
+    record.has_reason = record.has_reason || is_reason(family, code_text(warning.code));
   }
   if (!estimate.bulking) return;
   record.k = estimate.bulking->value;

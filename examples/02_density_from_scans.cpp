@@ -20,7 +20,7 @@ int main(int count, char** words) {
 
   const DensityEstimate estimate = estimate_density(scans, law);
   for (const Warning& warning : estimate.warnings) {
-    std::printf("%s: %s\n", warning.code.c_str(), warning.message.c_str());
+    std::printf("%s: %s\n", code_text(warning.code).c_str(), warning.message.c_str());
   }
   const auto show = [](const char* what, const Measured& volume) {
     std::printf("%-8s %.4f +- %.4f m3\n", what, volume.value, volume.sd);

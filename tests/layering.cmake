@@ -7,7 +7,8 @@ cmake_minimum_required(VERSION 3.24)
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
 set(rooms base optimisation ground change soil machine simulation sensing calibration planning kit
-  clouds scans logs efficiency recording images density paper experiments results figures robot)
+  clouds scans logs efficiency recording images density paper experiments results maps drawing figures
+  robot)
 set(base_may_use "")
 set(optimisation_may_use "")
 set(ground_may_use "")
@@ -29,7 +30,19 @@ set(density_may_use ground change soil machine simulation calibration scans logs
 set(paper_may_use change clouds scans density)
 set(experiments_may_use
   ground change soil machine simulation sensing calibration planning scans density)
+set(results_may_use ground change soil machine simulation sensing calibration planning kit clouds scans
+  efficiency recording density experiments)
+set(maps_may_use ground change simulation sensing planning)
+set(drawing_may_use ground machine)
+set(figures_may_use
+  change soil machine simulation sensing planning kit density efficiency experiments results drawing)
 set(robot_may_use ground soil machine simulation planning kit clouds scans recording density results)
+
+# The rooms of the tools; what lies in the folder of a tool is its own.
+set(tool_rooms frame report inputs)
+set(frame_may_use "")
+set(report_may_use frame)
+set(inputs_may_use frame)
 
 # Where a third-party header may be included: in no public header any of them, and in every benchmark,
 # which stands beside its peers.
@@ -116,25 +129,18 @@ function(walk module)
   set_property(GLOBAL PROPERTY walked:${module} TRUE)
 endfunction()
 
-# Rooms of the tools, each of which may use those before it; the folder of a tool uses all of them and
-# no other tool's.
-set(tool_rooms frame inputs report)
-file(GLOB tools RELATIVE ${ROOT}/tools LIST_DIRECTORIES true ${ROOT}/tools/*)
-list(REMOVE_ITEM tools CMakeLists.txt ${tool_rooms})
-
+# Of the tools a file includes the rooms below its own, a tool all of them and no other tool.
 function(check_tool_rooms file line)
-  string(REGEX MATCH "^tools/([a-z_]+)/" whole ${file})
+  string(REGEX MATCH "^tools/([a-z_]+)/" folder ${file})
   set(room ${CMAKE_MATCH_1})
-  if(NOT line MATCHES "\"([a-z_]+)/")
+  if(NOT line MATCHES "\"([a-z_]+)/([a-z_]+)\\.hpp\"")
     return()
   endif()
   set(used ${CMAKE_MATCH_1})
-  list(FIND tool_rooms ${used} used_place)
-  list(FIND tool_rooms ${room} place)
-  if(used IN_LIST tools AND NOT used STREQUAL room)
-    message(SEND_ERROR "${file}: must not use what belongs to another tool: ${line}")
-  elseif(place GREATER_EQUAL 0 AND used_place GREATER place)
-    message(SEND_ERROR "${file}: must not use the room ${used}: ${line}")
+  if(used STREQUAL room OR NOT IS_DIRECTORY ${ROOT}/tools/${used})
+    return()
+  elseif(NOT used IN_LIST tool_rooms OR (room IN_LIST tool_rooms AND NOT used IN_LIST ${room}_may_use))
+    message(SEND_ERROR "${file}: must not use the room ${used} of the tools: ${line}")
   endif()
 endfunction()
 
@@ -166,7 +172,8 @@ foreach(file IN LISTS sources)
     check_third_parties(${file} "${line}")
     if(file MATCHES "^(include|src)/")
       check_rooms(${file} "${line}")
-    elseif(file MATCHES "^tools/")
+    endif()
+    if(file MATCHES "^tools/")
       check_tool_rooms(${file} "${line}")
     endif()
     if(file MATCHES "^(include|src|tools)/")

@@ -55,7 +55,7 @@ function(read_plain file result)
 endfunction()
 
 file(GLOB pages RELATIVE ${ROOT} ${ROOT}/*.md ${ROOT}/docs/*.md ${ROOT}/docs/guide/*.md
-  ${ROOT}/data/*.md)
+  ${ROOT}/docs/generated/*.md ${ROOT}/data/*.md)
 file(GLOB_RECURSE sources RELATIVE ${ROOT}
   ${ROOT}/include/*.hpp ${ROOT}/src/*.[ch]pp ${ROOT}/tools/*.[ch]pp ${ROOT}/tests/*.[ch]pp
   ${ROOT}/benchmarks/*.cpp ${ROOT}/examples/*.cpp ${ROOT}/data/*.json ${ROOT}/scripts/*)

@@ -4,6 +4,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 
 #include "calls.hpp"
@@ -69,14 +70,17 @@ void bind_errors(py::module_& module) {
   });
 
   py::class_<Warning>(module, "ResultWarning", "A doubt about a result that is given all the same.")
-      .def_readonly("code", &Warning::code, "Stable, for programs: 'density_above_range'.")
+      .def_property_readonly(
+          "code", [](const Warning& warning) { return code_text(warning.code); },
+          "Stable, for programs: 'density_above_range'.")
       .def_property_readonly(
           "message", [](const Warning& warning) { return text(warning.message); },
           "What was found, its value and its meaning.")
       .def_readonly("ends_trust", &Warning::ends_trust,
                     "True: a careful surveyor would not sign for the result.")
-      .def("__repr__",
-           [](const Warning& warning) { return text(warning.code + ": " + warning.message); });
+      .def("__repr__", [](const Warning& warning) {
+        return text(code_text(warning.code) + ": " + warning.message);
+      });
   module.def(
       "data_file", [](const std::string& path) { return File{find_data_file(path)}; },
       py::arg("relative_path"),

@@ -3,6 +3,7 @@
 #include <excavplan/change/bulking.hpp>
 #include <excavplan/change/volume_change.hpp>
 #include <excavplan/ground/height_map.hpp>
+#include <excavplan/ground/resampling.hpp>
 
 #include "arrays.hpp"
 #include "calls.hpp"

@@ -13,7 +13,7 @@ import runs
 import scene
 
 DOCS = scene.ROOT / "docs"
-PAGE, CSV, PICTURE = DOCS / "judge.md", DOCS / "judge.csv", DOCS / "images/judge.svg"
+PAGE, CSV, PICTURE = DOCS / "generated/judge.md", DOCS / "judge.csv", DOCS / "images/judge.svg"
 FIGURES = {  # name of the column: heading in the page, its unit there, and how many decimals
     "drag_start_n": ("force, first fifth", 1e3, "kN", 2),
     "drag_middle_n": ("middle", 1e3, "kN", 2),

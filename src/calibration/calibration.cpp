@@ -16,7 +16,6 @@
 #include "base/check.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
-#include "sensing/scene_path.hpp"
 
 namespace excavplan {
 namespace {

@@ -2,10 +2,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "change/attribution.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "change/change_zones.hpp"
 
 namespace excavplan {
 namespace {
+
+constexpr double negligible = 0.0005;  // of the hole's volume; ours
+constexpr std::size_t most_open = 12;  // ours: changes that are combined
+constexpr double counted_first = 0.5;  // prior from which a change counts without balance
+
+/// Likelihood of a bulking factor: even from 1.02 to 1.65, in any soil, and 0.3 of that up to 2.5,
+/// in ground that breaks into blocks (docs/methods.md#attribution).
+double likelihood_of_bulking(double k) {
+  constexpr double least = 1.02, least_sd = 0.04;
+  constexpr double most = 1.65, most_sd = 0.08;
+  constexpr double most_in_blocks = 2.5, blocks = 0.3;
+  constexpr double never = 1e-3;
+  const auto above = [&](double limit) {
+    return std::exp(-0.5 * std::pow((k - limit) / most_sd, 2));
+  };
+  double likelihood = 1.0;
+  if (k < least) likelihood = std::exp(-0.5 * std::pow((k - least) / least_sd, 2));
+  if (k > most) likelihood = std::max(above(most), blocks);
+  if (k > most_in_blocks) likelihood = blocks * above(most_in_blocks);
+  return never + (1.0 - never) * likelihood;
+}
+
+/// How well the soil of some changes balances; 0 without a hole that could be the dig.
+double likelihood_of(const std::vector<Change>& changes, const std::vector<bool>& counted) {
+  constexpr double least_hole = 0.3;  // of the largest fall; ours
+  double before = 0.0;
+  double after = 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (changes[i].prior >= counted_first) largest = std::max(largest, -changes[i].volume);
+    if (counted[i]) (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
+  }
+  if (largest == 0.0) return 1.0;
+  return before > least_hole * largest ? likelihood_of_bulking(after / before) : 0.0;
+}
+
+/// All combinations of combined_changes(), each as likely as its shapes, places and bulking factor;
+/// likeliest first.
+std::vector<Combination> combinations_of(const std::vector<Change>& changes) {
+  const std::vector<std::size_t> open = combined_changes(changes);
+  Combination base;
+  for (const Change& change : changes) base.counted.push_back(change.prior >= counted_first);
+  std::vector<Combination> all;
+  double sum = 0.0;
+  for (std::size_t set = 0; set < std::size_t{1} << open.size(); ++set) {
+    Combination one = base;
+    one.weight = 1.0;
+    for (std::size_t bit = 0; bit < open.size(); ++bit) {
+      const bool counted = (set >> bit & 1U) != 0;
+      const double p = changes[open[bit]].prior;
+      one.counted[open[bit]] = counted;
+      one.weight *= counted ? p : 1.0 - p;
+    }
+    one.weight *= likelihood_of(changes, one.counted);
+    sum += one.weight;
+    if (one.weight > 0.0) all.push_back(std::move(one));
+  }
+  if (all.empty()) {
+    base.weight = sum = 1.0;
+    all.push_back(base);
+  }
+  for (Combination& one : all) one.weight /= sum;
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Combination& a, const Combination& b) { return a.weight > b.weight; });
+  return all;
+}
+
+/// Sets the probability of each change from the combinations.
+void set_probabilities(const std::vector<Combination>& combinations, std::vector<Change>& changes) {
+  for (const std::size_t i : combined_changes(changes)) {
+    changes[i].probability = 0.0;
+    for (const Combination& one : combinations) {
+      changes[i].probability += one.counted[i] ? one.weight : 0.0;
+    }
+  }
+}
 
 using Chosen = std::vector<bool>;
 
@@ -66,52 +146,19 @@ void set_kinds(std::vector<Area>& areas, const Attribution& attribution,
 
 }  // namespace
 
-const char* name(ChangeKind kind) {
-  switch (kind) {
-    case ChangeKind::hole:
-      return "hole";
-    case ChangeKind::second_hole:
-      return "second_hole";
-    case ChangeKind::small_hole:
-      return "small_hole";
-    case ChangeKind::settled:
-      return "settled";
-    case ChangeKind::edge:
-      return "edge";
-    case ChangeKind::heap:
-      return "heap";
-    case ChangeKind::second_heap:
-      return "second_heap";
-    case ChangeKind::spill:
-      return "spill";
-    case ChangeKind::clods:
-      return "clods";
-    case ChangeKind::small_rises:
-      return "small_rises";
-    case ChangeKind::lump:
-      return "lump";
-    case ChangeKind::thing:
-      return "thing";
-    case ChangeKind::ruts:
-      return "ruts";
-    case ChangeKind::berms:
-      return "berms";
-    case ChangeKind::stirred:
-      return "stirred";
-    case ChangeKind::within_error:
-      return "within_error";
-    case ChangeKind::in_area:
-      return "in_area";
-    case ChangeKind::outside_area:
-      return "outside_area";
-    case ChangeKind::earlier_soil:
-      return "earlier_soil";
-    case ChangeKind::pressed:
-      return "pressed";
-    case ChangeKind::water:
-      break;
+std::vector<std::size_t> combined_changes(const std::vector<Change>& changes) {
+  double hole = 0.0;
+  for (const Change& change : changes) hole = std::max(hole, -change.volume);
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const bool is_large = std::abs(changes[i].volume) > negligible * hole;
+    if (changes[i].is_open() && is_large) open.push_back(i);
   }
-  return "water";
+  std::stable_sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(changes[a].volume) > std::abs(changes[b].volume);
+  });
+  if (open.size() > most_open) open.resize(most_open);
+  return open;
 }
 
 Attribution attribute(std::vector<Area>& areas, const ChangeOptions& options) {

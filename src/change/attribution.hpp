@@ -2,17 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/change/change_options.hpp>
 
 #include "change/changes.hpp"
-#include "change/soil_balance.hpp"
 #include "change/surveyed_area.hpp"
+
+/// @file
+/// Which changes belong to the dig together, by shape, place and the balance of the soil. Private
+/// to the project.
 
 namespace excavplan {
 
 constexpr double least_after_share = 0.5;  ///< ours: with less, the heap is not in the scans
+
+/// Changes that belong to the dig, and how likely it is that these and no others do.
+struct Combination {
+  std::vector<bool> counted;  ///< by change
+  double weight = 0.0;        ///< those of all combinations add up to 1
+};
 
 /// What the changes of a scene are.
 struct Attribution {
@@ -25,5 +35,9 @@ struct Attribution {
 ///
 /// @param areas one for a whole scene; the dig area and the dump area otherwise
 Attribution attribute(std::vector<Area>& areas, const ChangeOptions& options);
+
+/// The changes that are combined, largest first: the twelve largest (ours) that are open. Those
+/// beyond keep the probability of their shape and place.
+std::vector<std::size_t> combined_changes(const std::vector<Change>& changes);
 
 }  // namespace excavplan

@@ -7,16 +7,16 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Dense>
-
 #include <excavplan/base/error.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/normal_equations.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -68,10 +68,7 @@ struct Patch {
 /// of a heap; nothing where too little of the window is known.
 template <int terms>
 std::optional<WindowFit> fit_window(const Patch& patch, Cell at, Eigen::Index radius) {
-  using Vector = Eigen::Matrix<double, terms, 1>;
-  Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
-  Vector right = Vector::Zero();
-  double squares = 0.0;
+  NormalEquations<terms> equations;
   int count = 0;
   const double middle = patch.map.z(at.row, at.col);
   for (Eigen::Index j = -radius; j <= radius; ++j) {
@@ -80,28 +77,23 @@ std::optional<WindowFit> fit_window(const Patch& patch, Cell at, Eigen::Index ra
       if (std::isnan(z)) continue;
       const auto x = static_cast<double>(j);
       const auto y = static_cast<double>(i);
-      Vector basis;
+      typename NormalEquations<terms>::Vector basis;
       if constexpr (terms == 3) {
         basis << 1.0, x, y;
       } else {
         basis << 1.0, x, y, x * x, x * y, y * y;
       }
-      normal += basis * basis.transpose();
-      right += z * basis;
-      squares += z * z;
+      equations.add(basis, z);
       ++count;
     }
   }
   const auto width = static_cast<double>(2 * radius + 1);
   if (count < least_window_share * width * width || count <= terms) return std::nullopt;
-  const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> solver(normal);
-  const Vector surface = solver.solve(right);
-  const Vector x_row = solver.solve(Vector::Unit(1));
-  const Vector y_row = solver.solve(Vector::Unit(2));
+  const auto surface = equations.solution();
   const double cell_size = patch.map.cell_size;
   return WindowFit{surface(1) / cell_size, surface(2) / cell_size,
-                   std::max(0.0, squares - surface.dot(right)) / (count - terms),
-                   0.5 * (x_row(1) + y_row(2)) / (cell_size * cell_size)};
+                   std::max(0.0, equations.squares_about(surface)) / (count - terms),
+                   0.5 * (equations.variance(1) + equations.variance(2)) / (cell_size * cell_size)};
 }
 
 /// Statistics of the cells of one kind of ground, over all maps.
@@ -115,8 +107,6 @@ struct Findings {
   double holes_around = 0.0;  // expected from the rest of the map
   double cells = 0.0;         // of the patches, holes included
 };
-
-double share_beyond(double limit_in_sd) { return 0.5 * std::erfc(limit_in_sd / std::sqrt(2.0)); }
 
 Eigen::Vector3d normal_of(const WindowFit& fit) {
   return Eigen::Vector3d(-fit.gx, -fit.gy, 1.0).normalized();
@@ -144,7 +134,7 @@ void judge_cell(const Patch& patch, Cell cell, double repose, Findings& found) {
   if (std::hypot(fine->gx, fine->gy) > limit) found.steep += 1.0;
   const double gentle = std::min(std::hypot(coarse->gx, coarse->gy), std::tan(repose));
   const double slope_noise = std::sqrt(noise * fine->gradient_gain);
-  if (slope_noise > 0.0) found.steep_by_noise += share_beyond((limit - gentle) / slope_noise);
+  if (slope_noise > 0.0) found.steep_by_noise += normal_cdf((gentle - limit) / slope_noise);
 }
 
 void look_at(const Patch& patch, double repose, Findings& found) {
@@ -162,13 +152,6 @@ void look_at(const Patch& patch, double repose, Findings& found) {
   found.cells += inside;
   found.holes += unseen_inside;
   if (outside > 0.0) found.holes_around += inside * unseen_outside / outside;
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 double root(double variance) { return std::sqrt(std::max(0.0, variance)); }

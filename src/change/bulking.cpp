@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "base/check.hpp"
-#include "base/normal_mixture.hpp"
+#include "base/statistics.hpp"
 
 namespace excavplan {
 
 std::optional<Measured> bulking_factor(const VolumeChange& change) {
   const bool volume_is_missing =
       std::any_of(change.warnings.begin(), change.warnings.end(), [](const Warning& warning) {
-        return warning.code == "no_dumped_soil" || warning.code == "zone_unseen";
+        return warning.code == WarningCode::no_dumped_soil ||
+               warning.code == WarningCode::zone_unseen;
       });
   const auto is_volume = [](double value) { return value > 0.0 && std::isfinite(value); };
   if (volume_is_missing || !is_volume(change.before.value) || !is_volume(change.after.value)) {

@@ -7,35 +7,20 @@
 #include <limits>
 #include <utility>
 
-#include "base/robust.hpp"
-#include "ground/error_field.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
+#include "ground/noise_model.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double mad_to_sd = 1.4826;             // of a normal distribution
 constexpr double clip = 4.0;                     // residuals beyond are not noise [sd]
 constexpr std::size_t fewest_stable_cells = 25;  // ours: fewest for noise and datum
 constexpr int most_rounds = 8;
 constexpr std::size_t most_by_chance = 16;  // ours: unknown cells together in a sparse scan
 constexpr int stable = -1;
-
-/// Centre and spread of a distribution.
-struct Spread {
-  double middle = 0.0;
-  double sd = 0.0;
-};
-
-Spread median_and_mad(std::vector<double> values) {
-  Spread spread;
-  spread.middle = median(values);
-  for (double& value : values) value = std::abs(value - spread.middle);
-  spread.sd = mad_to_sd * median(values);
-  return spread;
-}
 
 /// The densest quarter of the values: finds stable ground even where most of it changed. Where two
 /// quarters are equally dense, as on maps without noise, the one nearer to zero is taken.
@@ -69,17 +54,13 @@ Smoothed smooth(const Eigen::ArrayXXd& z) {
   smoothed.evidence = Eigen::ArrayXXd::Zero(z.rows(), z.cols());
   for_each_cell(z, [&](Cell cell) {
     if (std::isnan(z(cell.row, cell.col))) return;
-    const Eigen::Index row = std::max<Eigen::Index>(cell.row - 1, 0);
-    const Eigen::Index col = std::max<Eigen::Index>(cell.col - 1, 0);
     double sum = 0.0;
     int count = 0;
-    for (Eigen::Index c = col; c <= std::min(cell.col + 1, z.cols() - 1); ++c) {
-      for (Eigen::Index r = row; r <= std::min(cell.row + 1, z.rows() - 1); ++r) {
-        if (std::isnan(z(r, c))) continue;
-        sum += z(r, c);
-        ++count;
-      }
-    }
+    for_each_around(z, cell, 1, [&](Cell n) {
+      if (std::isnan(z(n.row, n.col))) return;
+      sum += z(n.row, n.col);
+      ++count;
+    });
     smoothed.mean(cell.row, cell.col) = sum / count;
     smoothed.evidence(cell.row, cell.col) = std::sqrt(count / 9.0);
   });
@@ -95,17 +76,15 @@ Eigen::ArrayXXi widened(const Eigen::ArrayXXi& label, double radius) {
   Eigen::ArrayXXd nearest = Eigen::ArrayXXd::Constant(label.rows(), label.cols(),
                                                       std::numeric_limits<double>::infinity());
   const auto stamp = [&](Cell from) {
-    for (Eigen::Index c = std::max<Eigen::Index>(from.col - reach, 0);
-         c <= std::min(from.col + reach, label.cols() - 1); ++c) {
-      for (Eigen::Index r = std::max<Eigen::Index>(from.row - reach, 0);
-           r <= std::min(from.row + reach, label.rows() - 1); ++r) {
-        const auto away =
-            static_cast<double>((r - from.row) * (r - from.row) + (c - from.col) * (c - from.col));
-        if (label(r, c) >= 0 || away > radius_squared || away >= nearest(r, c)) continue;
-        nearest(r, c) = away;
-        wide(r, c) = label(from.row, from.col);
-      }
-    }
+    for_each_around(label, from, reach, [&](Cell at) {
+      const Eigen::Index rows = at.row - from.row;
+      const Eigen::Index cols = at.col - from.col;
+      const auto away = static_cast<double>(rows * rows + cols * cols);
+      double& least = nearest(at.row, at.col);
+      if (label(at.row, at.col) >= 0 || away > radius_squared || away >= least) return;
+      least = away;
+      wide(at.row, at.col) = label(from.row, from.col);
+    });
   };
   for_each_cell(label, [&](Cell cell) {
     if (label(cell.row, cell.col) < 0) return;
@@ -276,14 +255,14 @@ class ChangeFinder {
     const std::vector<double> changes = values(found_.difference, on_stable);
     found_.stable_share = static_cast<double>(changes.size()) / static_cast<double>(known_cells_);
     if (changes.size() < fewest_stable_cells) return;
-    const Spread spread = median_and_mad(changes);
+    const Spread spread = robust_spread(changes);
     found_.noise_sd = std::max(spread.sd, least_noise);
     found_.datum = clipped_mean(changes, spread.middle);
     std::vector<double> weighted;
     for_each_cell(found_.zone, [&](Cell cell) {
       if (is_stable(cell)) weighted.push_back(significance(cell) * smooth_sd_);
     });
-    smooth_sd_ = std::max(median_and_mad(std::move(weighted)).sd, least_noise);
+    smooth_sd_ = std::max(robust_spread(std::move(weighted)).sd, least_noise);
   }
 
   double clipped_mean(const std::vector<double>& changes, double middle) const {

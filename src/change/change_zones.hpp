@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/change/change_options.hpp>
 
 namespace excavplan {
 

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/change/attribution.hpp>
+#include <excavplan/change/change_options.hpp>
+#include <excavplan/change/dig_volumes.hpp>
 
 #include "change/surveyed_area.hpp"
 

@@ -8,14 +8,13 @@
 #include <optional>
 #include <string>
 
-#include <Eigen/Cholesky>
-
 #include <excavplan/change/bulking.hpp>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/plane_fit.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -105,7 +104,7 @@ std::optional<Warning> grass(const std::vector<const SurfacePair*>& pairs,
     if (zone.kind != ZoneKind::other) area += zone.area;
   }
   return Warning{
-      "grass",
+      WarningCode::grass,
       "returns of the ground that did not change scatter by " +
           readable(1000.0 * std::sqrt(excess), 2) +
           " mm more than those of dug and dumped soil, as on grass: the ground may lie up to " +
@@ -113,8 +112,7 @@ std::optional<Warning> grass(const std::vector<const SurfacePair*>& pairs,
           " mm below what was seen of it, which over hole, spill and "
           "heap is " +
           readable(cover * area, 2) +
-          " m^3; mow or clear the ground, or scan a place without grass",
-      true};
+          " m^3; mow or clear the ground, or scan a place without grass"};
 }
 
 // ---- Water --------------------------------------------------------------------------------------
@@ -136,22 +134,15 @@ double commonest(std::vector<double> heights, double reach) {
 
 /// Root mean square of heights about a plane [m].
 double roughness(const HeightMap& map, const std::vector<Cell>& cells) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double squares = 0.0;
-  double count = 0.0;
+  PlaneFit fit;
   const double base = map.z(cells.front().row, cells.front().col);
   for (const Cell at : cells) {
     const double z = map.z(at.row, at.col) - base;
     if (std::isnan(z)) continue;
-    const Eigen::Vector3d terms(1.0, static_cast<double>(at.col), static_cast<double>(at.row));
-    normal += terms * terms.transpose();
-    right += z * terms;
-    squares += z * z;
-    count += 1.0;
+    fit.add(static_cast<double>(at.col), static_cast<double>(at.row), z);
   }
-  if (count < 4.0) return 0.0;
-  return std::sqrt(std::max(0.0, squares - right.dot(normal.ldlt().solve(right))) / count);
+  if (fit.count() < 4.0) return 0.0;
+  return std::sqrt(fit.squares_about(fit.plane()) / fit.count());
 }
 
 /// The lowest part of a hole, where that is as level and smooth as water.
@@ -239,14 +230,13 @@ std::optional<LevelFloor> level_floor(const SurfacePair& pair, const VolumeChang
 }
 
 Warning flat_water(const LevelFloor& floor) {
-  return {"flat_water",
-          "the lowest part of the hole, " + readable(floor.inner_area, 2) + " m^2, is level to " +
-              readable(1000.0 * floor.seen, 2) + " mm where the ground before was uneven by " +
-              readable(1000.0 * floor.before, 2) +
-              " mm, as water is: each centimetre of its depth hides " +
-              readable(0.01 * floor.inner_area, 2) +
-              " m^3 of the hole; scan the hole without water",
-          true};
+  return {WarningCode::flat_water, "the lowest part of the hole, " + readable(floor.inner_area, 2) +
+                                       " m^2, is level to " + readable(1000.0 * floor.seen, 2) +
+                                       " mm where the ground before was uneven by " +
+                                       readable(1000.0 * floor.before, 2) +
+                                       " mm, as water is: each centimetre of its depth hides " +
+                                       readable(0.01 * floor.inner_area, 2) +
+                                       " m^3 of the hole; scan the hole without water"};
 }
 
 /// Volume of the hole below a level floor, if water hides this share of its depth: the area of the
@@ -292,9 +282,9 @@ std::optional<Warning> shadowed(const SurfacePair& pair, const VolumeChange& cha
                                 const AreaChange& area) {
   constexpr double significant = 3.0;   // sd, ours
   constexpr double least_share = 0.01;  // ours, of the hole's cells
-  const bool is_placed =
-      std::any_of(change.warnings.begin(), change.warnings.end(),
-                  [](const Warning& warning) { return warning.code == "sensor_place_inferred"; });
+  const bool is_placed = std::any_of(
+      change.warnings.begin(), change.warnings.end(),
+      [](const Warning& warning) { return warning.code == WarningCode::sensor_place_inferred; });
   if (is_placed || !pair.after.sensors.empty() || !tells_scatter(pair)) return std::nullopt;
   const auto is_between = [](const Surface& surface, Cell at) {
     return surface.points(at.row, at.col) == 0 && !std::isnan(surface.height.z(at.row, at.col));
@@ -317,12 +307,11 @@ std::optional<Warning> shadowed(const SurfacePair& pair, const VolumeChange& cha
     return std::nullopt;
   }
   return Warning{
-      "hole_in_shadow",
+      WarningCode::hole_in_shadow,
       readable(100.0 * more / cells, 2) +
           " % of the hole's cells hold no point after the dig, but did before: its walls "
           "hide part of it; tell where the sensor stood by --sensor-origin, or scan it "
-          "from a second standpoint",
-      true};
+          "from a second standpoint"};
 }
 
 }  // namespace

@@ -4,8 +4,9 @@
 
 #include <vector>
 
-#include <excavplan/base/error.hpp>
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/warning.hpp>
+#include <excavplan/change/dig_volumes.hpp>
+#include <excavplan/ground/registration.hpp>
 
 /// @file
 /// Whether the surface that was seen is that of the soil (docs/methods.md#cover).

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
-#include "ground/error_field.hpp"
+#include "base/normal_equations.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/noise_model.hpp"
 
 namespace excavplan {
 namespace {
@@ -23,18 +22,14 @@ class Trend {
       : rows_(static_cast<double>(values.rows())),
         columns_(static_cast<double>(values.cols())),
         count_(terms) {
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(terms, terms);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(terms);
+    NormalEquations<Eigen::Dynamic> equations(terms);
     for_each_cell(values, [&](Cell at) {
       const double value = values(at.row, at.col);
       if (std::isnan(value)) return;
-      const Eigen::VectorXd t = this->terms(at);
-      normal += t * t.transpose();
-      right += value * t;
+      equations.add(this->terms(at), value);
     });
-    const Eigen::LDLT<Eigen::MatrixXd> factor(normal);
-    found_ = factor.solve(right);
-    unit_covariance_ = factor.solve(Eigen::MatrixXd::Identity(terms, terms));
+    found_ = equations.solution();
+    unit_covariance_ = equations.covariance();
   }
 
   double at(Cell cell) const { return found_.dot(terms(cell)); }

@@ -5,15 +5,13 @@
 #include <cmath>
 #include <string>
 
-#include <Eigen/Cholesky>
-
 #include <excavplan/change/bulking.hpp>
 
-#include "base/robust.hpp"
 #include "base/text.hpp"
 #include "change/zone_shape.hpp"
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/plane_fit.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -32,51 +30,18 @@ constexpr double weight = 0.5;
 constexpr double relative_sd = 0.2;  // of its volume
 constexpr double telling = 0.03;     // of k
 
-struct Sample {
-  Eigen::Vector3d terms;  ///< 1, column, row
-  double height;
-};
-
-std::vector<Sample> ring_of(const HeightMap& before, const Area& area, const Mask& hole) {
+/// (column, row, height) of the ground around the hole.
+std::vector<Eigen::Vector3d> ring_of(const HeightMap& before, const Area& area, const Mask& hole) {
   const Eigen::ArrayXXd away = distance_to(hole) * area.grid.cell_size;
-  std::vector<Sample> ring;
+  std::vector<Eigen::Vector3d> ring;
   for_each_cell(before.z, [&](Cell at) {
     const double distance = away(at.row, at.col);
     const double z = before.z(at.row, at.col);
     if (distance < ring_from || distance > ring_to || std::isnan(z)) return;
     if (area.ground.zone(at.row, at.col) >= 0) return;
-    ring.push_back({{1.0, static_cast<double>(at.col), static_cast<double>(at.row)}, z});
+    ring.emplace_back(static_cast<double>(at.col), static_cast<double>(at.row), z);
   });
   return ring;
-}
-
-/// A plane with the deviation of the ground from it.
-struct Plane {
-  Eigen::Vector3d terms = Eigen::Vector3d::Zero();
-  double sd = 0.0;
-
-  double off(const Sample& sample) const { return sample.height - terms.dot(sample.terms); }
-};
-
-/// By least squares, with what deviates by more than 2.5 sd left out.
-Plane plane_of(const std::vector<Sample>& ring) {
-  constexpr double outlier = 2.5;
-  Plane plane;
-  plane.sd = 1e9;
-  for (int round = 0; round < 4; ++round) {
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (const Sample& sample : ring) {
-      if (std::abs(plane.off(sample)) > outlier * plane.sd) continue;
-      normal += sample.terms * sample.terms.transpose();
-      right += sample.height * sample.terms;
-    }
-    plane.terms = normal.ldlt().solve(right);
-    std::vector<double> off;
-    for (const Sample& sample : ring) off.push_back(std::abs(plane.off(sample)));
-    plane.sd = 1.4826 * median(off);
-  }
-  return plane;
 }
 
 /// Volume of the humps in the hole of one area [m^3].
@@ -87,19 +52,18 @@ double loose_volume(const HeightMap& before, const Area& area) {
     hole(at.row, at.col) = zone >= 0 && area.kinds[static_cast<std::size_t>(zone)] == ZoneKind::dig;
   });
   if (!hole.any()) return 0.0;
-  const std::vector<Sample> ring = ring_of(before, area, hole);
+  const std::vector<Eigen::Vector3d> ring = ring_of(before, area, hole);
   if (ring.size() < least_ring) return 0.0;
-  const Plane plane = plane_of(ring);
+  const RobustPlane fit = robust_plane(ring);
   Eigen::ArrayXXd above = Eigen::ArrayXXd::Zero(hole.rows(), hole.cols());
   std::vector<Cell> hump;
   for_each_cell(hole, [&](Cell at) {
-    above(at.row, at.col) =
-        plane.off({{1.0, static_cast<double>(at.col), static_cast<double>(at.row)},
-                   before.z(at.row, at.col)});
-    if (hole(at.row, at.col) && above(at.row, at.col) > foot * plane.sd) hump.push_back(at);
+    above(at.row, at.col) = before.z(at.row, at.col) -
+                            fit.plane.at(static_cast<double>(at.col), static_cast<double>(at.row));
+    if (hole(at.row, at.col) && above(at.row, at.col) > foot * fit.sd) hump.push_back(at);
   });
   const ZoneShape shape = shape_of(above, hump, area.grid.cell_size);
-  const bool is_high = shape.height > std::max(least_height, least_excess * plane.sd);
+  const bool is_high = shape.height > std::max(least_height, least_excess * fit.sd);
   if (!is_high || shape.steepest < gentlest || shape.steepest > steepest) return 0.0;
   double volume = 0.0;
   for (const Cell at : hump) volume += above(at.row, at.col);
@@ -118,7 +82,7 @@ void state(double volume, double factor, double scans, VolumeChange& change) {
   const Eigen::Vector3d both(volume, 0.0, volume);
   change.errors.attribution += weight * both * both.transpose();
   change.warnings.push_back(
-      {"earlier_soil",
+      {WarningCode::earlier_soil,
        "the scan before shows " + readable(volume, 0.1 * volume) +
            " m^3 above the ground around, where the hole is, as steep as loose soil: if an earlier "
            "dig left it there, the bulking factor is " +

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/change/dig_volumes.hpp>
+#include <excavplan/ground/height_map.hpp>
 
 #include "change/surveyed_area.hpp"
 

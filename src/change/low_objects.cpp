@@ -6,9 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
+#include "ground/plane_fit.hpp"
 
 namespace excavplan {
 namespace {
@@ -127,15 +126,12 @@ class TopFinder {
 
   /// Unlike the top of a block, which lies as it fell.
   bool is_level(const std::vector<Cell>& cells) const {
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    PlaneFit fit;
     for (const Cell at : cells) {
-      const Eigen::Vector3d terms(1.0, static_cast<double>(at.col - cells.front().col),
-                                  static_cast<double>(at.row - cells.front().row));
-      normal += terms * terms.transpose();
-      right += after_(at.row, at.col) * terms;
+      fit.add(static_cast<double>(at.col - cells.front().col),
+              static_cast<double>(at.row - cells.front().row), after_(at.row, at.col));
     }
-    return normal.ldlt().solve(right).tail<2>().norm() < level_tilt * cell_size_;
+    return fit.plane().gradient().norm() < level_tilt * cell_size_;
   }
 
   /// As high as before: a wall, ground that was left standing, or a thing of just this height.

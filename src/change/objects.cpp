@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "change/low_objects.hpp"
-#include "ground/error_field.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {

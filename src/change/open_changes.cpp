@@ -272,7 +272,7 @@ class OpenChanges {
     }
     if (other < warned) return;
     result_.warnings.push_back(
-        {"attribution_open",
+        {WarningCode::attribution_open,
          "the scene can be read in more than one way: the bulking factor is " +
              hundredths(given.bulking.value) + " as counted, and " +
              hundredths(likeliest->bulking.value) + " " + likeliest->what + " (weights " +
@@ -289,7 +289,7 @@ class OpenChanges {
     if (!found || !k) return;
     const bool is_large = bulking_errors(result_).attribution > telling * k->value;
     result_.warnings.push_back(
-        {"stirred_ground",
+        {WarningCode::stirred_ground,
          "ground rose and fell in many small places: it was stirred, by tracks or a blade, and "
          "counts as noise; scan where nothing drove, or give --dig-area and --dump-area",
          is_large});
@@ -303,12 +303,6 @@ class OpenChanges {
 };
 
 }  // namespace
-
-bool is_unseen(const Reading& reading) {
-  return std::any_of(reading.kinds.begin(), reading.kinds.end(), [](ChangeKind kind) {
-    return kind == ChangeKind::pressed || kind == ChangeKind::water;
-  });
-}
 
 void state_open_changes(const std::vector<Area>& areas, const Attribution& attribution,
                         VolumeChange& result) {

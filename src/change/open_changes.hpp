@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/change/dig_volumes.hpp>
 
 #include "change/attribution.hpp"
 

@@ -5,41 +5,37 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
-#include "ground/error_field.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
+#include "ground/noise_model.hpp"
+#include "ground/plane_fit.hpp"
 
 namespace excavplan {
 namespace {
 
 /// A plane over a map: least squares of values known in some cells.
-class Plane {
+class MapPlane {
  public:
-  Plane(const Eigen::ArrayXXd& values, const Eigen::ArrayXXd& known) {
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  MapPlane(const Eigen::ArrayXXd& values, const Eigen::ArrayXXd& known) {
+    PlaneFit fit;
     for_each_cell(values, [&](Cell at) {
       if (std::isnan(known(at.row, at.col))) return;
-      normal += terms(at) * terms(at).transpose();
-      right += values(at.row, at.col) * terms(at);
+      fit.add(static_cast<double>(at.col), static_cast<double>(at.row), values(at.row, at.col));
     });
-    plane_ = normal.ldlt().solve(right);
+    plane_ = fit.plane();
   }
-  double operator()(Cell at) const { return plane_.dot(terms(at)); }
+  double operator()(Cell at) const {
+    return plane_.at(static_cast<double>(at.col), static_cast<double>(at.row));
+  }
 
  private:
-  Eigen::Vector3d terms(Cell at) const {
-    return {1.0, static_cast<double>(at.col), static_cast<double>(at.row)};
-  }
-  Eigen::Vector3d plane_;
+  GroundPlane plane_;
 };
 
 /// Share of the relief of the ground before that is in the difference: regression on stable ground.
 double share_of_relief(const Eigen::ArrayXXd& relief, const Eigen::ArrayXXd& residual) {
   constexpr double significant = 0.35;  // ours: three sd with some 70 independent patches
-  const Plane trend(residual, residual);
+  const MapPlane trend(residual, residual);
   double own = 0.0;
   double both = 0.0;
   double changes = 0.0;
@@ -86,7 +82,7 @@ bool is_alike(const Eigen::ArrayXXd& relief, const ChangedGround& ground, double
 }  // namespace
 
 double take_relief_off(const HeightMap& before, ChangedGround& ground, Alignment& left) {
-  const Plane plane(before.z, ground.residual);
+  const MapPlane plane(before.z, ground.residual);
   Eigen::ArrayXXd relief = before.z;
   for_each_cell(relief, [&](Cell at) { relief(at.row, at.col) -= plane(at); });
   fill_holes(relief);

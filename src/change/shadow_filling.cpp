@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
-#include "base/robust.hpp"
-#include "ground/error_field.hpp"
+#include "base/statistics.hpp"
+#include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
+#include "ground/plane_fit.hpp"
 #include "ground/sight_lines.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -67,12 +67,6 @@ struct Shadow {
   int hole_zone = -1;
   int heap_zone = -1;
 };
-
-double value_at(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 class ShadowFiller {
  public:
@@ -145,7 +139,7 @@ class ShadowFiller {
     const double sign = is_hole ? -1.0 : 1.0;
     std::vector<double> heights;
     for (const Cell at : cells) heights.push_back(sign * change(at));
-    const double top = value_at(heights, 0.95);
+    const double top = quantile(heights, 0.95);
     double slopes = 0.0;
     double counted = 0.0;
     double middle = 0.0;
@@ -177,7 +171,7 @@ class ShadowFiller {
   /// Cells far gentler than the wall above and below them.
   static double ledge_cells(const std::vector<double>& slopes) {
     constexpr double level = 0.5;  // ours: of the slope of the wall
-    const double limit = level * value_at(slopes, 0.95);
+    const double limit = level * quantile(slopes, 0.95);
     return static_cast<double>(
         std::count_if(slopes.begin(), slopes.end(), [&](double s) { return s < limit; }));
   }
@@ -190,16 +184,16 @@ class ShadowFiller {
     constexpr double least_share = 0.03;  // ours: of the depth, by which floors are uneven
     std::vector<double> heights;
     for (const Cell at : cells) heights.push_back(change(at));
-    const double lowest = value_at(heights, 0.03);
+    const double lowest = quantile(heights, 0.03);
     heights.clear();
     for (const Cell at : cells) {
       if (change(at) > deep * lowest || !(slope_(at.row, at.col) < gentle)) continue;
       heights.push_back(change(at));
     }
     if (heights.size() >= fewest) {
-      shape.floor = median(heights);
-      for (double& height : heights) height = std::abs(height - shape.floor);
-      shape.floor_sd = std::max(1.4826 * median(heights), -least_share * shape.floor);
+      const Spread spread = robust_spread(std::move(heights));
+      shape.floor = spread.middle;
+      shape.floor_sd = std::max(spread.sd, -least_share * shape.floor);
     } else {  // between the deepest cell and twice its depth
       shape.floor = 1.5 * lowest;
       shape.floor_sd = -0.5 * lowest / std::sqrt(3.0);
@@ -292,35 +286,30 @@ class ShadowFiller {
     Rim rim{{static_cast<double>(at.col), static_cast<double>(at.row)}, change(at)};
     const SightLines* const lines = sight_.hidden_by(at);
     if (lines == nullptr) return rim;
-    const Eigen::Vector3d plane = plane_at(at);
-    if (plane.x() < 3.0 * ground_.noise_sd) {
+    const GroundPlane plane = plane_at(at);
+    const double level = plane.terms.x();
+    if (level < 3.0 * ground_.noise_sd) {
       rim.beyond = 0.5 * (0.5 + std::clamp(lines->cells_to_rim(at), -0.5, 1.5));
     }
     rim.outward = lines->outward(at);
-    rim.height = plane.x() + rim.beyond * plane.tail<2>().dot(rim.outward);
+    rim.height = level + rim.beyond * plane.gradient().dot(rim.outward);
     return rim;
   }
 
   /// Level and slope along columns and rows of the change by the 5 x 5 cells around, which takes
   /// the noise off.
-  Eigen::Vector3d plane_at(Cell at) const {
+  GroundPlane plane_at(Cell at) const {
     constexpr Eigen::Index reach = 2;
     constexpr double fewest = 8.0;  // ours: cells
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (Eigen::Index c = at.col - reach; c <= at.col + reach; ++c) {
-      for (Eigen::Index r = at.row - reach; r <= at.row + reach; ++r) {
-        if (r < 0 || c < 0 || r >= after_.z.rows() || c >= after_.z.cols()) continue;
-        if (std::isnan(change({r, c}))) continue;
-        const Eigen::Vector3d terms(1.0, static_cast<double>(c - at.col),
-                                    static_cast<double>(r - at.row));
-        normal += terms * terms.transpose();
-        right += change({r, c}) * terms;
-      }
+    PlaneFit fit;
+    for_each_around(after_.z, at, reach, [&](Cell n) {
+      if (std::isnan(change(n))) return;
+      fit.add(static_cast<double>(n.col - at.col), static_cast<double>(n.row - at.row), change(n));
+    });
+    if (fit.count() < fewest || !(fit.reciprocal_condition() > 1e-3)) {
+      return {{change(at), 0.0, 0.0}};
     }
-    const Eigen::LDLT<Eigen::Matrix3d> factor(normal);
-    if (normal(0, 0) < fewest || !(factor.rcond() > 1e-3)) return {change(at), 0.0, 0.0};
-    return factor.solve(right);
+    return fit.plane();
   }
 
   Shape shape_in(int zone, bool is_hole) const {

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "base/angles.hpp"
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 
 namespace excavplan {

@@ -17,6 +17,7 @@
 #include "ground/grid_cells.hpp"
 #include "ground/sampling_gaps.hpp"
 #include "ground/sight_lines.hpp"
+#include "ground/slopes.hpp"
 #include "ground/too_few_cells.hpp"
 
 namespace excavplan {

@@ -7,12 +7,16 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/change/change_options.hpp>
+#include <excavplan/change/dig_volumes.hpp>
+#include <excavplan/ground/height_map.hpp>
+#include <excavplan/ground/registration.hpp>
 
 #include "change/change_zones.hpp"
 #include "change/objects.hpp"
 #include "change/zone_parts.hpp"
 #include "ground/error_field.hpp"
+#include "ground/noise_model.hpp"
 #include "ground/sensor_place.hpp"
 
 namespace excavplan {

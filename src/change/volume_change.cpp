@@ -5,30 +5,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "change/attribution.hpp"
+#include "change/change_warnings.hpp"
 #include "change/earlier_soil.hpp"
 #include "change/open_changes.hpp"
 #include "change/surveyed_area.hpp"
 #include "ground/map_check.hpp"
+#include "ground/registration.hpp"
 
 namespace excavplan {
 namespace {
-
-constexpr double least_warned_share = 0.01;  // of the volume of its kind; smaller ones are ignored
-constexpr double least_refused_share = 0.1;  // likewise
-constexpr double most_in_shadow = 0.35;      // ours: unseen cells whose error holds in shadows
-constexpr double least_stable_share = 0.4;   // ours
-constexpr double largest_noise = 0.1;        // ours: of a cell; coarser than any range sensor [m]
-constexpr double least_dumped_share = 0.2;   // ours: a smaller rise away from the hole is no heap
-constexpr double least_bulking = 0.97;       // loosest soil keeps its volume; ours: 3 % below that
-constexpr double largest_bulking = 3.0;      // ours: blocks give about 2
 
 void check(const std::optional<Rectangle>& area, const std::string& name) {
   if (area && !(area->x_max > area->x_min && area->y_max > area->y_min)) {
@@ -103,289 +98,6 @@ void set_deviations(VolumeChange& change) {
   change.covariance_before_after = covariance.row(0).dot(after);
 }
 
-std::string litres_as_m3(double volume) {
-  return number_text(std::round(volume * 1000.0) / 1000.0) + " m^3";
-}
-
-std::string millimetres(double metres) { return readable(1000.0 * metres, 2) + " mm"; }
-
-std::string hundredths(double value) { return number_text(std::round(value * 100.0) / 100.0); }
-
-std::string place_of(const ZoneSum& zone) {
-  return "(" + hundredths(zone.centre.x()) + ", " + hundredths(zone.centre.y()) + ") m";
-}
-
-std::string text_of(const ZoneSum& zone) {
-  return std::string("ground that ") + (zone.volume > 0.0 ? "rose" : "fell") + " by " +
-         litres_as_m3(std::abs(zone.volume)) + " over " + hundredths(zone.area) + " m^2 around " +
-         place_of(zone);
-}
-
-/// One warning for all of them, and none where their volume is negligible relative to the hole.
-void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
-  const ZoneSum* largest = nullptr;
-  int count = 0;
-  double sum = 0.0;
-  for (const Area& area : areas) {
-    for (std::size_t i = 0; i < area.zones.size(); ++i) {
-      if (area.kinds[i] != ZoneKind::other) continue;
-      const ZoneSum& zone = area.zones[i];
-      if (largest == nullptr || std::abs(zone.volume) > std::abs(largest->volume)) largest = &zone;
-      sum += std::abs(zone.volume);
-      ++count;
-    }
-  }
-  if (!(sum > least_warned_share * change.excavated.value)) return;
-  std::string message =
-      text_of(*largest) +
-      " is neither hole, spill nor heap: excluded from all volumes; --dig-area and --dump-area "
-      "take it in, if it belongs to them";
-  if (count > 1) {
-    message += "; with " + std::to_string(count - 1) + " more such zones " + litres_as_m3(sum) +
-               " in total";
-  }
-  change.warnings.push_back({"other_change", message});
-}
-
-/// Volume of all zones of a kind; infinite for the kind `other`.
-double total_of(const VolumeChange& change, ZoneKind kind) {
-  switch (kind) {
-    case ZoneKind::dig:
-      return change.excavated.value;
-    case ZoneKind::spill:
-      return change.spilled.value;
-    case ZoneKind::dump:
-      return change.dumped.value;
-    case ZoneKind::other:
-      break;
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
-/// Zones of which the same is said.
-struct SuchZones {
-  const ZoneSum* largest = nullptr;
-  int count = 0;
-  double volume = 0.0;
-
-  void add(const ZoneSum& zone) {
-    if (largest == nullptr || std::abs(zone.volume) > std::abs(largest->volume)) largest = &zone;
-    volume += std::abs(zone.volume);
-    ++count;
-  }
-  std::string unseen_share() const {
-    return hundredths(100.0 * largest->unknown / largest->area) + " %";
-  }
-  /// "; with 3 more such zones 0.4 m^3 in total"
-  std::string rest() const {
-    if (count == 1) return "";
-    return "; with " + std::to_string(count - 1) + " more such zones " + litres_as_m3(volume) +
-           " in total";
-  }
-};
-
-/// Zones that are cut off or were not seen, of all areas.
-struct DoubtfulZones {
-  SuchZones cut;
-  SuchZones unseen;
-  SuchZones partly_unseen;
-
-  void add(const ZoneSum& zone, bool matters, const ChangeOptions& options) {
-    if (zone.is_cut) cut.add(zone);
-    const double share = zone.unknown / zone.area;
-    const double guessed = zone.volume > 0.0 || share > most_in_shadow
-                               ? share
-                               : (zone.unknown - zone.shadow) / zone.area;
-    if (share > options.refused_unknown_share && matters) {
-      unseen.add(zone);
-    } else if (guessed > options.max_unknown_share) {
-      partly_unseen.add(zone);
-    }
-  }
-};
-
-DoubtfulZones doubtful_zones(const std::vector<Area>& areas, const ChangeOptions& options,
-                             const VolumeChange& change) {
-  DoubtfulZones doubtful;
-  for (const Area& area : areas) {
-    for (std::size_t i = 0; i < area.zones.size(); ++i) {
-      const double total = total_of(change, area.kinds[i]);
-      const double volume = std::abs(area.zones[i].volume);
-      if (!(volume > least_warned_share * total)) continue;
-      doubtful.add(area.zones[i], volume > least_refused_share * total, options);
-    }
-  }
-  return doubtful;
-}
-
-void warn_of_zones(const DoubtfulZones& zones, const ChangeOptions& options,
-                   std::vector<Warning>& warnings) {
-  const auto limit = [](double share) { return hundredths(100.0 * share) + " %"; };
-  if (const SuchZones& cut = zones.cut; cut.count > 0) {
-    warnings.push_back({"zone_at_border",
-                        text_of(*cut.largest) +
-                            " reaches the edge of the surveyed ground: its volume may be "
-                            "incomplete; scan farther around it, or widen --area" +
-                            cut.rest(),
-                        true});
-  }
-  if (const SuchZones& unseen = zones.unseen; unseen.count > 0) {
-    warnings.push_back(
-        {"zone_unseen", text_of(*unseen.largest) + " was seen by no scan in " +
-                            unseen.unseen_share() + " of its cells, more than " +
-                            limit(options.refused_unknown_share) +
-                            ": its volume is not trustworthy, so the bulking factor is unknown; "
-                            "scan it from a second standpoint" +
-                            unseen.rest()});
-  }
-  if (const SuchZones& partly = zones.partly_unseen; partly.count > 0) {
-    warnings.push_back({"zone_partly_unseen",
-                        text_of(*partly.largest) + " was seen by no scan in " +
-                            partly.unseen_share() +
-                            " of its cells, which were interpolated; the limit is " +
-                            limit(options.max_unknown_share) +
-                            ": scan it from a second standpoint" + partly.rest(),
-                        true});
-  }
-}
-
-std::string text_of(const Eigen::Vector3d& place) {
-  return "(" + hundredths(place.x()) + ", " + hundredths(place.y()) + ", " + hundredths(place.z()) +
-         ") m";
-}
-
-/// Of a place that the scan contradicts.
-void warn_of_doubt(const std::optional<PlaceDoubt>& doubt, const std::string& which,
-                   std::vector<Warning>& warnings) {
-  if (!doubt) return;
-  warnings.push_back(
-      {"sensor_place_doubtful",
-       "the sensor of the scan " + which + " is said to have stood at " + text_of(doubt->told) +
-           (doubt->inferred ? ", but by the number of its points on slopes it was at about " +
-                                  text_of(*doubt->inferred)
-                            : ", which is below the ground") +
-           ": ground that it did not see is filled wrongly; check --sensor-origin, its frame and "
-           "unit, or the VIEWPOINT of the file",
-       true});
-}
-
-/// Of a place that no one told.
-void warn_of_place(const Area& area, std::vector<Warning>& warnings) {
-  const bool has_shadow = std::any_of(area.zones.begin(), area.zones.end(),
-                                      [](const ZoneSum& zone) { return zone.shadow > 0.0; });
-  if (area.inferred && has_shadow) {
-    warnings.push_back(
-        {"sensor_place_inferred",
-         "nothing says where the sensor of the scan after stood: by the number of its points on "
-         "slopes it was at about " +
-             text_of(area.inferred->place()) +
-             ", from where ground was filled that it did not see; give the place by "
-             "--sensor-origin"});
-  }
-}
-
-/// Of errors that neighbouring ground shares.
-void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
-  constexpr double noted = 0.010;  // ours: of errors that were taken off [m]
-  constexpr double most = 0.010;   // ours: of those left; below it volumes hardly suffer [m]
-  if (area.systematic_rms > noted) {
-    warnings.push_back({"systematic_errors",
-                        "stripes or a dome of " + millimetres(area.systematic_rms) +
-                            " (rms) run through ground that did not change and were taken off: "
-                            "check the calibration of the sensor and how the scans were put "
-                            "together"});
-  }
-  const double left = std::sqrt(area.noise.correlated);
-  if (left > most && area.noise.length > area.grid.cell_size) {
-    warnings.push_back({"scans_do_not_fit",
-                        "ground that did not change rose and fell by " + millimetres(left) +
-                            " between the scans over " + readable(area.noise.length, 2) +
-                            " m, which is not noise of single points: one of the scans is bent, or "
-                            "the ground was driven on; scan again from one place, or leave out by "
-                            "--area what changed",
-                        true});
-  }
-}
-
-void warn_of_ground(const Area& area, std::vector<Warning>& warnings) {
-  const ChangedGround& ground = area.ground;
-  if (ground.stable_share < least_stable_share) {
-    warnings.push_back(
-        {"little_stable_ground", "only " + hundredths(100.0 * ground.stable_share) +
-                                     " % of the surveyed ground did not change, less than " +
-                                     hundredths(100.0 * least_stable_share) +
-                                     " %: an area that rose or fell evenly could be "
-                                     "mistaken for stable ground; scan more of the ground around "
-                                     "hole and heap"});
-  }
-  if (ground.noise_sd > largest_noise) {
-    warnings.push_back({"scans_do_not_fit",
-                        "ground that did not change differs by " + hundredths(ground.noise_sd) +
-                            " m between the scans (one standard deviation), more than " +
-                            hundredths(largest_noise) +
-                            " m: bring both scans into one frame by --before-frame and "
-                            "--after-frame, or leave out by --area what moved between them",
-                        true});
-    return;
-  }
-  warn_of_bends(area, warnings);
-}
-
-void warn_of_balance(VolumeChange& change) {
-  const double before = change.before.value;
-  const double after = change.after.value;
-  if (!(before > 0.0)) {
-    change.warnings.push_back({"no_hole_found",
-                               "no ground fell by more than the noise of the scans: no hole was "
-                               "found, its volumes are 0; check that AFTER shows the dig"});
-    return;
-  }
-  const double dumped = change.dumped.value;
-  if (dumped < least_dumped_share * before || after < least_after_share * before) {
-    change.warnings.push_back(
-        {"no_dumped_soil", "the hole is " + litres_as_m3(before) + ", but only " +
-                               litres_as_m3(dumped) + " rose away from it and " +
-                               litres_as_m3(after - dumped) +
-                               " beside it: the dumped soil is not in the scans, so the bulking "
-                               "factor is unknown; give scans that show it, or those of the dump "
-                               "area by --dump-before and --dump-after"});
-    return;
-  }
-  const double error =
-      std::sqrt(std::max(0.0, std::pow(change.before.sd, 2) + std::pow(change.after.sd, 2) -
-                                  2.0 * change.covariance_before_after));
-  const double ratio = after / before;
-  const bool shrank = ratio < least_bulking && before - after > 2.0 * error;
-  if (shrank || ratio > largest_bulking) {
-    change.warnings.push_back(
-        {"looks_swapped",
-         "before and after are probably swapped: " + litres_as_m3(before) + " were dug, " +
-             litres_as_m3(after) + " were deposited, a factor of " + hundredths(ratio) +
-             "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
-             hundredths(largest_bulking) +
-             " times that of the hole; exchange BEFORE and AFTER; or leave out what "
-             "is no soil, a vehicle, by --dig-area and --dump-area; or, if z "
-             "points down, give frames with z up"});
-  }
-}
-
-/// The warning of the largest of some objects.
-Warning object_warning(const ChangeZone& zone, const Object& object, std::size_t count) {
-  const Eigen::Vector2d centre(0.5 * (zone.extent.x_min + zone.extent.x_max),
-                               0.5 * (zone.extent.y_min + zone.extent.y_max));
-  std::string message =
-      std::string(object.is_low ? "a thing with a level top and steep sides lies on dug "
-                                  "ground in the scan "
-                                : "an object too steep for soil is in the scan ") +
-      (object.is_before ? "before" : "after") + " around (" + hundredths(centre.x()) + ", " +
-      hundredths(centre.y()) + ") m, over " + hundredths(zone.area) +
-      " m^2: it was removed, and the ground under it counts as unseen";
-  if (count > 1) message += "; so were " + std::to_string(count - 1) + " smaller ones";
-  if (!object.is_sure) message += "; if it is soil that was left standing, the hole is smaller";
-  return {object.is_low ? "object_on_soil" : "object_taken_out", std::move(message),
-          !object.is_sure};
-}
-
 /// Objects, low or high ones, are reported as zones of kind `other`.
 void report_objects(const Area& area, bool are_low, VolumeChange& change, AreaChange& result) {
   const double half = 0.5 * area.grid.cell_size;
@@ -435,10 +147,7 @@ void report(Area& area, VolumeChange& change) {
     zone.extent = sum.extent;
     change.zones.push_back(zone);
   }
-  warn_of_ground(area, change.warnings);
-  warn_of_place(area, change.warnings);
-  warn_of_doubt(area.place_before, "before", change.warnings);
-  warn_of_doubt(area.place_after, "after", change.warnings);
+  warn_of_scans(area, change.warnings);
   AreaChange result;
   result.difference = std::move(area.grid);
   result.difference.z =
@@ -473,27 +182,12 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   state_open_changes(areas, attribution, change);
   state_earlier_soil(before, areas, change);
   set_deviations(change);
-  warn_of_others(areas, change);
-  warn_of_zones(doubtful_zones(areas, options, change), options, change.warnings);
+  warn_of_zones(areas, options, change);
   for (Area& area : areas) report(area, change);
   return change;
 }
 
 }  // namespace
-
-const char* name(ZoneKind kind) {
-  switch (kind) {
-    case ZoneKind::dig:
-      return "dig";
-    case ZoneKind::spill:
-      return "spill";
-    case ZoneKind::dump:
-      return "dump";
-    case ZoneKind::other:
-      break;
-  }
-  return "other";
-}
 
 VolumeChange measure_change(const SurfacePair& scene, const ChangeOptions& options) {
   return result_of({&scene}, options);

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "base/robust.hpp"
-#include "ground/error_field.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {

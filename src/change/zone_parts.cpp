@@ -7,10 +7,12 @@
 #include <limits>
 #include <utility>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "change/zone_shape.hpp"
-#include "ground/error_field.hpp"
+#include "ground/area_sums.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/noise_model.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -58,38 +60,22 @@ struct Windows {
   Eigen::ArrayXXd share;   ///< of the window that is known
 };
 
-/// Sums from the first row and column up to each cell, with a margin of zeros.
-Eigen::ArrayXXd integral_of(const Eigen::ArrayXXd& field) {
-  Eigen::ArrayXXd sums = Eigen::ArrayXXd::Zero(field.rows() + 1, field.cols() + 1);
-  for_each_cell(field, [&](Cell at) {
-    sums(at.row + 1, at.col + 1) = field(at.row, at.col) + sums(at.row, at.col + 1) +
-                                   sums(at.row + 1, at.col) - sums(at.row, at.col);
-  });
-  return sums;
-}
-
 Windows windows_of(const Eigen::ArrayXXd& field, Eigen::Index half) {
   const Eigen::ArrayXXd known = 1.0 - field.isNaN().cast<double>();
   const Eigen::ArrayXXd filled = field.isNaN().select(0.0, field);
-  const Eigen::ArrayXXd counts = integral_of(known);
-  const Eigen::ArrayXXd sums = integral_of(filled);
-  const Eigen::ArrayXXd squares = integral_of(filled.square());
-  const Eigen::ArrayXXd raised = integral_of(filled.max(0.0).square());
+  const AreaSums counts(known);
+  const AreaSums sums(filled);
+  const AreaSums squares(filled.square());
+  const AreaSums raised(filled.max(0.0).square());
   Windows windows{filled, filled, filled, known};
   const double whole = std::pow(2.0 * static_cast<double>(half) + 1.0, 2);
   for_each_cell(field, [&](Cell at) {
-    const Eigen::Index r0 = std::max<Eigen::Index>(at.row - half, 0);
-    const Eigen::Index c0 = std::max<Eigen::Index>(at.col - half, 0);
-    const Eigen::Index r1 = std::min(at.row + half + 1, field.rows());
-    const Eigen::Index c1 = std::min(at.col + half + 1, field.cols());
-    const auto total = [&](const Eigen::ArrayXXd& integral) {
-      return integral(r1, c1) - integral(r0, c1) - integral(r1, c0) + integral(r0, c0);
-    };
-    const double count = std::max(total(counts), 1.0);
-    windows.mean(at.row, at.col) = total(sums) / count;
-    windows.square(at.row, at.col) = total(squares) / count;
-    windows.raised(at.row, at.col) = total(raised) / count;
-    windows.share(at.row, at.col) = total(counts) / whole;
+    const double known_here = counts.around(at, half);
+    const double count = std::max(known_here, 1.0);
+    windows.mean(at.row, at.col) = sums.around(at, half) / count;
+    windows.square(at.row, at.col) = squares.around(at, half) / count;
+    windows.raised(at.row, at.col) = raised.around(at, half) / count;
+    windows.share(at.row, at.col) = known_here / whole;
   });
   return windows;
 }
@@ -262,9 +248,8 @@ class Parter {
       if (is_known(at.row, at.col)) squares.push_back(windows.square(at.row, at.col));
     });
     if (squares.empty()) return Mask::Constant(left_out.rows(), left_out.cols(), false);
-    const auto tenth = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 10);
-    std::nth_element(squares.begin(), tenth, squares.end());
-    const double least = std::max(churn_to_noise * std::sqrt(*tenth), least_churn);
+    const double least =
+        std::max(churn_to_noise * std::sqrt(upper_quantile(squares, 0.1)), least_churn);
     return is_known && !left_out && windows.square > least * least &&
            windows.mean.square() < largest_lean * largest_lean * windows.square &&
            windows.raised.min(windows.square - windows.raised) > least_both_ways * windows.square;

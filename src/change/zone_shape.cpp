@@ -7,6 +7,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/statistics.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -20,14 +22,6 @@ double slope_at(const Eigen::ArrayXXd& d, Cell at, double cell_size) {
     return std::isnan(rise) ? 0.0 : rise;
   };
   return std::hypot(along(1, 0), along(0, 1));
-}
-
-/// The value that this share of all exceed. Reorders them, at least one.
-double exceeded_by(double share, std::vector<double>& values) {
-  const auto rank = static_cast<std::ptrdiff_t>((1.0 - share) * static_cast<double>(values.size()));
-  const auto at = values.begin() + std::min(rank, static_cast<std::ptrdiff_t>(values.size()) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 }  // namespace
@@ -79,8 +73,8 @@ ZoneShape shape_of(const Eigen::ArrayXXd& difference, const std::vector<Cell>& c
   shape.axis = axes.eigenvectors().col(1);
   shape.width = extent(0);
   shape.length = extent(1);
-  shape.steepest = exceeded_by(0.1, slopes);
-  shape.fullness = shape.height / exceeded_by(0.05, heights);
+  shape.steepest = upper_quantile(slopes, 0.9);
+  shape.fullness = shape.height / upper_quantile(heights, 0.95);
   return shape;
 }
 

@@ -4,12 +4,10 @@
 
 #include <excavplan/base/error.hpp>
 #include <excavplan/clouds/cloud.hpp>
-#include <excavplan/scans/scan_surface.hpp>
 
 #include "base/files.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_formats.hpp"
-#include "scans/scan_reading.hpp"
 
 namespace excavplan {
 namespace {
@@ -111,23 +109,6 @@ std::string rows_of(const std::vector<Eigen::Vector3d>& points, Numbers numbers)
   return binary_rows(points, numbers == Numbers::float64);
 }
 
-/// Passes on all points, the same on every call, and tells their order.
-using OrderedPoints = std::function<CloudShape(const PointVisitor& visit)>;
-
-void write_points(const std::string& path, const OrderedPoints& source, const CloudFormat& format) {
-  const CloudFileFormat& written = written_format(path, format.name);
-  Numbers numbers = format.text || written.is_text ? Numbers::text : Numbers::float32;
-  const CloudShape shape = source([&](const std::vector<Eigen::Vector3d>& points) {
-    if (numbers == Numbers::float32 && needs_double(points)) numbers = Numbers::float64;
-  });
-  write_file(path, [&](const auto& append) {
-    append(written.head(shape, numbers));
-    const CloudShape again = source(
-        [&](const std::vector<Eigen::Vector3d>& points) { append(rows_of(points, numbers)); });
-    if (again.points() != shape.points()) refuse_change();
-  });
-}
-
 }  // namespace
 
 Cloud read_cloud(const std::string& path, std::uint64_t memory_limit) {
@@ -159,6 +140,20 @@ CloudShape stream_shape(const std::string& path, const PointVisitor& visit) {
 
 void stream_cloud(const std::string& path, const PointVisitor& visit) { stream_shape(path, visit); }
 
+void write_points(const std::string& path, const OrderedPoints& source, const CloudFormat& format) {
+  const CloudFileFormat& written = written_format(path, format.name);
+  Numbers numbers = format.text || written.is_text ? Numbers::text : Numbers::float32;
+  const CloudShape shape = source([&](const std::vector<Eigen::Vector3d>& points) {
+    if (numbers == Numbers::float32 && needs_double(points)) numbers = Numbers::float64;
+  });
+  write_file(path, [&](const auto& append) {
+    append(written.head(shape, numbers));
+    const CloudShape again = source(
+        [&](const std::vector<Eigen::Vector3d>& points) { append(rows_of(points, numbers)); });
+    if (again.points() != shape.points()) refuse_change();
+  });
+}
+
 void write_cloud(const std::string& path, const Cloud& cloud, const CloudFormat& format) {
   if (cloud.width * cloud.height != cloud.points.size()) {
     throw Error(ErrorKind::bad_input, path + ": a cloud of " + std::to_string(cloud.points.size()) +
@@ -169,16 +164,6 @@ void write_cloud(const std::string& path, const Cloud& cloud, const CloudFormat&
   const OrderedPoints source = [&cloud](const PointVisitor& visit) {
     visit_parts(cloud.points, visit);
     return CloudShape{cloud.width, cloud.height, cloud.sensor_origin};
-  };
-  write_points(path, source, format);
-}
-
-void write_cloud(const std::string& path, const Scan& scan, const CloudFormat& format) {
-  const std::vector<Standpoint> known = standpoints_of(scan);
-  const OrderedPoints source = [&](const PointVisitor& visit) {
-    CloudShape shape = visit_scan(scan, visit).shape;
-    if (known.size() == 1) shape.sensor = known.front().place;
-    return shape;
   };
   write_points(path, source, format);
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,13 @@ struct CloudShape {
 };
 /// stream_cloud(), and how the points are ordered.
 CloudShape stream_shape(const std::string& path, const PointVisitor& visit);
+
+/// Passes on all points, the same on every call, and tells their order.
+using OrderedPoints = std::function<CloudShape(const PointVisitor& visit)>;
+
+/// Writes points, which are passed on twice, as write_cloud() does.
+/// @throws Error (bad_file) also if they differ the second time
+void write_points(const std::string& path, const OrderedPoints& source, const CloudFormat& format);
 
 /// How the numbers of a file are written: with every digit, or binary.
 enum class Numbers { text, float32, float64 };

@@ -52,7 +52,7 @@ std::optional<Warning> doubt_of_volume(double volume, const std::string& what, d
                readable(volume * std::pow(likely.length / unit, 3)) +
                " m^3: give the unit of the clouds by --unit, probably --unit " + likely.word;
   }
-  return Warning{"units", message, true};
+  return Warning{WarningCode::units, message};
 }
 
 std::optional<Warning> doubt_of_extent(const Rectangle& extent, double density, double unit) {
@@ -70,7 +70,7 @@ std::optional<Warning> doubt_of_extent(const Rectangle& extent, double density, 
     message += "; with coordinates in " + likely.word + " it would be " +
                size_of(extent, likely.length / unit);
   }
-  return Warning{"units", message + ": is --unit that of the coordinates?", true};
+  return Warning{WarningCode::units, message + ": is --unit that of the coordinates?"};
 }
 
 }  // namespace excavplan

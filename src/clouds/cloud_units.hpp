@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/ground/height_map.hpp>
 
 /// @file

@@ -67,6 +67,15 @@ std::string rows_of(const std::vector<Eigen::Vector3d>& points) {
 
 void refuse_change() { throw Error(ErrorKind::bad_file, "a scan changed while it was read"); }
 
+void visit_parts(const std::vector<Eigen::Vector3d>& points, const PointVisitor& visit) {
+  for (auto from = points.begin(); from != points.end();) {
+    const auto left = static_cast<std::size_t>(points.end() - from);
+    const auto to = from + static_cast<std::ptrdiff_t>(std::min(left, points_at_a_time));
+    visit({from, to});
+    from = to;
+  }
+}
+
 double load_scalar(ScalarType type, const char* bytes, bool swapped) {
   return with_type(
       type, [&](auto value) { return static_cast<double>(load<decltype(value)>(bytes, swapped)); });

@@ -37,6 +37,9 @@ class PointSink {
 
 constexpr std::size_t points_at_a_time = 2048;  ///< stay in the second cache
 
+/// Calls `visit` with the points of a cloud, some thousand at a time.
+void visit_parts(const std::vector<Eigen::Vector3d>& points, const PointVisitor& visit);
+
 /// Passes on points one by one.
 class PointBatch {
  public:

@@ -13,7 +13,7 @@
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "density/joined_density.hpp"
-#include "soil/sound_soil.hpp"
+#include "soil/soil.hpp"
 
 namespace excavplan {
 namespace {

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
@@ -18,7 +19,7 @@
 #include "density/density_of_volumes.hpp"
 #include "ground/too_few_cells.hpp"
 #include "scans/scan_checks.hpp"
-#include "scans/scan_reading.hpp"
+#include "scans/scan_pairs.hpp"
 #include "soil/density_forms.hpp"
 
 namespace excavplan {
@@ -124,7 +125,7 @@ SurfaceVolumes surface_volumes_of(const OutlinedScans& seen, const Surfaces& sur
   std::vector<Warning> doubts = volumes.of_points;
   append(volumes.of_cover, doubts);
   for (const Warning& warning : change.warnings) {
-    if (warning.code == "sensor_place_doubtful") doubts.insert(doubts.begin(), warning);
+    if (warning.code == WarningCode::sensor_place_doubtful) doubts.insert(doubts.begin(), warning);
   }
   with_doubts(doubts, [&] { refuse_swapped(change, seen.dig.names(), seen.unit()); });
   state_water(surfaces.pairs(), change);
@@ -207,9 +208,10 @@ void add_work(const DensityOptions& options, const Surfaces& surfaces, LawsForDi
     const LoadedDig dig = {dug.machine, path, ground, *options.soil.kind, options.soil.scatter};
     laws.work = work_over_density(dig, laws.law.freed_form, options.threads);
   } catch (const Error& error) {
-    laws.warnings.push_back({"loads_not_used", std::string("the dig of the joint loads cannot be "
-                                                           "simulated on the scanned ground: ") +
-                                                   error.what()});
+    laws.warnings.push_back(
+        {WarningCode::loads_not_used, std::string("the dig of the joint loads cannot be "
+                                                  "simulated on the scanned ground: ") +
+                                          error.what()});
   }
 }
 
@@ -221,7 +223,7 @@ Warning warning_of(const BlockReport& report) {
   message += report.voids ? "; the voids between them were estimated and subtracted"
                           : "; the voids between them are part of the volume, and their size "
                             "cannot be estimated";
-  return {"blocks", message + ": the density is not trustworthy"};
+  return {WarningCode::blocks, message + ": the density is not trustworthy"};
 }
 
 /// Marks the estimate as not trustworthy where the scans do not support it.
@@ -231,7 +233,8 @@ void judge_scans(DensityEstimate& estimate) {
     estimate.trustworthy = false;
   }
   for (Warning& warning : estimate.warnings) {
-    const bool is_leant_on = warning.code == "little_stable_ground" && estimate.registration;
+    const bool is_leant_on =
+        warning.code == WarningCode::little_stable_ground && estimate.registration;
     if (is_leant_on) warning.ends_trust = true;
     if (warning.ends_trust) estimate.trustworthy = false;
   }
@@ -333,14 +336,6 @@ std::vector<DensityEstimate> estimates(const DigScans& scans, const DensityLaw& 
 }
 
 }  // namespace
-
-std::optional<GroundDensity> DensityEstimate::ground_density() const {
-  if (!density) return std::nullopt;
-  GroundDensity ground(density->percent, density->sd_percent);
-  ground.trustworthy = trustworthy;
-  ground.soil = law.soil;
-  return ground;
-}
 
 DensityEstimate estimate_density(const DigScans& scans, const DensityLaw& law,
                                  const DensityOptions& options) {

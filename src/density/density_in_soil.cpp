@@ -9,7 +9,7 @@
 
 #include <excavplan/change/bulking.hpp>
 
-#include "base/normal_mixture.hpp"
+#include "base/statistics.hpp"
 #include "density/joined_density.hpp"
 
 namespace excavplan {

@@ -7,7 +7,8 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/density/density_estimate.hpp>
+#include <excavplan/density/density_options.hpp>
+#include <excavplan/density/density_result.hpp>
 #include <excavplan/soil/density_law.hpp>
 
 /// @file

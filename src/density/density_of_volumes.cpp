@@ -10,7 +10,7 @@
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/change/bulking.hpp>
 
-#include "base/normal_mixture.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "density/density_in_soil.hpp"
 #include "density/joined_density.hpp"
@@ -66,23 +66,23 @@ std::optional<Warning> doubt_of(const std::optional<Fallback>& found,
           ? "the floor of the hole lies below the path that was dug, by " +
                 readable(-100.0 * fraction) + " % of the volume that the bucket swept"
           : readable(100.0 * fraction) + " % of the volume that the bucket swept is filled";
-  return Warning{"dug_path_doubtful",
+  return Warning{WarningCode::dug_path_doubtful,
                  what + ", but digs along this path leave " + readable(100.0 * least) + " .. " +
                      readable(100.0 * most) +
                      " % filled: the dig stalled or was not along this path, or the scans are not "
-                     "in the site frame; the bulking factor is not corrected for fallback",
-                 true};
+                     "in the site frame; the bulking factor is not corrected for fallback"};
 }
 
 Warning law_of_other_path(const DensityLaw& law, bool path_is_known) {
-  return {"law_of_other_path", "the law '" + law.name + "' holds for digs along one path, " +
-                                   (path_is_known ? "which is not the one that was dug"
-                                                  : "and the path that was dug is not known") +
-                                   ": soil that falls back differs, by several points of density"};
+  return {WarningCode::law_of_other_path,
+          "the law '" + law.name + "' holds for digs along one path, " +
+              (path_is_known ? "which is not the one that was dug"
+                             : "and the path that was dug is not known") +
+              ": soil that falls back differs, by several points of density"};
 }
 
 Warning law_of_other_soil(const DensityLaw& law, const SoilKind& soil) {
-  return {"law_of_other_soil",
+  return {WarningCode::law_of_other_soil,
           "the law '" + law.name + "' is of " + law.soil + ", the soil is " + soil.name, true};
 }
 
@@ -92,17 +92,16 @@ std::optional<Warning> too_wet(const SoilKnowledge& soil) {
   const double water = soil.water_content->value;
   const double saturation = water * soil.kind->specific_gravity / soil.kind->void_ratio_max;
   if (saturation <= 1.0) return std::nullopt;
-  return Warning{"too_wet",
+  return Warning{WarningCode::too_wet,
                  "a water content of " + readable(water) + " fills the pores of the loosest " +
                      soil.kind->name + " " + readable(saturation, 2) +
-                     " times over: it must be a share of the dry mass, 12 % is 0.12",
-                 true};
+                     " times over: it must be a share of the dry mass, 12 % is 0.12"};
 }
 
 // ---- The answer -------------------------------------------------------------------------------
 
 Warning disagreement_of(const PayloadDensity& payload, bool unknown_soil) {
-  return {"payload_disagrees",
+  return {WarningCode::payload_disagrees,
           "the payload gives a density of " +
               readable(payload.density_percent.value, payload.density_percent.sd) +
               " %, the bulking factor " +
@@ -111,8 +110,7 @@ Warning disagreement_of(const PayloadDensity& payload, bool unknown_soil) {
               (unknown_soil ? " in the soil that fits best: its mass or water content is not that "
                               "given, the soil is none of those known,"
                             : ": the kind of soil or its water content is not that assumed,") +
-              " or a change of the ground does not belong to this dig",
-          true};
+              " or a change of the ground does not belong to this dig"};
 }
 
 /// The dig as another reading has it: another hole if one of the open changes that fell makes this
@@ -166,25 +164,23 @@ Warning disagreement_of(const LoadsDensity& loads) {
                                   " than expected at the density of the scans, " +
                                   readable(loads.by_scans.percent, loads.by_scans.sd_percent) + " %"
                             : loads.reason;
-  return {"loads_disagree",
+  return {WarningCode::loads_disagree,
           "the joints did " + readable(loads.work.value / 1000.0, 3) + " kJ, which is " + much +
               ": the log is not that of this dig, the dig was not along the path given, or the "
-              "soil is of another kind; the loads are not used",
-          true};
+              "soil is of another kind; the loads are not used"};
 }
 
 Warning disagreement_of(const SuccessiveDensity& successive) {
   const PriorDensity& prior = successive.prior;
   const double prior_sd =
       std::hypot(prior.independent_sd_percent, prior.shared_sd_percent, prior.drift_sd_percent);
-  return {"prior_disagrees",
+  return {WarningCode::prior_disagrees,
           "earlier digs give a density of " + readable(prior.raw_percent, prior_sd) +
               " %, this one " +
               readable(successive.this_dig.percent, successive.this_dig.sd_percent) + " %, " +
               readable(std::abs(successive.disagreement), 2) +
               " standard deviations apart: the ground is another here, or a survey is wrong; the "
-              "density is that of this dig alone",
-          true};
+              "density is that of this dig alone"};
 }
 
 /// Joins loads and prior with the density of the scans. Returns the share of the scans.
@@ -199,7 +195,7 @@ double join_second(const LawsForDig& laws, const DensityOptions& options,
   }
   if (!options.prior) return share;
   if (!options.prior->trustworthy) {
-    estimate.warnings.push_back({"prior_not_trustworthy",
+    estimate.warnings.push_back({WarningCode::prior_not_trustworthy,
                                  "the density of earlier digs is not trustworthy and is not used: "
                                  "the density is that of this dig alone"});
     return share;
@@ -265,9 +261,10 @@ LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
   LawsForDig laws = {law, options.soil.possible, {}, {}};
   const auto& dug = options.dug_path;
   if (options.soil.assumed) {
-    laws.warnings.push_back({"soil_assumed", "the soil is assumed to be " + law.soil +
-                                                 ": --soil says which it is; `soils` has the "
-                                                 "density in others"});
+    laws.warnings.push_back(
+        {WarningCode::soil_assumed, "the soil is assumed to be " + law.soil +
+                                        ": --soil says which it is; `soils` has the "
+                                        "density in others"});
   }
   const auto& kind = options.soil.kind;
   if (kind && !law.soil.empty() && law.soil != kind->name) {
@@ -306,7 +303,7 @@ void set_density(DensityEstimate& estimate, const LawsForDig& laws, const Densit
   const bool known_error = !std::isnan(dig.bulking_sd);
   if (!known_error) {
     estimate.warnings.push_back(
-        {"volume_error_unknown",
+        {WarningCode::volume_error_unknown,
          "this method gives no error of its volumes: the density interval contains only the "
          "scatter of the law"});
   }

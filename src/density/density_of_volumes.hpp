@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/density/density_estimate.hpp>
+#include <excavplan/density/density_options.hpp>
+#include <excavplan/density/density_result.hpp>
 
 /// @file
 /// From volumes and what is known beside them to the density.

@@ -6,10 +6,12 @@
 #include <string>
 #include <utility>
 
+#include <excavplan/change/volume_change.hpp>
+
 #include "base/text.hpp"
 #include "ground/too_few_cells.hpp"
 #include "scans/scan_checks.hpp"
-#include "scans/scan_reading.hpp"
+#include "scans/scan_pairs.hpp"
 
 namespace excavplan {
 namespace {
@@ -74,7 +76,7 @@ ScannedChange change_between(const ScanPair& scans, const LoggedDig& dig, bool i
   const HeightMapPair both{surfaces.before.height, surfaces.after.height};
   const HeightMapPair unchanged{both.before, both.before};
   const auto add = [&](const std::vector<Warning>& warnings) {
-    const char* expected = is_hole ? "no_dumped_soil" : "no_hole_found";
+    const WarningCode expected = is_hole ? WarningCode::no_dumped_soil : WarningCode::no_hole_found;
     for (const Warning& warning : warnings) {
       if (warning.code == expected) continue;
       result.warnings.push_back(
@@ -166,11 +168,10 @@ LiftedSoil from_bucket(const ScanPair& scans, const LoggedDig& dig) {
   LiftedSoil result{{Lifted::volume, rise.volume}, {}, {}};
   if (rise.unseen > most_unseen) {
     result.warnings.push_back(
-        {"bucket_partly_unseen",
+        {WarningCode::bucket_partly_unseen,
          seen.names() + ": the scan of the empty bucket does not show " +
              readable(100.0 * rise.unseen, 2) +
-             " % of what that of the loaded one does; the soil there is not counted",
-         true});
+             " % of what that of the loaded one does; the soil there is not counted"});
   }
   return result;
 }

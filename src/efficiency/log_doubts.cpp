@@ -8,23 +8,23 @@
 #include <string>
 #include <utility>
 
+#include "base/statistics.hpp"
 #include "base/text.hpp"
-#include "logs/dig_phases.hpp"
 
 namespace excavplan {
 namespace {
 
 /// How the rate of a log is shown.
 struct ShownRate {
-  const char* code;
+  WarningCode code;
   const char* unit;
   double scale;  ///< from mL/s or W
   double most;   ///< on average [mL/s], 100 L/h, or [W]; ours: of a 100-t machine
 };
 
 ShownRate shown(Spent spent) {
-  if (spent == Spent::fuel) return {"implausible_fuel", " mL/s", 1.0, 28.0};
-  return {"implausible_energy", " kW", 1e-3, 2e6};
+  if (spent == Spent::fuel) return {WarningCode::implausible_fuel, " mL/s", 1.0, 28.0};
+  return {WarningCode::implausible_energy, " kW", 1e-3, 2e6};
 }
 
 std::string rate_text(double rate, Spent spent) {
@@ -47,13 +47,11 @@ std::optional<Warning> gap_in(const DigLog& log) {
     }
   }
   const double longest = *std::max_element(steps.begin(), steps.end());
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  if (!(longest > most_usual_steps * *middle)) return std::nullopt;
-  return Warning{"gap_in_log",
-                 log.file + ": no row for " + readable(longest) + " s, where " + readable(*middle) +
-                     " s are usual: the consumption during the gap is interpolated",
-                 true};
+  const double usual = median(steps);
+  if (!(longest > most_usual_steps * usual)) return std::nullopt;
+  return Warning{WarningCode::gap_in_log,
+                 log.file + ": no row for " + readable(longest) + " s, where " + readable(usual) +
+                     " s are usual: the consumption during the gap is interpolated"};
 }
 
 std::optional<Warning> too_high_a_mean(const DigLog& log, double rate) {
@@ -96,13 +94,12 @@ std::optional<Warning> less_than_beside(const DigLog& log, const RunShare& dig, 
   if (log.phases != PhaseSource::none || rest < dig.duration) return std::nullopt;
   const double beside = (log.integral(all) - rate * dig.duration) / rest;
   if (!(rate < much_less * beside)) return std::nullopt;
-  return Warning{"dig_below_rest",
+  return Warning{WarningCode::dig_below_rest,
                  log.file + ": " + rate_text(rate, log.spent) + " on average from " +
                      number_text(log.digs.front().from) + " to " + number_text(log.digs.back().to) +
                      " s, but " + rate_text(beside, log.spent) +
                      " in the rest of the log: that is no dig, unless the machine works harder "
-                     "before or after; check its times",
-                 true};
+                     "before or after; check its times"};
 }
 
 /// Time in an interval in which the machine rests, for 2 s or longer at a time [s].
@@ -138,12 +135,11 @@ std::optional<Warning> rest_in_dig(const LoggedDig& dig, const DigEfficiency& re
   }
   const double rest = time_at_rest(log, log.whole, result.idle->rate);
   if (!(rest > 0.0)) return std::nullopt;
-  return Warning{"idle_in_dig",
+  return Warning{WarningCode::idle_in_dig,
                  log.file + ": the machine idles for " + readable(rest) + " of the " +
                      readable(result.dig.duration) +
                      " s that count as the dig, as the log has no phases: state when the dig "
-                     "begins and ends, or what counts",
-                 true};
+                     "begins and ends, or what counts"};
 }
 
 std::optional<Warning> idle_above(const DigEfficiency& result) {
@@ -151,12 +147,11 @@ std::optional<Warning> idle_above(const DigEfficiency& result) {
   if (!result.idle) return std::nullopt;
   if (!is_above(result.dig) && !(result.cycle && is_above(*result.cycle))) return std::nullopt;
   const RunShare& share = is_above(result.dig) ? result.dig : *result.cycle;
-  return Warning{"idle_above_dig",
+  return Warning{WarningCode::idle_above_dig,
                  result.file + ": idling takes " + rate_text(result.idle->rate, result.spent) +
                      ", more than the " + rate_text(mean_rate(share, result.spent), result.spent) +
                      " on average of the " + (&share == &result.dig ? "dig" : "cycle") +
-                     ": check the rate at rest and its unit",
-                 true};
+                     ": check the rate at rest and its unit"};
 }
 
 }  // namespace

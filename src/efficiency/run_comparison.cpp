@@ -10,7 +10,7 @@
 
 #include "base/check.hpp"
 #include "base/random.hpp"
-#include "base/student.hpp"
+#include "efficiency/student.hpp"
 
 namespace excavplan {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include <excavplan/experiments/study.hpp>
+#include <excavplan/experiments/study_result.hpp>
 
 #include "base/random.hpp"
 

@@ -16,6 +16,8 @@
 #include "base/text.hpp"
 #include "experiments/experiment_site.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
+#include "planning/start_rule.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -59,7 +61,7 @@ class Experiment {
 
   std::variant<Dug, DigFailure> attempt(const DigParameters& parameters,
                                         const StartRule& start) const {
-    auto laid = DigLayout(machine_, ground_).path(parameters, start);
+    auto laid = path_by(DigLayout(machine_, ground_), parameters, start);
     if (const auto* infeasible = std::get_if<Infeasible>(&laid)) return DigFailure(*infeasible);
     auto& path = std::get<DigPath>(laid);
     const auto outcome =
@@ -104,7 +106,7 @@ class Experiment {
   /// The rule that puts the start of a planned dig nearest to where it is.
   StartRule rule_behind(const PlannedDig& planned) const {
     const auto distance = [&](const StartRule& rule) {
-      const auto path = DigLayout(machine_, ground_).path(planned.parameters, rule);
+      const auto path = path_by(DigLayout(machine_, ground_), planned.parameters, rule);
       const auto* laid = std::get_if<DigPath>(&path);
       return laid ? std::abs(laid->start_x - planned.start_x)
                   : std::numeric_limits<double>::infinity();
@@ -151,10 +153,17 @@ std::string hold_if_moved(Experiment& experiment, const DigParameters& path) {
   return why;
 }
 
+void check(const Machine& machine, const SoilKind& soil, const ExperimentOptions& options) {
+  require_machine(machine);
+  require_soil(soil);
+  if (options.plan.cell_size) require_simulated_cell(*options.plan.cell_size);
+}
+
 }  // namespace
 
 DigScene first_dig(const Machine& machine, const SoilKind& soil, double density_percent,
                    const ExperimentOptions& options) {
+  check(machine, soil, options);
   Experiment experiment(machine, soil, density_percent, options);
   hold_if_moved(experiment, options.fixed_path);
   return experiment.scene(experiment.dig(options.fixed_path, {}).dig);
@@ -173,9 +182,7 @@ double ExperimentResult::start_gain_percent() const {
 
 ExperimentResult run_experiment(const Machine& machine, const SoilKind& soil, const DensityLaw& law,
                                 double density_percent, const ExperimentOptions& options) {
-  require_machine(machine);
-  require_soil(soil);
-  if (options.plan.cell_size) require_simulated_cell(*options.plan.cell_size);
+  check(machine, soil, options);
   Experiment experiment(machine, soil, density_percent, options);
   ExperimentResult result;
   result.held_because = hold_if_moved(experiment, options.fixed_path);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include <excavplan/experiments/experiment.hpp>
+#include <excavplan/experiments/experiment_options.hpp>
 
 namespace excavplan {
 
@@ -29,9 +29,5 @@ class ExperimentSite {
   SimulatorKind digs_;
   const ExperimentOptions& options_;
 };
-
-/// The dig along the fixed path that run_experiment() begins with. @throws Error as there
-DigScene first_dig(const Machine& machine, const SoilKind& soil, double density_percent,
-                   const ExperimentOptions& options);
 
 }  // namespace excavplan

@@ -14,6 +14,7 @@
 
 #include "base/parallel.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -44,7 +45,7 @@ class Reference {
 
  private:
   std::variant<PlannedDig, DigFailure> dig_from(const DigParameters& parameters, double x) const {
-    const auto path = layout_.path(parameters, x);
+    const auto path = layout_.path_from(parameters, x);
     if (const auto* stop = std::get_if<Infeasible>(&path)) return DigFailure(*stop);
     return dig_along(model_.machine, *simulator_, ground_, std::get<DigPath>(path),
                      model_.search.objective);

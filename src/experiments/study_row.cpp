@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {

@@ -5,8 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include <excavplan/experiments/study.hpp>
-
 #include "experiments/experiment_site.hpp"
 
 namespace excavplan {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <excavplan/experiments/study.hpp>
+#include <excavplan/experiments/study_result.hpp>
 
 namespace excavplan {
 

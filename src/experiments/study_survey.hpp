@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include <excavplan/density/density_estimate.hpp>
-#include <excavplan/experiments/study.hpp>
+#include <excavplan/experiments/study_condition.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 

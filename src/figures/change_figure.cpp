@@ -9,6 +9,7 @@
 
 #include <excavplan/change/bulking.hpp>
 
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -239,12 +240,7 @@ std::vector<double> bands_of(const VolumeChange& change) {
       if (area.zone(i) >= 0) largest = std::max(largest, value);
     }
   }
-  if (largest == 0.0 && !all.empty()) {
-    const auto place =
-        all.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(all.size() - 1));
-    std::nth_element(all.begin(), place, all.end());
-    largest = *place;
-  }
+  if (largest == 0.0) largest = quantile(std::move(all), 0.99);
   return colour_bands(std::max(0.01, noise), largest);
 }
 
@@ -419,7 +415,7 @@ std::vector<std::string> change_table(const ChangeSheet& sheet) {
   add_left_out(sheet.change, notes);
   if (!sheet.warnings.empty()) notes.insert(notes.end(), {"", "warnings"});
   for (const Warning& warning : sheet.warnings) {
-    notes.push_back(warning.code + ": " + warning.message);
+    notes.push_back(code_text(warning.code) + ": " + warning.message);
   }
   add_errors(sheet.change, notes);
   return notes;

@@ -8,7 +8,6 @@
 
 #include "base/text.hpp"
 #include "drawing/bars.hpp"
-#include "logs/dig_phases.hpp"
 #include "results/efficiency_results.hpp"
 
 namespace excavplan {

@@ -12,6 +12,7 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -96,7 +97,7 @@ std::vector<double> worths(const DrawnPlan& drawn, const std::vector<Section>& s
   std::vector<double> found(sections.size() * Section::count, nan);
   parallel_for(found.size(), drawn.search.threads, [&](std::size_t i) {
     const DigParameters dig = sections[i / Section::count].dig(i % Section::count);
-    const auto path = layout.path(dig, StartRule(drawn.plan.dig->start_x));
+    const auto path = layout.path_from(dig, drawn.plan.dig->start_x);
     if (!std::holds_alternative<DigPath>(path)) return;
     const auto dug =
         dig_along(machine, *simulator, site.ground, std::get<DigPath>(path), objective);

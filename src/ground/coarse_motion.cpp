@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ground/coarse_motion.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "base/angles.hpp"
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/plane_fit.hpp"
 
 namespace excavplan {
 namespace {
@@ -30,11 +29,23 @@ constexpr double least_overlap = 0.5;  // of the samples
 class Relief {
  public:
   explicit Relief(const HeightMap& map) : map_(map), relief_(map.z) {
-    for (int round = 0; round < 4; ++round) fit();
+    std::vector<Eigen::Vector3d> points;
+    for_each_cell(relief_, [&](Cell at) {
+      const Eigen::Vector2d from = Eigen::Vector2d(map.x(at.col), map.y(at.row)) - map.origin;
+      const double z = map.z(at.row, at.col);
+      if (!std::isnan(z)) points.emplace_back(from.x(), from.y(), z);
+    });
+    plane_ = robust_plane(points).plane;
+    for_each_cell(relief_, [&](Cell at) {
+      relief_(at.row, at.col) -= plane_at({map.x(at.col), map.y(at.row)});
+    });
   }
 
-  Eigen::Vector3d plane() const { return plane_; }  ///< height, slope along x, along y
-  double plane_at(const Eigen::Vector2d& p) const { return plane_.dot(terms(p)); }
+  const GroundPlane& plane() const { return plane_; }
+  double plane_at(const Eigen::Vector2d& p) const {
+    const Eigen::Vector2d from = p - map_.origin;
+    return plane_.at(from.x(), from.y());
+  }
   const Eigen::ArrayXXd& cells() const { return relief_; }
 
   /// NaN outside the map.
@@ -47,36 +58,9 @@ class Relief {
   }
 
  private:
-  Eigen::Vector3d terms(const Eigen::Vector2d& p) const {
-    const Eigen::Vector2d from = p - map_.origin;
-    return {1.0, from.x(), from.y()};
-  }
-
-  /// Least squares of the cells that are near the last plane.
-  void fit() {
-    constexpr double clip = 2.5;  // robust standard deviations
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for_each_cell(relief_, [&](Cell at) {
-      if (!(std::abs(relief_(at.row, at.col)) <= clip * scale_)) return;
-      const Eigen::Vector3d t = terms({map_.x(at.col), map_.y(at.row)});
-      normal += t * t.transpose();
-      right += map_.z(at.row, at.col) * t;
-    });
-    plane_ = normal.ldlt().solve(right);
-    std::vector<double> away;
-    for_each_cell(relief_, [&](Cell at) {
-      const double off = map_.z(at.row, at.col) - plane_at({map_.x(at.col), map_.y(at.row)});
-      relief_(at.row, at.col) = off;
-      if (!std::isnan(off)) away.push_back(std::abs(off));
-    });
-    scale_ = 1.4826 * median(away);
-  }
-
   const HeightMap& map_;
   Eigen::ArrayXXd relief_;
-  Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
-  double scale_ = std::numeric_limits<double>::infinity();
+  GroundPlane plane_;
 };
 
 /// A motion in plan: a point p of the ground is in the scan after at c + R (p - c) + shift.
@@ -155,14 +139,12 @@ class Matcher {
     }
     const double middle = median(differences_);
     for (double& value : differences_) value = std::abs(value - middle);
-    const auto quarter =
-        differences_.begin() + static_cast<std::ptrdiff_t>(differences_.size() / 4);
-    std::nth_element(differences_.begin(), quarter, differences_.end());
-    return *quarter;
+    return upper_quantile(differences_, 0.25);
   }
 
   static Eigen::Vector3d normal_of(const Relief& relief) {
-    return Eigen::Vector3d(-relief.plane().y(), -relief.plane().z(), 1.0).normalized();
+    const Eigen::Vector2d slope = relief.plane().gradient();
+    return Eigen::Vector3d(-slope.x(), -slope.y(), 1.0).normalized();
   }
 
   /// Turns the ground after back in plan and onto the plane of the ground before.

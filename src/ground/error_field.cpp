@@ -4,108 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <tuple>
+#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "base/angles.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/registration.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// Kriging with a fitted covariance underestimates its error (Zimmerman and Cressie 1992); the
 /// factor is ours, from 300 simulated surveys.
 constexpr double plug_in = 1.15;
-
-struct Products {
-  double sum = 0.0;
-  double count = 0.0;
-  double mean() const { return count > 0.0 ? sum / count : 0.0; }
-};
-
-Products products(const Eigen::ArrayXXd& field, Eigen::Index lag) {
-  Products found;
-  const auto add = [&](double product) {
-    if (std::isnan(product)) return;
-    found.sum += product;
-    found.count += 1.0;
-  };
-  for (Eigen::Index col = 0; col < field.cols(); ++col) {
-    for (Eigen::Index row = 0; row < field.rows(); ++row) {
-      const double here = field(row, col);
-      if (std::isnan(here)) continue;
-      if (row + lag < field.rows()) add(here * field(row + lag, col));
-      if (col + lag < field.cols()) add(here * field(row, col + lag));
-    }
-  }
-  return found;
-}
-
-/// Empirical covariance by lag [cell], up to twice the first lag at which it is not significant.
-struct Covariances {
-  std::vector<Products> at_lag;
-  std::size_t told = 1;  // lags before that one
-};
-
-Covariances empirical(const Eigen::ArrayXXd& residual) {
-  constexpr double significant = 3.0;  // sd; ours
-  Covariances found;
-  found.at_lag.push_back(products(residual, 0));
-  const double variance = found.at_lag[0].mean();
-  const Eigen::Index farthest = std::min(residual.rows(), residual.cols()) / 3;
-  double squares = 1.0;
-  bool telling = variance > 0.0;
-  for (Eigen::Index lag = 1; lag <= farthest; ++lag) {
-    if (!telling && static_cast<std::size_t>(lag) > 2 * found.told) break;
-    found.at_lag.push_back(products(residual, lag));
-    const Products& here = found.at_lag.back();
-    if (!telling || here.count == 0.0) continue;
-    const double rho = here.mean() / variance;
-    telling = rho > significant * std::sqrt(squares / here.count);
-    if (!telling) continue;
-    squares += 2.0 * pi * static_cast<double>(lag) * rho * rho;
-    found.told = static_cast<std::size_t>(lag) + 1;
-  }
-  return found;
-}
-
-/// Weighted least squares on the variogram (Cressie 1985): its values at short lags, which
-/// determine the shape, have small errors, and it does not depend on the mean of the residuals.
-NoiseModel fit(const Covariances& covariances, double cell_size) {
-  const double variance = covariances.at_lag[0].mean();
-  const double longest = cell_size * static_cast<double>(covariances.at_lag.size());
-  NoiseModel best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double power : {1.0, 1.25, 1.5, 1.75, 2.0}) {  // this grid is ours
-    for (double length = 0.4 * cell_size; length < longest; length *= 1.06) {
-      const NoiseModel shape{0.0, 1.0, length, power};
-      Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-      Eigen::Vector2d right = Eigen::Vector2d::Zero();
-      double squares = 0.0;
-      for (std::size_t lag = 1; lag < covariances.at_lag.size(); ++lag) {
-        const double value = variance - covariances.at_lag[lag].mean();
-        const Eigen::Vector2d terms(1.0, 1.0 - shape.at(cell_size * static_cast<double>(lag)));
-        const double weight = 1.0 / std::max(value * value, 1e-4 * variance * variance);
-        normal += weight * terms * terms.transpose();
-        right += weight * value * terms;
-        squares += weight * value * value;
-      }
-      Eigen::Vector2d sills = normal.ldlt().solve(right);
-      if (sills.x() < 0.0) sills = {0.0, right.y() / normal(1, 1)};
-      if (!(sills.y() > 0.0)) continue;
-      const double error = squares - 2.0 * sills.dot(right) + sills.dot(normal * sills);
-      if (error >= least) continue;
-      least = error;
-      best = {sills.x(), sills.y(), length, power};
-    }
-  }
-  return best;
-}
 
 /// A patch of the grid: the mean error over it is one datum, or one part of a zone.
 struct Block {
@@ -299,47 +217,6 @@ Wanted wanted_of(const Blocks& blocks, const NoiseModel& noise, const Eigen::Mat
 
 }  // namespace
 
-double NoiseModel::at(double distance) const {
-  if (correlated == 0.0) return 0.0;
-  const double ratio = distance / length;
-  if (power == 2.0) return correlated * std::exp(-ratio * ratio);
-  if (power == 1.0) return correlated * std::exp(-ratio);
-  return correlated * std::exp(-std::pow(ratio, power));
-}
-
-double NoiseModel::integral() const {
-  if (correlated == 0.0) return 0.0;
-  return correlated * 2.0 * pi * length * length * std::tgamma(2.0 / power) / power;
-}
-
-NoiseModel find_noise(const Eigen::ArrayXXd& residual, double cell_size) {
-  const Covariances covariances = empirical(residual);
-  NoiseModel model;
-  model.white = covariances.at_lag[0].mean();
-  if (covariances.told < 2) return model;
-  const NoiseModel fitted = fit(covariances, cell_size);
-  return fitted.correlated > 0.0 ? fitted : model;
-}
-
-Gradient gradient_of(const HeightMap& map) {
-  Gradient gradient;
-  gradient.x = Eigen::ArrayXXd::Constant(map.z.rows(), map.z.cols(), nan);
-  gradient.y = gradient.x;
-  const Eigen::Index rows = map.z.rows() - 2;
-  const Eigen::Index cols = map.z.cols() - 2;
-  if (rows < 1 || cols < 1) return gradient;
-  const auto& z = map.z;
-  const Eigen::ArrayXXd along = z.topRows(rows) + z.middleRows(1, rows) + z.bottomRows(rows);
-  const Eigen::ArrayXXd across = z.leftCols(cols) + z.middleCols(1, cols) + z.rightCols(cols);
-  gradient.x.block(1, 1, rows, cols) =
-      (along.rightCols(cols) - along.leftCols(cols)) / (6.0 * map.cell_size) +
-      0.0 * along.middleCols(1, cols);
-  gradient.y.block(1, 1, rows, cols) =
-      (across.bottomRows(rows) - across.topRows(rows)) / (6.0 * map.cell_size) +
-      0.0 * across.middleRows(1, rows);
-  return gradient;
-}
-
 ZoneErrors ErrorField::predict() const {
   if (zones == 0) return {};
   const Gradient gradient = gradient_of(before);
@@ -363,36 +240,6 @@ ZoneErrors ErrorField::predict() const {
   errors.correlated = plug_in * (wanted.covariance - wanted.with_known.transpose() * to_wanted);
   errors.datum = rest.transpose() * trend_factor.solve(rest);
   return errors;
-}
-
-Eigen::ArrayXXd slope_limited(const Eigen::ArrayXXd& z, double rise) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  const double diagonal = rise * std::sqrt(2.0);
-  Eigen::ArrayXXd limit = z.isNaN().select(infinity, z);
-  const auto lower = [&](Eigen::Index row, Eigen::Index col, Eigen::Index step) {
-    double& here = limit(row, col);
-    const auto from = [&](Eigen::Index r, Eigen::Index c, double way) {
-      if (r < 0 || c < 0 || r >= z.rows() || c >= z.cols()) return;
-      here = std::min(here, limit(r, c) + way);
-    };
-    from(row - step, col, rise);
-    from(row, col - step, rise);
-    from(row - step, col - step, diagonal);
-    from(row + step, col - step, diagonal);
-  };
-  for (Eigen::Index col = 0; col < z.cols(); ++col) {
-    for (Eigen::Index row = 0; row < z.rows(); ++row) lower(row, col, 1);
-  }
-  for (Eigen::Index col = z.cols() - 1; col >= 0; --col) {
-    for (Eigen::Index row = z.rows() - 1; row >= 0; --row) lower(row, col, -1);
-  }
-  return limit;
-}
-
-Eigen::ArrayXXd distance_to(const Mask& marked) {
-  const Eigen::ArrayXXd start = marked.select(Eigen::ArrayXXd::Zero(marked.rows(), marked.cols()),
-                                              std::numeric_limits<double>::infinity());
-  return slope_limited(start, 1.0);
 }
 
 }  // namespace excavplan

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string_view>
 
-#include <excavplan/ground/map_files.hpp>
+#include <excavplan/ground/layered_map.hpp>
 
 /// @file
 /// GeoTIFF. Written without GDAL, which takes 60 ms to load and would have to be loaded at run

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,10 +36,31 @@ void for_each_neighbour(const Array& grid, Cell cell, Visit visit) {
   if (cell.col + 1 < grid.cols()) visit(Cell{cell.row, cell.col + 1});
 }
 
+/// The cells of a square around `cell`, itself included, as far as the grid reaches.
+template <typename Array, typename Visit>
+void for_each_around(const Array& grid, Cell cell, Eigen::Index radius, Visit visit) {
+  const Eigen::Index end_col = std::min(cell.col + radius + 1, grid.cols());
+  const Eigen::Index end_row = std::min(cell.row + radius + 1, grid.rows());
+  for (Eigen::Index col = std::max<Eigen::Index>(cell.col - radius, 0); col < end_col; ++col) {
+    for (Eigen::Index row = std::max<Eigen::Index>(cell.row - radius, 0); row < end_row; ++row) {
+      visit(Cell{row, col});
+    }
+  }
+}
+
 template <typename Array>
 bool on_border(const Array& grid, Cell cell) {
   return cell.row == 0 || cell.col == 0 || cell.row + 1 == grid.rows() ||
          cell.col + 1 == grid.cols();
+}
+
+/// The values that are not NaN.
+inline std::vector<double> known_values(const Eigen::ArrayXXd& grid) {
+  std::vector<double> known;
+  for (const double value : grid.reshaped()) {
+    if (!std::isnan(value)) known.push_back(value);
+  }
+  return known;
 }
 
 /// Gives `mark` to the edge-connected cells around `seed` whose label is `free` and which `joins`

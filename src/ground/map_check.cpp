@@ -3,6 +3,7 @@
 #include "ground/map_check.hpp"
 
 #include <cmath>
+#include <string>
 
 #include "base/check.hpp"
 
@@ -60,12 +61,6 @@ void require_surface(const Surface& surface, const char* what) {
       in(what, "place of a sensor [m]", number, -farthest_place, farthest_place);
     }
   }
-}
-
-void require_alignment(const Alignment& alignment, const char* what) {
-  const bool finite =
-      alignment.centre.allFinite() && alignment.motion.allFinite() && alignment.left.allFinite();
-  if (!finite) refuse(std::string(what) + ": a number of the alignment is not finite");
 }
 
 }  // namespace excavplan

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
-#include <excavplan/ground/registration.hpp>
+#include <excavplan/ground/height_map.hpp>
 #include <excavplan/ground/surface.hpp>
 
 /// @file
@@ -22,7 +20,5 @@ void require_grid(const HeightMap& map, const char* what);
 void require_map(const HeightMap& map, const char* what);
 /// As require_map(); its other layers are empty or as large as the map, and places finite.
 void require_surface(const Surface& surface, const char* what);
-/// A motion whose numbers are finite.
-void require_alignment(const Alignment& alignment, const char* what);
 
 }  // namespace excavplan

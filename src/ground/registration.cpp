@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/ground/registration.hpp>
+#include "ground/registration.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +14,12 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
-#include "base/robust.hpp"
-#include "ground/error_field.hpp"
+#include "base/normal_equations.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/map_check.hpp"
+#include "ground/noise_model.hpp"
+#include "ground/slopes.hpp"
 #include "ground/too_few_cells.hpp"
 
 namespace excavplan {
@@ -138,10 +140,7 @@ class Aligner {
 
   /// Median change of a slope; 0 if no cell is known in both.
   static double tilt_of(const Eigen::ArrayXXd& change) {
-    std::vector<double> known;
-    for (const double value : change.reshaped()) {
-      if (!std::isnan(value)) known.push_back(value);
-    }
+    std::vector<double> known = known_values(change);
     return known.empty() ? 0.0 : median(known);
   }
 
@@ -154,9 +153,7 @@ class Aligner {
       away.push_back(std::abs(samples_[i].change - samples_[i].effect.dot(motion)));
     }
     std::vector<double> sorted = away;
-    const auto quarter = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 4);
-    std::nth_element(sorted.begin(), quarter, sorted.end());
-    scale_ = std::max(quartile_to_sd * *quarter, least_noise);
+    scale_ = std::max(quartile_to_sd * upper_quantile(sorted, 0.25), least_noise);
     const double bend_sd = std::max(scale_ / (std::sqrt(6.0) * map_.cell_size), least_bend);
     for (std::size_t i = 0; i < away.size(); ++i) {
       Sample& sample = samples_[i * stride_];
@@ -264,7 +261,7 @@ class Aligner {
                                                which[static_cast<std::size_t>(j)]);
       }
     }
-    return motion.dot(covariance.ldlt().solve(motion)) > significant;
+    return squared_by(covariance, motion) > significant;
   }
 
   const HeightMap& map_;
@@ -295,6 +292,12 @@ double slope(double low, double here, double high, double cell_size) {
 }
 
 }  // namespace
+
+void require_alignment(const Alignment& alignment, const char* what) {
+  const bool finite =
+      alignment.centre.allFinite() && alignment.motion.allFinite() && alignment.left.allFinite();
+  if (!finite) refuse(std::string(what) + ": a number of the alignment is not finite");
+}
 
 MotionCovariance Alignment::default_left() {
   MotionCovariance left = MotionCovariance::Zero();

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
-#include "base/robust.hpp"
-#include "ground/error_field.hpp"
+#include "base/statistics.hpp"
+#include "ground/area_sums.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
+#include "ground/plane_fit.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -20,44 +20,14 @@ namespace {
 using Eigen::Index;
 constexpr Index widest_gap = 24;  // ours [cell]
 
-/// Sums over rectangles of cells.
-class AreaSums {
- public:
-  explicit AreaSums(const Mask& mask)
-      : sums_(Eigen::ArrayXXd::Zero(mask.rows() + 1, mask.cols() + 1)) {
-    for (Index c = 0; c < mask.cols(); ++c) {
-      double column = 0.0;
-      for (Index r = 0; r < mask.rows(); ++r) {
-        column += mask(r, c) ? 1.0 : 0.0;
-        sums_(r + 1, c + 1) = sums_(r + 1, c) + column;
-      }
-    }
-  }
-
-  double around(Cell at, Index radius) const {
-    const Index top = std::max<Index>(at.row - radius, 0);
-    const Index left = std::max<Index>(at.col - radius, 0);
-    const Index bottom = std::min(at.row + radius + 1, sums_.rows() - 1);
-    const Index right = std::min(at.col + radius + 1, sums_.cols() - 1);
-    return sums_(bottom, right) - sums_(top, right) - sums_(bottom, left) + sums_(top, left);
-  }
-
- private:
-  Eigen::ArrayXXd sums_;
-};
-
 /// Known cells with an unknown one among the eight around.
 Mask thin_cells(const Mask& known) {
   Mask thin = Mask::Constant(known.rows(), known.cols(), false);
   for_each_cell(known, [&](Cell at) {
     if (!known(at.row, at.col)) return;
-    for (Index c = std::max<Index>(at.col - 1, 0); c <= std::min(at.col + 1, known.cols() - 1);
-         ++c) {
-      for (Index r = std::max<Index>(at.row - 1, 0); r <= std::min(at.row + 1, known.rows() - 1);
-           ++r) {
-        if (!known(r, c)) thin(at.row, at.col) = true;
-      }
-    }
+    for_each_around(known, at, 1, [&](Cell n) {
+      if (!known(n.row, n.col)) thin(at.row, at.col) = true;
+    });
   });
   return thin;
 }
@@ -103,27 +73,15 @@ std::vector<Cell> held_by_known(const Mask& known, const std::vector<Cell>& cell
 /// Mean square of the known heights around a cell about their best plane; NaN if they are too few.
 double scatter_around(const Eigen::ArrayXXd& z, const Mask& known, Cell at, Index radius) {
   constexpr double fewest = 6.0;  // ours
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double squares = 0.0;
+  PlaneFit fit;
   const double middle = z(at.row, at.col);
-  for (Index c = std::max<Index>(at.col - radius, 0); c <= std::min(at.col + radius, z.cols() - 1);
-       ++c) {
-    for (Index r = std::max<Index>(at.row - radius, 0);
-         r <= std::min(at.row + radius, z.rows() - 1); ++r) {
-      if (!known(r, c)) continue;
-      const Eigen::Vector3d terms(1.0, static_cast<double>(c - at.col),
-                                  static_cast<double>(r - at.row));
-      const double height = z(r, c) - middle;
-      normal += terms * terms.transpose();
-      right += height * terms;
-      squares += height * height;
-    }
-  }
-  const double count = normal(0, 0);
-  if (count < fewest) return std::numeric_limits<double>::quiet_NaN();
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
-  return std::max(0.0, squares - plane.dot(right)) / (count - 3.0);
+  for_each_around(z, at, radius, [&](Cell n) {
+    if (!known(n.row, n.col)) return;
+    fit.add(static_cast<double>(n.col - at.col), static_cast<double>(n.row - at.row),
+            z(n.row, n.col) - middle);
+  });
+  if (fit.count() < fewest) return std::numeric_limits<double>::quiet_NaN();
+  return fit.squares_about(fit.plane()) / (fit.count() - 3.0);
 }
 
 /// Sampling of one zone.
@@ -204,8 +162,8 @@ void fill_sampling_gaps(Surface& surface) {
   constexpr double widest_to_usual = 2.0;
   const Mask known = !surface.height.z.isNaN();
   if (known.all() || !known.any()) return;
-  const AreaSums all(known);
-  const AreaSums thin(thin_cells(known));
+  const AreaSums all(known.cast<double>());
+  const AreaSums thin(thin_cells(known).cast<double>());
   const Eigen::ArrayXXd distance = distance_to(known);
   std::vector<Cell> gaps;
   for_each_cell(known, [&](Cell at) {

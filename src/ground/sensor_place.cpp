@@ -8,7 +8,10 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/normal_equations.hpp"
+#include "base/statistics.hpp"
 #include "ground/grid_cells.hpp"
+#include "ground/plane_fit.hpp"
 
 namespace excavplan {
 namespace {
@@ -38,24 +41,19 @@ bool block_at(const Surface& surface, Cell from, Eigen::Index side, Block& block
   constexpr double least_known = 0.8;  // ours
   constexpr double gentle = 0.15;      // ours: smaller gradients are noise and natural slope
   const HeightMap& map = surface.height;
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  PlaneFit fit;
   block.points = 0.0;
   for (Eigen::Index c = from.col; c < from.col + side; ++c) {
     for (Eigen::Index r = from.row; r < from.row + side; ++r) {
       if (std::isnan(map.z(r, c))) continue;
-      const Eigen::Vector3d terms(1.0, map.x(c) - map.x(from.col), map.y(r) - map.y(from.row));
-      normal += terms * terms.transpose();
-      right += map.z(r, c) * terms;
+      fit.add(map.x(c) - map.x(from.col), map.y(r) - map.y(from.row), map.z(r, c));
       block.points += surface.points(r, c);
     }
   }
-  if (normal(0, 0) < least_known * static_cast<double>(side * side)) return false;
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
-  block.gradient = plane.tail<2>();
+  if (fit.count() < least_known * static_cast<double>(side * side)) return false;
+  block.gradient = fit.plane().gradient();
   if (block.gradient.norm() < gentle) block.gradient.setZero();
-  block.place = {map.x(from.col) + normal(0, 1) / normal(0, 0),
-                 map.y(from.row) + normal(0, 2) / normal(0, 0), right(0) / normal(0, 0)};
+  block.place = fit.mean() + Eigen::Vector3d(map.x(from.col), map.y(from.row), 0.0);
   return true;
 }
 
@@ -141,15 +139,13 @@ class PointRegression {
   double power_of_range() const {
     const Eigen::Vector3d sensor(inverse().x() / inverse().z(), inverse().y() / inverse().z(),
                                  1.0 / inverse().z());
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    NormalEquations<2> equations;
     for (const Block& block : blocks_.all) {
       const Eigen::Vector3d ray = sensor - block.place;
-      const Eigen::Vector2d terms(1.0, std::log(ray.z() / std::pow(ray.norm(), 3)));
-      normal += terms * terms.transpose();
-      right += terms_of(block).dot(best_.head<level_terms>()) * terms;
+      equations.add({1.0, std::log(ray.z() / std::pow(ray.norm(), 3))},
+                    terms_of(block).dot(best_.head<level_terms>()));
     }
-    return normal.ldlt().solve(right).y();
+    return equations.solution().y();
   }
   /// Squares of what is left, 1 for random points.
   double scatter() const { return scatter_ / (static_cast<double>(blocks_.all.size()) - unknowns); }
@@ -259,7 +255,7 @@ std::optional<SensorPlace> infer_sensor(const Surface& surface) {
   regression.fit();
   const Eigen::Vector3d inverse = regression.inverse();
   const Eigen::Matrix3d covariance = regression.covariance();
-  const bool is_told = inverse.dot(covariance.ldlt().solve(inverse)) > significant &&
+  const bool is_told = squared_by(covariance, inverse) > significant &&
                        inverse.z() > least_sds * std::sqrt(covariance(2, 2));
   if (!is_told || inverse.z() * highest(blocks) > highest_ground) return std::nullopt;
   // Thinned points, and those of cameras that look down, are even and thin out little with range.
@@ -277,15 +273,9 @@ std::optional<PlaceDoubt> doubt_of_place(const Surface& surface) {
     if (!(inferred->misfit(told, extent) > most)) return std::nullopt;
     return PlaceDoubt{told, inferred->place()};
   }
-  std::vector<double> heights;
-  for (const double z : surface.height.z.reshaped()) {
-    if (!std::isnan(z)) heights.push_back(z);
-  }
+  std::vector<double> heights = known_values(surface.height.z);
   if (heights.empty()) return std::nullopt;
-  const auto low = heights.begin() +
-                   static_cast<std::ptrdiff_t>(least_level * static_cast<double>(heights.size()));
-  std::nth_element(heights.begin(), low, heights.end());
-  if (told.z() > *low) return std::nullopt;
+  if (told.z() > upper_quantile(heights, least_level)) return std::nullopt;
   return PlaceDoubt{told, std::nullopt};
 }
 

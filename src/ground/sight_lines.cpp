@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 
 namespace excavplan {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/ground/terrain.hpp>
+#include "ground/terrain.hpp"
 
 #include <cmath>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
 #include "ground/map_check.hpp"
-#include "ground/terrain_check.hpp"
 
 namespace excavplan {
 namespace {

@@ -10,7 +10,7 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/check.hpp"
-#include "base/robust_mean.hpp"
+#include "base/statistics.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
 #include "images/depth_png.hpp"

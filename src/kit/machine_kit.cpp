@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/machine/kinematics.hpp>
 #include <excavplan/planning/library_build.hpp>
@@ -40,9 +41,9 @@ DigObjective feasible_objective(const Machine& machine, DigObjective objective) 
 std::vector<Warning> lowered_height_warnings(const DigObjective& objective) {
   const double usual = CycleOptions{}.dump_height;
   if (objective.dump_height == usual || !info_of(objective.goal).of_cycle) return {};
-  return {{"dump_height_lowered", "the dump height is " + readable(objective.dump_height) +
-                                      " m, not the usual " + number_text(usual) +
-                                      " m, to which the bucket pin hardly rises, if at all"}};
+  return {{WarningCode::dump_height_lowered,
+           "the dump height is " + readable(objective.dump_height) + " m, not the usual " +
+               number_text(usual) + " m, to which the bucket pin hardly rises, if at all"}};
 }
 
 KitSoil make_kit(const Machine& machine, const SoilKind& soil, const KitOptions& options) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -38,13 +37,6 @@ double half_way(const std::vector<double>& time, std::size_t row) {
 }
 
 }  // namespace
-
-LogRows rows_around(const std::vector<double>& time, const LogInterval& interval) {
-  const auto row = [&](auto at) { return static_cast<std::size_t>(at - time.begin()); };
-  const std::size_t inside = row(std::lower_bound(time.begin(), time.end(), interval.from));
-  const std::size_t behind = row(std::upper_bound(time.begin(), time.end(), interval.to));
-  return {inside == 0 ? 0 : inside - 1, std::min(behind + 1, time.size())};
-}
 
 MarkedPhases marked_phases(const Table& table, const std::string& column,
                            const std::vector<double>& time) {

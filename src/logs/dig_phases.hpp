@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,14 +13,6 @@
 /// Where the digs are in a log. Private to the library.
 
 namespace excavplan {
-
-/// Rows of a log, from first up to, without, last.
-struct LogRows {
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
-/// Those in an interval of the log and one beside either end, if there is one, by bisection.
-LogRows rows_around(const std::vector<double>& time, const LogInterval& interval);
 
 /// What a column of phases marks.
 struct MarkedPhases {

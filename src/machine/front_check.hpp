@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include <excavplan/machine/motion.hpp>
+#include <excavplan/machine/way.hpp>
 
 #include "base/check.hpp"
 

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include "machine/machine_check.hpp"
+
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include <excavplan/machine/kinematics.hpp>
-#include <excavplan/machine/machine.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
-#include "machine/machine_check.hpp"
 #include "machine/plane.hpp"
 
 namespace excavplan {
@@ -134,12 +134,33 @@ struct UnitRule {
   const char* hint;
 };
 
+constexpr const char* if_degrees = "is it in degrees or turns?";
+constexpr const char* if_tonnes = "is it in t?";
+constexpr const char* if_kilo = "is it in kN m?";
+
+/// Boom, arm and bucket stretched out level.
+struct LevelFront {
+  double mass = 0.0;    ///< [kg]
+  double moment = 0.0;  ///< of their weight about the pin of the boom [N m]
+};
+
+void add_swing_rules(const Swing& swing, double length, const LevelFront& front,
+                     std::vector<UnitRule>& rules) {
+  rules.push_back({"swing.speed_rad_per_s", swing.speed, swing.speed, "", 0.01, 5.0, if_degrees});
+  rules.push_back({"swing.torque_n_m", swing.torque, front.moment / swing.torque,
+                   "of which holds boom, arm and bucket stretched out level", 0.0, 50.0, if_kilo});
+  rules.push_back({"swing.inertia_kg_m2", swing.inertia,
+                   swing.inertia / (front.mass * length * length),
+                   "of boom, arm and bucket at the length of both", 0.002, 20.0, "is it in t m2?"});
+  if (std::isfinite(swing.acceleration)) {
+    rules.push_back({"swing.acceleration_rad_per_s2", swing.acceleration, swing.acceleration, "",
+                     0.01, 5.0, if_degrees});
+  }
+}
+
 // Ours: machines of 1 to 100 t, with long fronts too, lie inside by a factor of 2 or more; a wrong
 // unit is a factor of 57 (degrees) or 1000.
 std::vector<UnitRule> unit_rules(const Machine& machine) {
-  constexpr const char* if_degrees = "is it in degrees or turns?";
-  constexpr const char* if_tonnes = "is it in t?";
-  constexpr const char* if_kilo = "is it in kN m?";
   const JointAngles stretched = JointAngles::Zero();
   const JointAngles own_weight =
       torque_against_link_weight(machine, link_positions(machine, stretched)).cwiseAbs();
@@ -168,18 +189,7 @@ std::vector<UnitRule> unit_rules(const Machine& machine) {
                      100.0, if_tonnes});
   }
   if (const auto& swing = machine.swing) {
-    rules.push_back(
-        {"swing.speed_rad_per_s", swing->speed, swing->speed, "", 0.01, 5.0, if_degrees});
-    rules.push_back({"swing.torque_n_m", swing->torque, own_weight(0) / swing->torque,
-                     "of which holds boom, arm and bucket stretched out level", 0.0, 50.0,
-                     if_kilo});
-    rules.push_back(
-        {"swing.inertia_kg_m2", swing->inertia, swing->inertia / (front * length * length),
-         "of boom, arm and bucket at the length of both", 0.002, 20.0, "is it in t m2?"});
-    if (std::isfinite(swing->acceleration)) {
-      rules.push_back({"swing.acceleration_rad_per_s2", swing->acceleration, swing->acceleration,
-                       "", 0.01, 5.0, if_degrees});
-    }
+    add_swing_rules(*swing, length, {front, own_weight(0)}, rules);
   }
   if (const auto& engine = machine.engine) {
     rules.push_back({"engine.power_w", engine->power, engine->power / front,

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <excavplan/machine/motion.hpp>
+#include <excavplan/machine/way.hpp>
 
 namespace excavplan {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <excavplan/machine/machine_file.hpp>
+#include <excavplan/machine/machine.hpp>
 
 #include "machine/urdf_tree.hpp"
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/base/warning.hpp>
 
 #include "base/angles.hpp"
 #include "base/files.hpp"
@@ -233,6 +234,48 @@ std::set<string> without(std::set<string> keys, const std::set<string>& others) 
   return keys;
 }
 
+/// Without the parts that the JSON beside it says the machine does not have.
+std::set<string> without_absent(std::set<string> keys, const std::set<string>& of_side) {
+  for (const string& key :
+       {string("body"), string("engine"), string("swing"), string("bucket.teeth")}) {
+    if (of_side.count(key) == 0) continue;  // null: the machine has none
+    for (auto each = keys.begin(); each != keys.end();) {
+      each = each->rfind(key + '.', 0) == 0 ? keys.erase(each) : std::next(each);
+    }
+  }
+  return keys;
+}
+
+/// The range of a joint is never that of the zx120.
+void require_ranges(const std::set<string>& scaled, const string& path) {
+  for (const char* word : words) {
+    for (const char* end : {".lower_rad", ".upper_rad"}) {
+      const string key = string("joints.") + word + end;
+      if (scaled.count(key) == 0) continue;
+      throw Error(ErrorKind::bad_file, path + ": " + word + " has no range: state " + key +
+                                           " in the JSON beside it, in the angles of excavplan");
+    }
+  }
+}
+
+void warn_of_numbers(const string& path, const std::set<string>& scaled, const string& placeholders,
+                     std::vector<Warning>& warnings) {
+  if (!scaled.empty()) {
+    warnings.push_back(
+        {WarningCode::urdf_scaled, "these numbers are in neither " + path +
+                                       " nor a JSON beside it; those of the zx120, scaled to "
+                                       "this size, are taken: " +
+                                       listed(scaled)});
+  }
+  if (!placeholders.empty()) {
+    warnings.push_back({WarningCode::urdf_placeholder,
+                        "these numbers of " + path +
+                            " are taken for placeholders, as a usual machine of this size "
+                            "differs by more than a factor of " +
+                            number_text(most_apart) + ": " + safe_text(placeholders, 400)});
+  }
+}
+
 void warn_of_angles(const UrdfFront& front, std::vector<Warning>& warnings) {
   string text;
   const auto add = [&](const string& word, const RobotJoint& angle) {
@@ -245,7 +288,7 @@ void warn_of_angles(const UrdfFront& front, std::vector<Warning>& warnings) {
   add("swing", front.swing_angle);
   if (text.empty()) return;
   warnings.push_back(
-      {"urdf_angles",
+      {WarningCode::urdf_angles,
        "the angles of excavplan are not those of the URDF: " + text +
            " rad; of trajectories .yaml and .com3 are in the latter, all else in the former"});
 }
@@ -256,7 +299,7 @@ void warn_of_root(const json& machine, std::vector<Warning>& warnings) {
   const double yaw = root.value("yaw_rad", 0.0);
   if (std::abs(at[0]) + std::abs(at[1]) + std::abs(at[2]) + std::abs(yaw) < 1e-6) return;
   warnings.push_back(
-      {"urdf_frame",
+      {WarningCode::urdf_frame,
        "the root frame of the URDF is not the site frame, which has its origin on the "
        "swing axis at the ground and x along the boom: in the site frame the root is "
        "at (" +
@@ -277,22 +320,9 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
 
   const std::set<string> of_side = keys_of(side.numbers);
   const std::set<string> of_urdf = without(keys_of(said.numbers), of_side);
-  std::set<string> scaled = without(without(keys_of(machine), of_urdf), of_side);
-  for (const string& key :
-       {string("body"), string("engine"), string("swing"), string("bucket.teeth")}) {
-    if (of_side.count(key) == 0) continue;  // null: the machine has none
-    for (auto each = scaled.begin(); each != scaled.end();) {
-      each = each->rfind(key + '.', 0) == 0 ? scaled.erase(each) : std::next(each);
-    }
-  }
-  for (const char* word : words) {
-    for (const char* end : {".lower_rad", ".upper_rad"}) {
-      const string key = string("joints.") + word + end;
-      if (scaled.count(key) == 0) continue;
-      throw Error(ErrorKind::bad_file, path + ": " + word + " has no range: state " + key +
-                                           " in the JSON beside it, in the angles of excavplan");
-    }
-  }
+  const std::set<string> scaled =
+      without_absent(without(without(keys_of(machine), of_urdf), of_side), of_side);
+  require_ranges(scaled, path);
 
   UrdfDraft draft;
   machine.merge_patch(said.numbers);
@@ -302,20 +332,7 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
   if (!machine.contains("name")) machine["name"] = tree.name;
   machine["format"] = "excavplan-machine";
   machine["version"] = 1;
-  if (!scaled.empty()) {
-    draft.warnings.push_back({"urdf_scaled", "these numbers are in neither " + path +
-                                                 " nor a JSON beside it; those of "
-                                                 "the zx120, scaled to this size, are taken: " +
-                                                 listed(scaled)});
-  }
-  if (!said.placeholders.empty()) {
-    draft.warnings.push_back(
-        {"urdf_placeholder", "these numbers of " + path +
-                                 " are taken for placeholders, as a usual "
-                                 "machine of this size differs by more than a factor of " +
-                                 number_text(most_apart) + ": " +
-                                 safe_text(said.placeholders, 400)});
-  }
+  warn_of_numbers(path, scaled, said.placeholders, draft.warnings);
   warn_of_angles(front, draft.warnings);
   warn_of_root(machine, draft.warnings);
   draft.json = std::move(machine);

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/machine/machine_file.hpp>
+#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 #include "base/json.hpp"
 

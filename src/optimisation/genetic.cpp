@@ -1,12 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/optimisation/search.hpp>
-
 #include <algorithm>
 #include <utility>
 
 #include "base/random.hpp"
-
 #include "optimisation/search_methods.hpp"
 
 namespace excavplan {

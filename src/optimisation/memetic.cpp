@@ -8,9 +8,7 @@
 
 #include <nlopt.hpp>
 
-#include <excavplan/optimisation/search.hpp>
 #include "base/random.hpp"
-
 #include "optimisation/search_methods.hpp"
 #include "optimisation/search_points.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/optimisation/search.hpp>
+#include <excavplan/optimisation/search_problem.hpp>
 
 #include "optimisation/search_points.hpp"
 

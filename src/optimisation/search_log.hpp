@@ -9,7 +9,7 @@
 #include <mutex>
 #include <vector>
 
-#include <excavplan/optimisation/search.hpp>
+#include <excavplan/optimisation/search_result.hpp>
 
 #include "optimisation/search_checkpoint.hpp"
 #include "optimisation/search_points.hpp"

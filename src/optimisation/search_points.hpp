@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include <excavplan/optimisation/search.hpp>
+#include <excavplan/optimisation/search_problem.hpp>
 
 /// @file
 /// Points of a search's box, as keys and as shares of it.

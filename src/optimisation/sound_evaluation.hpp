@@ -5,7 +5,7 @@
 #include <exception>
 #include <new>
 
-#include <excavplan/optimisation/search.hpp>
+#include <excavplan/optimisation/search_problem.hpp>
 
 #include "base/text.hpp"
 

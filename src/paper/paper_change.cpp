@@ -11,6 +11,7 @@
 
 #include "paper/paper_method.hpp"
 
+#include "base/statistics.hpp"
 #include "scans/scan_reading.hpp"
 
 namespace excavplan {
@@ -38,9 +39,7 @@ double median_height(const Cloud& cloud) {
   for (const Eigen::Vector3d& p : cloud.points) {
     if (p.allFinite()) z.push_back(p.z());
   }
-  const auto middle = z.begin() + static_cast<std::ptrdiff_t>(z.size() / 2);
-  std::nth_element(z.begin(), middle, z.end());
-  return *middle;
+  return median(z);
 }
 
 /// Whether a point belongs to an area.

@@ -11,7 +11,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "machine/front_check.hpp"
 #include "planning/front_load.hpp"
 #include "planning/surroundings.hpp"
@@ -97,20 +97,18 @@ class CycleWay {
     }
     if (unseen_.area > 0.0) {
       way_.warnings.push_back(
-          {"unseen_way",
+          {WarningCode::unseen_way,
            readable(unseen_.area, 2) +
                " m2 of the ground that arm and bucket pass over off the dig were not seen, first "
                "at x = " +
                readable(unseen_.first.x(), 2) + " m, y = " + readable(unseen_.first.y(), 2) +
-               " m; it is taken to lie as high as the tracks",
-           true});
+               " m; it is taken to lie as high as the tracks"});
     }
     if (tipped_ > tips) {
-      way_.warnings.push_back({"payload_tips",
+      way_.warnings.push_back({WarningCode::payload_tips,
                                "the full bucket cannot keep its attitude off the dig: it tips by " +
                                    readable(tipped_ * 180.0 / pi, 2) +
-                                   " degrees, as its joint ends, and loses soil",
-                               true});
+                                   " degrees, as its joint ends, and loses soil"});
     }
     return std::move(way_);
   }

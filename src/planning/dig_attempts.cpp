@@ -6,6 +6,8 @@
 #include <variant>
 
 #include "planning/dig_layout.hpp"
+#include "planning/simulated_dig.hpp"
+#include "planning/start_rule.hpp"
 
 namespace excavplan {
 
@@ -46,9 +48,9 @@ void DigAttempts::search(DigSearchOptions options) {
 
 double DigAttempts::measure(const PlannedDig& dig) {
   const DigLayout layout(machine_, ground_);
-  auto path = layout.path(dig.parameters, dig.start_x);
+  auto path = layout.path_from(dig.parameters, dig.start_x);
   if (std::holds_alternative<Infeasible>(path)) {
-    path = layout.path(dig.parameters, DigSearchOptions{}.start_rule);
+    path = path_by(layout, dig.parameters, DigSearchOptions{}.start_rule);
   }
   double worth = 0.0;
   if (const auto* drivable = std::get_if<DigPath>(&path)) {

@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <system_error>
 
 #include <excavplan/planning/dig_cycle.hpp>
-#include <excavplan/planning/goal_words.hpp>
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
-#include "base/read_double.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -58,20 +55,6 @@ const DigGoalInfo& info_of(DigObjective::Goal goal) {
                                   [&](const DigGoalInfo& info) { return info.goal == goal; });
   if (found == dig_goals().end()) refuse("objective: its goal is none of DigObjective::Goal");
   return *found;
-}
-
-DigObjective objective_named(const std::string& text) {
-  if (const auto written = written_goal(text)) {
-    DigObjective objective(written->goal.goal);
-    if (!written->goal.parameter) return objective;
-    const char* const end = written->number.data() + written->number.size();
-    double& number = objective.*written->goal.parameter;
-    const auto [after, error] = read_double(written->number.data(), end, number);
-    if (error == std::errc() && after == end) return objective;
-  }
-  std::string known;
-  for (const DigGoalInfo& goal : dig_goals()) known += (known.empty() ? "" : ", ") + usage(goal);
-  refuse("the goal " + in_quotes(text) + " is none of " + known);
 }
 
 const std::vector<DigObjectiveParameter>& objective_parameters() {

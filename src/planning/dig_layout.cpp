@@ -7,12 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include <excavplan/machine/trajectory.hpp>
-#include <excavplan/planning/dig_cycle.hpp>
+#include <excavplan/machine/kinematics.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
-#include "ground/terrain_check.hpp"
-#include "simulation/checked_dig.hpp"
+#include "ground/terrain.hpp"
 #include "simulation/swath.hpp"
 
 namespace excavplan {
@@ -23,29 +21,9 @@ using Eigen::Index;
 // How far ahead of the lip the simulator reads the ground [m].
 constexpr double looked_ahead = 0.25;
 
-/// Remaining share of one phase, 0 .. 1.
-double rest_of_phase(const Infeasible& stop, const DigParameters& parameters) {
-  const auto rest = [&](double length) {
-    return length > 0.0 ? std::clamp(1.0 - stop.distance / length, 0.0, 1.0) : 1.0;
-  };
-  switch (stop.phase) {
-    case DigPhase::penetrate:
-      return rest(parameters.penetration_length);
-    case DigPhase::drag:
-      return rest(parameters.drag_length);
-    default:
-      return std::clamp(std::abs(stop.value - stop.limit), 0.0, 1.0);
-  }
-}
-
 const Machine& required(const Machine& machine) {
   require_machine(machine);
   return machine;
-}
-
-double left_to_drive(const Infeasible& stop, const DigParameters& parameters) {
-  const double phases = static_cast<double>(DigPhase::lift) - static_cast<double>(stop.phase);
-  return 1.0 + phases + rest_of_phase(stop, parameters);
 }
 
 }  // namespace
@@ -162,39 +140,6 @@ std::vector<double> starts_along_reach(const Machine& machine) {
   const double reach = machine.boom_pin.x() + machine.full_length();
   for (double x = machine.track_front; x < reach; x += step) starts.push_back(x);
   return starts;
-}
-
-double violation(const DigFailure& failure, const DigParameters& parameters) {
-  if (const auto* stop = std::get_if<Infeasible>(&failure)) {
-    return left_to_drive(*stop, parameters);
-  }
-  const double length = parameters.penetration_length + parameters.drag_length;
-  return length > 0.0 ? std::clamp(1.0 - std::get<Stall>(failure).travelled / length, 0.01, 1.0)
-                      : 1.0;
-}
-
-std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
-                                               const SoilSimulator& simulator,
-                                               const Terrain& terrain, const DigPath& path,
-                                               const CycleOptions& cycle) {
-  DigOptions unsettled;  // what slides after the bucket is out changes neither load nor energy
-  unsettled.settle = false;
-  const DigResult result = checked_dig(simulator, machine, terrain, path, unsettled);
-  if (result.stall) return DigFailure(*result.stall);
-  PlannedDig dig{
-      path.parameters,     path.start_x,
-      result.payload_mass, result.payload_volume,
-      result.energy.total, time_dig_path(machine, path, {}, result.torques).dig_duration()};
-  dig.fill = dig.payload_volume / heaped_capacity(machine);
-  add_cycle(dig, machine, path, cycle);
-  return dig;
-}
-
-void add_cycle(PlannedDig& dig, const Machine& machine, const DigPath& path,
-               const CycleOptions& options) {
-  const CycleShare total = cycle_of(machine, path, dig, options).value_or(DigCycle{}).total;
-  dig.cycle_energy = total.energy;
-  dig.cycle_time = total.time;
 }
 
 }  // namespace excavplan

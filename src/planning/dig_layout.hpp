@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/machine/dig_path.hpp>
 
 #include "planning/front_room.hpp"
 
@@ -32,14 +32,12 @@ class DigLayout {
   /// @throws Error (bad_input) as require_machine() and require_terrain()
   DigLayout(const Machine& machine, const Terrain& terrain, const DigPathOptions& rules = {});
 
-  /// @throws Error (bad_input) if the start is to be searched
-  std::variant<DigPath, Infeasible> path(const DigParameters& parameters,
-                                         const StartRule& start) const;
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters,
                                               double start_x) const;
   /// The same by other rules.
   std::variant<DigPath, Infeasible> path_from(const DigParameters& parameters, double start_x,
                                               const DigPathOptions& rules) const;
+  std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
   /// The way down to a path, as way_down(), and clear of the ground with boom and arm.
   std::variant<std::vector<DigPose>, Infeasible> approach(const DigPath& path) const;
   /// From this start, or if it cannot be from that of the largest margin.
@@ -51,7 +49,6 @@ class DigLayout {
   const DigPathOptions& rules() const { return rules_; }
 
  private:
-  std::variant<DigPath, Infeasible> path_of_largest_margin(const DigParameters& parameters) const;
   std::variant<DigPath, Infeasible> checked(std::variant<DigPath, Infeasible> found) const;
   std::optional<Infeasible> obstacle(const DigPose& pose, double x_max) const;
   std::optional<Infeasible> front_contact(const DigPose& pose) const;
@@ -65,18 +62,5 @@ class DigLayout {
 
 /// Where a path whose start is free is tried along the reach [m], 0.25 m apart; ours.
 std::vector<double> starts_along_reach(const Machine& machine);
-
-/// How far a dig is from feasible, >= 0: the share of the path that a stall leaves; more than 1 for
-/// a path that cannot be driven, more the earlier it fails.
-double violation(const DigFailure& failure, const DigParameters& parameters);
-
-/// Digs a path that was laid out.
-std::variant<PlannedDig, DigFailure> dig_along(const Machine& machine,
-                                               const SoilSimulator& simulator,
-                                               const Terrain& terrain, const DigPath& path,
-                                               const CycleOptions& cycle = {});
-/// Sets the figures of its cycle.
-void add_cycle(PlannedDig& dig, const Machine& machine, const DigPath& path,
-               const CycleOptions& options);
 
 }  // namespace excavplan

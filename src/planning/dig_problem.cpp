@@ -2,16 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "planning/dig_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
+#include <excavplan/optimisation/search.hpp>
+#include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "optimisation/search_checkpoint.hpp"
 #include "planning/planned_digs.hpp"
+#include "planning/simulated_dig.hpp"
+#include "planning/start_rule.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -113,7 +118,36 @@ std::string identity_of(const SoilSimulator& simulator, const Machine& machine) 
   return "a simulator of digs " + digs.text();
 }
 
+/// Remaining share of one phase, 0 .. 1.
+double rest_of_phase(const Infeasible& stop, const DigParameters& parameters) {
+  const auto rest = [&](double length) {
+    return length > 0.0 ? std::clamp(1.0 - stop.distance / length, 0.0, 1.0) : 1.0;
+  };
+  switch (stop.phase) {
+    case DigPhase::penetrate:
+      return rest(parameters.penetration_length);
+    case DigPhase::drag:
+      return rest(parameters.drag_length);
+    default:
+      return std::clamp(std::abs(stop.value - stop.limit), 0.0, 1.0);
+  }
+}
+
+double left_to_drive(const Infeasible& stop, const DigParameters& parameters) {
+  const double phases = static_cast<double>(DigPhase::lift) - static_cast<double>(stop.phase);
+  return 1.0 + phases + rest_of_phase(stop, parameters);
+}
+
 }  // namespace
+
+double violation(const DigFailure& failure, const DigParameters& parameters) {
+  if (const auto* stop = std::get_if<Infeasible>(&failure)) {
+    return left_to_drive(*stop, parameters);
+  }
+  const double length = parameters.penetration_length + parameters.drag_length;
+  return length > 0.0 ? std::clamp(1.0 - std::get<Stall>(failure).travelled / length, 0.01, 1.0)
+                      : 1.0;
+}
 
 void check(const std::vector<PossibleSoil>& soils) {
   double sum = 0.0;
@@ -229,7 +263,7 @@ VectorXd DigProblem::point_of(const KnownDig& known) const {
   if (start_is_searched() && known.start_x) {
     append(point, *known.start_x);
   } else if (start_is_searched()) {
-    const auto path = layout_.path(dig, StartRule::Kind::least_work);
+    const auto path = path_by(layout_, dig, StartRule::Kind::least_work);
     const auto* drivable = std::get_if<DigPath>(&path);
     append(point,
            drivable ? drivable->start_x : 0.5 * (start_in(box().lower) + start_in(box().upper)));
@@ -240,8 +274,8 @@ VectorXd DigProblem::point_of(const KnownDig& known) const {
 /// The repair: an undrivable path is refused, the start of a drivable one is kept for later.
 std::variant<VectorXd, Evaluation> DigProblem::lay_out(const VectorXd& point) {
   const DigParameters parameters = to_dig_parameters(point);
-  const auto path = layout_.path(
-      parameters, start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
+  const auto path = path_by(layout_, parameters,
+                            start_is_searched() ? StartRule(start_in(point)) : options_.start_rule);
   if (const auto* stop = std::get_if<Infeasible>(&path)) {
     return Evaluation::infeasible(violation(*stop, parameters), stop->message);
   }
@@ -302,8 +336,8 @@ std::optional<double> DigProblem::start_of(const VectorXd& point) const {
 
 DigPath DigProblem::path_of(const VectorXd& point) const {
   const std::optional<double> start_x = start_of(point);
-  auto path =
-      layout_.path(to_dig_parameters(point), start_x ? StartRule(*start_x) : options_.start_rule);
+  auto path = path_by(layout_, to_dig_parameters(point),
+                      start_x ? StartRule(*start_x) : options_.start_rule);
   return std::get<DigPath>(std::move(path));
 }
 
@@ -324,6 +358,13 @@ std::string DigProblem::fingerprint() const {
             identity_of(*soil.simulator, machine);
   }
   return text;
+}
+
+void require_own_checkpoint(const Machine& machine, const SoilSimulator& simulator,
+                            const Terrain& terrain, const DigSearchOptions& options) {
+  if (!options.resume) return;
+  const std::vector<PossibleSoil> soils = {{&simulator, 1.0}};
+  DigProblem(machine, soils, terrain, options).require_own_checkpoint();
 }
 
 }  // namespace excavplan

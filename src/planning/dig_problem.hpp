@@ -9,7 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/planning/dig_search_options.hpp>
+#include <excavplan/planning/dig_search_result.hpp>
 
 #include "optimisation/search_points.hpp"
 #include "planning/dig_layout.hpp"
@@ -26,6 +27,10 @@ void check(const DigSearchOptions& options, const Machine& machine);
 using DigsInEach = std::vector<std::variant<PlannedDig, DigFailure>>;
 DigsInEach dig_in_each(const Machine& machine, const std::vector<PossibleSoil>& soils,
                        const Terrain& terrain, const DigPath& path, const CycleOptions& cycle = {});
+
+/// How far a dig is from feasible, >= 0: the share of the path that a stall leaves; more than 1 for
+/// a path that cannot be driven, more the earlier it fails.
+double violation(const DigFailure& failure, const DigParameters& parameters);
 
 /// The search for a dig as a search of a box. Keeps references to all that it is given.
 class DigProblem {

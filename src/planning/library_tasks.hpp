@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/planning/library_build.hpp>
+#include <excavplan/planning/library_search.hpp>
 
 /// @file
 /// The tasks that libraries are built by: what they ask, how they are done, what they answer.

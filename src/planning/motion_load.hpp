@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/motion.hpp>
 
 /// @file Private to the project.

@@ -15,12 +15,14 @@
 
 #include "base/check.hpp"
 #include "base/files.hpp"
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
 #include "planning/dig_problem.hpp"
+#include "planning/simulated_dig.hpp"
+#include "planning/start_rule.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -45,31 +47,28 @@ struct Task {
   const DigObjective& objective() const { return options.search.objective; }
 };
 
-void warn(DigPlan& plan, const char* code, const std::string& message) {
-  plan.warnings.push_back({code, message});
-}
-
-void distrust(DigPlan& plan, const char* code, const std::string& message) {
-  warn(plan, code, message);
-  plan.trustworthy = false;
+void warn(DigPlan& plan, Warning warning) {
+  if (warning.ends_trust) plan.trustworthy = false;
+  plan.warnings.push_back(std::move(warning));
 }
 
 void judge_density(const Task& task, DigPlan& plan) {
   const std::string& soil = task.density.soil;
   if (task.density.percent > 0.0 && task.density.percent < 1.0 && task.density.sd_percent < 1.0) {
-    distrust(plan, "density_as_fraction",
-             "the density is " + number_text(task.density.percent) +
-                 " %: if that is a fraction, it is " + number_text(100.0 * task.density.percent) +
-                 " %");
+    warn(plan,
+         {WarningCode::density_as_fraction, "the density is " + number_text(task.density.percent) +
+                                                " %: if that is a fraction, it is " +
+                                                number_text(100.0 * task.density.percent) + " %"});
   }
   if (!task.density.trustworthy) {
-    distrust(plan, "density_not_trustworthy",
-             "the density is not trustworthy, so the path may be wrong for the soil");
+    warn(plan, {WarningCode::density_not_trustworthy,
+                "the density is not trustworthy, so the path may be wrong for the soil", true});
   }
   if (!soil.empty() && soil != task.soil.name) {
-    distrust(plan, "law_of_other_soil",
-             "the density was estimated by the law of " + soil + ", the path is planned in " +
-                 task.soil.name);
+    warn(plan, {WarningCode::law_of_other_soil,
+                "the density was estimated by the law of " + soil + ", the path is planned in " +
+                    task.soil.name,
+                true});
   }
 }
 
@@ -96,11 +95,11 @@ void judge_ground(const Task& task, DigPlan& plan) {
   if (heights.empty()) return;
   const double height = median(heights);
   if (height <= most) return;
-  distrust(plan, "ground_above_tracks",
-           "the ground ahead of the tracks, x = " + readable(front) + " .. " +
-               readable(front + ahead) + " m, lies " + readable(height, 2) +
-               " m above the ground that the machine stands on, z = 0: are the heights of the "
-               "terrain those of the site frame?");
+  warn(plan, {WarningCode::ground_above_tracks,
+              "the ground ahead of the tracks, x = " + readable(front) + " .. " +
+                  readable(front + ahead) + " m, lies " + readable(height, 2) +
+                  " m above the ground that the machine stands on, z = 0: are the heights of the "
+                  "terrain those of the site frame?"});
 }
 
 /// The simulators dig all ground as soil: they do not know a post or a rock.
@@ -116,9 +115,9 @@ void judge_strip(const Task& task, DigPlan& plan) {
     if (heights.empty()) continue;
     const double above = *std::max_element(heights.begin(), heights.end()) - median(heights);
     if (!(above > most)) continue;
-    distrust(plan, "obstacle_in_strip",
-             "at x = " + readable(map.x(col)) + " m something stands " + readable(above, 2) +
-                 " m above the ground that the bucket passes; the plan takes it for soil");
+    warn(plan, {WarningCode::obstacle_in_strip,
+                "at x = " + readable(map.x(col)) + " m something stands " + readable(above, 2) +
+                    " m above the ground that the bucket passes; the plan takes it for soil"});
     return;
   }
 }
@@ -209,13 +208,21 @@ std::variant<PlannedDig, DigFailure> best_start(const Task& task, const DigLayou
     return DigFailure();
   };
   const DigParameters& usual = ahead.dig.parameters;
-  const DigFailure failure = compare(layout.path(usual, StartRule::Kind::least_work), ahead);
+  const DigFailure failure = compare(path_by(layout, usual, StartRule::Kind::least_work), ahead);
   for (const double x : starts_along_reach(machine)) {
     compare(layout.path_from(usual, x), ahead);
     const auto here = known_at(library, task, usual, x);
     if (here) compare(layout.path_from(here->dig.parameters, x), *here);
   }
   return rank > 0.0 ? best : std::variant<PlannedDig, DigFailure>(failure);
+}
+
+/// What the simulator says of the dig that is planned, its ground at rest.
+void set_result(const Task& task, const DigResult& result, DigPlan& plan) {
+  plan.torques = result.torques;
+  plan.ground_after = result.after(task.ground).surface();
+  Eigen::ArrayXXd& after = plan.ground_after.z;
+  after = (after == task.ground.surface().z).select(std::nan(""), after).eval();
 }
 
 /// A dig of the library laid out where it is needed, and simulated if its figures do not hold
@@ -229,7 +236,7 @@ std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrar
     return best_start(task, layout, library, source, plan);
   }
   auto path = task.level ? layout.path_near(known.parameters, known.start_x)
-                         : layout.path(known.parameters, task.options.search.start_rule);
+                         : path_by(layout, known.parameters, task.options.search.start_rule);
   if (const auto* infeasible = std::get_if<Infeasible>(&path)) return DigFailure(*infeasible);
   plan.path = std::get<DigPath>(std::move(path));
   if (task.level && library.simulator == kind.name) {
@@ -240,26 +247,31 @@ std::variant<PlannedDig, DigFailure> dig_here(const Task& task, const PathLibrar
   }
   plan.evaluations = 1;
   const auto simulator = make_simulator(kind, task.machine, task.soil, task.density.percent);
-  return dig_along(task.machine, *simulator, task.ground, plan.path, task.objective());
+  const auto outcome =
+      dig_to_rest(task.machine, *simulator, task.ground, plan.path, task.objective());
+  if (const auto* failure = std::get_if<DigFailure>(&outcome)) return *failure;
+  const auto& [dig, result] = std::get<SimulatedDig>(outcome);
+  set_result(task, result, plan);
+  return dig;
 }
 
 /// Warns where the ground is unlike that of the library. @return whether it is alike
 bool suits_ground(const Task& task, const Slope& slope, const PlannedDig& expected, DigPlan& plan) {
   const std::string remedy = "; use a search for this ground";
   if (std::abs(slope.ground - slope.covered) > much_steeper) {
-    distrust(plan, "slope_outside_library",
-             "the slope of the ground is " + readable(slope.ground, 2) + " rad, the look-up used " +
-                 readable(slope.covered, 2) + " rad" + remedy);
+    warn(plan, {WarningCode::slope_outside_library,
+                "the slope of the ground is " + readable(slope.ground, 2) +
+                    " rad, the look-up used " + readable(slope.covered, 2) + " rad" + remedy});
     return false;
   }
   const DigGoalInfo& goal = info_of(task.objective().goal);
   const double here = task.objective().worth(*plan.dig);
   const double there = task.objective().worth(expected);
   if (here < (1.0 - far_below) * there) {
-    distrust(plan, "ground_unlike_library",
-             "the path from the library reaches " + readable(goal.per_si * here) + " " + goal.unit +
-                 " on this ground, but " + readable(goal.per_si * there) + " " + goal.unit +
-                 " on the even ground of the library" + remedy);
+    warn(plan, {WarningCode::ground_unlike_library,
+                "the path from the library reaches " + readable(goal.per_si * here) + " " +
+                    goal.unit + " on this ground, but " + readable(goal.per_si * there) + " " +
+                    goal.unit + " on the even ground of the library" + remedy});
     return false;
   }
   return true;
@@ -299,8 +311,9 @@ std::vector<KnownDig> known_start(const Task& task, DigPlan& plan) {
   } catch (const Error& error) {
     if (task.options.library) throw;
     if (error.kind() == ErrorKind::bad_file) {
-      warn(plan, "library_unreadable",
-           std::string("the search has no warm start from the shipped library: ") + error.what());
+      warn(plan,
+           {WarningCode::library_unreadable,
+            std::string("the search has no warm start from the shipped library: ") + error.what()});
     }
   }
   return {};
@@ -378,14 +391,14 @@ void take(const Found<Result>& found, const DigSearchResult* best, DigPlan& plan
     plan.search = PlanSearch{best->worth, best->stopped_by, best->refused, best->insight.seen,
                              {},          best->ranks};
     if (best->failed > 0) {
-      warn(plan, "simulator_failed",
-           std::to_string(best->failed) + " of " + std::to_string(best->evaluations) +
-               " digs failed and were left out, the first: " + best->first_failure);
+      warn(plan, {WarningCode::simulator_failed,
+                  std::to_string(best->failed) + " of " + std::to_string(best->evaluations) +
+                      " digs failed and were left out, the first: " + best->first_failure});
     }
     for (const DigParameterInfo* info : best->at_bound) {
-      warn(plan, "optimum_at_bound",
-           std::string("the best path found lies at an end of the search range of the ") +
-               info->text + ": a wider range may hold a better one");
+      warn(plan, {WarningCode::optimum_at_bound,
+                  std::string("the best path found lies at an end of the search range of the ") +
+                      info->text + ": a wider range may hold a better one"});
     }
   }
   plan.stopped = best ? best->stopped : found.stopped;
@@ -457,28 +470,29 @@ void add_spread(const Task& task, const std::vector<PossibleSoil>& soils, DigPla
   plan.spread = dig_spread(task.machine, soils, task.ground, *plan.dig, plan.path);
   plan.evaluations += static_cast<int>(soils.size());
   if (plan.spread.stall_probability <= likely_stall) return;
-  distrust(plan, "may_stall",
-           "the machine stalls with a probability of " +
-               readable(100.0 * plan.spread.stall_probability, 2) +
-               " %; the results are those of the digs without a stall");
+  warn(plan, {WarningCode::may_stall, "the machine stalls with a probability of " +
+                                          readable(100.0 * plan.spread.stall_probability, 2) +
+                                          " %; the results are those of the digs without a stall"});
+}
+
+/// Digs the plan, unless that was done to tell its figures. Those of a library are without the
+/// ground; digs that are compared by the thousand do not wait until theirs has come to rest.
+void add_result(const Task& task, DigPlan& plan) {
+  if (plan.ground_after.z.size() > 0) return;
+  const auto simulator =
+      make_simulator(task.options.simulator, task.machine, task.soil, task.density.percent);
+  set_result(task, checked_dig(*simulator, task.machine, task.ground, plan.path, {}), plan);
 }
 
 void add_trajectory(const Task& task, DigPlan& plan) {
   auto approach = DigLayout(task.machine, task.ground).approach(plan.path);
   if (const auto* blocked = std::get_if<Infeasible>(&approach)) {
-    warn(plan, "approach_blocked",
-         "the trajectory begins on the ground, because the approach is blocked: " +
-             blocked->message);
+    warn(plan, {WarningCode::approach_blocked,
+                "the trajectory begins on the ground, because the approach is blocked: " +
+                    blocked->message});
   } else {
     plan.path.approach = std::get<std::vector<DigPose>>(std::move(approach));
   }
-  const auto simulator =
-      make_simulator(task.options.simulator, task.machine, task.soil, task.density.percent);
-  const DigResult dig = checked_dig(*simulator, task.machine, task.ground, plan.path, {});
-  plan.torques = dig.torques;
-  plan.ground_after = dig.after(task.ground).surface();
-  Eigen::ArrayXXd& after = plan.ground_after.z;
-  after = (after == task.ground.surface().z).select(std::nan(""), after).eval();
   plan.trajectory = time_dig_path(task.machine, plan.path, task.options.trajectory, plan.torques);
 }
 
@@ -490,16 +504,18 @@ bool is_worth_making(DigPlan& plan) {
                 readable(100.0 * plan.dig->fill, 2) + " % of the bucket";
   plan.dig.reset();
   plan.path = {};
+  plan.torques.clear();
+  plan.ground_after = {};
   return false;
 }
 
 void judge_fill(const Task& task, DigPlan& plan) {
   const double asked = task.objective().min_fill;
   if (plan.dig->fill >= asked) return;
-  warn(plan, "min_fill_relaxed",
-       "no dig was found that fills " + readable(100.0 * asked) +
-           " % of the heaped capacity of the bucket; the fullest that was found fills " +
-           readable(100.0 * plan.dig->fill) + " %");
+  warn(plan, {WarningCode::min_fill_relaxed,
+              "no dig was found that fills " + readable(100.0 * asked) +
+                  " % of the heaped capacity of the bucket; the fullest that was found fills " +
+                  readable(100.0 * plan.dig->fill) + " %"});
 }
 
 DigPlan plan_dig(const Task& task) {
@@ -527,6 +543,7 @@ DigPlan plan_dig(const Task& task) {
   if (!task.level) judge_strip(task, plan);
   plan.cycle = cycle_of(task.machine, plan.path, *plan.dig, task.objective());
   if (task.uncertain()) add_spread(task, ground->soils(), plan);
+  add_result(task, plan);
   add_trajectory(task, plan);
   return plan;
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
-#include <excavplan/planning/start_rule.hpp>
+#include "planning/start_rule.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
-#include "planning/dig_layout.hpp"
 
 namespace excavplan {
 namespace {
@@ -86,20 +85,20 @@ std::optional<DigPath> path_of_least_work(const DigLayout& layout,
 
 }  // namespace
 
-std::variant<DigPath, Infeasible> DigLayout::path(const DigParameters& parameters,
-                                                  const StartRule& start) const {
+std::variant<DigPath, Infeasible> path_by(const DigLayout& layout, const DigParameters& parameters,
+                                          const StartRule& start) {
   switch (start.kind) {
     case StartRule::Kind::given:
-      return path_from(parameters, start.x);
+      return layout.path_from(parameters, start.x);
     case StartRule::Kind::searched:
       throw Error(ErrorKind::bad_input, "the start of a single dig cannot be searched");
     case StartRule::Kind::least_work:
-      if (auto path = path_of_least_work(*this, parameters)) return std::move(*path);
+      if (auto path = path_of_least_work(layout, parameters)) return std::move(*path);
       break;
     case StartRule::Kind::largest_margin:
       break;
   }
-  return path_of_largest_margin(parameters);
+  return layout.path_of_largest_margin(parameters);
 }
 
 const std::vector<StartRuleInfo>& start_rules() {

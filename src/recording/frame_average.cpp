@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/robust_mean.hpp"
+#include "base/statistics.hpp"
 
 namespace excavplan {
 namespace {

@@ -240,13 +240,6 @@ bool Recording::show(const Open& open, const MessageVisitor& visitor) const {
 
 }  // namespace
 
-std::string ros2_type(std::string_view type) {
-  std::string out(type);
-  const std::size_t slash = out.find('/');
-  if (slash != out.npos && out.find('/', slash + 1) == out.npos) out.insert(slash, "/msg");
-  return out;
-}
-
 bool is_recording(const std::string& path) {
   std::error_code none;
   if (fs::is_directory(path, none)) {

@@ -9,22 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "recording/container.hpp"
+
 /// @file Messages of a recording in whatever container they lie: rosbag2 (SQLite or MCAP) and ROS 1
 /// bags. Private to the library.
 
 namespace excavplan {
-
-/// How the fields of a message are laid out.
-enum class Serialization { cdr, ros1 };
-
-/// What a recording holds under one name.
-struct RecordedTopic {
-  std::string name;            ///< "/livox/lidar"
-  std::string type;            ///< as ROS 2 spells it: "sensor_msgs/msg/PointCloud2"
-  std::uint64_t messages = 0;  ///< 0: the recording has the topic, but no message of it
-  std::int64_t first = 0;      ///< when its first message was recorded [ns since 1970]
-  std::int64_t last = 0;       ///< when its last message was recorded [ns since 1970]
-};
 
 /// A message as it was recorded.
 struct RecordedMessage {

@@ -11,6 +11,7 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/angles.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 
 namespace excavplan {
@@ -105,12 +106,11 @@ std::optional<std::int64_t> TransformTree::delay(const std::string& target,
       if (link->second.is_static) continue;
       std::vector<std::int64_t> delays;
       for (const Sample& sample : link->second.samples) delays.push_back(sample.delay);
-      const auto middle = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2);
-      std::nth_element(delays.begin(), middle, delays.end());
-      const double away = std::abs(static_cast<double>(*middle) - static_cast<double>(near));
+      const std::int64_t usual = median(delays);
+      const double away = std::abs(static_cast<double>(usual) - static_cast<double>(near));
       if (!(away < least)) continue;
       least = away;
-      nearest = *middle;
+      nearest = usual;
     }
   }
   return nearest;

@@ -4,7 +4,7 @@
 
 #include <excavplan/calibration/calibration.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

@@ -155,21 +155,8 @@ Json soils_json(const std::vector<SoilAnswer>& soils) {
   return list;
 }
 
-}  // namespace
-
-const char* name(VolumeMethod method) {
-  return method == VolumeMethod::paper ? "paper" : "surface";
-}
-
-Json density_json(const RelativeDensity& density) {
-  return {{"density_percent", density.percent},
-          {"density_sd_percent", density.sd_percent},
-          {"density_interval_percent", density.interval_percent}};
-}
-
-Json estimate_json(const DensityEstimate& estimate) {
-  auto json = Json::object();
-  json["volume"] = volumes_json(estimate.change);
+/// The bulking factor and the density that it gives; null where they are not known.
+void add_bulking(const DensityEstimate& estimate, Json& json) {
   json["bulking_factor"] = nullptr;
   json["bulking_factor_sd"] = nullptr;
   json["bulking_factor_sd_scans"] = nullptr;
@@ -200,6 +187,24 @@ Json estimate_json(const DensityEstimate& estimate) {
     json["bulking_factor_corrected"] = estimate.corrected->value;
     json["bulking_factor_corrected_sd"] = estimate.corrected->sd;
   }
+}
+
+}  // namespace
+
+const char* name(VolumeMethod method) {
+  return method == VolumeMethod::paper ? "paper" : "surface";
+}
+
+Json density_json(const RelativeDensity& density) {
+  return {{"density_percent", density.percent},
+          {"density_sd_percent", density.sd_percent},
+          {"density_interval_percent", density.interval_percent}};
+}
+
+Json estimate_json(const DensityEstimate& estimate) {
+  auto json = Json::object();
+  json["volume"] = volumes_json(estimate.change);
+  add_bulking(estimate, json);
   json["soils"] = soils_json(estimate.soils);
   json["any_soil"] = nullptr;
   if (estimate.any_soil) json["any_soil"] = density_json(*estimate.any_soil);

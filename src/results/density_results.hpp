@@ -4,7 +4,7 @@
 
 #include <excavplan/density/density_estimate.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

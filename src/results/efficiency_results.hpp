@@ -9,7 +9,7 @@
 #include <excavplan/efficiency/efficiency.hpp>
 #include <excavplan/efficiency/run_comparison.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 /// @file
 /// Efficiencies with the keys of docs/formats.md#measure-efficiency.

@@ -9,7 +9,7 @@
 #include <excavplan/experiments/sensitivity.hpp>
 #include <excavplan/soil/density_fit.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 /// @file
 /// What the simulated experiments give: that of the paper's section 3, and best digs under other

@@ -20,7 +20,7 @@ Json fuelled_json(const FuelledDig& fuelled) {
 
 Json codes_of(const std::vector<Warning>& warnings) {
   Json codes = Json::array();
-  for (const Warning& warning : warnings) codes.push_back(warning.code);
+  for (const Warning& warning : warnings) codes.push_back(code_text(warning.code));
   return codes;
 }
 

@@ -6,7 +6,7 @@
 
 #include <excavplan/experiments/field_experiment.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

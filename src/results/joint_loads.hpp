@@ -10,7 +10,7 @@
 #include <excavplan/machine/kinematics.hpp>
 #include <excavplan/sensing/scene.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 /// @file
 /// Loads of the joints and of their cylinders in a dig, from its force history.

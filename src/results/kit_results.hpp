@@ -7,7 +7,7 @@
 #include <excavplan/planning/path_library.hpp>
 #include <excavplan/soil/soil.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

@@ -6,7 +6,7 @@
 
 #include <excavplan/planning/plan_dig.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

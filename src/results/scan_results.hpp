@@ -8,7 +8,7 @@
 #include <excavplan/recording/recording.hpp>
 #include <excavplan/scans/scan_pose.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

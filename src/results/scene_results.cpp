@@ -7,6 +7,7 @@
 #include "base/json.hpp"
 #include "planning/dig_layout.hpp"
 #include "planning/planned_digs.hpp"
+#include "planning/simulated_dig.hpp"
 #include "results/joint_loads.hpp"
 #include "results/volume_results.hpp"
 

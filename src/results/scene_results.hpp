@@ -5,7 +5,7 @@
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/sensing/scene.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

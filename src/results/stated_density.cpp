@@ -115,7 +115,7 @@ std::optional<Warning> elsewhere(const StatedDensity& stated, const std::string&
                                  const Rectangle& here) {
   const double away = distance_to(stated.holes, here);
   if (!(away > near_the_hole)) return std::nullopt;
-  return Warning{"density_from_elsewhere",
+  return Warning{WarningCode::density_from_elsewhere,
                  file + ": the density was measured " + readable(away) +
                      " m from where this dig begins; it holds for ground near its hole that is of "
                      "the same soil"};

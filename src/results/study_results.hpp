@@ -7,7 +7,7 @@
 
 #include <excavplan/experiments/study.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

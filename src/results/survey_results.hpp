@@ -4,7 +4,7 @@
 
 #include <excavplan/sensing/survey_plan.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

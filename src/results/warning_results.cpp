@@ -9,7 +9,7 @@ namespace excavplan {
 Json warnings_json(const std::vector<Warning>& warnings) {
   auto list = Json::array();
   for (const Warning& warning : warnings) {
-    list.push_back({{"code", warning.code}, {"message", warning.message}});
+    list.push_back({{"code", code_text(warning.code)}, {"message", warning.message}});
   }
   return list;
 }

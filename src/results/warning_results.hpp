@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
-#include "base/json_fwd.hpp"
+#include "results/json_fwd.hpp"
 
 namespace excavplan {
 

@@ -7,6 +7,7 @@
 #include <excavplan/kit/kit_files.hpp>
 #include <excavplan/kit/machine_kit.hpp>
 #include <excavplan/machine/machine_file.hpp>
+#include <excavplan/planning/goal_words.hpp>
 #include <excavplan/robot/dig_cycle_session.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 

@@ -9,14 +9,17 @@
 #include <set>
 #include <string>
 
-#include <Eigen/Cholesky>
+#include <excavplan/change/change_options.hpp>
 
 #include "base/angles.hpp"
+#include "base/normal_equations.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
-#include "ground/error_field.hpp"
+#include "clouds/points_by_cell.hpp"
 #include "ground/grid_cells.hpp"
-#include "scans/points_by_cell.hpp"
+#include "ground/plane_fit.hpp"
+#include "ground/slopes.hpp"
 
 namespace excavplan {
 namespace {
@@ -30,15 +33,6 @@ std::string degrees(double angle) { return readable(angle / degree, 2) + " degre
 
 std::string size_of(const Rectangle& r) {
   return readable(r.x_max - r.x_min) + " x " + readable(r.y_max - r.y_min);
-}
-
-/// The value that a share of all is not above; 0 for none.
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return 0.0;
-  const auto place =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
 }
 
 // ---- Units --------------------------------------------------------------------------------------
@@ -65,12 +59,11 @@ std::optional<Warning> other_units(const OutlinedPair& pair) {
     return std::nullopt;
   }
   if (std::abs(points) > std::abs(factor)) return std::nullopt;  // it shows more ground
-  return Warning{"units",
+  return Warning{WarningCode::units,
                  "the scans show " + size_of(a) + " m before and " + size_of(b) +
                      " m after, in both directions a factor of " +
                      readable(std::exp(std::abs(factor))) +
-                     ": one of them is in other units: give --before-unit or --after-unit",
-                 true};
+                     ": one of them is in other units: give --before-unit or --after-unit"};
 }
 
 std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
@@ -78,11 +71,11 @@ std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
   const bool is_after = pair.after.height_step > pair.before.height_step;
   const double step = std::max(pair.before.height_step, pair.after.height_step);
   if (!(step > most)) return std::nullopt;
-  return Warning{"coarse_heights",
-                 name_of(is_after ? pair.scans.after : pair.scans.before) +
-                     ": all heights are multiples of " + readable(step) +
-                     " m: volumes of a dig need finer ones; write the coordinates with more digits",
-                 true};
+  return Warning{
+      WarningCode::coarse_heights,
+      name_of(is_after ? pair.scans.after : pair.scans.before) + ": all heights are multiples of " +
+          readable(step) +
+          " m: volumes of a dig need finer ones; write the coordinates with more digits"};
 }
 
 /// Of a machine that takes nothing out of scans, or most of them.
@@ -93,14 +86,14 @@ std::optional<Warning> not_in_view(const OutlinedPair& pair) {
   for (const ScanOutline* seen : {&pair.before, &pair.after}) {
     const auto of_machine = static_cast<double>(seen->machine_points);
     if (of_machine > most * (of_machine + static_cast<double>(seen->finite_points))) {
-      return Warning{"machine_pose",
+      return Warning{WarningCode::machine_pose,
                      "more than half of the points of a scan lie in the machine as it is said to "
                      "have stood: its pose or the frame of the scans is wrong",
                      true};
     }
   }
   if (pair.machine_points() > 0) return std::nullopt;
-  return Warning{"machine_pose",
+  return Warning{WarningCode::machine_pose,
                  "no point lies in the machine as it is said to have stood: it is not in view, or "
                  "its pose or the frame of the scans is wrong, and it is still in them"};
 }
@@ -112,40 +105,28 @@ std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
   constexpr double steepest = 45.0 * degree;  // ours: no ground to dig in
   const double off = std::acos(std::min(seen.normal.z(), 1.0));
   if (off > steepest) {
-    return Warning{"frame",
-                   name_of(scan) + ": the ground lies at " + degrees(off) +
-                       " to level, so z is not up: " + give_frames,
-                   true};
+    return Warning{WarningCode::frame, name_of(scan) + ": the ground lies at " + degrees(off) +
+                                           " to level, so z is not up: " + give_frames};
   }
   if (scan.z_is_up || scan.site_from_scan != Eigen::Matrix4d::Identity()) return std::nullopt;
   if (!(seen.seen_along_z >= nearly_all)) return std::nullopt;
-  return Warning{"frame",
+  return Warning{WarningCode::frame,
                  name_of(scan) +
                      ": all points lie ahead of the origin along z, as in the frame of a camera, "
                      "where hole and heap are exchanged: " +
-                     give_frames + "; if z is up, say so by --frame lidar",
-                 true};
+                     give_frames + "; if z is up, say so by --frame lidar"};
 }
 
-struct Plane {
-  double slope_x = 0.0;
-  double slope_y = 0.0;
-  double tilt() const { return std::atan(std::hypot(slope_x, slope_y)); }
-};
-
-Plane plane_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+/// Of the plane through the ground that did not change.
+double tilt_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
+  PlaneFit fit;
   for_each_cell(zone, [&](Cell at) {
     const double z = ground.z(at.row, at.col);
     if (zone(at.row, at.col) >= 0 || std::isnan(z)) return;
-    const Eigen::Vector3d terms(1.0, ground.x(at.col) - ground.origin.x(),
-                                ground.y(at.row) - ground.origin.y());
-    normal += terms * terms.transpose();
-    right += z * terms;
+    fit.add(ground.x(at.col) - ground.origin.x(), ground.y(at.row) - ground.origin.y(), z);
   });
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
-  return {plane.y(), plane.z()};
+  const Eigen::Vector2d gradient = fit.plane().gradient();
+  return std::atan(std::hypot(gradient.x(), gradient.y()));
 }
 
 /// Ground z = a + b x + c y + d x^2 + e x y + f y^2 that did not change, about its middle.
@@ -158,30 +139,25 @@ struct Bowl {
 };
 
 Bowl bowl_of_stable(const HeightMap& ground, const Eigen::ArrayXXi& zone) {
-  using Terms = Eigen::Matrix<double, 6, 1>;
   const Rectangle extent = ground.extent();
   const Eigen::Vector2d middle(0.5 * (extent.x_min + extent.x_max),
                                0.5 * (extent.y_min + extent.y_max));
-  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-  Terms right = Terms::Zero();
-  double squares = 0.0;
+  NormalEquations<6> equations;
   for_each_cell(zone, [&](Cell at) {
     const double z = ground.z(at.row, at.col);
     if (zone(at.row, at.col) >= 0 || std::isnan(z)) return;
     const double x = ground.x(at.col) - middle.x();
     const double y = ground.y(at.row) - middle.y();
-    Terms terms;
+    NormalEquations<6>::Vector terms;
     terms << 1.0, x, y, x * x, x * y, y * y;
-    normal += terms * terms.transpose();
-    right += z * terms;
-    squares += z * z;
+    equations.add(terms, z);
   });
-  const Terms found = normal.ldlt().solve(right);
+  const auto found = equations.solution();
   Bowl bowl{2.0 * found(5), 2.0 * found(3), found(4), 0.0, 0.0};
   const double half = 0.5 * std::max(extent.x_max - extent.x_min, extent.y_max - extent.y_min);
   bowl.sagitta = 0.25 * std::abs(bowl.across + bowl.along) * half * half;
-  const double left = squares - found.dot(right);
-  bowl.rest_sd = std::sqrt(std::max(0.0, left) / std::max(1.0, normal(0, 0)));
+  const double left = equations.squares_about(found);
+  bowl.rest_sd = std::sqrt(std::max(0.0, left) / std::max(1.0, equations.matrix()(0, 0)));
   return bowl;
 }
 
@@ -283,7 +259,7 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
   const bool lost = lost_beside_heap(change) > least_lost * change.excavated.value;
   if (!(heap > loose && hole < gentle) && !(lost && heap > steeper * hole)) return std::nullopt;
   return Warning{
-      "looks_swapped",
+      WarningCode::looks_swapped,
       "the heap is as steep as " + degrees(std::atan(heap)) + ", the hole " +
           degrees(std::atan(hole)) + (lost ? ", and ground beside the heap fell" : "") +
           ", as if hole and heap were exchanged: check the order of BEFORE and AFTER, and if z "
@@ -296,35 +272,37 @@ std::optional<Warning> exchanged(const VolumeChange& change) {
 
 std::vector<Warning> causes_of(std::vector<Warning> warnings) {
   struct Cause {
-    std::string code;
-    std::set<std::string> effects;
+    WarningCode code;
+    std::set<WarningCode> effects;
   };
   // What is judged by lengths, and by heights above a plane.
   static const std::vector<Cause> causes = {
-      {"units",
-       {"blocks",
-        "coarse_heights",
-        "curved_ground",
-        "dug_path_doubtful",
-        "flat_water",
-        "floor_cut",
-        "grass",
-        "hole_in_shadow",
-        "implausible_energy",
-        "implausible_fuel",
-        "loads_disagree",
-        "loads_not_used",
-        "machine_pose",
-        "object_on_soil",
-        "object_taken_out",
-        "payload_disagrees",
-        "registration_beyond_prior",
-        "scans_do_not_fit",
-        "sensor_place_doubtful",
-        "sensor_place_inferred",
-        "systematic_errors",
-        "zone_partly_unseen"}},
-      {"frame", {"object_taken_out", "scans_do_not_fit", "zone_partly_unseen"}}};
+      {WarningCode::units,
+       {WarningCode::blocks,
+        WarningCode::coarse_heights,
+        WarningCode::curved_ground,
+        WarningCode::dug_path_doubtful,
+        WarningCode::flat_water,
+        WarningCode::floor_cut,
+        WarningCode::grass,
+        WarningCode::hole_in_shadow,
+        WarningCode::implausible_energy,
+        WarningCode::implausible_fuel,
+        WarningCode::loads_disagree,
+        WarningCode::loads_not_used,
+        WarningCode::machine_pose,
+        WarningCode::object_on_soil,
+        WarningCode::object_taken_out,
+        WarningCode::payload_disagrees,
+        WarningCode::registration_beyond_prior,
+        WarningCode::scans_do_not_fit,
+        WarningCode::sensor_place_doubtful,
+        WarningCode::sensor_place_inferred,
+        WarningCode::systematic_errors,
+        WarningCode::zone_partly_unseen}},
+      {WarningCode::frame,
+       {WarningCode::object_taken_out, WarningCode::scans_do_not_fit,
+        WarningCode::zone_partly_unseen}}};
   for (const Cause& cause : causes) {
     const bool is_there = std::any_of(warnings.begin(), warnings.end(), [&](const Warning& w) {
       return w.code == cause.code && w.ends_trust;
@@ -359,12 +337,12 @@ std::vector<Warning> check_registration(const RegisteredPair& pair) {
                         readable(moved.shift, 2) + " m and " + degrees(moved.turn) +
                         ", more than one standpoint explains";
   if (!leaves_difference(pair.surfaces)) {
-    return {{"registration_beyond_prior",
+    return {{WarningCode::registration_beyond_prior,
              message +
                  "; it was brought back by the ground that did not change, which then fits to " +
                  readable(1000.0 * found.residual_sd, 2) + " mm"}};
   }
-  return {{"registration_beyond_prior",
+  return {{WarningCode::registration_beyond_prior,
            message + ", and the ground that did not change still differs by " +
                readable(1000.0 * found.residual_sd, 2) +
                " mm: give the transform of the scan after by --after-frame",
@@ -378,12 +356,12 @@ std::vector<Warning> check_tilt(const ScanPair& scans, const SurfacePair& surfac
   constexpr double largest = 17.0 * degree;   // ours: slopes of 15 degrees are dug
   constexpr double upright = 93.0 * degree;   // ours: from pits that were tilted by a known angle
   if (scans.before.site_from_scan != Eigen::Matrix4d::Identity()) return {};
-  const double tilt = plane_of_stable(surfaces.before.height, area.zone).tilt();
+  const double tilt = tilt_of_stable(surfaces.before.height, area.zone);
   if (!(tilt > noted)) return {};
   const Walls walls = walls_of(change, area, surfaces.after.height);
   const bool may_overhang = walls.angle + tilt > upright || (tilt > doubtful && !walls.resolved);
   const bool ends = tilt > largest || may_overhang;
-  return {{"tilted",
+  return {{WarningCode::tilted,
            "the ground lies at " + degrees(tilt) + " to the plane z = 0" +
                (ends ? ", and walls of " + degrees(walls.angle) +
                            " may overhang there, which hides soil"
@@ -403,7 +381,7 @@ std::vector<Warning> check_machine(std::uint64_t machine_points, const VolumeCha
     if (zone.unknown_share < most_hidden || std::abs(zone.volume.value) < least_volume * all) {
       continue;
     }
-    return {{"machine_pose",
+    return {{WarningCode::machine_pose,
              readable(100.0 * zone.unknown_share, 2) + " % of the " + (is_dig ? "hole" : "heap") +
                  " are unseen with the machine taken out, " + std::to_string(machine_points) +
                  " points: its pose is wrong, or it hides what counts; scan with the machine aside",
@@ -494,7 +472,7 @@ std::vector<Warning> warning_of_overlays(const DoubtfulVolume& doubt, const Volu
   constexpr double doubtful = 0.03;  // ours, likewise
   const double share = doubt.share_of(change);
   if (!(share > noted)) return {};
-  return {{"two_surfaces",
+  return {{WarningCode::two_surfaces,
            std::string("points of the scan ") + doubt.scan() +
                " lie on two surfaces, one above the other, which leaves " +
                readable(doubt.hole, 2) + " m^3 of the hole and " + readable(doubt.soil, 2) +
@@ -526,7 +504,7 @@ std::vector<Warning> warning_of_outliers(const DoubtfulVolume& doubt, const Volu
   const double share = doubt.share_of(change);
   if (!(share > noted)) return {};
   const bool are_above = (doubt.sum() > 0.0) == (doubt.in_after > doubt.in_before);
-  return {{"outliers",
+  return {{WarningCode::outliers,
            std::string("points of the scan ") + doubt.scan() + " lie off the ground, " +
                (are_above ? "above" : "below") +
                " it in the main; where it is uneven they are not told from it, which may change "
@@ -581,12 +559,11 @@ std::optional<Warning> floor_cut(const SurfacePair& surfaces, const VolumeChange
       static_cast<double>(at_edge) < most * static_cast<double>(up_to(floor * noise))) {
     return {};
   }
-  return Warning{"floor_cut",
+  return Warning{WarningCode::floor_cut,
                  "the lowest points of " + std::to_string(at_edge) + " cells of the hole lie at " +
                      readable(lowest[blunders], 4) +
                      " m, as where a limit of heights or depths cuts "
-                     "the floor off: what lies deeper is missing; widen the limit",
-                 true};
+                     "the floor off: what lies deeper is missing; widen the limit"};
 }
 
 }  // namespace
@@ -622,11 +599,10 @@ std::vector<Warning> check_curvature(const SurfacePair& surfaces, const AreaChan
     return {};
   }
   return {
-      {"curved_ground",
+      {WarningCode::curved_ground,
        "the ground is part of a ball of " + readable(1.0 / std::abs(mean), 2) +
            " m radius, as where ranges are read as depths or depths as ranges: lengths are wrong "
-           "by another factor in each part of the scan",
-       true}};
+           "by another factor in each part of the scan"}};
 }
 
 std::vector<Warning> check_volumes(const VolumeChange& change, double unit) {
@@ -646,7 +622,7 @@ void refuse_swapped(const VolumeChange& change, const std::string& names, double
                 names + ": " + message + (units ? "; " + units->message : std::string()));
   };
   for (const Warning& warning : change.warnings) {
-    if (warning.code == "looks_swapped") refuse(warning.message);
+    if (warning.code == WarningCode::looks_swapped) refuse(warning.message);
   }
   constexpr double much_lost = 0.2;  // ours, of the hole
   const double lost = lost_beside_heap(change);

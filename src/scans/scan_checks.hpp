@@ -7,8 +7,10 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
+#include <excavplan/change/dig_volumes.hpp>
 
-#include "scans/scan_reading.hpp"
+#include "scans/scan_pairs.hpp"
 
 /// @file
 /// Whether scans can be what they are taken for: units, frame, motion between them, order

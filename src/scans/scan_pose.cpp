@@ -11,9 +11,10 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/random.hpp"
+#include "base/statistics.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
-#include "clouds/cloud_outline.hpp"
+#include "clouds/stream_sample.hpp"
 #include "scans/scan_reading.hpp"
 
 namespace excavplan {
@@ -52,17 +53,11 @@ std::vector<Eigen::Vector3d> seen_from(const Eigen::Vector3d& place,
   return points;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double median_range(const std::vector<Eigen::Vector3d>& points) {
   std::vector<double> ranges;
   ranges.reserve(points.size());
   for (const Eigen::Vector3d& p : points) ranges.push_back(p.norm());
-  return median(std::move(ranges));
+  return median(ranges);
 }
 
 /// The plane through three of the points that most of them lie on.
@@ -121,7 +116,6 @@ struct Ground {
 };
 
 Ground find_ground(const std::vector<Eigen::Vector3d>& points, std::uint64_t seed) {
-  constexpr double mad_to_sd = 1.4826;
   constexpr double within = 2.5;
   double width = plane_width * median_range(points);
   Ground ground;
@@ -139,7 +133,7 @@ Ground find_ground(const std::vector<Eigen::Vector3d>& points, std::uint64_t see
       refuse("only " + number_text(std::round(1000.0 * ground.share) / 10.0) +
              " % of its points lie on one plane, less than 10 %: no ground plane to level it");
     }
-    ground.sd = mad_to_sd * median(std::move(away));
+    ground.sd = robust_sd(away);
     width = std::max(within * ground.sd, 0.1 * plane_width * median_range(points));
     if ((ground.plane.normal - last.normal).norm() < 1e-7) break;
   }
@@ -302,20 +296,6 @@ PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
   }
   pose.rms = std::sqrt(squares / static_cast<double>(in_scan.size()));
   check_fit(pose, spread);
-  return pose;
-}
-
-Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
-                                   const Eigen::Vector4d& quaternion) {
-  constexpr double tolerance = 1e-3;
-  const double norm = quaternion.norm();
-  if (!translation.allFinite() || !quaternion.allFinite()) refuse("a number is not finite");
-  if (std::abs(norm - 1.0) > tolerance) {
-    refuse("the quaternion's norm is " + number_text(norm) + ", must be 1 to 0.001");
-  }
-  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
-  pose.topLeftCorner<3, 3>() = Eigen::Quaterniond(quaternion / norm).toRotationMatrix();
-  pose.topRightCorner<3, 1>() = translation;
   return pose;
 }
 

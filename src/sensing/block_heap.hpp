@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <excavplan/ground/height_map.hpp>
-#include <excavplan/sensing/scene.hpp>
+#include <excavplan/sensing/block_layer.hpp>
 
 #include "base/random.hpp"
 

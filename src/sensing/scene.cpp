@@ -9,15 +9,15 @@
 #include <variant>
 
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/machine/trajectory.hpp>
-#include "base/random.hpp"
 
 #include "base/angles.hpp"
 #include "base/check.hpp"
+#include "base/random.hpp"
 #include "base/text.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "sensing/block_heap.hpp"
-#include "sensing/scene_path.hpp"
 #include "simulation/checked_dig.hpp"
 
 namespace excavplan {
@@ -67,10 +67,11 @@ std::vector<Warning> reach_warnings(const Eigen::Vector2d& dump_at, const Machin
   const double from_axis = dump_at.norm();
   const double reach = machine.boom_pin.x() + machine.full_length();
   if (from_axis >= machine.track_front && from_axis <= reach) return {};
-  return {{"dump_out_of_reach", "the dump point " + text(dump_at) + " is " + readable(from_axis) +
-                                    " m from the swing axis; " + machine.name + " dumps from " +
-                                    readable(machine.track_front) + " m (its tracks) to " +
-                                    readable(reach) + " m (all links in one line)"}};
+  return {{WarningCode::dump_out_of_reach,
+           "the dump point " + text(dump_at) + " is " + readable(from_axis) +
+               " m from the swing axis; " + machine.name + " dumps from " +
+               readable(machine.track_front) + " m (its tracks) to " + readable(reach) +
+               " m (all links in one line)"}};
 }
 
 /// The middle of the cut, its scoop taken as 0.8 m; ours.
@@ -100,9 +101,9 @@ void break_up(const BlockSettings& blocks, const SoilKind& soil, DigScene& scene
   require(blocks.swell >= 0.0 && blocks.swell <= 1.0, "blocks: swell", blocks.swell, "in 0 .. 1");
   if (scene.density_percent < blocks.least_density) {
     scene.warnings.push_back(
-        {"no_blocks", "ground of " + readable(scene.density_percent) +
-                          " % relative density crumbles; it breaks into blocks from " +
-                          readable(blocks.least_density) + " % on"});
+        {WarningCode::no_blocks, "ground of " + readable(scene.density_percent) +
+                                     " % relative density crumbles; it breaks into blocks from " +
+                                     readable(blocks.least_density) + " % on"});
     return;
   }
   const double bulking = bulking_of_density(soil, scene.density_percent);
@@ -128,6 +129,10 @@ void require_sight(const std::vector<Eigen::Vector3d>& seen, const HeightMap& su
 
 DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& ground,
                    const SceneOptions& options) {
+  require_machine(machine);
+  require_soil(soil);
+  require_terrain(ground, "ground of a scene");
+  if (!options.dump_at.allFinite()) refuse("scene: the dump point must be finite");
   DigPath path = lay_out(machine, ground, options);
   require_clear_of_dig(options.dump_at, machine, soil, path);
   return path;
@@ -135,10 +140,6 @@ DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& 
 
 DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
                    const Terrain& ground, const SceneOptions& options) {
-  require_machine(machine);
-  require_soil(soil);
-  require_terrain(ground, "ground of a scene");
-  if (!options.dump_at.allFinite()) refuse("scene: the dump point must be finite");
   DigScene scene;
   scene.soil = soil.name;
   scene.density_percent = density_percent;

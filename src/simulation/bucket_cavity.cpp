@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/angles.hpp"
 #include "base/check.hpp"
 #include "machine/plane.hpp"
 
@@ -13,8 +12,6 @@ namespace excavplan {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double steepest_face = 80.0 * pi / 180.0;  // of soil, however cohesive; ours
 
 /// `by`: the unit vector at the angle of the turn.
 Vector2d turned(const Vector2d& v, const Vector2d& by) {
@@ -131,27 +128,6 @@ double bucket_capacity(const Machine& machine, double phi3, double support,
   Cavity cavity(machine.bucket);
   cavity.turn_to(phi3);
   return cavity.capacity(support, slopes);
-}
-
-double stable_slope(const SoilState& soil, double height, double least) {
-  for (const double number :
-       {soil.friction_angle, soil.cohesion, soil.unit_weight, height, least}) {
-    require(std::isfinite(number), "stable slope: an argument", number, "finite");
-  }
-  const double phi = soil.friction_angle;
-  const auto stands = [&](double angle) {
-    return 4.0 * soil.cohesion * std::sin(angle) * std::cos(phi) >=
-           soil.unit_weight * height * (1.0 - std::cos(angle - phi));
-  };
-  double low = least;
-  double high = steepest_face;
-  if (high <= low || stands(high)) return std::max(low, high);
-  if (!stands(low)) return low;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (stands(middle) ? low : high) = middle;
-  }
-  return low;
 }
 
 }  // namespace excavplan

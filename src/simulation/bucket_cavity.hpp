@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/bucket_cavity.hpp>
 
 namespace excavplan {
 

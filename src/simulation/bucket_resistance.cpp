@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/angles.hpp"
-#include "soil/sound_soil.hpp"
+#include "soil/soil.hpp"
 
 namespace excavplan {
 namespace {
@@ -244,17 +244,8 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
     if (strip.bank + strip.loose <= 0.0) continue;
     const FaceTerms t = even ? mean : terms_of(ground_.bank_state(row, col));
     const double loose = loose_on_wedge(row, col, strip, t);
-    const double surcharge = model_.loose.unit_weight * loose;
-    const double passive =
-        strip.bank * (t.soil.unit_weight * strip.bank * t.n.gamma + t.soil.cohesion * t.n.c +
-                      surcharge * t.n.q + t.adhesion * t.n.ca) +
-        surcharge * loose * t.n.gamma;
-    push(width * passive, width * t.adhesion * strip.bank, t);
-    const double shear = t.soil.cohesion + at_rest_pressure(t.soil, strip.bank) * t.tan_friction;
-    // What is not pushed up is sheared off and lifted to where it lies in the bucket.
-    const double lifted = t.soil.unit_weight * strip.bank + model_.loose.unit_weight * strip.loose;
-    const double lift = std::max(0.0, fill.rise - 0.5 * (strip.bank + strip.loose));
-    force.along += width * (1.0 - fade) * (strip.bank * shear + lifted * lift);
+    push(width * passive_force(strip, loose, t), width * t.adhesion * strip.bank, t);
+    force.along += width * (1.0 - fade) * shearing_force(strip, fill.rise, t);
     on_face += width * 0.5 * t.soil.unit_weight * strip.bank * strip.bank * t.cot_rake;
     force.depth += width * strip.bank;
   }
@@ -275,6 +266,24 @@ BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, con
   push(pushed * mean.n.Q + wall * mean.n.ca, wall, mean);
   force.borne_weight = fade * (on_face + pushed);
   return force;
+}
+
+/// Of the wedge in one row on the face, per metre of width [N/m].
+/// @param loose  thickness of the loose soil on it [m]
+double BucketResistance::passive_force(const Strip& strip, double loose, const FaceTerms& t) const {
+  const double surcharge = model_.loose.unit_weight * loose;
+  return strip.bank * (t.soil.unit_weight * strip.bank * t.n.gamma + t.soil.cohesion * t.n.c +
+                       surcharge * t.n.q + t.adhesion * t.n.ca) +
+         surcharge * loose * t.n.gamma;
+}
+
+/// What is not pushed up is sheared off and lifted to where it lies in the bucket, `rise` above the
+/// lip: against the motion, per metre of width [N/m].
+double BucketResistance::shearing_force(const Strip& strip, double rise, const FaceTerms& t) const {
+  const double shear = t.soil.cohesion + at_rest_pressure(t.soil, strip.bank) * t.tan_friction;
+  const double lifted = t.soil.unit_weight * strip.bank + model_.loose.unit_weight * strip.loose;
+  const double lift = std::max(0.0, rise - 0.5 * (strip.bank + strip.loose));
+  return strip.bank * shear + lifted * lift;
 }
 
 /// Loose soil over the top of the wedge, as an even layer on all of it; what lies over the face is

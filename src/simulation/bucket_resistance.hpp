@@ -6,7 +6,7 @@
 
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/bucket_cavity.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "simulation/bucket_cavity.hpp"
@@ -93,6 +93,8 @@ class BucketResistance {
   double uncut_between(double x) const;
 
   Strip strip_at(Eigen::Index row, Eigen::Index col, double tip_z) const;
+  double passive_force(const Strip& strip, double loose, const FaceTerms& terms) const;
+  double shearing_force(const Strip& strip, double rise, const FaceTerms& terms) const;
   double loose_on_wedge(Eigen::Index row, Eigen::Index col, const Strip& strip,
                         const FaceTerms& terms) const;
   SoilState mean_soil_at(Eigen::Index col) const;

@@ -18,10 +18,10 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/dig_account.hpp"
-#include "soil/sound_soil.hpp"
+#include "soil/soil.hpp"
 
 namespace excavplan {
 namespace {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -21,16 +22,24 @@ namespace excavplan {
 /// edge between two cells.
 class CoarseGround {
  public:
-  /// Takes in the cells of `block` (rows and columns half those of `finer`) as they are now; the
-  /// bank is a wall where it falls by more than `wall` within a cell [m], or twice that between
-  /// two. Finer: GroundWindow or CoarseGround.
-  template <typename Finer>
-  void look_at(const Finer& finer, const CellBlock& block, double wall);
+  /// One of the four cells of the finer ground in a cell.
+  struct Part {
+    double bank = 0.0;    ///< [m]
+    double loose = 0.0;   ///< that may leave, as thick as once it has moved [m]
+    double height = 0.0;  ///< of the surface [m]
+    bool awake = false;
+    bool slides = false;
+  };
 
-  /// Moves as much soil on the finer ground: each part of a cell gains as much, or loses the same
-  /// share of its loose layer. Returns the cells of the finer ground that changed.
-  template <typename Finer>
-  CellBlock give_back(Finer& finer, const CellBlock& block) const;
+  /// Makes room for all of the finer ground. The bank is a wall where it falls by more than `wall`
+  /// within a cell [m], or twice that between two.
+  void lay_out(const CellBlock& finer, double finer_cell_size, double wall);
+  /// Sets a cell to what its parts are now.
+  void take_in(const std::array<Part, 4>& parts, std::size_t cell);
+  /// Thickness that a cell gained since, and so does each of its parts [m].
+  double gained(std::size_t cell) const { return loose_[cell] - before_[cell]; }
+  /// Share of its loose layer that a cell lost since, and so does each of its parts.
+  double lost_share(std::size_t cell) const { return -gained(cell) / before_[cell]; }
 
   /// The cells that take in any of a block of the finer ground, and those that lie all in it.
   static CellBlock half(const CellBlock& block) {
@@ -76,9 +85,6 @@ class CoarseGround {
   void let_slide(std::size_t cell, bool slides) { slides_[cell] = slides ? 1 : 0; }
 
  private:
-  void lay_out(const CellBlock& cells);
-  template <typename Finer>
-  void take_in(const Finer& finer, std::size_t part, std::size_t i);
   void change(std::size_t i, double thickness) {
     loose_[i] += thickness;
     height_[i] += thickness;

@@ -10,7 +10,7 @@
 #include "base/check.hpp"
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 #include "machine/plane.hpp"
 #include "simulation/slump.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "base/check.hpp"
 #include "ground/map_check.hpp"
-#include "ground/terrain_check.hpp"
+#include "ground/terrain.hpp"
 
 namespace excavplan {
 namespace {

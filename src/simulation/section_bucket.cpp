@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/section_simulator.hpp"
-
 #include "base/angles.hpp"
 
 namespace excavplan {

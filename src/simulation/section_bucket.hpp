@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/bucket_cavity.hpp>
 
 /// @file
 /// What the bucket of SectionSimulator holds, by clipping the polygon of its side profile.
@@ -78,5 +78,9 @@ class PackedFront {
   std::vector<double> volume_;
   std::vector<Eigen::Vector2d> centre_;
 };
+
+/// bucket_capacity() by another method: the side profile clipped by the slopes of the soil [m^3].
+double clipped_capacity(const Machine& machine, double phi3, double support,
+                        const HoldingSlopes& slopes);
 
 }  // namespace excavplan

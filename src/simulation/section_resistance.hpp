@@ -6,7 +6,7 @@
 
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
+#include <excavplan/simulation/bucket_cavity.hpp>
 #include <excavplan/soil/soil.hpp>
 
 #include "simulation/section_bucket.hpp"

@@ -6,7 +6,6 @@
 #include <string>
 
 #include <excavplan/machine/machine.hpp>
-#include <excavplan/simulation/height_map_simulator.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
@@ -41,9 +40,5 @@ class SectionSimulator : public SoilSimulator {
  private:
   std::shared_ptr<const SectionModel> model_;
 };
-
-/// bucket_capacity() by another method: the side profile clipped by the slopes of the soil [m^3].
-double clipped_capacity(const Machine& machine, double phi3, double support,
-                        const HoldingSlopes& slopes);
 
 }  // namespace excavplan

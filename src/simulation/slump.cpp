@@ -194,6 +194,56 @@ bool is_large(double cell) { return !(cell < large_cell); }
 /// Cells around a block that soil from it can reach in one pass on cells of this size and larger.
 int reach(double cell) { return is_large(cell) ? 2 : 2 * reach(2.0 * cell) + 2; }
 
+/// The four cells of the finer ground in a cell of the ground on larger ones.
+template <typename Ground>
+std::array<std::size_t, 4> parts_of(const Ground& finer, Index row, Index col) {
+  const std::size_t first = finer.at(2 * row, 2 * col);
+  const std::size_t column = finer.column_step();
+  return {first, first + 1, first + column, first + column + 1};
+}
+
+/// Takes in the cells of `block`, whose rows and columns are half those of `finer`, as they are
+/// now.
+template <typename Ground>
+void look_at(const Ground& finer, const CellBlock& block, CoarseGround& coarse) {
+  for (Index col = block.col_begin; col < block.col_end; ++col) {
+    for (Index row = block.row_begin; row < block.row_end; ++row) {
+      const std::array<std::size_t, 4> cells = parts_of(finer, row, col);
+      std::array<CoarseGround::Part, 4> parts;
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::size_t cell = cells[i];
+        const double loose = finer.loose(cell);
+        parts[i] = {finer.bank(cell), loose > 0.0 ? finer.swollen_loose(cell, loose) : 0.0,
+                    finer.height(cell), finer.awake(cell), finer.slides(cell)};
+      }
+      coarse.take_in(parts, coarse.at(row, col));
+    }
+  }
+}
+
+/// Moves as much soil on the finer ground: each part of a cell gains as much, or loses the same
+/// share of its loose layer. Returns the cells of the finer ground that changed.
+template <typename Ground>
+CellBlock give_back(const CoarseGround& coarse, const CellBlock& block, Ground& finer) {
+  CellBlock changed;
+  for (Index col = block.col_begin; col < block.col_end; ++col) {
+    for (Index row = block.row_begin; row < block.row_end; ++row) {
+      const std::size_t cell = coarse.at(row, col);
+      const double gained = coarse.gained(cell);
+      if (gained == 0.0) continue;
+      for (const std::size_t part : parts_of(finer, row, col)) {
+        if (gained > 0.0) {
+          finer.raise_loose(part, gained);
+        } else {
+          finer.lower_loose(part, finer.loose(part) * coarse.lost_share(cell));
+        }
+      }
+      changed.include({2 * row, 2 * row + 2, 2 * col, 2 * col + 2});
+    }
+  }
+  return changed;
+}
+
 /// One pass over the block on cells of twice the size, after one on yet larger ones; returns the
 /// cells that changed.
 template <typename Ground>
@@ -205,10 +255,12 @@ CellBlock slide_on_larger_cells(Ground& ground, CoarseGround& coarse, const Cell
   const CellBlock seen = half.around(reach(2.0 * ground.cell_size())).common(whole);
   const CellBlock swept = half.around(1).common(whole);
   if (swept.empty()) return {};
-  coarse.look_at(ground, seen, steepest_bank * limits.loose_slope * ground.cell_size());
+  coarse.lay_out(ground.cells(), ground.cell_size(),
+                 steepest_bank * limits.loose_slope * ground.cell_size());
+  look_at(ground, seen, coarse);
   slide_on_larger_cells(coarse, coarse.coarser(), swept, limits, order ^ 2);
   Slide<CoarseGround>(coarse, limits).sweep(swept, order);
-  return coarse.give_back(ground, seen);
+  return give_back(coarse, seen, ground);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <excavplan/base/error.hpp>
 
 #include "base/text.hpp"
+#include "simulation/section_bucket.hpp"
 
 namespace excavplan {
 namespace {

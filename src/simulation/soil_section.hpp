@@ -11,7 +11,6 @@
 #include <excavplan/ground/terrain.hpp>
 
 #include "simulation/ground_window.hpp"
-#include "simulation/section_bucket.hpp"
 #include "simulation/swath.hpp"
 
 /// @file

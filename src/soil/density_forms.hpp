@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <excavplan/soil/density_fit.hpp>
+#include <excavplan/soil/density_forms.hpp>
 
 #include "base/json.hpp"
 
@@ -16,6 +16,8 @@
 /// row in density_forms.cpp.
 
 namespace excavplan {
+
+inline constexpr const char* density_law_format = "excavplan-density-law";  ///< of law files
 
 /// Keys of all forms, in the order of law files: "line", "closed_form".
 std::vector<std::string> density_form_keys();

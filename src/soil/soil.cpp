@@ -11,13 +11,14 @@
 #include "base/check.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "soil/sound_soil.hpp"
+#include "soil/soil.hpp"
 
 namespace excavplan {
 namespace {
 
 constexpr double least_overburden_depth = 0.01;  // the stress law ends here: q -> 0 at the surface
 constexpr double pascal_per_kilopascal = 1000.0;
+constexpr double steepest_face = 80.0 * pi / 180.0;  // of soil, however cohesive; ours
 
 /// A number of a soil: its key in files, and the range that it is accepted in.
 struct SoilNumber {
@@ -230,6 +231,27 @@ double critical_height(const SoilState& state) {
           state.unit_weight, "above 0 N/m^3 and finite");
   return 4.0 * state.cohesion / state.unit_weight *
          std::tan(0.25 * pi + 0.5 * state.friction_angle);
+}
+
+double stable_slope(const SoilState& soil, double height, double least) {
+  for (const double number :
+       {soil.friction_angle, soil.cohesion, soil.unit_weight, height, least}) {
+    require(std::isfinite(number), "stable slope: an argument", number, "finite");
+  }
+  const double phi = soil.friction_angle;
+  const auto stands = [&](double angle) {
+    return 4.0 * soil.cohesion * std::sin(angle) * std::cos(phi) >=
+           soil.unit_weight * height * (1.0 - std::cos(angle - phi));
+  };
+  double low = least;
+  double high = steepest_face;
+  if (high <= low || stands(high)) return std::max(low, high);
+  if (!stands(low)) return low;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (stands(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 }  // namespace excavplan

@@ -9,7 +9,7 @@
 #include "base/check.hpp"
 #include "base/random.hpp"
 #include "soil/density_forms.hpp"
-#include "soil/sound_soil.hpp"
+#include "soil/soil.hpp"
 
 namespace excavplan {
 namespace {

@@ -63,7 +63,7 @@ VolumeChange change_of(const Shape& after, const ChangeOptions& options = {}) {
 
 bool warns(const VolumeChange& change, const std::string& code, bool ends_trust) {
   return std::any_of(change.warnings.begin(), change.warnings.end(), [&](const Warning& w) {
-    return w.code == code && w.ends_trust == ends_trust;
+    return code_text(w.code) == code && w.ends_trust == ends_trust;
   });
 }
 

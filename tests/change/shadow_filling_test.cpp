@@ -205,8 +205,9 @@ HalfSeenPit half_seen_pit(double fall_of_rays) {
                                  [](const ChangeZone& zone) { return zone.kind == ZoneKind::dig; });
   if (hole == change.zones.end()) return {nan, false};
   return {hole->unknown_share,
-          std::any_of(change.warnings.begin(), change.warnings.end(),
-                      [](const Warning& warning) { return warning.code == "zone_partly_unseen"; })};
+          std::any_of(change.warnings.begin(), change.warnings.end(), [](const Warning& warning) {
+            return warning.code == WarningCode::zone_partly_unseen;
+          })};
 }
 
 TEST(ShadowFilling, KeepsTrustInAHoleUpToThirtyFivePercentInShadow) {

@@ -149,7 +149,7 @@ void put(Surface& surface, const Rectangle& place, double top) {
 int count_of(const VolumeChange& change, const std::string& code) {
   return static_cast<int>(
       std::count_if(change.warnings.begin(), change.warnings.end(),
-                    [&](const Warning& warning) { return warning.code == code; }));
+                    [&](const Warning& warning) { return code_text(warning.code) == code; }));
 }
 
 struct Visit {

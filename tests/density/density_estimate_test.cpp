@@ -57,7 +57,7 @@ DensityLaw paper_law() { return load_density_law(find_data_file("laws/paper.json
 
 bool has(const std::vector<Warning>& warnings, const std::string& code) {
   return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const Warning& warning) { return warning.code == code; });
+                     [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
 
 void expect_same(const DensityEstimate& a, const DensityEstimate& b) {

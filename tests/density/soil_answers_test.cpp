@@ -25,7 +25,7 @@ using test::SoilDig;
 
 bool has(const std::vector<Warning>& warnings, const std::string& code) {
   return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const Warning& warning) { return warning.code == code; });
+                     [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
 
 Reading reading_of(double bulking, double weight) {

@@ -32,7 +32,7 @@ RelativeDensity density_of(double percent, double independent_sd, double shared_
 
 bool has(const std::vector<Warning>& warnings, const std::string& code) {
   return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const Warning& warning) { return warning.code == code; });
+                     [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
 
 TEST(SuccessiveDensity, TenDigsAverageTheirMeasurementsButNotTheSoil) {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "logs/dig_phases.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 

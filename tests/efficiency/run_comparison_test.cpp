@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "base/student.hpp"
+#include "efficiency/student.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan {

@@ -72,8 +72,9 @@ TEST_F(FieldExperimentTest, HardSoilInBlocksIsNotTrusted) {
   EXPECT_EQ(hard.trusted, 0);
   for (const FieldRun& run : hard.runs) {
     EXPECT_GT(run.density_raw, 100.0);
-    EXPECT_TRUE(std::any_of(run.warnings.begin(), run.warnings.end(),
-                            [](const Warning& warning) { return warning.code == "blocks"; }));
+    EXPECT_TRUE(std::any_of(run.warnings.begin(), run.warnings.end(), [](const Warning& warning) {
+      return warning.code == WarningCode::blocks;
+    }));
   }
   EXPECT_EQ(hard.held_down, 2);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/base/data_files.hpp>
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/machine.hpp>
 #include <excavplan/machine/machine_file.hpp>
 #include <excavplan/machine/trajectory.hpp>
@@ -35,7 +35,7 @@ std::string read_urdf(const std::string& path) {
   const MachineFile file = load_machine_file(path);
   Said said;
   said.add("name", file.machine.name).add("numbers", fingerprint(file.machine));
-  for (const Warning& warning : file.warnings) said.add("warning", warning.code);
+  for (const Warning& warning : file.warnings) said.add("warning", code_text(warning.code));
   return said.text();
 }
 

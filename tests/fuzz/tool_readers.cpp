@@ -6,13 +6,13 @@
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/recording/recording.hpp>
+#include <excavplan/results/stated_density.hpp>
 
 #include "base/table.hpp"
-#include "fuzz/file_readers.hpp"
-#include "plan_path/plan_results.hpp"
 #include "frame/quantity.hpp"
 #include "frame/settings_file.hpp"
-#include <excavplan/results/stated_density.hpp>
+#include "fuzz/file_readers.hpp"
+#include "plan_path/density_input.hpp"
 
 namespace excavplan::test {
 namespace {
@@ -22,7 +22,7 @@ std::string read_density_from(const std::string& path) {
   const GroundDensity density = tools::density_of(input);
   DigPlan plan;
   plan.dig = PlannedDig{};
-  const tools::StatedDensity stated = tools::stated_density(path);  // as --prior takes it
+  const StatedDensity stated = stated_density(path);  // as --prior takes it
   return Said()
       .add("raw", stated.raw_percent)
       .add("independent", stated.independent_sd)

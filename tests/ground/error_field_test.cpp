@@ -10,6 +10,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "ground/noise_model.hpp"
+#include "ground/registration.hpp"
+#include "ground/slopes.hpp"
+
 namespace excavplan {
 namespace {
 

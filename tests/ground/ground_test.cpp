@@ -12,8 +12,9 @@
 #include <excavplan/change/bulking.hpp>
 #include <excavplan/change/volume_change.hpp>
 #include <excavplan/ground/height_map.hpp>
-#include "base/random.hpp"
+#include <excavplan/ground/resampling.hpp>
 
+#include "base/random.hpp"
 #include "change/change_zones.hpp"
 #include "change/doming.hpp"
 #include "ground/grid_cells.hpp"
@@ -144,12 +145,12 @@ void punch_holes(HeightMap& map, double share, std::uint64_t seed, std::uint64_t
 int count_of(const VolumeChange& change, const std::string& code) {
   return static_cast<int>(
       std::count_if(change.warnings.begin(), change.warnings.end(),
-                    [&](const Warning& warning) { return warning.code == code; }));
+                    [&](const Warning& warning) { return code_text(warning.code) == code; }));
 }
 
 std::string message_of(const VolumeChange& change, const std::string& code) {
   for (const Warning& warning : change.warnings) {
-    if (warning.code == code) return warning.message;
+    if (code_text(warning.code) == code) return warning.message;
   }
   return "no warning " + code;
 }
@@ -519,7 +520,7 @@ TEST(VolumeChange, UnrelatedChangesAreLeftOutWithAWarning) {
   const VolumeChange change = measure_change(flat_ground(scene, 0.05), map_of(with_visitor));
   EXPECT_NEAR(change.after.value, ridge_volume + heap_volume, 0.002);
   ASSERT_EQ(change.warnings.size(), 1u);
-  EXPECT_EQ(change.warnings[0].code, "other_change");
+  EXPECT_EQ(change.warnings[0].code, WarningCode::other_change);
   EXPECT_EQ(
       change.warnings[0].message,
       "ground that rose by 0.06 m^3 over 0.34 m^2 around (10.15, 4.25) m is neither hole, "

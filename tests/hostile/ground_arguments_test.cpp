@@ -15,6 +15,8 @@
 #include <excavplan/calibration/fallback.hpp>
 #include <excavplan/change/blocks.hpp>
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/change/volume_change.hpp>
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/sensing/scene.hpp>
 

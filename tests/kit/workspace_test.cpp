@@ -18,7 +18,8 @@ using test::zx120;
 
 std::set<std::string> codes_of(const Machine& machine, const DataSheet& sheet = {}) {
   std::set<std::string> codes;
-  for (const Warning& warning : check_machine(machine, sheet)) codes.insert(warning.code);
+  for (const Warning& warning : check_machine(machine, sheet))
+    codes.insert(code_text(warning.code));
   return codes;
 }
 

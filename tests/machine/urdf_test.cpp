@@ -48,7 +48,7 @@ class Urdf : public testing::Test {
 
 std::set<std::string> codes(const MachineFile& file) {
   std::set<std::string> codes;
-  for (const Warning& warning : file.warnings) codes.insert(warning.code);
+  for (const Warning& warning : file.warnings) codes.insert(code_text(warning.code));
   return codes;
 }
 
@@ -244,7 +244,7 @@ TEST_F(Urdf, LimitsTheSwingToo) {
   EXPECT_EQ(turned.machine.swing->upper, 1.2);
   EXPECT_EQ(codes(turned).count("urdf_angles"), 1U);
   for (const Warning& warning : turned.warnings) {
-    if (warning.code != "urdf_angles") continue;
+    if (warning.code != WarningCode::urdf_angles) continue;
     EXPECT_NE(warning.message.find("swing = -swing_joint rad"), std::string::npos)
         << warning.message;
   }
@@ -266,7 +266,7 @@ TEST_F(Urdf, KeepsWhereTheRootIs) {
   EXPECT_LT((ahead - Eigen::Vector3d(5.0, 0.0, 0.0)).norm(), 1e-12);
   ASSERT_EQ(codes(file).count("urdf_frame"), 1U);
   for (const Warning& warning : file.warnings) {
-    if (warning.code != "urdf_frame") continue;
+    if (warning.code != WarningCode::urdf_frame) continue;
     EXPECT_NE(warning.message.find(
                   "at (-0.100000, 0.300000, -0.500000) m, turned about z by -1.57080 rad"),
               std::string::npos)

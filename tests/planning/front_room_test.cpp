@@ -46,7 +46,7 @@ class FrontRoomOf : public testing::Test {
 
   static bool warns(const DigPlan& plan, const std::string& code) {
     for (const Warning& warning : plan.warnings) {
-      if (warning.code == code) return true;
+      if (code_text(warning.code) == code) return true;
     }
     return false;
   }

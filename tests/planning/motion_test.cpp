@@ -382,7 +382,7 @@ std::vector<std::string> codes_of(const Machine& machine, double payload) {
   std::vector<std::string> codes;
   for (const Warning& warning : load_warnings(machine, way)) {
     EXPECT_TRUE(warning.ends_trust);
-    codes.push_back(warning.code);
+    codes.push_back(code_text(warning.code));
   }
   return codes;
 }
@@ -401,7 +401,7 @@ TEST(CycleWay, WarnsOfWhatTheMachineCannotHold) {
 
 TEST(CycleWay, AllShippedMachinesHoldAFullBucketToEitherSide) {
   for (const char* name : {"zx120", "zx200", "generic-20t", "generic-mini"}) {
-    const Machine machine = shipped(name);
+    const Machine machine = shipped_machine(name);
     const double size = machine.full_length() / zx120().full_length();
     DigParameters dig = paper_fixed_path();
     dig.penetration_length *= size;
@@ -434,7 +434,7 @@ TEST(CycleWay, TipsWhereTheMomentsSay) {
   for (auto& limits : bare.limits) limits.torque = 1e9;
   EXPECT_TRUE(load_warnings(bare, way).empty());
   way.poses[0].payload = 1.001 * most;
-  EXPECT_EQ(load_warnings(bare, way).at(0).code, "motion_tips");
+  EXPECT_EQ(load_warnings(bare, way).at(0).code, WarningCode::motion_tips);
 }
 
 TEST(CycleWay, GoesFromThePresentJointsOverTheCycleBackAboveTheCut) {

@@ -16,6 +16,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "planning/dig_layout.hpp"
+#include "planning/start_rule.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
@@ -86,7 +87,7 @@ class PlanDig : public testing::Test {
   }
   static bool warns(const DigPlan& plan, const std::string& code) {
     return std::any_of(plan.warnings.begin(), plan.warnings.end(),
-                       [&](const Warning& warning) { return warning.code == code; });
+                       [&](const Warning& warning) { return code_text(warning.code) == code; });
   }
   /// All that a controller executes, to the last bit.
   static std::string bytes(const DigPlan& plan) {
@@ -359,7 +360,7 @@ TEST_F(PlanDig, ASearchFreesTheStartAfterAThirdOfItsDigs) {
   const DigLayout layout(machine_, level_planning_ground(machine_));
   const auto of_least_work = [&](int from, int to) {
     return std::count_if(dug.begin() + from, dug.begin() + to, [&](const DigPath& path) {
-      const auto laid = layout.path(path.parameters, StartRule::Kind::least_work);
+      const auto laid = path_by(layout, path.parameters, StartRule::Kind::least_work);
       const auto* usual = std::get_if<DigPath>(&laid);
       return usual && usual->start_x == path.start_x;
     });

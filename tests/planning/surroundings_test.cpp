@@ -114,7 +114,7 @@ std::variant<Way, BlockedWay> cycle_over(const Terrain& ground, double dump_heig
 
 bool has(const Way& way, const std::string& code) {
   return std::any_of(way.warnings.begin(), way.warnings.end(), [&](const Warning& warning) {
-    return warning.code == code && warning.ends_trust;
+    return code_text(warning.code) == code && warning.ends_trust;
   });
 }
 

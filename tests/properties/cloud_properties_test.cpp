@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "base/robust_mean.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "support/cases.hpp"
 #include "support/las_file.hpp"

@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <excavplan/base/error.hpp>
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/change/volume_change.hpp>
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/ground/terrain.hpp>
 
 #include <algorithm>
 
 #include <Eigen/Geometry>
 
-#include "base/robust.hpp"
+#include "base/statistics.hpp"
 #include "ground/hole_filling.hpp"
 #include "support/cases.hpp"
 

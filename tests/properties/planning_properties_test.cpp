@@ -11,6 +11,7 @@
 
 #include "planning/dig_layout.hpp"
 #include "planning/planned_digs.hpp"
+#include "planning/start_rule.hpp"
 #include "support/cases.hpp"
 #include "support/run_program.hpp"
 
@@ -238,7 +239,7 @@ TEST(PlanningProperties, StartsOfLeastWorkKeepOffTheJointLimits) {
   int laid = 0;
   for_cases(
       [&](Random& random) {
-        const auto path = layout.path(any_dig(random).parameters, StartRule::Kind::least_work);
+        const auto path = path_by(layout, any_dig(random).parameters, StartRule::Kind::least_work);
         const auto* found = std::get_if<DigPath>(&path);
         if (found == nullptr) return;
         ++laid;

@@ -195,8 +195,9 @@ TEST(SoilProperties, DrawnSoilsScatterAsStated) {
   soil.void_ratio_max = 1.2;
   soil.void_ratio_loose = 0.8;
   const SoilScatter scatter;
+  constexpr int draws = 10000;
   Eigen::Array4d squares = Eigen::Array4d::Zero();
-  for (std::uint64_t seed = 0; seed < many; ++seed) {
+  for (std::uint64_t seed = 0; seed < draws; ++seed) {
     const SoilKind drawn = drawn_soil(soil, scatter, seed);
     const auto ratio = [](double before, double after) { return (1 + before) / (1 + after) - 1; };
     const double loosest = ratio(soil.void_ratio_max, drawn.void_ratio_max);
@@ -209,7 +210,7 @@ TEST(SoilProperties, DrawnSoilsScatterAsStated) {
   const Eigen::Array4d stated(scatter.limit_density, scatter.limit_density, scatter.loose_density,
                               scatter.water_content);
   // the standard error of a deviation from 10^4 draws is 0.7 %
-  EXPECT_LT(((squares / many).sqrt() / stated - 1.0).abs().maxCoeff(), 0.03);
+  EXPECT_LT(((squares / draws).sqrt() / stated - 1.0).abs().maxCoeff(), 0.03);
 }
 
 /// What the law file's digs follow exactly is found again.

@@ -8,7 +8,7 @@
 
 #include "base/files.hpp"
 #include "base/json.hpp"
-#include "base/normal_mixture.hpp"
+#include "base/statistics.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
 #include "base/yaml.hpp"

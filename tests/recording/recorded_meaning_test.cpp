@@ -192,7 +192,7 @@ TEST(RecordedMeaning, AFileWhoseEndIsMissingSaysSo) {
     if (!topic.is_scan || topic.messages == 0) continue;
     const RecordedScan scan = read_recorded_scan({cut, topic.name, {}, 0.0, ""});
     ASSERT_EQ(scan.warnings.size(), 1U);
-    EXPECT_EQ(scan.warnings[0].code, "recording_cut_off");
+    EXPECT_EQ(scan.warnings[0].code, WarningCode::recording_cut_off);
     return;
   }
   FAIL() << "no scan is left in the half";

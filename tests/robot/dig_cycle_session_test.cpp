@@ -67,7 +67,7 @@ Points ground() {
 
 bool has(const std::vector<Warning>& warnings, const std::string& code) {
   return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const Warning& warning) { return warning.code == code; });
+                     [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
 
 TEST(DigCycleSession, AnswersAsTheLibraryDoesForTheSameScans) {

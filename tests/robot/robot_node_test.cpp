@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/planning/goal_words.hpp>
 #include <excavplan/robot/robot_node.hpp>
 
 #include <any>
@@ -184,7 +185,7 @@ TEST(RobotNode, AMachineThatDoesNotReachTheUsualHeightDumpsLower) {
                                                  {"search", true}});
   EXPECT_LT(settings.plan.search.objective.dump_height, CycleOptions{}.dump_height);
   ASSERT_EQ(settings.warnings.size(), 1U);
-  EXPECT_EQ(settings.warnings[0].code, "dump_height_lowered");
+  EXPECT_EQ(settings.warnings[0].code, WarningCode::dump_height_lowered);
 }
 
 TEST(RobotNode, SendsNoMotionThatIsNotSafe) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/change/volume_change.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 #include <excavplan/simulation/dig_ground.hpp>

@@ -113,8 +113,9 @@ VolumeChange pit_and_heap(double pit_angle, double heap_angle) {
 TEST(ScanChecks, ASteepHeapIsOneOfExchangedScansOnlyBesideAGentleHole) {
   const auto looks_swapped = [](double pit_angle, double heap_angle) {
     const std::vector<Warning> doubts = check_volumes(pit_and_heap(pit_angle, heap_angle), 1.0);
-    return std::any_of(doubts.begin(), doubts.end(),
-                       [](const Warning& warning) { return warning.code == "looks_swapped"; });
+    return std::any_of(doubts.begin(), doubts.end(), [](const Warning& warning) {
+      return warning.code == WarningCode::looks_swapped;
+    });
   };
   EXPECT_TRUE(looks_swapped(35.0 * degree, 65.0 * degree));
   EXPECT_FALSE(looks_swapped(65.0 * degree, 35.0 * degree));
@@ -152,8 +153,8 @@ TEST(ScanChecks, AHoleNoBucketDigsNamesTheUnit) {
     ASSERT_NE(units, nullptr) << word;
     EXPECT_TRUE(contains(units->message, std::string("--unit ") + word)) << units->message;
     for (const Warning& warning : answer.estimate->warnings) {
-      EXPECT_TRUE(warning.code == "units" || !warning.ends_trust) << warning.message;
-      EXPECT_NE(warning.code, "sensor_place_inferred") << word;
+      EXPECT_TRUE(warning.code == WarningCode::units || !warning.ends_trust) << warning.message;
+      EXPECT_NE(warning.code, WarningCode::sensor_place_inferred) << word;
     }
     scans.before.unit = scans.after.unit = 1.0 / factor;
     const Answer mended = answer_to(scans);
@@ -180,7 +181,7 @@ TEST(ScanChecks, ACauseStandsForWhatFollowsFromIt) {
                                              {"scans_do_not_fit", "", true},
                                              {"implausible_fuel", "", false},
                                              {"looks_swapped", "", true}})) {
-      codes += warning.code + " ";
+      codes += code_text(warning.code) + " ";
     }
     return codes;
   };

@@ -14,6 +14,7 @@
 
 #include "base/random.hpp"
 #include "scans/scan_checks.hpp"
+#include "scans/scan_pairs.hpp"
 
 namespace excavplan {
 namespace {
@@ -34,7 +35,7 @@ Scan level_scan(double edge, std::uint64_t seed) {
 
 bool names_units(const std::vector<Warning>& doubts) {
   return std::any_of(doubts.begin(), doubts.end(),
-                     [](const Warning& doubt) { return doubt.code == "units"; });
+                     [](const Warning& doubt) { return doubt.code == WarningCode::units; });
 }
 
 TEST(ScanReading, AScanNarrowerThanAnyBucketIsInOtherUnits) {

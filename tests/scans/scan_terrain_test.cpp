@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <excavplan/ground/resampling.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
 
 #include <gtest/gtest.h>
@@ -41,7 +42,7 @@ Scan slope(double per_area, double gap_from = 0.0, double gap_to = 0.0) {
 
 std::vector<std::string> codes(const ScannedTerrain& ground) {
   std::vector<std::string> list;
-  for (const Warning& warning : ground.warnings) list.push_back(warning.code);
+  for (const Warning& warning : ground.warnings) list.push_back(code_text(warning.code));
   return list;
 }
 

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <excavplan/change/bulking.hpp>
+#include <excavplan/change/volume_change.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 #include <excavplan/sensing/depth_camera.hpp>
 
@@ -93,7 +94,7 @@ TEST(SightLines, ReturnsMixedAtARimAreDropped) {
 
 bool has_warning(const VolumeChange& change, const std::string& code) {
   return std::any_of(change.warnings.begin(), change.warnings.end(),
-                     [&](const Warning& warning) { return warning.code == code; });
+                     [&](const Warning& warning) { return code_text(warning.code) == code; });
 }
 
 // ---- One standpoint ---------------------------------------------------------------------------
@@ -194,7 +195,7 @@ TEST_F(OneStandpoint, ShadowsOfAHoleDoNotEndTrustWhereTheSensorIsKnown) {
   EXPECT_GT(hole->unknown_share, options.max_unknown_share);
   for (const Warning& warning : change.warnings) {
     const bool is_of_hole = warning.message.find("ground that fell") != std::string::npos;
-    EXPECT_FALSE(is_of_hole && warning.code == "zone_partly_unseen") << warning.message;
+    EXPECT_FALSE(is_of_hole && warning.code == WarningCode::zone_partly_unseen) << warning.message;
   }
 }
 

@@ -57,7 +57,7 @@ TEST_F(SceneTest, WarnsOfADumpPointOutOfReachAndRefusesOneInTheDig) {
   options.dump_at = {-6.1, 6.1};
   const DigScene far = scene(options);
   ASSERT_EQ(far.warnings.size(), 1U);
-  EXPECT_EQ(far.warnings[0].code, "dump_out_of_reach");
+  EXPECT_EQ(far.warnings[0].code, WarningCode::dump_out_of_reach);
   options.dump_at = {5.0, 0.0};
   EXPECT_EQ(test::error_of([&] { scene(options); }).find("the dump point 5,0 is 0.00 m from"), 0U);
 }
@@ -177,7 +177,7 @@ TEST_F(HardSoil, SofterGroundCrumbles) {
   const DigScene scene = broken({}, 79.0);
   EXPECT_FALSE(scene.blocks);
   ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_EQ(scene.warnings[0].code, "no_blocks");
+  EXPECT_EQ(scene.warnings[0].code, WarningCode::no_blocks);
 }
 
 TEST_F(HardSoil, BlocksThatMakeNoSenseAreRefused) {

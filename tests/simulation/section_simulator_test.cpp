@@ -11,7 +11,10 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <excavplan/simulation/height_map_simulator.hpp>
+
 #include "base/angles.hpp"
+#include "simulation/section_bucket.hpp"
 #include "simulation/soil_section.hpp"
 #include "support/errors.hpp"
 #include "support/machine_file.hpp"

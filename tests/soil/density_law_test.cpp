@@ -213,7 +213,7 @@ TEST(RelativeDensity, AboveTheRangeIsClampedAndWarned) {
   EXPECT_NEAR(estimate.interval_percent[0], 100.0 - 1.96 * estimate.sd_percent, 1e-9);
   EXPECT_FALSE(estimate.trustworthy);
   ASSERT_EQ(estimate.warnings.size(), 1u);
-  EXPECT_EQ(estimate.warnings[0].code, "density_above_range");
+  EXPECT_EQ(estimate.warnings[0].code, WarningCode::density_above_range);
   EXPECT_NE(estimate.warnings[0].message.find("129.9 %"), std::string::npos);
   EXPECT_NE(estimate.warnings[0].message.find("blocks"), std::string::npos);
   EXPECT_NE(estimate.warnings[0].message.find("fell back"), std::string::npos);
@@ -225,7 +225,7 @@ TEST(RelativeDensity, BelowTheRangeIsClampedAndWarned) {
   EXPECT_LT(estimate.raw_percent, -20.0);
   EXPECT_FALSE(estimate.trustworthy);
   ASSERT_EQ(estimate.warnings.size(), 1u);
-  EXPECT_EQ(estimate.warnings[0].code, "density_below_range");
+  EXPECT_EQ(estimate.warnings[0].code, WarningCode::density_below_range);
 }
 
 TEST(RelativeDensity, OutsideTheRangeByLessThanItsErrorIsTrusted) {

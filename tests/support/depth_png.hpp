@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "support/png_bytes.hpp"
 #include "support/tool_answers.hpp"
 
@@ -16,10 +13,6 @@ namespace excavplan::test {
 inline const char* const intrinsics =
     R"({"format": "excavplan-depth-intrinsics", "version": 1, "fx": 40, "fy": 50, "cx": 8, "cy": 6})";
 
-inline Words depth_run(const TemporaryFolder& folder) {
-  return {folder.write("depth.png", png_of(16, std::vector<std::uint16_t>(16 * 12, 2000))),
-          "--intrinsics", folder.write("camera.json", intrinsics), "--out",
-          folder.file("cloud.xyz")};
-}
+Words depth_run(const TemporaryFolder& folder);
 
 }  // namespace excavplan::test

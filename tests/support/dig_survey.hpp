@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -73,10 +71,7 @@ struct Survey {
   }
 };
 
-inline const DensityLaw& paper_law() {
-  static const DensityLaw paper = load_density_law(find_data_file("laws/paper.json"));
-  return paper;
-}
+const DensityLaw& paper_law();
 
 /// The estimate, or the text of the error.
 struct Answer {
@@ -87,50 +82,22 @@ struct Answer {
   const Warning* warning(const std::string& code) const {
     if (!estimate) return nullptr;
     for (const Warning& each : estimate->warnings) {
-      if (each.code == code) return &each;
+      if (code_text(each.code) == code) return &each;
     }
     return nullptr;
   }
 };
 
-inline Answer answer_to(const DigScans& scans) {
-  DensityOptions options;
-  options.threads = 1;
-  try {
-    return {estimate_density(scans, paper_law(), options), ""};
-  } catch (const Error& error) {
-    return {std::nullopt, error.what()};
-  }
-}
+Answer answer_to(const DigScans& scans);
 
 /// Trusted, and off by more than three standard deviations in k, or four in the hole.
-inline bool is_trusted_and_wrong(const Answer& answer, const scenes::Dig& dig) {
-  if (!answer.trusted()) return false;
-  const Measured& k = *answer.estimate->bulking;
-  const Measured& hole = answer.estimate->change.excavated;
-  return std::abs(k.value - dig.bulking) > 3.0 * k.sd ||
-         std::abs(hole.value - dig.pit_volume()) > 4.0 * hole.sd;
-}
+bool is_trusted_and_wrong(const Answer& answer, const scenes::Dig& dig);
 
-inline Affine turned(double angle, const Eigen::Vector3d& axis) {
-  return Affine(Eigen::AngleAxisd(angle, axis.normalized()));
-}
+Affine turned(double angle, const Eigen::Vector3d& axis);
 
-inline Eigen::Vector3d level_axis(Random& random) {
-  const double heading = random.uniform(0.0, 2.0 * pi);
-  return {std::cos(heading), std::sin(heading), 0.0};
-}
+Eigen::Vector3d level_axis(Random& random);
 
 /// Into the frame of a camera that looks at the middle of the scene: x right, y down, z forward.
-inline Affine camera(double pitch, double height) {
-  const Eigen::Vector3d forward(0.0, std::cos(pitch), -std::sin(pitch));
-  const Eigen::Vector3d right = Eigen::Vector3d::UnitX();
-  Affine motion = Affine::Identity();
-  motion.linear().row(0) = right.transpose();
-  motion.linear().row(1) = forward.cross(right).transpose();
-  motion.linear().row(2) = forward.transpose();
-  const Eigen::Vector3d eye = Eigen::Vector3d(2.5, 0.0, 0.0) - height / std::sin(pitch) * forward;
-  return motion * Eigen::Translation3d(-eye);
-}
+Affine camera(double pitch, double height);
 
 }  // namespace excavplan::test

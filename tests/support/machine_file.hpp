@@ -2,10 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <unistd.h>
-
-#include <cstdio>
-#include <fstream>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -17,28 +13,15 @@
 
 namespace excavplan::test {
 
-inline std::string zx120_path() { return find_data_file("machines/zx120.json"); }
+std::string zx120_path();
 
 /// The shipped machine.
-inline const Machine& zx120() {
-  static const Machine machine = load_machine(zx120_path());
-  return machine;
-}
+const Machine& zx120();
 
 /// The shipped machine, but no force of the soil lifts or drags it.
-inline Machine zx120_held_down() {
-  Machine machine = zx120();
-  machine.body.reset();
-  return machine;
-}
+Machine zx120_held_down();
 
 /// What load_machine says about a machine file, without the file's name; "no error" if nothing.
-inline std::string complaint_about_file(const nlohmann::json& file) {
-  const std::string path = testing::TempDir() + "machine" + std::to_string(::getpid()) + ".json";
-  std::ofstream(path) << file;
-  const std::string complaint = error_about([&] { load_machine(path); }, path);
-  std::remove(path.c_str());
-  return complaint;
-}
+std::string complaint_about_file(const nlohmann::json& file);
 
 }  // namespace excavplan::test

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <utility>
 #include <vector>
 
 #include "support/survey_scenes.hpp"
@@ -18,38 +17,16 @@ namespace excavplan::scenes {
 /// A height [m] over x, y [m].
 using Height = std::function<double(double x, double y)>;
 
-inline double flat(double, double) { return 0.0; }
+double flat(double, double);
 
 /// The sum of changes of height that lie beside each other.
-inline Height sum_of(std::vector<Height> parts) {
-  return [parts = std::move(parts)](double x, double y) {
-    double z = 0.0;
-    for (const Height& part : parts) z += part(x, y);
-    return z;
-  };
-}
+Height sum_of(std::vector<Height> parts);
 
 /// Of changes that overlap the one that moved the surface most.
-inline Height largest_of(std::vector<Height> parts) {
-  return [parts = std::move(parts)](double x, double y) {
-    double z = 0.0;
-    for (const Height& part : parts) {
-      const double other = part(x, y);
-      if (std::abs(other) > std::abs(z)) z = other;
-    }
-    return z;
-  };
-}
+Height largest_of(std::vector<Height> parts);
 
 /// Volume above 0 less that below, by the midpoint rule on squares of 1 cm.
-inline double volume_of(const Height& height, const Rectangle& extent) {
-  constexpr double step = 0.01;
-  double sum = 0.0;
-  for (double x = extent.x_min + 0.5 * step; x < extent.x_max; x += step) {
-    for (double y = extent.y_min + 0.5 * step; y < extent.y_max; y += step) sum += height(x, y);
-  }
-  return sum * step * step;
-}
+double volume_of(const Height& height, const Rectangle& extent);
 
 /// A cone of soil.
 struct Cone {

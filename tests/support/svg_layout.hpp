@@ -19,7 +19,7 @@ namespace excavplan::test {
 struct PlacedText {
   std::string text;
   double size = 0.0;
-  tools::Box box;
+  Box box;
 };
 
 inline std::string attribute_of(const std::string& tag, const std::string& name) {
@@ -48,7 +48,7 @@ inline std::vector<PlacedText> texts_of(const std::string& svg) {
     placed.text = without_entities(svg.substr(end + 1, svg.find("</text>", end) - end - 1));
     placed.size = std::stod(attribute_of(tag, "font-size"));
     const bool bold = !attribute_of(tag, "font-weight").empty();
-    const double width = tools::text_width(placed.text, placed.size, bold);
+    const double width = text_width(placed.text, placed.size, bold);
     const std::string anchor = attribute_of(tag, "text-anchor");
     const double share = anchor.empty() ? 0.0 : (anchor == "middle" ? 0.5 : 1.0);
     const double x = std::stod(attribute_of(tag, "x"));
@@ -56,14 +56,14 @@ inline std::vector<PlacedText> texts_of(const std::string& svg) {
     const double up = 0.72 * placed.size;
     const double high = 0.85 * placed.size;  // with what hangs below the base line
     placed.box = attribute_of(tag, "transform").empty()
-                     ? tools::Box{x - share * width, y - up, width, high}
-                     : tools::Box{x - up, y - (1.0 - share) * width, high, width};
+                     ? Box{x - share * width, y - up, width, high}
+                     : Box{x - up, y - (1.0 - share) * width, high, width};
     texts.push_back(placed);
   }
   return texts;
 }
 
-inline bool overlap(const tools::Box& a, const tools::Box& b) {
+inline bool overlap(const Box& a, const Box& b) {
   constexpr double touch = 0.3;  // [pt]
   return a.left + touch < b.right() && b.left + touch < a.right() && a.top + touch < b.bottom() &&
          b.top + touch < a.bottom();
@@ -78,7 +78,7 @@ inline void expect_legible(const std::string& svg, const std::string& what) {
   const std::vector<PlacedText> texts = texts_of(svg);
   EXPECT_GT(texts.size(), 3U) << what;
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    const tools::Box& box = texts[i].box;
+    const Box& box = texts[i].box;
     EXPECT_GE(texts[i].size, 6.0) << what << ": " << texts[i].text;
     EXPECT_TRUE(box.left > -0.5 && box.right() < width + 0.5 && box.top > -0.5 &&
                 box.bottom() < height + 0.5)

@@ -21,57 +21,22 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using Words = std::vector<std::string>;
 
-inline Words operator+(Words first, const Words& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
+Words operator+(Words first, const Words& second);
 
-inline std::string shipped(const std::string& file) {
-  return std::string(EXCAVPLAN_DATA_SOURCE) + "/" + file;
-}
-inline std::string shared(const std::string& file) {
-  return std::string(EXCAVPLAN_SHARED_DATA) + "/" + file;
-}
-
-inline bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+std::string shipped(const std::string& file);
+std::string shared(const std::string& file);
 
 /// What a tool answers with --json; nothing but one object may stand on standard output.
-inline json answer(const std::string& tool, const Words& words, int code = 0) {
-  const ProgramResult result = run_program(tool, words + Words{"--json"});
-  EXPECT_EQ(result.code, code) << tool << ": " << result.err;
-  json object = json::parse(result.out, nullptr, false);
-  EXPECT_TRUE(object.is_object()) << tool << ": " << result.out;
-  return object;
-}
+json answer(const std::string& tool, const Words& words, int code = 0);
 
-inline double number(const json& object, const std::string& pointer) {
-  return object.at(json::json_pointer(pointer)).get<double>();
-}
+double number(const json& object, const std::string& pointer);
 
-inline Words warning_codes(const json& object) {
-  Words codes;
-  for (const json& warning : object.at("warnings")) codes.push_back(warning.at("code"));
-  return codes;
-}
+Words warning_codes(const json& object);
 
-inline bool warns(const json& object, const std::string& code) {
-  const Words codes = warning_codes(object);
-  return std::find(codes.begin(), codes.end(), code) != codes.end();
-}
+bool warns(const json& object, const std::string& code);
 
 /// Every key is there and of the type that nlohmann calls by this name.
-inline void expect_keys(const json& object, const std::string& type, const Words& pointers) {
-  for (const std::string& pointer : pointers) {
-    const json::json_pointer at("/" + pointer);
-    if (!object.contains(at)) {
-      ADD_FAILURE() << pointer << " is missing";
-      continue;
-    }
-    EXPECT_EQ(object.at(at).type_name(), type) << pointer << " is " << object.at(at).dump();
-  }
-}
+void expect_keys(const json& object, const std::string& type, const Words& pointers);
 
 inline const Words volume_keys = {
     "volume/excavated_m3", "volume/excavated_sd_m3", "volume/spilled_m3", "volume/spilled_sd_m3",
@@ -83,23 +48,10 @@ inline const Words cost_keys = {"payload_mass_kg", "energy_kj", "efficiency_kg_p
 
 inline const Words small_library = {"--points", "8", "--polish", "8", "--inherited", "8"};
 
-inline Words quickstart(const TemporaryFolder&) {
-  return {shipped("quickstart/before.pcd"), shipped("quickstart/after.pcd")};
-}
+Words quickstart(const TemporaryFolder&);
 
 /// A copy of a scan with its coordinates in mm.
-inline std::string in_millimetres(const TemporaryFolder& folder, const std::string& scan) {
-  const std::string name = folder.file(fs::path(scan).stem().string());
-  answer("inspect-cloud", {scan, "--out", name + ".xyz"});
-  std::ifstream metres(name + ".xyz");
-  std::ofstream millimetres(name + "-mm.xyz");
-  std::string header;
-  std::getline(metres, header);
-  for (double x, y, z; metres >> x >> y >> z;) {
-    millimetres << 1e3 * x << ' ' << 1e3 * y << ' ' << 1e3 * z << '\n';
-  }
-  return name + "-mm.xyz";
-}
+std::string in_millimetres(const TemporaryFolder& folder, const std::string& scan);
 
 /// Two scans of the whole scene and what really happened.
 struct ScanPair {
@@ -108,16 +60,7 @@ struct ScanPair {
   json truth;
 };
 
-inline ScanPair scan_pair(const TemporaryFolder& folder, int density, int seed) {
-  ScanPair scans{folder.file("before.pcd"), folder.file("after.pcd"), {}};
-  auto held_down = nlohmann::json::parse(content_of(shipped("machines/zx120.json")));
-  held_down.erase("body");  // dense soil would lift the machine
-  scans.truth =
-      answer("simulate-dig", {"--density", std::to_string(density), "--seed", std::to_string(seed),
-                              "--machine", folder.write("zx120.json", held_down.dump()), "--before",
-                              scans.before, "--after", scans.after});
-  return scans;
-}
+ScanPair scan_pair(const TemporaryFolder& folder, int density, int seed);
 
 class Tools : public testing::Test {
  protected:

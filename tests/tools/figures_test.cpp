@@ -9,8 +9,8 @@
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
-#include "results/dig_timing.hpp"
 #include "figures/study_figure.hpp"
+#include "results/dig_timing.hpp"
 #include "support/svg_figure.hpp"
 #include "support/svg_layout.hpp"
 
@@ -282,8 +282,8 @@ TEST(DigTiming, BeginsWhereTheDigDoesNotWhereItsApproachDoes) {
   with_approach.approach =
       std::get<std::vector<DigPose>>(way_down(machine, scene.path, boom_plane_profile(ground)));
   ASSERT_FALSE(with_approach.approach.empty());
-  const auto steps = tools::timed_steps(machine, scene.path, scene.dig);
-  const auto same = tools::timed_steps(machine, with_approach, scene.dig);
+  const auto steps = timed_steps(machine, scene.path, scene.dig);
+  const auto same = timed_steps(machine, with_approach, scene.dig);
   ASSERT_EQ(steps.size(), same.size());
   for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(steps[i].time, same[i].time) << i;
   EXPECT_NEAR(steps.back().time + 0.5 * steps.back().duration, scene.duration, 0.02);
@@ -302,8 +302,7 @@ TEST(StudyFigure, HasARowForEachConditionAndTheGains) {
     results[i].cycle.gain = {gain + 1.0, {gain - 1.0, gain + 2.0}, 30};
   }
   for (const double width : {40.0, 85.0, 170.0}) {
-    const std::string svg =
-        tools::to_svg(tools::lay_out(tools::study_figure(results), {width, {}}));
+    const std::string svg = to_svg(lay_out(study_figure(results), {width, {}}));
     expect_legible(svg, "study");
     EXPECT_TRUE(contains(svg, "slope, +5 deg"));
     EXPECT_EQ(svg.find("nan"), std::string::npos);

@@ -9,10 +9,10 @@
 #include <limits>
 #include <set>
 
+#include "drawing/render.hpp"
 #include "figures/change_figure.hpp"
 #include "figures/dig_figures.hpp"
 #include "figures/machine_outline.hpp"
-#include "drawing/render.hpp"
 #include "support/svg_layout.hpp"
 
 namespace excavplan::tools {

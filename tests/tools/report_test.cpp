@@ -12,6 +12,7 @@
 #include <excavplan/sensing/scene.hpp>
 
 #include "report/dig_report.hpp"
+#include "report/report_figures.hpp"
 #include "support/report_page.hpp"
 
 /// @file

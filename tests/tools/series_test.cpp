@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "frame/quantity.hpp"
-#include "frame/quantity.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::tools {

@@ -18,12 +18,14 @@ std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machi
   constexpr double most = 10.0;  // ours
   const double bucket = heaped_capacity(machine);
   const double buckets = estimate.change.excavated.value / bucket;
-  const auto names_units = [](const Warning& warning) { return warning.code == "units"; };
+  const auto names_units = [](const Warning& warning) {
+    return warning.code == WarningCode::units;
+  };
   const std::vector<Warning>& known = estimate.warnings;
   if (!(buckets > most) || std::any_of(known.begin(), known.end(), names_units))
     return std::nullopt;
   const std::string likely = likely_unit(estimate.change.excavated.value, unit, bucket).word;
-  return Warning{"many_buckets",
+  return Warning{WarningCode::many_buckets,
                  "the hole of " + readable(estimate.change.excavated.value) + " m3 is " +
                      readable(buckets, 2) + " heaped buckets of " + readable(bucket, 2) +
                      " m3 of the machine " + machine.name +

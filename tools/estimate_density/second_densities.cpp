@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <excavplan/results/stated_density.hpp>
+
 #include "base/text.hpp"
 
 namespace excavplan::tools {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "estimate_density/survey_map_names.hpp"
 
-#include "inputs/map_names.hpp"
+#include "inputs/maps.hpp"
 
 namespace excavplan::tools {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 /// @file
 /// The run of a tool as a page about it sees it.

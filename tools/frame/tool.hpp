@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 #include "frame/arguments.hpp"
 #include "frame/console.hpp"

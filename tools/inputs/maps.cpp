@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "frame/named_file.hpp"
+#include "frame/tool.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -96,9 +97,16 @@ void write_maps(const Maps& maps, const std::function<std::vector<NamedMap>()>& 
     }
     std::error_code unknown;
     if (!std::filesystem::exists(each.file, unknown)) continue;
-    outcome.warnings.push_back(
-        {"map_not_written", each.file + ": is of an earlier run, as there is no dig to show"});
+    outcome.warnings.push_back({WarningCode::map_not_written,
+                                each.file + ": is of an earlier run, as there is no dig to show"});
   }
+}
+
+std::vector<MapName> ground_map_names(std::size_t layers) {
+  return {{"all", "all of these layers, not as .asc", layers},
+          {"before", "height of the ground before"},
+          {"after", "height after"},
+          {"change", "height after less before"}};
 }
 
 }  // namespace excavplan::tools

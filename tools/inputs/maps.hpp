@@ -8,13 +8,15 @@
 
 #include <excavplan/maps/ground_maps.hpp>
 
-#include "frame/tool.hpp"
+#include "frame/arguments.hpp"
 
 /// @file
 /// The option --map of every tool that has ground to show. A tool has a list of its maps; the first
 /// is the one that --map FILE writes.
 
 namespace excavplan::tools {
+
+struct Outcome;  // frame/tool.hpp
 
 /// A map of a tool as the command line knows it.
 struct MapName {
@@ -23,6 +25,9 @@ struct MapName {
   std::size_t layers = 1;        ///< 0: lines
   Arguments::Use possible = {};  ///< asked once all options are read; empty: always
 };
+
+/// before, after and change, and all of these layers.
+std::vector<MapName> ground_map_names(std::size_t layers);
 
 /// What the options say.
 struct Maps {

@@ -75,8 +75,8 @@ Warning left_out_warning(const std::string& file, const Drawing& drawing) {
   std::string parts;
   for (const std::string& part : drawing.left_out) parts += (parts.empty() ? "" : ", ") + part;
   const auto mm = [](double points) { return decimals(std::ceil(points / points_per_mm), 0); };
-  return {"plot_left_out", file + ": --plot-size has no room for " + parts + "; a height of " +
-                               mm(drawing.needed_height) + " mm has"};
+  return {WarningCode::plot_left_out, file + ": --plot-size has no room for " + parts +
+                                          "; a height of " + mm(drawing.needed_height) + " mm has"};
 }
 
 }  // namespace

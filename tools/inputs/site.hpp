@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "frame/arguments.hpp"

@@ -43,7 +43,7 @@ std::vector<std::string> cloud_lines(const std::string& file, const CloudSummary
 std::vector<Warning> cloud_warnings(const std::string& file, const CloudSummary& summary,
                                     double unit) {
   if (summary.finite_points == 0) {
-    return {{"no_finite_points", file + " has no finite points"}};
+    return {{WarningCode::no_finite_points, file + " has no finite points"}};
   }
   const auto doubt = doubt_of_extent(*summary.extent, summary.density, unit);
   if (!doubt) return {};

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <excavplan/base/warning.hpp>
 #include <excavplan/clouds/cloud.hpp>
 
 /// @file

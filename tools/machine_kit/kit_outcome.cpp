@@ -45,7 +45,7 @@ void add_kit(const KitSoil& kit, const Machine& machine, const SoilKind& soil,
   if (kit.library.entries.empty()) {
     outcome.trustworthy = false;
     outcome.warnings.push_back(
-        {"no_library", soil.name + ": there is no library: " + kit.reason, true});
+        {WarningCode::no_library, soil.name + ": there is no library: " + kit.reason});
     outcome.json["soils"].push_back(kit_json(soil, law, kit.library, {}));
     return;
   }

@@ -85,11 +85,10 @@ void warn_of_repeated(const ComparedSets& sets, Outcome& outcome) {
         continue;
       }
       outcome.trustworthy = false;
-      outcome.warnings.push_back({"repeated_run",
+      outcome.warnings.push_back({WarningCode::repeated_run,
                                   run.file + ": the same recording as that of " + (*same)->file +
                                       ": it counts as two runs, and the test takes them for "
-                                      "independent ones",
-                                  true});
+                                      "independent ones"});
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <array>
 #include <filesystem>
 
-#include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 
 #include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/planning/plan_motion.hpp>
@@ -135,8 +135,8 @@ Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   const auto* stop = std::get_if<BlockedWay>(&motion);
   if (stop == nullptr) return std::get<Trajectory>(std::move(motion));
   Trajectory none = {planned.machine.name, {}, planned.machine.robot_joints};
-  none.warnings = {
-      {"no_motion", "the plan has no motion: the ground is in the way: " + stop->message, true}};
+  none.warnings = {{WarningCode::no_motion,
+                    "the plan has no motion: the ground is in the way: " + stop->message}};
   return none;
 }
 

@@ -6,7 +6,6 @@
 
 #include "figures/dig_figures.hpp"
 #include "inputs/dig_plots.hpp"
-#include "inputs/map_names.hpp"
 #include "report/dig_report.hpp"
 
 namespace excavplan::tools {
@@ -18,8 +17,8 @@ void warn_of_old(const Plots& plots, Outcome& outcome) {
   for (const Plots::File& plot : plots.files) {
     std::error_code unknown;
     if (!std::filesystem::exists(plot.file, unknown)) continue;
-    outcome.warnings.push_back(
-        {"plot_not_written", plot.file + ": is of an earlier run, as there is no dig to draw"});
+    outcome.warnings.push_back({WarningCode::plot_not_written,
+                                plot.file + ": is of an earlier run, as there is no dig to draw"});
   }
 }
 

@@ -76,7 +76,8 @@ std::string warning_list(const std::vector<Warning>& warnings) {
   std::string list =
       "<section class=\"warnings\" aria-label=\"Warnings\"><h2>Warnings</h2>\n<ul>\n";
   for (const Warning& warning : warnings) {
-    list += "<li><code>" + html(warning.code) + "</code> " + html(warning.message) + "</li>\n";
+    list += "<li><code>" + html(code_text(warning.code)) + "</code> " + html(warning.message) +
+            "</li>\n";
   }
   return list + "</ul></section>\n";
 }

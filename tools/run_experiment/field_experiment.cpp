@@ -76,25 +76,38 @@ void add(const std::string& name, const FieldResult& result, Outcome& outcome) {
   outcome.json["soils"].push_back(field_json(name, result));
   for (const FieldRun& run : result.runs) {
     if (run.failure.empty()) continue;
-    outcome.warnings.push_back({"condition_failed", name + ": " + run.failure});
+    outcome.warnings.push_back({WarningCode::condition_failed, name + ": " + run.failure});
     break;
   }
   const auto digs = static_cast<int>(result.runs.size());
   if (result.failed == digs) return;
   for (std::string& line : result_lines(name, result)) outcome.lines.push_back(std::move(line));
   if (result.held_down > 0) {
-    outcome.warnings.push_back(
-        {"machine_held_down", name + ": in " + std::to_string(result.held_down) + " of " +
-                                  std::to_string(digs) +
-                                  " digs the fixed path would lift or drag the machine, which is "
-                                  "held down on it; they tell no gain"});
+    outcome.warnings.push_back({WarningCode::machine_held_down,
+                                name + ": in " + std::to_string(result.held_down) + " of " +
+                                    std::to_string(digs) +
+                                    " digs the fixed path would lift or drag the machine, which is "
+                                    "held down on it; they tell no gain"});
   }
   if (result.trusted + result.failed == digs) return;
-  outcome.warnings.push_back(
-      {"density_not_trustworthy", name + ": " + std::to_string(result.trusted) + " of " +
-                                      std::to_string(digs) +
-                                      " estimates are trustworthy; the paper digs no second time "
-                                      "where they are not"});
+  outcome.warnings.push_back({WarningCode::density_not_trustworthy,
+                              name + ": " + std::to_string(result.trusted) + " of " +
+                                  std::to_string(digs) +
+                                  " estimates are trustworthy; the paper digs no second time "
+                                  "where they are not"});
+}
+
+FieldOptions field_options(const Machine& machine, const SoilKind& soil, const FieldInputs& field,
+                           const ExperimentInputs& inputs, Console& console) {
+  FieldOptions options;
+  const DigParameters path = inputs.path.value_or(options.experiment.fixed_path);
+  options.experiment = options_of(inputs, machine, soil, console);
+  options.experiment.fixed_path = path;
+  options.fuel = load_fuel_model(shipped_or_file("engines", field.fuel));
+  options.digs = field.digs;
+  options.seed = inputs.seed;
+  options.threads = static_cast<unsigned>(inputs.threads);
+  return options;
 }
 
 }  // namespace
@@ -116,14 +129,7 @@ Outcome field_experiment(const Machine& machine, const FieldInputs& field,
   const std::vector<ExperimentCondition> conditions = field_conditions(inputs);
   std::vector<double> densities;
   for (const ExperimentCondition& condition : conditions) densities.push_back(condition.density);
-  FieldOptions options;
-  const DigParameters path = inputs.path.value_or(options.experiment.fixed_path);
-  options.experiment = options_of(inputs, machine, soil, console);
-  options.experiment.fixed_path = path;
-  options.fuel = load_fuel_model(shipped_or_file("engines", field.fuel));
-  options.digs = field.digs;
-  options.seed = inputs.seed;
-  options.threads = static_cast<unsigned>(inputs.threads);
+  FieldOptions options = field_options(machine, soil, field, inputs, console);
   std::mutex one_line;
   options.progress = [&](double done) {
     const std::lock_guard<std::mutex> lock(one_line);

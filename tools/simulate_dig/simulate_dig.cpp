@@ -11,7 +11,7 @@
 #include "frame/stopwatch.hpp"
 #include "frame/tool.hpp"
 #include "inputs/dig_plots.hpp"
-#include "inputs/map_names.hpp"
+#include "inputs/maps.hpp"
 #include "inputs/named_kinds.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "inputs/site.hpp"
@@ -135,7 +135,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.warnings = std::move(site.warnings);
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
-  if (scene.dig.stall) outcome.warnings.push_back({"stalled", describe(*scene.dig.stall)});
+  if (scene.dig.stall)
+    outcome.warnings.push_back({WarningCode::stalled, describe(*scene.dig.stall)});
   write_files(inputs, machine, scene, outcome);
   return outcome;
 }

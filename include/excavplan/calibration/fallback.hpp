@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/measured.hpp>
 #include <excavplan/ground/height_map.hpp>
 #include <excavplan/machine/dig_path.hpp>
 #include <excavplan/machine/machine.hpp>

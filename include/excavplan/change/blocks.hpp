@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/measured.hpp>
+#include <excavplan/change/dig_volumes.hpp>
 #include <excavplan/ground/height_map.hpp>
 
 /// @file

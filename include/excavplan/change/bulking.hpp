@@ -5,7 +5,8 @@
 #include <array>
 #include <optional>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/measured.hpp>
+#include <excavplan/change/dig_volumes.hpp>
 
 namespace excavplan {
 

@@ -79,6 +79,12 @@ Eigen::Matrix4d read_frame(const std::string& path);
 /// Writes what read_frame() reads, every number with all its digits. @throws Error (bad_file)
 void write_frame(const std::string& path, const Eigen::Matrix4d& site_from_scan);
 
+/// The rigid motion of a translation [m] and a quaternion (x, y, z, w), in the order of ROS. The
+/// quaternion is normalised.
+/// @throws Error (bad_input) if a number is not finite or the quaternion's norm is not 1 to 1e-3
+Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
+                                   const Eigen::Vector4d& quaternion);
+
 /// Moves the points, and the sensor's place with them.
 /// @throws Error (bad_input) if a number of the matrix is not finite
 void transform(Cloud& cloud, const Eigen::Matrix4d& site_from_scan);

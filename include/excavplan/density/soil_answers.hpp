@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/measured.hpp>
 #include <excavplan/soil/density_law.hpp>
 #include <excavplan/soil/soil.hpp>
 #include <excavplan/soil/soil_scatter.hpp>

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/measured.hpp>
 #include <excavplan/logs/dig_log.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 

@@ -57,15 +57,4 @@ double height_at(const HeightMap& map, double x, double y);
 /// True if both maps have the same origin, cell and size, to 1e-9 of a cell.
 bool same_grid(const HeightMap& a, const HeightMap& b);
 
-/// A surface on another grid, bilinear between its cells. Gaps that known ground surrounds and that
-/// are no wider than `widest_gap` [m] along x or y are filled first, by a membrane through their
-/// rims; wider gaps and what lies outside the survey stay NaN.
-///
-/// @throws Error (bad_input) as flat_ground()
-HeightMap resampled(const HeightMap& map, const Rectangle& extent, double cell_size,
-                    double widest_gap);
-
-/// Area of the unknown cells that have known ones before and behind them along x [m^2].
-double unseen_area(const HeightMap& map);
-
 }  // namespace excavplan

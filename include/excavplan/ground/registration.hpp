@@ -41,6 +41,13 @@ struct Alignment {
   static MotionCovariance default_left();
 };
 
+/// Surfaces of one area before and after a dig, on one grid, and their alignment.
+struct SurfacePair {
+  Surface before;       ///< before the dig
+  Surface after;        ///< after it
+  Alignment alignment;  ///< align(before, after), or what is known otherwise
+};
+
 /// Settings of align(). Priors as in `docs/methods.md#volumes`.
 struct AlignmentOptions {
   double shift_prior = 0.020;     ///< sd of each translation [m], > 0

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/planning/path_library.hpp>
 #include <excavplan/soil/density_fit.hpp>
 

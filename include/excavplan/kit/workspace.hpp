@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/machine_file.hpp>
 
 /// @file

@@ -63,6 +63,14 @@ struct LogInterval {
   double to = 0.0;    ///< its end
 };
 
+/// Rows of a log, from first up to, without, last.
+struct LogRows {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+/// Those in an interval of the log and one beside either end, if there is one, by bisection.
+LogRows rows_around(const std::vector<double>& time, const LogInterval& interval);
+
 /// What a log records, in SI units but for fuel.
 struct DigLog {
   std::string file;                      ///< for messages

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/machine.hpp>
 
 /// @file

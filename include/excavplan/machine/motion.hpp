@@ -5,9 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include <excavplan/machine/trajectory.hpp>
+#include <excavplan/machine/way.hpp>
 
 /// @file
 /// Motion that a controller can run: a trajectory at a fixed rate that keeps the limits between its
@@ -18,23 +17,6 @@
 /// through the stated angles, rates and accelerations are both this motion itself.
 
 namespace excavplan {
-
-/// (boom, arm, bucket, swing) [rad]; the swing as SwingState::angle, within 10^4 rad.
-using FrontJoints = Eigen::Vector4d;
-
-/// The joints at one place of a way.
-struct WayPose {
-  DigPhase phase = DigPhase::approach;       ///< that leads here
-  FrontJoints joints = FrontJoints::Zero();  ///< [rad]
-  JointAngles torque = JointAngles::Zero();  ///< of boom, arm, bucket on the way here [N m]
-  double payload = 0.0;                      ///< in the bucket on the way here [kg], >= 0
-};
-
-/// Where the joints go, in straight lines of the joint space from pose to pose.
-struct Way {
-  std::vector<WayPose> poses;          ///< in the order in which they are visited
-  std::vector<Warning> warnings = {};  ///< of way_of_cycle()
-};
 
 /// The way of a dig: approach, penetrate, drag, scoop and lift.
 /// @param torques  as for time_dig_path()

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <excavplan/planning/planned_dig.hpp>
+#include <excavplan/planning/dig_outcome.hpp>
 
 /// @file
 /// The whole working cycle around a dig (docs/methods.md#cycle): dig, lift, swing, dump, swing back

@@ -54,10 +54,6 @@ struct DigGoalInfo {
 const std::vector<DigGoalInfo>& dig_goals();
 const DigGoalInfo& info_of(DigObjective::Goal goal);
 
-/// The objective of a goal by its word, "energy", or word and number, "priced:2000"; all other
-/// numbers are the usual ones. @throws Error (bad_input) if the text is none
-DigObjective objective_named(const std::string& text);
-
 /// A number of an objective. Checks, checkpoints, libraries and options follow the table of them.
 struct DigObjectiveParameter {
   const char* name;             ///< key in JSON, ends in the unit: "swing_rad"

@@ -9,7 +9,6 @@
 
 /// @file
 /// Goals as users write them: by word, "energy", or word and number, "priced:2000".
-/// objective_named() reads the number too.
 
 namespace excavplan {
 
@@ -26,5 +25,9 @@ struct WrittenGoal {
 };
 /// Nothing if the text has no goal's word, or a number where the goal takes none.
 std::optional<WrittenGoal> written_goal(const std::string& text);
+
+/// The objective of a goal by its word, "energy", or word and number, "priced:2000"; all other
+/// numbers are the usual ones. @throws Error (bad_input) if the text is none
+DigObjective objective_named(const std::string& text);
 
 }  // namespace excavplan

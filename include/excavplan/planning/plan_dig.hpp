@@ -9,6 +9,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/planning/dig_cycle.hpp>
 #include <excavplan/planning/path_library.hpp>

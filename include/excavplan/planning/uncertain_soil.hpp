@@ -16,12 +16,6 @@
 
 namespace excavplan {
 
-/// One of the soils that the ground may be.
-struct PossibleSoil {
-  const SoilSimulator* simulator = nullptr;  ///< digs in that soil; not null
-  double probability = 0.0;                  ///< > 0; all of them add up to 1
-};
-
 /// The dig of highest expected worth, and the value of knowing the soil.
 struct UncertainDigSearchResult {
   /// Its dig has the means of mass, volume, energy and duration, its worth is the mean of the

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/clouds/cloud.hpp>
 
 /// @file

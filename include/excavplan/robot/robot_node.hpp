@@ -55,7 +55,8 @@ inline std::string early_text(const DigCycleSession& session) {
 /// "code: text" of each.
 inline std::vector<std::string> texts_of(const std::vector<Warning>& warnings) {
   std::vector<std::string> texts;
-  for (const Warning& warning : warnings) texts.push_back(warning.code + ": " + warning.message);
+  for (const Warning& warning : warnings)
+    texts.push_back(code_text(warning.code) + ": " + warning.message);
   return texts;
 }
 

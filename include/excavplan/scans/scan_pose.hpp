@@ -75,10 +75,4 @@ struct PointPose {
 PointPose pose_of_points(const std::vector<Eigen::Vector3d>& in_scan,
                          const std::vector<Eigen::Vector3d>& in_site);
 
-/// The rigid motion of a translation [m] and a quaternion (x, y, z, w), in the order of ROS. The
-/// quaternion is normalised.
-/// @throws Error (bad_input) if a number is not finite or the quaternion's norm is not 1 to 1e-3
-Eigen::Matrix4d pose_of_quaternion(const Eigen::Vector3d& translation,
-                                   const Eigen::Vector4d& quaternion);
-
 }  // namespace excavplan

@@ -11,8 +11,10 @@
 #include <Eigen/Core>
 
 #include <excavplan/base/error.hpp>
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/clouds/cloud.hpp>
+#include <excavplan/ground/registration.hpp>
+#include <excavplan/ground/surface.hpp>
 
 /// @file
 /// Surfaces from scans: files of any size, which are read more than once and never held, or

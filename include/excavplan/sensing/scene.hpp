@@ -8,7 +8,9 @@
 #include <vector>
 
 #include <excavplan/base/error.hpp>
+#include <excavplan/base/warning.hpp>
 #include <excavplan/machine/dig_path.hpp>
+#include <excavplan/sensing/block_layer.hpp>
 #include <excavplan/sensing/depth_camera.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/simulators.hpp>
@@ -20,26 +22,6 @@
 
 namespace excavplan {
 
-/// Hard soil falls as blocks with voids between them (docs/methods.md#rehearsal). Numbers are ours.
-struct BlockSettings {
-  double size = 0.15;  ///< mean edge of a block, at least 4 cm and at most 1 m [m]
-  /// Share of its swelling that the soil of a block has gone through [-], in 0 .. 1: 1 is cracked
-  /// soil as loose as dumped soil is by its law, 0 is undisturbed soil.
-  double swell = 1.0;
-  double fines = 0.3;           ///< share of the voids that fine soil fills [-], in 0 .. 1
-  double least_density = 80.0;  ///< softer ground crumbles [%]
-  std::uint64_t seed = 1;       ///< of shapes and places
-};
-
-/// Loose soil as blocks.
-struct BlockLayer {
-  HeightMap before;    ///< the ground before the dig, on finer cells
-  HeightMap after;     ///< with the blocks
-  int count = 0;       ///< of blocks
-  double soil = 0.0;   ///< volume of blocks and fines [m^3]
-  double voids = 0.0;  ///< between and under them, as seen from above, without the fines [m^3]
-};
-
 /// Settings of run_scene().
 struct SceneOptions {
   DigParameters path = paper_fixed_path();  ///< to dig
@@ -50,6 +32,12 @@ struct SceneOptions {
   bool history = false;                            ///< fill DigResult::history
   std::optional<BlockSettings> blocks = {};        ///< if hard soil shall fall as blocks
 };
+
+/// The path that run_scene() digs.
+/// @throws Error (bad_input) if an argument breaks its rules, the path cannot be driven, or the
+///         heap would reach the dig: the volumes of both would hide each other
+DigPath scene_path(const Machine& machine, const SoilKind& soil, const Terrain& ground,
+                   const SceneOptions& options = {});
 
 /// One dig with the ground before and after it.
 struct DigScene {
@@ -71,8 +59,7 @@ struct DigScene {
 /// Digs once and dumps the payload. The ground must contain the path and the heap: scene_extent().
 /// A stall is in the result of the dig.
 ///
-/// @throws Error (bad_input) if the path cannot be driven, the heap would reach the dig (the
-///         volumes of both would hide each other), or as SoilSimulator::dig()
+/// @throws Error (bad_input) as scene_path() or SoilSimulator::dig()
 DigScene run_scene(const Machine& machine, const SoilKind& soil, double density_percent,
                    const Terrain& ground, const SceneOptions& options = {});
 

@@ -6,28 +6,11 @@
 #include <string>
 
 #include <excavplan/machine/machine.hpp>
+#include <excavplan/simulation/bucket_cavity.hpp>
 #include <excavplan/simulation/soil_simulator.hpp>
 #include <excavplan/soil/soil.hpp>
 
 namespace excavplan {
-
-/// How steep soil can stand in the bucket, as tangents.
-struct HoldingSlopes {
-  double face = 0.0;  ///< of the face above the lip while the bucket digs
-  double heap = 0.0;  ///< of the heap above top edge and side plates
-};
-
-/// Volume of loose soil that the bucket can hold [m^3], with the line from its pin to its tip at
-/// angle `phi3` [rad] and the soil ahead `support` above the tip [m], 0 if the bucket is clear of
-/// the ground (`docs/methods.md#bucket`).
-/// @throws Error (bad_input) as require_machine(), or if an argument is not finite
-double bucket_capacity(const Machine& machine, double phi3, double support,
-                       const HoldingSlopes& slopes);
-
-/// Steepest angle, in `least` .. 80 deg, at which a face of soil of this height stands [rad]
-/// (Culmann 1875: height = 4 c / gamma * sin(angle) cos(phi) / (1 - cos(angle - phi))).
-/// @throws Error (bad_input) if an argument is not finite
-double stable_slope(const SoilState& soil, double height, double least);
 
 /// Rises with every change of the simulator that affects the result of a dig. What was computed
 /// with another version, such as a path library, is refused.

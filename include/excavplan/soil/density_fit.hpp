@@ -11,38 +11,9 @@
 #include <excavplan/soil/soil_scatter.hpp>
 
 /// @file
-/// Fitting density laws to digs of known density, and writing law files.
+/// Density laws fitted to digs of known density, and their files.
 
 namespace excavplan {
-
-/// One dig of known density.
-struct BulkingSample {
-  double bulking_factor = 0.0;   ///< [-]
-  double density_percent = 0.0;  ///< 0 .. 100
-};
-
-/// End of the key of a form fitted to k as height maps give it, not corrected for fallback.
-inline constexpr const char* as_measured = "_as_measured";
-
-/// Least-squares line of d on k.
-/// @throws Error (bad_input) with fewer than 3 different factors, a factor that is not positive, a
-/// density outside 0 .. 100, or where none fits (k must grow with d)
-DensityLine fit_line(const std::vector<BulkingSample>& samples);
-
-/// Least-squares hyperbola of k on d (A and B linear, r by NLopt).
-/// @throws Error (bad_input) as fit_line(), with fewer than 4 different densities
-DensityClosedForm fit_closed_form(const std::vector<BulkingSample>& samples);
-
-/// A fitted form and its key in a law file.
-struct DensityFit {
-  std::string key;   ///< "closed_form_as_measured"
-  DensityForm form;  ///< as fitted
-};
-
-/// Fits every form. Their keys are "line" and "closed_form", followed by `key_ending`.
-/// @throws Error (bad_input) as the fits
-std::vector<DensityFit> fit_density_forms(const std::vector<BulkingSample>& samples,
-                                          const std::string& key_ending = "");
 
 /// Digs in drawn soils, from which the scatter of the forms is.
 struct ScatterDigs {

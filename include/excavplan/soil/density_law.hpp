@@ -5,45 +5,18 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <excavplan/base/error.hpp>
-#include <excavplan/change/volume_change.hpp>
+#include <excavplan/base/measured.hpp>
+#include <excavplan/base/warning.hpp>
+#include <excavplan/soil/density_forms.hpp>
 #include <excavplan/soil/soil.hpp>
 
 /// @file
-/// From the bulking factor k to the relative density d [%] and back.
-///
-/// The paper fits a straight line d = a k + b. Solids that are conserved give a hyperbola: soil of
-/// void ratio e that ends in one loose state has k = (1 + e_loose) / (1 + e), so
-/// k = B + A / (1 - r d / 100), with r = (e_max - e_min) / (1 + e_max) and B = 0. The hyperbola is
-/// exact where the line errs by 4 to 8 points (`docs/methods.md#density-law`). Clods give B > 0,
-/// soil that fell back into the cut gives B < 0.
+/// Density laws: from the bulking factor of a dig to the relative density of the ground.
 
 namespace excavplan {
-
-/// d = a k + b.
-struct DensityLine {
-  double a = 0.0;                ///< [%]
-  double b = 0.0;                ///< [%]
-  double r2 = 0.0;               ///< coefficient of determination of d [-]
-  double residual_sd = 0.0;      ///< scatter of d about the law, at 50 % [%]
-  double residual_growth = 0.0;  ///< its relative change from there to 100 %, as residual_sd_at()
-};
-
-/// k = B + A / (1 - r d / 100), d = 100 / r (1 - A / (k - B)).
-struct DensityClosedForm {
-  double A = 0.0;                ///< [-], > 0
-  double B = 0.0;                ///< [-]
-  double r = 0.0;                ///< [-], in (0, 1)
-  double r2 = 0.0;               ///< coefficient of determination of d [-]
-  double residual_sd = 0.0;      ///< scatter of d about the law, at 50 % [%]
-  double residual_growth = 0.0;  ///< its relative change from there to 100 %, as residual_sd_at()
-};
-
-/// The forms a law can have. Law files and fits go by this list.
-using DensityForm = std::variant<DensityLine, DensityClosedForm>;
 
 /// A law with its origin.
 struct DensityLaw {
@@ -70,22 +43,6 @@ DensityLaw load_density_law(const std::string& path);
 /// without scatter. It leaves out clods and soil that falls back into the cut, which a calibrated
 /// law holds: where a tenth of the cut falls back, the density comes out some 4 points too high.
 DensityLaw density_law_of(const SoilKind& soil);
-
-/// Relative density by the law [%], also outside 0 .. 100. The closed form, which falls to minus
-/// infinity as k comes down to B, ends at -1000 % and keeps its slope there.
-double density_of_bulking(const DensityForm& form, double bulking_factor);
-
-/// The inverse. @throws Error (bad_input) where the closed form has no factor, d >= 100 / r
-double bulking_of_density(const DensityForm& form, double density_percent);
-
-double density_slope(const DensityForm& form, double bulking_factor);  ///< dd/dk [%]
-
-/// Scatter of d about the law at a density [%]: residual_sd (1 + residual_growth (d / 50 - 1)),
-/// with d in 0 .. 100.
-double residual_sd_at(const DensityForm& form, double density_percent);
-
-/// The formula of a form in the letters of its parameters: "d = a k + b".
-std::string formula(const DensityForm& form);
 
 /// Relative density [%] with what is known about its error.
 struct RelativeDensity {

@@ -92,4 +92,9 @@ double bulking_of_density(const SoilKind& soil, double density_percent);
 /// @throws Error (bad_input) unless the unit weight is positive and finite
 double critical_height(const SoilState& state);
 
+/// Steepest angle, in `least` .. 80 deg, at which a face of soil of this height stands [rad]
+/// (Culmann 1875: height = 4 c / gamma * sin(angle) cos(phi) / (1 - cos(angle - phi))).
+/// @throws Error (bad_input) if an argument is not finite
+double stable_slope(const SoilState& soil, double height, double least);
+
 }  // namespace excavplan

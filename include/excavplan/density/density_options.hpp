@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include <excavplan/change/volume_change.hpp>
+#include <excavplan/density/other_volumes.hpp>
+#include <excavplan/density/soil_answers.hpp>
+#include <excavplan/density/successive_density.hpp>
+#include <excavplan/machine/dig_path.hpp>
+#include <excavplan/machine/machine.hpp>
+#include <excavplan/scans/scan_surface.hpp>
+
+/// @file
+/// What estimate_density() is asked: the scans of a dig, and what is known beside them.
+
+namespace excavplan {
+
+/// The scans of one dig.
+struct DigScans {
+  Scan before;                        ///< of the whole scene or, with `dump`, of the dig area alone
+  Scan after;                         ///< of the same area as `before`
+  std::optional<ScanPair> dump = {};  ///< of the dump area: the paper's four clouds
+};
+
+/// How volumes are found.
+enum class VolumeMethod {
+  surface,  ///< signed change of one height map, measure_change()
+  paper,    ///< DensityOptions::paper, as published, in the areas that the first finds
+};
+
+/// The dig as driven, for a law of digs along this path. With its start, which needs scans in the
+/// site frame, the soil that fell back into the cut is measured too.
+struct DugPath {
+  Machine machine;                ///< that drove it
+  DigParameters parameters;       ///< of the path
+  std::optional<double> start_x;  ///< where the path enters the ground [m]
+};
+
+/// Settings of estimate_density().
+struct DensityOptions {
+  VolumeMethod method = VolumeMethod::surface;  ///< how volumes are found
+  std::optional<double> cell_size;  ///< of the height map, and voxel of the paper's method [m];
+                                    ///< else cell_for() the sparsest scan
+  bool registered = true;           ///< false: the sensor did not move, scans are not registered
+  ChangeOptions change;             ///< dig area, dump area and more
+  OtherVolumes paper;               ///< of VolumeMethod::paper: paper_change()
+  std::optional<DugPath> dug_path;  ///< if it is known
+  SoilKnowledge soil;               ///< its kind, or the kinds that it may be
+  std::optional<Measured> payload_mass;  ///< moist soil that was dumped, if it was weighed [kg]
+  /// Of the joints in the dig, joint_work() [J]; needs the dug path with its start and the kind.
+  std::optional<Measured> joint_work;
+  std::optional<PriorDensity> prior;  ///< by digs before this one in the same soil
+  unsigned threads = 0;               ///< 0: one per core; the result is the same for any number
+};
+
+}  // namespace excavplan

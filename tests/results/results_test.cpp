@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The excavplan authors
+// SPDX-License-Identifier: Apache-2.0
+#include <excavplan/results/result_json.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <excavplan/base/data_files.hpp>
+#include <excavplan/figures/figure_images.hpp>
+#include <excavplan/machine/machine.hpp>
+#include <excavplan/maps/ground_maps.hpp>
+#include <excavplan/results/force_history.hpp>
+#include <excavplan/results/stated_density.hpp>
+#include <excavplan/simulation/dig_ground.hpp>
+
+#include "base/json.hpp"
+
+namespace excavplan {
+namespace {
+
+const Machine& zx120() {
+  static const Machine machine = load_machine(find_data_file("machines/zx120.json"));
+  return machine;
+}
+
+const SoilKind& loam() {
+  static const SoilKind soil = load_soil(find_data_file("soils/loam.json"));
+  return soil;
+}
+
+const DigScene& scene() {
+  static const DigScene dug = [] {
+    SceneOptions options;
+    options.history = true;
+    const Terrain ground =
+        undisturbed(flat_ground(scene_extent(zx120(), options.dump_at), usual_cell(zx120())));
+    return run_scene(zx120(), loam(), 40.0, ground, options);
+  }();
+  return dug;
+}
+
+TEST(Results, OfADigAreItsNumbers) {
+  const auto json = nlohmann::json::parse(to_json(zx120(), scene()));
+  EXPECT_EQ(json.at("soil"), "loam");
+  EXPECT_DOUBLE_EQ(json.at("payload_mass_kg"), scene().dig.payload_mass);
+  EXPECT_DOUBLE_EQ(json.at("energy_kj"), scene().dig.energy.total / 1000.0);
+  EXPECT_TRUE(json.at("stall").is_null());
+}
+
+TEST(Results, ForceHistoryHasARowPerStep) {
+  const std::string csv = force_history_csv(zx120(), scene());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'),
+            static_cast<std::ptrdiff_t>(scene().dig.history.size() + 1));
+}
+
+TEST(Results, OfAnEstimateAreReadAgain) {
+  DensityEstimate estimate;
+  estimate.bulking = Measured{1.2, 0.01};
+  RelativeDensity density;
+  density.percent = density.raw_percent = 41.5;
+  density.sd_percent = 3.0;
+  density.sd_given_law_percent = 2.0;
+  estimate.density = density;
+  estimate.law.soil = "loam";
+  const auto file = std::filesystem::path(::testing::TempDir()) / "estimate_of_results_test.json";
+  std::ofstream(file) << to_json(estimate);
+  const StatedDensity stated = stated_density(file.string());
+  std::filesystem::remove(file);
+  EXPECT_DOUBLE_EQ(stated.density.percent, 41.5);
+  EXPECT_DOUBLE_EQ(stated.density.sd_percent, 3.0);
+  EXPECT_DOUBLE_EQ(stated.independent_sd, 2.0);
+  EXPECT_EQ(stated.density.soil, "loam");
+}
+
+TEST(Results, MapsOfADigAreOfItsGround) {
+  const std::vector<NamedMap> maps = scene_maps(scene());
+  ASSERT_EQ(maps.size(), 4u);
+  EXPECT_EQ(maps.front().name, "all");
+  EXPECT_EQ(maps.front().map.layers.size(), 3u);
+  const Eigen::ArrayXXd& change = maps.back().map.layers.front().values;
+  EXPECT_LT(change.minCoeff(), -0.1);
+  EXPECT_GT(change.maxCoeff(), 0.1);
+}
+
+TEST(Figures, AreEqualForEqualResults) {
+  for (const DigImage what : {DigImage::section, DigImage::forces, DigImage::torques,
+                              DigImage::power, DigImage::cylinders}) {
+    const std::string svg = dig_image(zx120(), scene(), what);
+    EXPECT_NE(svg.find("<svg"), std::string::npos);
+    EXPECT_EQ(svg, dig_image(zx120(), scene(), what));
+  }
+}
+
+TEST(Figures, HaveTheFormatAskedFor) {
+  EXPECT_EQ(reach_image(zx120(), ImageFormat::png).substr(1, 3), "PNG");
+  EXPECT_EQ(reach_image(zx120(), ImageFormat::pdf).substr(0, 4), "%PDF");
+}
+
+}  // namespace
+}  // namespace excavplan
