@@ -20,6 +20,8 @@ class NormalEquations {
   /// @param count  of terms, where it is dynamic
   explicit NormalEquations(Eigen::Index count = terms)
       : matrix_(Matrix::Zero(count, count)), right_(Vector::Zero(count)) {}
+  /// Those that are summed up elsewhere; their squares are not known, 0.
+  NormalEquations(const Matrix& matrix, const Vector& right) : matrix_(matrix), right_(right) {}
 
   /// Takes in that the terms times the unknowns are `value`.
   void add(const Vector& row, double value, double weight = 1.0) {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <excavplan/base/error.hpp>
@@ -196,9 +195,8 @@ class Aligner {
     }
     normal = use.asDiagonal() * normal * use.asDiagonal();
     normal.diagonal() += prior_.cwiseAbs2().cwiseInverse();
-    const Eigen::LDLT<MotionCovariance> factor(normal);
-    return {factor.solve(Motion(use.cwiseProduct(right))),
-            factor.solve(MotionCovariance::Identity())};
+    const NormalEquations<6> equations(normal, use.cwiseProduct(right));
+    return {equations.solution(), equations.covariance()};
   }
 
   /// Of what each cell adds to the estimate, its weighted residual, as for any M-estimate (Huber

@@ -27,7 +27,7 @@ constexpr bool has_paper = true;
 constexpr bool has_paper = false;
 #endif
 
-TEST_F(Tools, MethodPaperWithoutPclNamesThePackage) {
+TEST_F(BadInput, MethodPaperWithoutPclNamesThePackage) {
   if (has_paper) GTEST_SKIP() << "built with PCL";
   for (const Words& words : {Words{"--method", "paper"}, Words{"--compare-methods"}}) {
     refused(2, "libpcl-dev", "estimate-density", quickstart(folder) + words);
