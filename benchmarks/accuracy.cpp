@@ -31,7 +31,7 @@
 ///
 /// --scenes takes another dig for every survey, of random size and density. --export keeps the
 /// scans as DIR/<kind>/<layout>/<seed>/*.ply, for other programs. scripts/accuracy makes the tables
-/// of docs/accuracy.md.
+/// of docs/generated/accuracy.md.
 
 namespace excavplan::scenes {
 namespace {

@@ -11,7 +11,7 @@
 
 /// @file
 /// What the paper's genetic algorithm finds from random digs on, beside the default search with as
-/// many digs: the table of docs/validation.md, most mass per energy of the dig, seeds 1 .. 10.
+/// many digs: docs/generated/paper-search.md, most mass per energy of the dig, seeds 1 .. 10.
 
 namespace {
 

@@ -23,7 +23,7 @@
 ///
 ///     site_surveys [--family NAME[,NAME]] [--seeds N] [--first-seed N] [--points N] [--summary]
 ///
-/// --points is for one cloud. scripts/accuracy makes the table of docs/accuracy.md.
+/// --points is for one cloud. scripts/accuracy makes docs/generated/accuracy.md.
 
 namespace excavplan::scenes {
 namespace {

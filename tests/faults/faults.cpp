@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+
 #include <cstdio>
 #include <iostream>
 #include <random>

@@ -830,7 +830,7 @@ TEST(Bulking, NoHoleOrNoHeapGivesNoFactor) {
   EXPECT_FALSE(bulking_factor(volumes({0.0, 0.1}, {0.6, 0.1}, 0.0)));
   EXPECT_FALSE(bulking_factor(volumes({0.5, 0.1}, {0.0, 0.1}, 0.0)));
   VolumeChange change = volumes({0.5, 0.1}, {0.6, 0.1}, 0.0);
-  change.warnings.push_back({"no_dumped_soil", ""});
+  change.warnings.push_back({WarningCode::no_dumped_soil, ""});
   EXPECT_FALSE(bulking_factor(change));
 }
 

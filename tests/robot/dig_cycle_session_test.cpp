@@ -587,7 +587,7 @@ TEST(DigCycleSession, APlanOnGroundThatIsNotThePresentOneIsNotTrusted) {
 
 TEST(DigCycleSession, PlansTellWhatTheirSettingsAreMadeOf) {
   DigCycleSettings settings = settings_of();
-  settings.warnings = {{"urdf_scaled", "numbers are those of the zx120", false}};
+  settings.warnings = {{WarningCode::urdf_scaled, "numbers are those of the zx120", false}};
   EXPECT_TRUE(has(DigCycleSession(settings).plan().warnings, "urdf_scaled"));
 }
 

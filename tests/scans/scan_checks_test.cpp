@@ -177,10 +177,10 @@ TEST(ScanChecks, TheLikelyUnitIsFoundFromAWrongOneToo) {
 TEST(ScanChecks, ACauseStandsForWhatFollowsFromIt) {
   const auto left = [](bool ends_trust) {
     std::string codes;
-    for (const Warning& warning : causes_of({{"units", "", ends_trust},
-                                             {"scans_do_not_fit", "", true},
-                                             {"implausible_fuel", "", false},
-                                             {"looks_swapped", "", true}})) {
+    for (const Warning& warning : causes_of({{WarningCode::units, "", ends_trust},
+                                             {WarningCode::scans_do_not_fit, "", true},
+                                             {WarningCode::implausible_fuel, "", false},
+                                             {WarningCode::looks_swapped, "", true}})) {
       codes += code_text(warning.code) + " ";
     }
     return codes;

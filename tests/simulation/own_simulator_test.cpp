@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/planning/dig_search.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>

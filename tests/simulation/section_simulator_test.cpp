@@ -14,6 +14,7 @@
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/angles.hpp"
+#include "base/random.hpp"
 #include "simulation/section_bucket.hpp"
 #include "simulation/soil_section.hpp"
 #include "support/errors.hpp"

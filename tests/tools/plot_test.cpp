@@ -458,7 +458,7 @@ TEST(HeightChangeFigure, ListsWarningsOpenChangesAndErrors) {
   change.errors.noise = Eigen::Vector3d(4e-6, 1e-6, 9e-6).asDiagonal();
   change.attribution = {
       {ChangeKind::second_heap, "a second heap 2 m off", {0.031, 0.001}, false, 0.35}};
-  survey.sheet.warnings = {{"other_change", std::string(200, 'x') + " left out"}};
+  survey.sheet.warnings = {{WarningCode::other_change, std::string(200, 'x') + " left out"}};
   const std::string svg = change_svg(survey.sheet);
   EXPECT_NE(svg.find(">other_change:</text>"), std::string::npos) << svg;
   EXPECT_NE(svg.find("left out, open"), std::string::npos);

@@ -88,7 +88,7 @@ TEST(ReportPage, RunsNoScriptOfItsTexts) {
                                      {"zones", {{{"<img src=x>", "<img src=y>"}}}}})
                  .dump(2);
   run.lines = {evil};
-  run.warnings = {{evil, evil}};
+  run.warnings = {{WarningCode::units, evil}};
   run.settings = {{evil, evil, true}};
   const std::string text = own_text(html_page(report, run));
   for (const char* markup : {"<script>", "<img", "\x1b", "\xff", "</pre></script>"}) {
@@ -140,12 +140,12 @@ TEST(ReportPage, SaysWhetherToTrustAndWhy) {
   ReportedRun run = plain_run();
   EXPECT_TRUE(contains(html_page(report, run), "Done.</strong> No warnings."));
   run.judged = true;
-  run.warnings = {{"dust", "two surfaces"}};
+  run.warnings = {{WarningCode::two_surfaces, "two surfaces"}};
   EXPECT_TRUE(contains(html_page(report, run), "Trustworthy.</strong> 1 warning, below."));
   run.trustworthy = false;
   const std::string page = html_page(report, run);
   EXPECT_TRUE(contains(page, "Do not trust this result."));
-  EXPECT_TRUE(contains(page, "<code>dust</code> two surfaces"));
+  EXPECT_TRUE(contains(page, "<code>two_surfaces</code> two surfaces"));
 }
 
 TEST(ReportPage, OfAMapOfSixByThreeMetresIsSmall) {

@@ -4,6 +4,8 @@
 /// @file
 /// --simulator FILE.so and --simulator-command of the tools that have them.
 
+#include <fcntl.h>
+
 #include <csignal>
 #include <fstream>
 #include <string>

@@ -18,6 +18,7 @@
 #include <excavplan/base/data_files.hpp>
 
 #include "frame/stack.hpp"
+#include "inputs/named_kinds.hpp"
 #include "support/errors.hpp"
 
 namespace excavplan::tools {
@@ -248,13 +249,13 @@ TEST(Tool, JsonIsOneObjectAndNanIsNull) {
   Outcome outcome;
   outcome.json = {{"bulking_factor", std::numeric_limits<double>::quiet_NaN()}, {"points", 3}};
   outcome.lines = {"for people"};
-  outcome.warnings = {{"no_heap", "no dumped soil is in the scans"}};
+  outcome.warnings = {{WarningCode::no_dumped_soil, "no dumped soil is in the scans"}};
   const Probe probe = run({"a", "--density", "4", "--json"}, outcome);
   const auto json = nlohmann::ordered_json::parse(probe.out);
   EXPECT_TRUE(json.at("bulking_factor").is_null());
   EXPECT_EQ(json.at("points"), 3);
   EXPECT_EQ(json.at("tool"), "probe");
-  EXPECT_EQ(json.at("warnings").at(0).at("code"), "no_heap");
+  EXPECT_EQ(json.at("warnings").at(0).at("code"), "no_dumped_soil");
   EXPECT_EQ(probe.err, "working\nprobe: warning: no dumped soil is in the scans\n");
 }
 
@@ -320,7 +321,7 @@ TEST(Tool, WithoutMemoryItSaysSo) {
 TEST(Tool, ForeignTextCannotSpeakToATerminal) {
   Outcome outcome;
   outcome.lines = {"topic \033]0;owned\007"};
-  outcome.warnings = {{"odd", "frame \033[2J\xc2\x9b and ä"}};
+  outcome.warnings = {{WarningCode::frame, "frame \033[2J\xc2\x9b and ä"}};
   const Probe probe = run({"a", "--density", "4"}, outcome);
   EXPECT_EQ(probe.out, "topic ?]0;owned?\n");
   EXPECT_EQ(probe.err, "working\nprobe: warning: frame ?[2J? and ä\n");
