@@ -20,8 +20,8 @@
 
 namespace excavplan::test {
 
-/// As many of the cases as are tried: all with EXCAVPLAN_TESTS=all in the environment, as the scripts
-/// of scripts/check.d have it, else a tenth.
+/// As many of the cases as are tried: all with EXCAVPLAN_TESTS=all in the environment, as the
+/// scripts of scripts/check.d have it, else a tenth.
 int tried_of(int all);
 
 inline const int many = tried_of(10000);
