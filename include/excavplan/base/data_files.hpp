@@ -7,7 +7,7 @@
 // The CMake package defines it. Otherwise, as with pkg-config, it is found from where this header
 // is installed.
 #ifndef EXCAVPLAN_DATA_DIR
-#define EXCAVPLAN_DATA_DIR __FILE__ "/../../../share/excavplan"
+#define EXCAVPLAN_DATA_DIR __FILE__ "/../../../../share/excavplan"
 #endif
 
 namespace excavplan {
