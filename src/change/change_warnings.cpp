@@ -66,7 +66,7 @@ void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
     message += "; with " + std::to_string(count - 1) + " more such zones " + litres_as_m3(sum) +
                " in total";
   }
-  change.warnings.push_back({WarningCode::other_change, message});
+  change.warnings.emplace_back(WarningCode::other_change, message);
 }
 
 /// Volume of all zones of a kind; infinite for the kind `other`.
@@ -144,28 +144,28 @@ void warn_of_doubtful(const DoubtfulZones& zones, const ChangeOptions& options,
                       std::vector<Warning>& warnings) {
   const auto limit = [](double share) { return hundredths(100.0 * share) + " %"; };
   if (const SuchZones& cut = zones.cut; cut.count > 0) {
-    warnings.push_back({WarningCode::zone_at_border,
-                        text_of(*cut.largest) +
-                            " reaches the edge of the surveyed ground: its volume may be "
-                            "incomplete; scan farther around it, or widen --area" +
-                            cut.rest()});
+    warnings.emplace_back(WarningCode::zone_at_border,
+                          text_of(*cut.largest) +
+                              " reaches the edge of the surveyed ground: its volume may be "
+                              "incomplete; scan farther around it, or widen --area" +
+                              cut.rest());
   }
   if (const SuchZones& unseen = zones.unseen; unseen.count > 0) {
-    warnings.push_back({WarningCode::zone_unseen,
-                        text_of(*unseen.largest) + " was seen by no scan in " +
-                            unseen.unseen_share() + " of its cells, more than " +
-                            limit(options.refused_unknown_share) +
-                            ": its volume is not trustworthy, so the bulking factor is unknown; "
-                            "scan it from a second standpoint" +
-                            unseen.rest()});
+    warnings.emplace_back(WarningCode::zone_unseen,
+                          text_of(*unseen.largest) + " was seen by no scan in " +
+                              unseen.unseen_share() + " of its cells, more than " +
+                              limit(options.refused_unknown_share) +
+                              ": its volume is not trustworthy, so the bulking factor is unknown; "
+                              "scan it from a second standpoint" +
+                              unseen.rest());
   }
   if (const SuchZones& partly = zones.partly_unseen; partly.count > 0) {
-    warnings.push_back({WarningCode::zone_partly_unseen,
-                        text_of(*partly.largest) + " was seen by no scan in " +
-                            partly.unseen_share() +
-                            " of its cells, which were interpolated; the limit is " +
-                            limit(options.max_unknown_share) +
-                            ": scan it from a second standpoint" + partly.rest()});
+    warnings.emplace_back(WarningCode::zone_partly_unseen,
+                          text_of(*partly.largest) + " was seen by no scan in " +
+                              partly.unseen_share() +
+                              " of its cells, which were interpolated; the limit is " +
+                              limit(options.max_unknown_share) +
+                              ": scan it from a second standpoint" + partly.rest());
   }
 }
 
@@ -178,14 +178,14 @@ std::string text_of(const Eigen::Vector3d& place) {
 void warn_of_doubt(const std::optional<PlaceDoubt>& doubt, const std::string& which,
                    std::vector<Warning>& warnings) {
   if (!doubt) return;
-  warnings.push_back(
-      {WarningCode::sensor_place_doubtful,
-       "the sensor of the scan " + which + " is said to have stood at " + text_of(doubt->told) +
-           (doubt->inferred ? ", but by the number of its points on slopes it was at about " +
-                                  text_of(*doubt->inferred)
-                            : ", which is below the ground") +
-           ": ground that it did not see is filled wrongly; check --sensor-origin, its frame and "
-           "unit, or the VIEWPOINT of the file"});
+  warnings.emplace_back(
+      WarningCode::sensor_place_doubtful,
+      "the sensor of the scan " + which + " is said to have stood at " + text_of(doubt->told) +
+          (doubt->inferred ? ", but by the number of its points on slopes it was at about " +
+                                 text_of(*doubt->inferred)
+                           : ", which is below the ground") +
+          ": ground that it did not see is filled wrongly; check --sensor-origin, its frame and "
+          "unit, or the VIEWPOINT of the file");
 }
 
 /// Of a place that no one told.
@@ -193,13 +193,13 @@ void warn_of_place(const Area& area, std::vector<Warning>& warnings) {
   const bool has_shadow = std::any_of(area.zones.begin(), area.zones.end(),
                                       [](const ZoneSum& zone) { return zone.shadow > 0.0; });
   if (area.inferred && has_shadow) {
-    warnings.push_back(
-        {WarningCode::sensor_place_inferred,
-         "nothing says where the sensor of the scan after stood: by the number of its points on "
-         "slopes it was at about " +
-             text_of(area.inferred->place()) +
-             ", from where ground was filled that it did not see; give the place by "
-             "--sensor-origin"});
+    warnings.emplace_back(
+        WarningCode::sensor_place_inferred,
+        "nothing says where the sensor of the scan after stood: by the number of its points on "
+        "slopes it was at about " +
+            text_of(area.inferred->place()) +
+            ", from where ground was filled that it did not see; give the place by "
+            "--sensor-origin");
   }
 }
 
@@ -208,41 +208,42 @@ void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
   constexpr double noted = 0.010;  // ours: of errors that were taken off [m]
   constexpr double most = 0.010;   // ours: of those left; below it volumes hardly suffer [m]
   if (area.systematic_rms > noted) {
-    warnings.push_back({WarningCode::systematic_errors,
-                        "stripes or a dome of " + millimetres(area.systematic_rms) +
-                            " (rms) run through ground that did not change and were taken off: "
-                            "check the calibration of the sensor and how the scans were put "
-                            "together"});
+    warnings.emplace_back(WarningCode::systematic_errors,
+                          "stripes or a dome of " + millimetres(area.systematic_rms) +
+                              " (rms) run through ground that did not change and were taken off: "
+                              "check the calibration of the sensor and how the scans were put "
+                              "together");
   }
   const double left = std::sqrt(area.noise.correlated);
   if (left > most && area.noise.length > area.grid.cell_size) {
-    warnings.push_back({WarningCode::scans_do_not_fit,
-                        "ground that did not change rose and fell by " + millimetres(left) +
-                            " between the scans over " + readable(area.noise.length, 2) +
-                            " m, which is not noise of single points: one of the scans is bent, or "
-                            "the ground was driven on; scan again from one place, or leave out by "
-                            "--area what changed"});
+    warnings.emplace_back(
+        WarningCode::scans_do_not_fit,
+        "ground that did not change rose and fell by " + millimetres(left) +
+            " between the scans over " + readable(area.noise.length, 2) +
+            " m, which is not noise of single points: one of the scans is bent, or "
+            "the ground was driven on; scan again from one place, or leave out by "
+            "--area what changed");
   }
 }
 
 void warn_of_ground(const Area& area, std::vector<Warning>& warnings) {
   const ChangedGround& ground = area.ground;
   if (ground.stable_share < least_stable_share) {
-    warnings.push_back({WarningCode::little_stable_ground,
-                        "only " + hundredths(100.0 * ground.stable_share) +
-                            " % of the surveyed ground did not change, less than " +
-                            hundredths(100.0 * least_stable_share) +
-                            " %: an area that rose or fell evenly could be "
-                            "mistaken for stable ground; scan more of the ground around "
-                            "hole and heap"});
+    warnings.emplace_back(WarningCode::little_stable_ground,
+                          "only " + hundredths(100.0 * ground.stable_share) +
+                              " % of the surveyed ground did not change, less than " +
+                              hundredths(100.0 * least_stable_share) +
+                              " %: an area that rose or fell evenly could be "
+                              "mistaken for stable ground; scan more of the ground around "
+                              "hole and heap");
   }
   if (ground.noise_sd > largest_noise) {
-    warnings.push_back({WarningCode::scans_do_not_fit,
-                        "ground that did not change differs by " + hundredths(ground.noise_sd) +
-                            " m between the scans (one standard deviation), more than " +
-                            hundredths(largest_noise) +
-                            " m: bring both scans into one frame by --before-frame and "
-                            "--after-frame, or leave out by --area what moved between them"});
+    warnings.emplace_back(WarningCode::scans_do_not_fit,
+                          "ground that did not change differs by " + hundredths(ground.noise_sd) +
+                              " m between the scans (one standard deviation), more than " +
+                              hundredths(largest_noise) +
+                              " m: bring both scans into one frame by --before-frame and "
+                              "--after-frame, or leave out by --area what moved between them");
     return;
   }
   warn_of_bends(area, warnings);
@@ -254,20 +255,20 @@ void warn_of_balance(VolumeChange& change) {
   const double before = change.before.value;
   const double after = change.after.value;
   if (!(before > 0.0)) {
-    change.warnings.push_back({WarningCode::no_hole_found,
-                               "no ground fell by more than the noise of the scans: no hole was "
-                               "found, its volumes are 0; check that AFTER shows the dig"});
+    change.warnings.emplace_back(WarningCode::no_hole_found,
+                                 "no ground fell by more than the noise of the scans: no hole was "
+                                 "found, its volumes are 0; check that AFTER shows the dig");
     return;
   }
   const double dumped = change.dumped.value;
   if (dumped < least_dumped_share * before || after < least_after_share * before) {
-    change.warnings.push_back(
-        {WarningCode::no_dumped_soil,
-         "the hole is " + litres_as_m3(before) + ", but only " + litres_as_m3(dumped) +
-             " rose away from it and " + litres_as_m3(after - dumped) +
-             " beside it: the dumped soil is not in the scans, so the bulking "
-             "factor is unknown; give scans that show it, or those of the dump "
-             "area by --dump-before and --dump-after"});
+    change.warnings.emplace_back(
+        WarningCode::no_dumped_soil,
+        "the hole is " + litres_as_m3(before) + ", but only " + litres_as_m3(dumped) +
+            " rose away from it and " + litres_as_m3(after - dumped) +
+            " beside it: the dumped soil is not in the scans, so the bulking "
+            "factor is unknown; give scans that show it, or those of the dump "
+            "area by --dump-before and --dump-after");
     return;
   }
   const double error =
@@ -276,15 +277,15 @@ void warn_of_balance(VolumeChange& change) {
   const double ratio = after / before;
   const bool shrank = ratio < least_bulking && before - after > 2.0 * error;
   if (shrank || ratio > largest_bulking) {
-    change.warnings.push_back(
-        {WarningCode::looks_swapped,
-         "before and after are probably swapped: " + litres_as_m3(before) + " were dug, " +
-             litres_as_m3(after) + " were deposited, a factor of " + hundredths(ratio) +
-             "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
-             hundredths(largest_bulking) +
-             " times that of the hole; exchange BEFORE and AFTER; or leave out what "
-             "is no soil, a vehicle, by --dig-area and --dump-area; or, if z "
-             "points down, give frames with z up"});
+    change.warnings.emplace_back(
+        WarningCode::looks_swapped,
+        "before and after are probably swapped: " + litres_as_m3(before) + " were dug, " +
+            litres_as_m3(after) + " were deposited, a factor of " + hundredths(ratio) +
+            "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
+            hundredths(largest_bulking) +
+            " times that of the hole; exchange BEFORE and AFTER; or leave out what "
+            "is no soil, a vehicle, by --dig-area and --dump-area; or, if z "
+            "points down, give frames with z up");
   }
 }
 

@@ -81,14 +81,14 @@ void state(double volume, double factor, double scans, VolumeChange& change) {
   change.readings.push_back({{ChangeKind::earlier_soil}, "without " + what, weight, {read, sd}});
   const Eigen::Vector3d both(volume, 0.0, volume);
   change.errors.attribution += weight * both * both.transpose();
-  change.warnings.push_back(
-      {WarningCode::earlier_soil,
-       "the scan before shows " + readable(volume, 0.1 * volume) +
-           " m^3 above the ground around, where the hole is, as steep as loose soil: if an earlier "
-           "dig left it there, the bulking factor is " +
-           readable(read, 0.01) + " instead of " + readable(factor, 0.01) +
-           "; scan after loose soil was cleared, or dig beside it",
-       std::abs(read - factor) > telling * factor});
+  change.warnings.emplace_back(
+      WarningCode::earlier_soil,
+      "the scan before shows " + readable(volume, 0.1 * volume) +
+          " m^3 above the ground around, where the hole is, as steep as loose soil: if an earlier "
+          "dig left it there, the bulking factor is " +
+          readable(read, 0.01) + " instead of " + readable(factor, 0.01) +
+          "; scan after loose soil was cleared, or dig beside it",
+      std::abs(read - factor) > telling * factor);
 }
 
 }  // namespace

@@ -271,14 +271,14 @@ class OpenChanges {
       if (likeliest == nullptr) likeliest = &reading;
     }
     if (other < warned) return;
-    result_.warnings.push_back(
-        {WarningCode::attribution_open,
-         "the scene can be read in more than one way: the bulking factor is " +
-             hundredths(given.bulking.value) + " as counted, and " +
-             hundredths(likeliest->bulking.value) + " " + likeliest->what + " (weights " +
-             hundredths(given.weight) + " and " + hundredths(likeliest->weight) +
-             "): tell which changes belong to the dig with --dig-area and --dump-area",
-         other > as_likely});
+    result_.warnings.emplace_back(
+        WarningCode::attribution_open,
+        "the scene can be read in more than one way: the bulking factor is " +
+            hundredths(given.bulking.value) + " as counted, and " +
+            hundredths(likeliest->bulking.value) + " " + likeliest->what + " (weights " +
+            hundredths(given.weight) + " and " + hundredths(likeliest->weight) +
+            "): tell which changes belong to the dig with --dig-area and --dump-area",
+        other > as_likely);
   }
 
   void warn_of_stirred() {
@@ -288,11 +288,11 @@ class OpenChanges {
     });
     if (!found || !k) return;
     const bool is_large = bulking_errors(result_).attribution > telling * k->value;
-    result_.warnings.push_back(
-        {WarningCode::stirred_ground,
-         "ground rose and fell in many small places: it was stirred, by tracks or a blade, and "
-         "counts as noise; scan where nothing drove, or give --dig-area and --dump-area",
-         is_large});
+    result_.warnings.emplace_back(
+        WarningCode::stirred_ground,
+        "ground rose and fell in many small places: it was stirred, by tracks or a blade, and "
+        "counts as noise; scan where nothing drove, or give --dig-area and --dump-area",
+        is_large);
   }
 
   const std::vector<Area>& areas_;

@@ -208,10 +208,10 @@ void add_work(const DensityOptions& options, const Surfaces& surfaces, LawsForDi
     const LoadedDig dig = {dug.machine, path, ground, *options.soil.kind, options.soil.scatter};
     laws.work = work_over_density(dig, laws.law.freed_form, options.threads);
   } catch (const Error& error) {
-    laws.warnings.push_back(
-        {WarningCode::loads_not_used, std::string("the dig of the joint loads cannot be "
-                                                  "simulated on the scanned ground: ") +
-                                          error.what()});
+    laws.warnings.emplace_back(WarningCode::loads_not_used,
+                               std::string("the dig of the joint loads cannot be "
+                                           "simulated on the scanned ground: ") +
+                                   error.what());
   }
 }
 

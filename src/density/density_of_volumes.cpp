@@ -195,9 +195,10 @@ double join_second(const LawsForDig& laws, const DensityOptions& options,
   }
   if (!options.prior) return share;
   if (!options.prior->trustworthy) {
-    estimate.warnings.push_back({WarningCode::prior_not_trustworthy,
-                                 "the density of earlier digs is not trustworthy and is not used: "
-                                 "the density is that of this dig alone"});
+    estimate.warnings.emplace_back(
+        WarningCode::prior_not_trustworthy,
+        "the density of earlier digs is not trustworthy and is not used: "
+        "the density is that of this dig alone");
     return share;
   }
   estimate.successive = combined(*options.prior, *estimate.density);
@@ -261,10 +262,10 @@ LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
   LawsForDig laws = {law, options.soil.possible, {}, {}};
   const auto& dug = options.dug_path;
   if (options.soil.assumed) {
-    laws.warnings.push_back(
-        {WarningCode::soil_assumed, "the soil is assumed to be " + law.soil +
-                                        ": --soil says which it is; `soils` has the "
-                                        "density in others"});
+    laws.warnings.emplace_back(WarningCode::soil_assumed,
+                               "the soil is assumed to be " + law.soil +
+                                   ": --soil says which it is; `soils` has the "
+                                   "density in others");
   }
   const auto& kind = options.soil.kind;
   if (kind && !law.soil.empty() && law.soil != kind->name) {
@@ -302,10 +303,10 @@ void set_density(DensityEstimate& estimate, const LawsForDig& laws, const Densit
   if (dig.voids || dig.fallback) estimate.corrected = dig.corrected();
   const bool known_error = !std::isnan(dig.bulking_sd);
   if (!known_error) {
-    estimate.warnings.push_back(
-        {WarningCode::volume_error_unknown,
-         "this method gives no error of its volumes: the density interval contains only the "
-         "scatter of the law"});
+    estimate.warnings.emplace_back(
+        WarningCode::volume_error_unknown,
+        "this method gives no error of its volumes: the density interval contains only the "
+        "scatter of the law");
   }
   set_densities(DensityReader(laws, options), dig, options.soil.unknown, estimate);
   const RelativeDensity scans = *estimate.density;

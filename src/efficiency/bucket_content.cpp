@@ -79,8 +79,8 @@ ScannedChange change_between(const ScanPair& scans, const LoggedDig& dig, bool i
     const WarningCode expected = is_hole ? WarningCode::no_dumped_soil : WarningCode::no_hole_found;
     for (const Warning& warning : warnings) {
       if (warning.code == expected) continue;
-      result.warnings.push_back(
-          {warning.code, result.names + ": " + warning.message, warning.ends_trust});
+      result.warnings.emplace_back(warning.code, result.names + ": " + warning.message,
+                                   warning.ends_trust);
     }
   };
   try {
@@ -167,11 +167,11 @@ LiftedSoil from_bucket(const ScanPair& scans, const LoggedDig& dig) {
   }
   LiftedSoil result{{Lifted::volume, rise.volume}, {}, {}};
   if (rise.unseen > most_unseen) {
-    result.warnings.push_back(
-        {WarningCode::bucket_partly_unseen,
-         seen.names() + ": the scan of the empty bucket does not show " +
-             readable(100.0 * rise.unseen, 2) +
-             " % of what that of the loaded one does; the soil there is not counted"});
+    result.warnings.emplace_back(
+        WarningCode::bucket_partly_unseen,
+        seen.names() + ": the scan of the empty bucket does not show " +
+            readable(100.0 * rise.unseen, 2) +
+            " % of what that of the loaded one does; the soil there is not counted");
   }
   return result;
 }

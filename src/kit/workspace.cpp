@@ -104,13 +104,12 @@ double given_by_joints(const Machine& machine, const LinkPositions& links, const
 
 void add_reach(const Machine& machine, const Reach& reach, std::vector<Warning>& warnings) {
   if (reach.depth > 0.0 && reach.ground > machine.track_front) return;
-  warnings.push_back(
-      {WarningCode::ground_out_of_reach,
-       reach.depth > 0.0
-           ? "the tip reaches the ground up to x = " + readable(reach.ground) +
-                 " m only, the tracks end at " + readable(machine.track_front) + " m"
-           : "the lowest point of the tip is " + readable(-reach.depth) +
-                 " m above the ground: do the ranges of the joints fit the lengths?"});
+  warnings.emplace_back(
+      WarningCode::ground_out_of_reach,
+      reach.depth > 0.0 ? "the tip reaches the ground up to x = " + readable(reach.ground) +
+                              " m only, the tracks end at " + readable(machine.track_front) + " m"
+                        : "the lowest point of the tip is " + readable(-reach.depth) +
+                              " m above the ground: do the ranges of the joints fit the lengths?");
 }
 
 /// A machine lifts its rear at about half the force of its bucket: ours, of the zx120.
@@ -118,8 +117,8 @@ void add_stability(const Machine& machine, const Reach& reach, std::vector<Warni
   constexpr double least = 0.25;  // of the force of the bucket; ours
   constexpr double place = 0.6;   // of the reach on the ground; ours
   if (!machine.body) {
-    warnings.push_back(
-        {WarningCode::no_body, "the file states no body: nothing lifts or drags the machine"});
+    warnings.emplace_back(WarningCode::no_body,
+                          "the file states no body: nothing lifts or drags the machine");
     return;
   }
   const double x = place * reach.ground;
@@ -130,11 +129,11 @@ void add_stability(const Machine& machine, const Reach& reach, std::vector<Warni
     const LinkPositions links = link_positions(machine, std::get<JointAngles>(joints));
     const double held = held_in(machine, links, -Vector2d::UnitY());
     if (held >= least * bucket_force(machine)) return;
-    warnings.push_back({WarningCode::force_beyond_stability,
-                        "at x = " + readable(x) + " m the machine lifts its rear at " +
-                            readable(1e-3 * held) + " kN, its bucket can pull up with " +
-                            readable(1e-3 * bucket_force(machine)) +
-                            " kN: do mass, edges and torques fit?"});
+    warnings.emplace_back(WarningCode::force_beyond_stability,
+                          "at x = " + readable(x) + " m the machine lifts its rear at " +
+                              readable(1e-3 * held) + " kN, its bucket can pull up with " +
+                              readable(1e-3 * bucket_force(machine)) +
+                              " kN: do mass, edges and torques fit?");
     return;
   }
 }
@@ -142,10 +141,10 @@ void add_stability(const Machine& machine, const Reach& reach, std::vector<Warni
 void compare(const char* what, std::optional<double> stated, double computed, double most,
              std::vector<Warning>& warnings) {
   if (!stated || std::abs(computed / *stated - 1.0) <= most) return;
-  warnings.push_back(
-      {WarningCode::data_sheet_differs, std::string("the ") + what + " is " + readable(computed) +
-                                            " by the numbers of the file, " + readable(*stated) +
-                                            " by its data sheet"});
+  warnings.emplace_back(WarningCode::data_sheet_differs,
+                        std::string("the ") + what + " is " + readable(computed) +
+                            " by the numbers of the file, " + readable(*stated) +
+                            " by its data sheet");
 }
 
 void add_sheet(const Machine& machine, const Reach& reach, const DataSheet& sheet,
@@ -224,9 +223,9 @@ std::vector<Warning> check_machine(const Machine& machine, const DataSheet& shee
   add_reach(machine, reach, warnings);
   add_stability(machine, reach, warnings);
   if (!machine.swing || !machine.engine) {
-    warnings.push_back({WarningCode::no_cycle,
-                        "the file states no swing or no engine: energy and time of the "
-                        "cycle are unknown, and only the goal energy can be planned"});
+    warnings.emplace_back(WarningCode::no_cycle,
+                          "the file states no swing or no engine: energy and time of the "
+                          "cycle are unknown, and only the goal energy can be planned");
   }
   add_sheet(machine, reach, sheet, warnings);
   return warnings;

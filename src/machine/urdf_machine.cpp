@@ -261,18 +261,18 @@ void require_ranges(const std::set<string>& scaled, const string& path) {
 void warn_of_numbers(const string& path, const std::set<string>& scaled, const string& placeholders,
                      std::vector<Warning>& warnings) {
   if (!scaled.empty()) {
-    warnings.push_back(
-        {WarningCode::urdf_scaled, "these numbers are in neither " + path +
-                                       " nor a JSON beside it; those of the zx120, scaled to "
-                                       "this size, are taken: " +
-                                       listed(scaled)});
+    warnings.emplace_back(WarningCode::urdf_scaled,
+                          "these numbers are in neither " + path +
+                              " nor a JSON beside it; those of the zx120, scaled to "
+                              "this size, are taken: " +
+                              listed(scaled));
   }
   if (!placeholders.empty()) {
-    warnings.push_back({WarningCode::urdf_placeholder,
-                        "these numbers of " + path +
-                            " are taken for placeholders, as a usual machine of this size "
-                            "differs by more than a factor of " +
-                            number_text(most_apart) + ": " + safe_text(placeholders, 400)});
+    warnings.emplace_back(WarningCode::urdf_placeholder,
+                          "these numbers of " + path +
+                              " are taken for placeholders, as a usual machine of this size "
+                              "differs by more than a factor of " +
+                              number_text(most_apart) + ": " + safe_text(placeholders, 400));
   }
 }
 
@@ -287,10 +287,10 @@ void warn_of_angles(const UrdfFront& front, std::vector<Warning>& warnings) {
   for (std::size_t i = 0; i < 3; ++i) add(words[i], front.parts[i].angle);
   add("swing", front.swing_angle);
   if (text.empty()) return;
-  warnings.push_back(
-      {WarningCode::urdf_angles,
-       "the angles of excavplan are not those of the URDF: " + text +
-           " rad; of trajectories .yaml and .com3 are in the latter, all else in the former"});
+  warnings.emplace_back(
+      WarningCode::urdf_angles,
+      "the angles of excavplan are not those of the URDF: " + text +
+          " rad; of trajectories .yaml and .com3 are in the latter, all else in the former");
 }
 
 void warn_of_root(const json& machine, std::vector<Warning>& warnings) {
@@ -298,14 +298,14 @@ void warn_of_root(const json& machine, std::vector<Warning>& warnings) {
   const auto at = root["position_m"].get<std::vector<double>>();
   const double yaw = root.value("yaw_rad", 0.0);
   if (std::abs(at[0]) + std::abs(at[1]) + std::abs(at[2]) + std::abs(yaw) < 1e-6) return;
-  warnings.push_back(
-      {WarningCode::urdf_frame,
-       "the root frame of the URDF is not the site frame, which has its origin on the "
-       "swing axis at the ground and x along the boom: in the site frame the root is "
-       "at (" +
-           readable(at[0], 6) + ", " + readable(at[1], 6) + ", " + readable(at[2], 6) +
-           ") m, turned about z by " + readable(yaw, 6) +
-           " rad; scans in the root frame need this transform"});
+  warnings.emplace_back(
+      WarningCode::urdf_frame,
+      "the root frame of the URDF is not the site frame, which has its origin on the "
+      "swing axis at the ground and x along the boom: in the site frame the root is "
+      "at (" +
+          readable(at[0], 6) + ", " + readable(at[1], 6) + ", " + readable(at[2], 6) +
+          ") m, turned about z by " + readable(yaw, 6) +
+          " rad; scans in the root frame need this transform");
 }
 
 }  // namespace

@@ -96,19 +96,19 @@ class CycleWay {
       pose.payload = full ? load_.payload_mass : 0.0;
     }
     if (unseen_.area > 0.0) {
-      way_.warnings.push_back(
-          {WarningCode::unseen_way,
-           readable(unseen_.area, 2) +
-               " m2 of the ground that arm and bucket pass over off the dig were not seen, first "
-               "at x = " +
-               readable(unseen_.first.x(), 2) + " m, y = " + readable(unseen_.first.y(), 2) +
-               " m; it is taken to lie as high as the tracks"});
+      way_.warnings.emplace_back(
+          WarningCode::unseen_way,
+          readable(unseen_.area, 2) +
+              " m2 of the ground that arm and bucket pass over off the dig were not seen, first "
+              "at x = " +
+              readable(unseen_.first.x(), 2) + " m, y = " + readable(unseen_.first.y(), 2) +
+              " m; it is taken to lie as high as the tracks");
     }
     if (tipped_ > tips) {
-      way_.warnings.push_back({WarningCode::payload_tips,
-                               "the full bucket cannot keep its attitude off the dig: it tips by " +
-                                   readable(tipped_ * 180.0 / pi, 2) +
-                                   " degrees, as its joint ends, and loses soil"});
+      way_.warnings.emplace_back(
+          WarningCode::payload_tips,
+          "the full bucket cannot keep its attitude off the dig: it tips by " +
+              readable(tipped_ * 180.0 / pi, 2) + " degrees, as its joint ends, and loses soil");
     }
     return std::move(way_);
   }

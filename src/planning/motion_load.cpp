@@ -71,16 +71,16 @@ std::vector<Warning> load_warnings(const Machine& machine, const Way& way) {
   }
   std::vector<Warning> warnings;
   if (overload.pose) {
-    warnings.push_back(
-        {WarningCode::motion_overload,
-         std::string("the ") + name(overload.joint) + " needs " + readable(overload.share, 3) +
-             " of its torque to hold links and payload at " + place(*overload.pose)});
+    warnings.emplace_back(
+        WarningCode::motion_overload,
+        std::string("the ") + name(overload.joint) + " needs " + readable(overload.share, 3) +
+            " of its torque to hold links and payload at " + place(*overload.pose));
   }
   if (tips.pose) {
-    warnings.push_back({WarningCode::motion_tips,
-                        "the machine tips: the centre of all masses is " + readable(tips.share, 3) +
-                            " of the way from the middle of the tracks to their edge at " +
-                            place(*tips.pose)});
+    warnings.emplace_back(
+        WarningCode::motion_tips,
+        "the machine tips: the centre of all masses is " + readable(tips.share, 3) +
+            " of the way from the middle of the tracks to their edge at " + place(*tips.pose));
   }
   return warnings;
 }

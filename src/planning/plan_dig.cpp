@@ -175,7 +175,7 @@ std::optional<KnownOnSlope> known_at(const PathLibrary& library, const Task& tas
   const Slope slope = slope_in(library, task, x - length, x);
   if (std::isnan(slope.ground)) return std::nullopt;
   auto known = known_dig(library, task, slope);
-  if (auto* dig = std::get_if<PlannedDig>(&known)) return KnownOnSlope{slope, std::move(*dig)};
+  if (auto* dig = std::get_if<PlannedDig>(&known)) return KnownOnSlope{slope, *dig};
   return std::nullopt;
 }
 

@@ -290,29 +290,29 @@ class ScanReader {
       return !target_.empty() && is_misplaced(head);
     });
     if (misplaced != heads_.end()) {
-      warnings.push_back({WarningCode::clocks_differ,
-                          which + "its stamps are " + decimals(seconds_of(lag_of(*misplaced)), 3) +
-                              " s later than the clock of the transforms, and " +
-                              in_quotes(misplaced->header.frame) + " moved in " +
-                              in_quotes(target_) +
-                              " meanwhile: its points may be misplaced; set the clocks of sensor "
-                              "and transforms alike, or take a time when it stood"});
+      warnings.emplace_back(
+          WarningCode::clocks_differ,
+          which + "its stamps are " + decimals(seconds_of(lag_of(*misplaced)), 3) +
+              " s later than the clock of the transforms, and " +
+              in_quotes(misplaced->header.frame) + " moved in " + in_quotes(target_) +
+              " meanwhile: its points may be misplaced; set the clocks of sensor "
+              "and transforms alike, or take a time when it stood");
     }
     if (heads_.size() > 1 && !target_.empty() &&
         tree_.moved("", target_, first().header.stamp, heads_.back().header.stamp)) {
-      warnings.push_back(
-          {WarningCode::frame_moved,
-           which + in_quotes(target_) + " moved in the root of its tree within the " +
-               "span, by which the ground in it is smeared: name a frame that stands "
-               "on the ground, or a span in which it stood"});
+      warnings.emplace_back(
+          WarningCode::frame_moved,
+          which + in_quotes(target_) + " moved in the root of its tree within the " +
+              "span, by which the ground in it is smeared: name a frame that stands "
+              "on the ground, or a span in which it stood");
     }
     if (recording_.is_cut_off()) {
-      warnings.push_back({WarningCode::recording_cut_off,
-                          recording_.path() +
-                              ": its end is missing, as that of a recorder that was "
-                              "killed: messages from " +
-                              time_text(recording_, topic_.last) + " of " + topic_.name +
-                              " on are lost"});
+      warnings.emplace_back(WarningCode::recording_cut_off,
+                            recording_.path() +
+                                ": its end is missing, as that of a recorder that was "
+                                "killed: messages from " +
+                                time_text(recording_, topic_.last) + " of " + topic_.name +
+                                " on are lost");
     }
   }
   bool is_sensor_frame() const {

@@ -299,9 +299,9 @@ ScannedTerrain DigCycleSession::State::terrain(const std::optional<Scan>& scan) 
   }
   ScannedTerrain ground = terrain_from_scan(*scan, planning_extent(settings.machine), cell);
   if (is_outdated()) {
-    ground.warnings.push_back({WarningCode::ground_before_dig,
-                               "no scan came since the last dig began: the ground is taken to be "
-                               "as it was before it"});
+    ground.warnings.emplace_back(WarningCode::ground_before_dig,
+                                 "no scan came since the last dig began: the ground is taken to be "
+                                 "as it was before it");
   }
   return ground;
 }
@@ -319,14 +319,15 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
   const CycleWayOptions way = {start(), settings.whole_cycle, settings.plan.search.objective};
   answer.posture_known = way.start.has_value();
   if (!way.start) {
-    answer.warnings.push_back({WarningCode::posture_unknown,
-                               joint_problem({}) + ": the motion begins above the dig, wherever "
-                                                   "the machine stands"});
+    answer.warnings.emplace_back(WarningCode::posture_unknown,
+                                 joint_problem({}) +
+                                     ": the motion begins above the dig, wherever "
+                                     "the machine stands");
   } else if (const std::string moving = moving_problem(); !moving.empty()) {
-    answer.warnings.push_back({WarningCode::not_standing, "the machine may be moving: " + moving});
+    answer.warnings.emplace_back(WarningCode::not_standing, "the machine may be moving: " + moving);
   }
   const auto refuse = [&](const std::string& why) {
-    answer.warnings.push_back({WarningCode::no_motion, "the plan has no motion: " + why});
+    answer.warnings.emplace_back(WarningCode::no_motion, "the plan has no motion: " + why);
   };
   try {
     const auto motion = plan_motion(settings.machine, ground, answer.plan, way, settings.motion);
@@ -350,22 +351,23 @@ std::string DigCycleSession::State::early_text() const {
 std::vector<Warning> DigCycleSession::State::scan_warnings(bool averaged) const {
   std::vector<Warning> warnings;
   if (before.size() < after.size()) {
-    warnings.push_back({WarningCode::fewer_scans, "the scan before the dig has " +
-                                                      count_text(before.size(), after.size()) +
-                                                      " messages: the dig began before more came"});
+    warnings.emplace_back(WarningCode::fewer_scans,
+                          "the scan before the dig has " + count_text(before.size(), after.size()) +
+                              " messages: the dig began before more came");
   }
   if (!averaged) {
-    warnings.push_back({WarningCode::not_averaged,
-                        "the messages of a scan are not of one organised size with one pose: "
-                        "their points were joined"});
+    warnings.emplace_back(WarningCode::not_averaged,
+                          "the messages of a scan are not of one organised size with one pose: "
+                          "their points were joined");
   }
-  if (early > 0) warnings.push_back({WarningCode::early_points, early_text() + " and left out"});
+  if (early > 0) warnings.emplace_back(WarningCode::early_points, early_text() + " and left out");
   const bool stamped = std::all_of(after.begin(), after.end(),
                                    [](const LiveFrame& frame) { return frame.header.stamp != 0; });
   if (marked && !stamped) {
-    warnings.push_back({WarningCode::not_stamped,
-                        "points of the scan after have no stamp: whether they were measured after "
-                        "the dig is not known"});
+    warnings.emplace_back(
+        WarningCode::not_stamped,
+        "points of the scan after have no stamp: whether they were measured after "
+        "the dig is not known");
   }
   return warnings;
 }
@@ -506,18 +508,18 @@ CyclePlan DigCycleSession::plan(Time time) {
   answer.warnings = settings.warnings;
   answer.warnings.insert(answer.warnings.end(), ground.warnings.begin(), ground.warnings.end());
   if (state.last_refused) {
-    answer.warnings.push_back({WarningCode::previous_density,
-                               "the density by the last dig is not known or not to be trusted: "
-                               "planned for the previous one, " +
-                                   plain_number(state.density.percent) + " %"});
+    answer.warnings.emplace_back(WarningCode::previous_density,
+                                 "the density by the last dig is not known or not to be trusted: "
+                                 "planned for the previous one, " +
+                                     plain_number(state.density.percent) + " %");
   }
   answer.warnings.insert(answer.warnings.end(), answer.plan.warnings.begin(),
                          answer.plan.warnings.end());
   if (answer.plan.stopped) {
     const std::string stopped =
         "the search was stopped after " + std::to_string(answer.plan.evaluations) + " digs";
-    answer.warnings.push_back(
-        {WarningCode::search_stopped, stopped + ": there may be a better dig"});
+    answer.warnings.emplace_back(WarningCode::search_stopped,
+                                 stopped + ": there may be a better dig");
     if (!answer.plan.dig) answer.plan.reason = stopped + " that could not be done";
   }
   if (answer.plan.dig) {
@@ -538,8 +540,8 @@ void DigCycleSession::confirm_start(CyclePlan& plan, Time time) {
   const std::string problem = state_->start_problem(plan.motion);
   if (problem.empty()) return;
   plan.trustworthy = false;
-  plan.warnings.push_back({WarningCode::start_left,
-                           "the machine may stand where the motion does not begin: " + problem});
+  plan.warnings.emplace_back(WarningCode::start_left,
+                             "the machine may stand where the motion does not begin: " + problem);
 }
 
 }  // namespace excavplan

@@ -113,17 +113,17 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
   const double widest_gap = std::max(widest_filled, widest_filled_cells * cell);
   ScannedTerrain result{ground_of(seen, cell, widest_gap, extent, cell_size), scan.doubts};
   if (const double unseen = unseen_area(result.terrain.bank); unseen > 0.0) {
-    result.warnings.push_back({WarningCode::unseen_ground,
-                               name_of(scan) + ": the scan does not see " + readable(unseen, 2) +
-                                   " m2 of the ground within reach, in gaps wider than " +
-                                   readable(widest_gap, 2) + " m; no dig is planned there"});
+    result.warnings.emplace_back(WarningCode::unseen_ground,
+                                 name_of(scan) + ": the scan does not see " + readable(unseen, 2) +
+                                     " m2 of the ground within reach, in gaps wider than " +
+                                     readable(widest_gap, 2) + " m; no dig is planned there");
   }
   if (cell > cell_size) {
-    result.warnings.push_back(
-        {WarningCode::sparse_terrain,
-         name_of(scan) + ": " + readable(seen.density, 2) +
-             " points per m2 are too few for cells of " + readable(cell_size, 2) +
-             " m; heights are interpolated between cells of " + readable(cell, 2) + " m"});
+    result.warnings.emplace_back(
+        WarningCode::sparse_terrain,
+        name_of(scan) + ": " + readable(seen.density, 2) +
+            " points per m2 are too few for cells of " + readable(cell_size, 2) +
+            " m; heights are interpolated between cells of " + readable(cell, 2) + " m");
   }
   return result;
 }
@@ -154,12 +154,12 @@ ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier)
   std::vector<Warning> warnings;
   if (common >= fewest_common &&
       static_cast<double>(same) < least_same * static_cast<double>(common)) {
-    warnings.push_back(
-        {WarningCode::surroundings_differ,
-         "of the ground that the present scan and that of the surroundings both "
-         "show only " +
-             readable(100.0 * static_cast<double>(same) / static_cast<double>(common), 2) +
-             " % has the same height: is one in another frame?"});
+    warnings.emplace_back(
+        WarningCode::surroundings_differ,
+        "of the ground that the present scan and that of the surroundings both "
+        "show only " +
+            readable(100.0 * static_cast<double>(same) / static_cast<double>(common), 2) +
+            " % has the same height: is one in another frame?");
   }
   return {filled_from(present, earlier), std::move(warnings)};
 }

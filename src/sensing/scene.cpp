@@ -100,10 +100,10 @@ HeightMap refined(const HeightMap& map) {
 void break_up(const BlockSettings& blocks, const SoilKind& soil, DigScene& scene) {
   require(blocks.swell >= 0.0 && blocks.swell <= 1.0, "blocks: swell", blocks.swell, "in 0 .. 1");
   if (scene.density_percent < blocks.least_density) {
-    scene.warnings.push_back(
-        {WarningCode::no_blocks, "ground of " + readable(scene.density_percent) +
-                                     " % relative density crumbles; it breaks into blocks from " +
-                                     readable(blocks.least_density) + " % on"});
+    scene.warnings.emplace_back(WarningCode::no_blocks,
+                                "ground of " + readable(scene.density_percent) +
+                                    " % relative density crumbles; it breaks into blocks from " +
+                                    readable(blocks.least_density) + " % on");
     return;
   }
   const double bulking = bulking_of_density(soil, scene.density_percent);

@@ -33,16 +33,17 @@ void warn_of_range(const DensityLaw& law, double bulking_factor, RelativeDensity
                             " gives a relative density of " + decimals(estimate.raw_percent, 1) +
                             " % by the law '" + law.name + "', ";
   if (estimate.raw_percent > 100.0) {
-    estimate.warnings.push_back(
-        {WarningCode::density_above_range,
-         found +
-             "above 100 %: soil that stayed in blocks with voids between them, or loose soil "
-             "that fell back into the hole, raises the factor (Yajima et al. 2026, section 4.2)"});
+    estimate.warnings.emplace_back(
+        WarningCode::density_above_range,
+        found +
+            "above 100 %: soil that stayed in blocks with voids between them, or loose soil "
+            "that fell back into the hole, raises the factor (Yajima et al. 2026, section 4.2)");
   } else if (estimate.raw_percent < 0.0) {
-    estimate.warnings.push_back(
-        {WarningCode::density_below_range,
-         found + "below 0 %: dumped or spilled soil is missing from the scans, it was compacted, "
-                 "or the law belongs to another soil"});
+    estimate.warnings.emplace_back(
+        WarningCode::density_below_range,
+        found +
+            "below 0 %: dumped or spilled soil is missing from the scans, it was compacted, "
+            "or the law belongs to another soil");
   }
 }
 

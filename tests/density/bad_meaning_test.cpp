@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/efficiency/efficiency.hpp>
 #include <excavplan/planning/path_library.hpp>
 #include <excavplan/planning/plan_dig.hpp>
@@ -21,6 +22,7 @@
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/soil/density_fit.hpp>
 
+#include "base/random.hpp"
 #include "support/dig_survey.hpp"
 #include "support/machine_file.hpp"
 #include "support/run_program.hpp"

@@ -12,6 +12,7 @@
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/calibration/calibration.hpp>
 
+#include "base/random.hpp"
 #include "base/text.hpp"
 #include "support/soil_digs.hpp"
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/kit/machine_kit.hpp>
 
 #include "support/machine_file.hpp"

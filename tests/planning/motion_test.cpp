@@ -18,6 +18,7 @@
 
 #include "base/yaml.hpp"
 
+#include "base/random.hpp"
 #include "planning/motion_load.hpp"
 #include "support/cases.hpp"
 #include "support/errors.hpp"

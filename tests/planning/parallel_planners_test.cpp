@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/change/volume_change.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/scans/scan_surface.hpp>

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.hpp"
+#include "base/random.hpp"
 #include "change/low_objects.hpp"
 #include "scans/scan_checks.hpp"
 #include "support/block_heap.hpp"

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/machine/trajectory.hpp>
 #include <excavplan/planning/planned_dig.hpp>
 #include <excavplan/simulation/dig_ground.hpp>

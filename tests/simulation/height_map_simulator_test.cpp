@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <excavplan/base/data_files.hpp>
+
 #include "base/random.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/bucket_resistance.hpp"

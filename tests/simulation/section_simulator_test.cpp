@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <excavplan/base/data_files.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
 
 #include "base/angles.hpp"

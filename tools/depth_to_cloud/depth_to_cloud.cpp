@@ -106,13 +106,13 @@ Outcome convert(const Inputs& inputs) {
   if (pose && !pose->line.empty()) outcome.lines.push_back(pose->line);
   outcome.lines.push_back("written to " + inputs.out);
   if (!pose) {
-    outcome.warnings.push_back({WarningCode::camera_frame,
-                                "without --pose, --level or --points the cloud stays in the "
-                                "camera frame"});
+    outcome.warnings.emplace_back(WarningCode::camera_frame,
+                                  "without --pose, --level or --points the cloud stays in the "
+                                  "camera frame");
   }
   if (summary.finite_points == 0) {
-    outcome.warnings.push_back(
-        {WarningCode::no_finite_points, inputs.image + " has no depth in range"});
+    outcome.warnings.emplace_back(WarningCode::no_finite_points,
+                                  inputs.image + " has no depth in range");
   }
   return outcome;
 }

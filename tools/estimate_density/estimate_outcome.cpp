@@ -64,8 +64,8 @@ void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Ou
   for (const Warning& warning : other.warnings) {
     const auto same = [&](const Warning& w) { return w.message == warning.message; };
     if (std::any_of(counts.warnings.begin(), counts.warnings.end(), same)) continue;
-    outcome.warnings.push_back(
-        {warning.code, std::string("method ") + name(other.method) + ": " + warning.message});
+    outcome.warnings.emplace_back(
+        warning.code, std::string("method ") + name(other.method) + ": " + warning.message);
   }
 }
 

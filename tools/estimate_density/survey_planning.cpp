@@ -137,10 +137,10 @@ Outcome planned_survey(const std::string& text, const DensityLaw& law) {
   outcome.json["law"] = law.name;
   outcome.lines = lines_of(request, forecast, needs);
   if (!forecast.in_view) {
-    outcome.warnings.push_back({WarningCode::not_in_view,
-                                "pit, spill and heap do not fit into the field of view; at this "
-                                "angle they fit from a range of " +
-                                    readable(needs.nearest_range, 3) + " m"});
+    outcome.warnings.emplace_back(WarningCode::not_in_view,
+                                  "pit, spill and heap do not fit into the field of view; at this "
+                                  "angle they fit from a range of " +
+                                      readable(needs.nearest_range, 3) + " m");
   }
   return outcome;
 }

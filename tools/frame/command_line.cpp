@@ -282,7 +282,7 @@ std::vector<Warning> ignored_options(const std::vector<Arguments::Entry>& entrie
   }
   std::vector<Warning> warnings;
   for (const auto& [reason, names] : names_of_reason) {
-    warnings.push_back({WarningCode::options_ignored, "without effect: " + names + "; " + reason});
+    warnings.emplace_back(WarningCode::options_ignored, "without effect: " + names + "; " + reason);
   }
   return warnings;
 }

@@ -9,15 +9,15 @@ std::vector<Warning> unlike_law(const DensityLaw& law, const std::string& machin
   std::vector<Warning> warnings;
   const std::string measured = "the law '" + law.name + "' was measured on digs ";
   if (!law.machine.empty() && law.machine != machine) {
-    warnings.push_back({WarningCode::law_of_other_machine,
-                        measured + "of " + law.machine + ", not of " + machine +
-                            ": how much soil falls back into the cut may differ; "
-                            "calibrate-density makes a law for a machine"});
+    warnings.emplace_back(WarningCode::law_of_other_machine,
+                          measured + "of " + law.machine + ", not of " + machine +
+                              ": how much soil falls back into the cut may differ; "
+                              "calibrate-density makes a law for a machine");
   }
   if (!soil.empty() && !law.soil.empty() && law.soil != soil) {
-    warnings.push_back(
-        {WarningCode::law_of_other_soil, measured + "in " + law.soil + ", not in " + soil +
-                                             ": the estimated densities are biased"});
+    warnings.emplace_back(
+        WarningCode::law_of_other_soil,
+        measured + "in " + law.soil + ", not in " + soil + ": the estimated densities are biased");
   }
   return warnings;
 }

@@ -97,8 +97,8 @@ void write_maps(const Maps& maps, const std::function<std::vector<NamedMap>()>& 
     }
     std::error_code unknown;
     if (!std::filesystem::exists(each.file, unknown)) continue;
-    outcome.warnings.push_back({WarningCode::map_not_written,
-                                each.file + ": is of an earlier run, as there is no dig to show"});
+    outcome.warnings.emplace_back(WarningCode::map_not_written,
+                                  each.file + ": is of an earlier run, as there is no dig to show");
   }
 }
 

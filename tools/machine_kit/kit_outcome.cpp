@@ -44,8 +44,8 @@ void add_kit(const KitSoil& kit, const Machine& machine, const SoilKind& soil,
   write_file(folder + "/" + law, to_json(kit.law));
   if (kit.library.entries.empty()) {
     outcome.trustworthy = false;
-    outcome.warnings.push_back(
-        {WarningCode::no_library, soil.name + ": there is no library: " + kit.reason});
+    outcome.warnings.emplace_back(WarningCode::no_library,
+                                  soil.name + ": there is no library: " + kit.reason);
     outcome.json["soils"].push_back(kit_json(soil, law, kit.library, {}));
     return;
   }

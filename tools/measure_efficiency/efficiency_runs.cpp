@@ -32,8 +32,8 @@ DigEfficiency measure(const RunInputs& inputs, const EfficiencyInputs& all, Outc
   outcome.json["runs"].push_back(run_json(run));
   for (std::string& line : run_lines(run)) outcome.lines.push_back(std::move(line));
   for (const Warning& each : run.warnings) {
-    outcome.warnings.push_back(
-        {each.code, with_option_names(each.message, names), each.ends_trust});
+    outcome.warnings.emplace_back(each.code, with_option_names(each.message, names),
+                                  each.ends_trust);
   }
   outcome.trustworthy = outcome.trustworthy && run.trustworthy;
   return run;
@@ -85,10 +85,10 @@ void warn_of_repeated(const ComparedSets& sets, Outcome& outcome) {
         continue;
       }
       outcome.trustworthy = false;
-      outcome.warnings.push_back({WarningCode::repeated_run,
-                                  run.file + ": the same recording as that of " + (*same)->file +
-                                      ": it counts as two runs, and the test takes them for "
-                                      "independent ones"});
+      outcome.warnings.emplace_back(WarningCode::repeated_run,
+                                    run.file + ": the same recording as that of " + (*same)->file +
+                                        ": it counts as two runs, and the test takes them for "
+                                        "independent ones");
     }
   }
 }

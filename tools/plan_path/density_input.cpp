@@ -24,9 +24,10 @@ std::vector<Warning> source_warnings(const DigPlan& plan, const std::string& fil
     if (const auto far = elsewhere(stated, file, {x, 0.0, x, 0.0})) warnings.push_back(*far);
   }
   if (stated.of_any_soil) {
-    warnings.push_back({WarningCode::density_of_unknown_soil,
-                        file + ": the soil was not known: its density is the mean over all shipped "
-                               "soils, the dig is planned in one of them"});
+    warnings.emplace_back(WarningCode::density_of_unknown_soil,
+                          file +
+                              ": the soil was not known: its density is the mean over all shipped "
+                              "soils, the dig is planned in one of them");
   }
   return warnings;
 }
@@ -74,7 +75,7 @@ std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& inpu
       warnings.push_back(std::move(each));
     }
   }
-  if (!plan.reason.empty()) warnings.push_back({WarningCode::no_dig, reason_of(plan)});
+  if (!plan.reason.empty()) warnings.emplace_back(WarningCode::no_dig, reason_of(plan));
   for (Warning& warning : warnings) {
     const bool of_density = warning.code == WarningCode::density_not_trustworthy ||
                             warning.code == WarningCode::law_of_other_soil;

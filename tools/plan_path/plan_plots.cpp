@@ -17,8 +17,8 @@ void warn_of_old(const Plots& plots, Outcome& outcome) {
   for (const Plots::File& plot : plots.files) {
     std::error_code unknown;
     if (!std::filesystem::exists(plot.file, unknown)) continue;
-    outcome.warnings.push_back({WarningCode::plot_not_written,
-                                plot.file + ": is of an earlier run, as there is no dig to draw"});
+    outcome.warnings.emplace_back(WarningCode::plot_not_written,
+                                  plot.file + ": is of an earlier run, as there is no dig to draw");
   }
 }
 

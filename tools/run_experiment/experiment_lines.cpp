@@ -40,15 +40,15 @@ void add(const NamedExperiment& done, Outcome& outcome) {
   outcome.lines.push_back(experiment_line(condition, result));
   if (result.held_because.empty()) return;
   const std::string why = ": the machine is held down, as on the fixed path ";
-  outcome.warnings.push_back(
-      {WarningCode::machine_held_down, condition + why + result.held_because});
+  outcome.warnings.emplace_back(WarningCode::machine_held_down,
+                                condition + why + result.held_because);
 }
 
 void add_failure(const FailedExperiment& failed, const std::string& why, Outcome& outcome) {
   outcome.json["conditions"].push_back(
       {{"name", failed.condition}, {"density_percent", failed.density_percent}, {"failure", why}});
   outcome.lines.push_back(failed.condition + ": " + why);
-  outcome.warnings.push_back({WarningCode::condition_failed, failed.condition + ": " + why});
+  outcome.warnings.emplace_back(WarningCode::condition_failed, failed.condition + ": " + why);
 }
 
 }  // namespace excavplan::tools

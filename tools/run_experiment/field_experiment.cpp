@@ -76,25 +76,25 @@ void add(const std::string& name, const FieldResult& result, Outcome& outcome) {
   outcome.json["soils"].push_back(field_json(name, result));
   for (const FieldRun& run : result.runs) {
     if (run.failure.empty()) continue;
-    outcome.warnings.push_back({WarningCode::condition_failed, name + ": " + run.failure});
+    outcome.warnings.emplace_back(WarningCode::condition_failed, name + ": " + run.failure);
     break;
   }
   const auto digs = static_cast<int>(result.runs.size());
   if (result.failed == digs) return;
   for (std::string& line : result_lines(name, result)) outcome.lines.push_back(std::move(line));
   if (result.held_down > 0) {
-    outcome.warnings.push_back({WarningCode::machine_held_down,
-                                name + ": in " + std::to_string(result.held_down) + " of " +
-                                    std::to_string(digs) +
-                                    " digs the fixed path would lift or drag the machine, which is "
-                                    "held down on it; they tell no gain"});
+    outcome.warnings.emplace_back(
+        WarningCode::machine_held_down,
+        name + ": in " + std::to_string(result.held_down) + " of " + std::to_string(digs) +
+            " digs the fixed path would lift or drag the machine, which is "
+            "held down on it; they tell no gain");
   }
   if (result.trusted + result.failed == digs) return;
-  outcome.warnings.push_back({WarningCode::density_not_trustworthy,
-                              name + ": " + std::to_string(result.trusted) + " of " +
-                                  std::to_string(digs) +
-                                  " estimates are trustworthy; the paper digs no second time "
-                                  "where they are not"});
+  outcome.warnings.emplace_back(WarningCode::density_not_trustworthy,
+                                name + ": " + std::to_string(result.trusted) + " of " +
+                                    std::to_string(digs) +
+                                    " estimates are trustworthy; the paper digs no second time "
+                                    "where they are not");
 }
 
 FieldOptions field_options(const Machine& machine, const SoilKind& soil, const FieldInputs& field,

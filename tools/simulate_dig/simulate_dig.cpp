@@ -136,7 +136,7 @@ Outcome work(const Inputs& inputs, Console& console) {
   outcome.warnings.insert(outcome.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   for (Warning& each : outcome.warnings) each.message = with_option_names(each.message, names);
   if (scene.dig.stall)
-    outcome.warnings.push_back({WarningCode::stalled, describe(*scene.dig.stall)});
+    outcome.warnings.emplace_back(WarningCode::stalled, describe(*scene.dig.stall));
   write_files(inputs, machine, scene, outcome);
   return outcome;
 }

@@ -65,8 +65,8 @@ struct LogInterval {
 
 /// Rows of a log, from first up to, without, last.
 struct LogRows {
-  std::size_t first = 0;
-  std::size_t last = 0;
+  std::size_t first = 0;  ///< the first of them
+  std::size_t last = 0;   ///< behind the last of them
 };
 /// Those in an interval of the log and one beside either end, if there is one, by bisection.
 LogRows rows_around(const std::vector<double>& time, const LogInterval& interval);

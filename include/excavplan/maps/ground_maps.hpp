@@ -17,8 +17,8 @@ namespace excavplan {
 
 /// A map with the name that the tools have for it.
 struct NamedMap {
-  std::string name;
-  LayeredMap map = {};
+  std::string name;                 ///< as in `--map NAME=FILE`
+  LayeredMap map = {};              ///< one layer, or all of `all`
   std::vector<MapLine> lines = {};  ///< instead of a map
 };
 

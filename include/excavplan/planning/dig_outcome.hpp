@@ -49,6 +49,8 @@ struct PlannedDig {
 
 /// Why a dig cannot be done: the path cannot be driven, or the machine stalls in the soil.
 using DigFailure = std::variant<Infeasible, Stall>;
+
+/// The failure in words, for people.
 std::string describe(const DigFailure& failure);
 
 }  // namespace excavplan

@@ -20,8 +20,8 @@ std::string usage(const DigGoalInfo& goal);
 
 /// A goal as it was written.
 struct WrittenGoal {
-  const DigGoalInfo& goal;
-  std::string number;  ///< of its parameter, not read yet; empty if it has none
+  const DigGoalInfo& goal;  ///< of its word
+  std::string number;       ///< of its parameter, not read yet; empty if it has none
 };
 /// Nothing if the text has no goal's word, or a number where the goal takes none.
 std::optional<WrittenGoal> written_goal(const std::string& text);

@@ -8,10 +8,10 @@ namespace excavplan {
 
 /// Where a plan is dug once more, for the ground that it leaves and its loads.
 struct PlanSite {
-  const SoilKind& soil;
-  double density_percent = 0.0;
-  const Terrain& ground;
-  const SimulatorKind& simulator;
+  const SoilKind& soil;            ///< that is dug
+  double density_percent = 0.0;    ///< relative density of it, 0 .. 100
+  const Terrain& ground;           ///< before the dig
+  const SimulatorKind& simulator;  ///< that digs
 };
 
 /// The planned dig, simulated with its history. @param plan  with a dig

@@ -32,12 +32,16 @@ std::string to_json(const DigPlan& plan, const GroundDensity& density,
 /// What simulate-dig finds. @param scene  with the history of its dig
 std::string to_json(const Machine& machine, const DigScene& scene);
 
-/// A run and the comparison of two sets of measure-efficiency.
+/// What measure-efficiency finds in a run.
 std::string to_json(const DigEfficiency& run);
+
+/// What measure-efficiency finds between two sets of runs.
 std::string to_json(const SetComparison& sets);
 
-/// What inspect-cloud shows of a cloud, and of a recording. @param file  its name
+/// What inspect-cloud shows of a cloud.
 std::string to_json(const CloudSummary& summary);
+
+/// What inspect-cloud shows of a recording. @param file  its name
 std::string to_json(const std::string& file, const RecordingContents& contents);
 
 /// What a survey is expected to measure, and what it needs for an error of the density of so many

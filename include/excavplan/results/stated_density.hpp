@@ -19,7 +19,7 @@ inline constexpr double most_density_sd = 1000.0;
 
 /// What is taken of a result of estimate-density.
 struct StatedDensity {
-  GroundDensity density;
+  GroundDensity density;           ///< with its standard deviation
   double raw_percent = 0.0;        ///< also outside 0 .. 100
   double independent_sd = 0.0;     ///< part of its sd that is not of the law [points]
   bool of_any_soil = false;        ///< by --soil unknown
