@@ -19,6 +19,7 @@
 #include <excavplan/base/data_files.hpp>
 #include "base/random.hpp"
 
+#include "support/cases.hpp"
 #include "support/errors.hpp"
 #include "support/run_program.hpp"
 
@@ -641,7 +642,7 @@ TEST(Trajectory, TenThousandDigsKeepTheirLimitsAndTheirPathAtEveryPoint) {
   Random random(21), loads(24);
   Used mean;
   double attitude = 0.0;
-  for (int n = 0; n < 10000; ++n) {
+  for (int n = 0; n < test::many; ++n) {
     const RandomDig dig = random_dig(random);
     JointAngles torque;
     for (double& load : torque) load = loads.uniform(-1.5e5, 1.5e5);
@@ -650,9 +651,9 @@ TEST(Trajectory, TenThousandDigsKeepTheirLimitsAndTheirPathAtEveryPoint) {
     expect_well_formed(trajectory);
     const Used used = used_of(dig.machine, trajectory, torque);
     ASSERT_NO_FATAL_FAILURE(expect_within(used, dig.options.speed_fraction)) << n;
-    mean.acceleration += used.acceleration / dig.options.speed_fraction / 10000;
+    mean.acceleration += used.acceleration / dig.options.speed_fraction / test::many;
     mean.speed += std::max({used.speed, used.cylinder_speed, used.flow, used.power}) /
-                  dig.options.speed_fraction / 10000;
+                  dig.options.speed_fraction / test::many;
     Deviation deviation(dig.machine, dig.path);
     deviation.add(trajectory);
     ASSERT_LE(deviation.tip(), 1e-3) << n;
@@ -687,7 +688,7 @@ DigPath refined(const Machine& machine, const DigPath& path) {
 TEST(Trajectory, WhateverTheStepRoundingCostsNoTimeAndKeepsLimitsAndPath) {
   Random random(23);
   double mean = 0.0;
-  const int count = 3000;
+  const int count = test::tried_of(3000);
   for (int n = 0; n < count; ++n) {
     DigPathOptions layout;
     if (n % 2 == 0) layout.step *= std::exp2(random.uniform(-2, 6));

@@ -51,6 +51,7 @@ void expect_kept(const UsedLimits& used) {
 }
 
 TEST(Motion, KeepsEveryLimitBetweenItsPointsOverRandomDigs) {
+  const int tried = tried_of(1200);
   int timed = 0;
   for_cases(
       [&](Random& random) {
@@ -61,8 +62,8 @@ TEST(Motion, KeepsEveryLimitBetweenItsPointsOverRandomDigs) {
         expect_kept(used_between(*made, motion, cubic));
         expect_kept(used_between(*made, motion, quintic));
       },
-      1200);
-  EXPECT_GT(timed, 200);
+      tried);
+  EXPECT_GT(timed, tried / 6);
 }
 
 /// Rounding put a cell at the limit of the power above it, and the machine stopped there for ever:

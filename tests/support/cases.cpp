@@ -12,10 +12,12 @@
 
 namespace excavplan::test {
 
-int tried_of(int all) {
+bool are_all_tried() {
   const char* const asked = std::getenv("EXCAVPLAN_TESTS");
-  return asked != nullptr && std::string(asked) == "all" ? all : all / 10;
+  return asked != nullptr && std::string(asked) == "all";
 }
+
+int tried_of(int all) { return are_all_tried() ? all : all / 10; }
 
 int drawn_int(Random& random, int least, int most) {
   return least + static_cast<int>(random.index(static_cast<std::uint64_t>(most - least + 1)));

@@ -20,8 +20,10 @@
 
 namespace excavplan::test {
 
-/// As many of the cases as are tried: all with EXCAVPLAN_TESTS=all in the environment, as the
-/// scripts of scripts/check.d have it, else a tenth.
+/// With EXCAVPLAN_TESTS=all in the environment, as the scripts of scripts/check.d have it.
+bool are_all_tried();
+
+/// As many of the cases as are tried: all, or a tenth.
 int tried_of(int all);
 
 inline const int many = tried_of(10000);

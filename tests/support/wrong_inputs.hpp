@@ -47,7 +47,8 @@ struct WrongInput {
 
 Verdict verdict_of(const std::function<Verdict()>& work);
 
-/// Prints what becomes of each, one a line.
+/// Prints what becomes of each, one a line; of every fifth alone, where not all are tried
+/// (support/cases.hpp).
 void expect_no_wrong_answer(const std::vector<WrongInput>& inputs);
 
 }  // namespace excavplan::test
