@@ -128,6 +128,7 @@ Outcome field_experiment(const Machine& machine, const FieldInputs& field,
   const DensityLaw law = law_of(inputs, machine, soil);
   const std::vector<ExperimentCondition> conditions = field_conditions(inputs);
   std::vector<double> densities;
+  densities.reserve(conditions.size());
   for (const ExperimentCondition& condition : conditions) densities.push_back(condition.density);
   FieldOptions options = field_options(machine, soil, field, inputs, console);
   std::mutex one_line;
