@@ -24,9 +24,9 @@ class TooFewCells : public Error {
 
   /// The error (bad_file) of scans whose extents overlap.
   Error of_scans(const std::string& names) const {
-    return Error(ErrorKind::bad_file, names + ": " + found_ + ": too few points for cells of " +
-                                          readable(cell_size_, 2) +
-                                          " m, or the scans show different ground");
+    return {ErrorKind::bad_file, names + ": " + found_ + ": too few points for cells of " +
+                                     readable(cell_size_, 2) +
+                                     " m, or the scans show different ground"};
   }
 
  private:

@@ -334,7 +334,7 @@ void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer
     if (const auto* blocked = std::get_if<BlockedWay>(&motion)) {
       refuse("the ground is in the way: " + blocked->message);
     } else {
-      const Trajectory& timed = std::get<Trajectory>(motion);
+      const auto& timed = std::get<Trajectory>(motion);
       answer.motion = joint_motion(timed);
       answer.warnings.insert(answer.warnings.end(), timed.warnings.begin(), timed.warnings.end());
     }

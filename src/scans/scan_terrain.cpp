@@ -74,7 +74,7 @@ void require_points(const Scan& scan, std::size_t points, const Rectangle& exten
 Terrain filled_from(const Terrain& first, const Terrain& second) {
   HeightMap ground = first.surface();
   ground.z = ground.z.isFinite().select(ground.z, second.surface().z).eval();
-  return undisturbed(std::move(ground));
+  return undisturbed(ground);
 }
 
 /// What a scan shows of an extent.

@@ -281,6 +281,7 @@ std::vector<Warning> ignored_options(const std::vector<Arguments::Entry>& entrie
     }
   }
   std::vector<Warning> warnings;
+  warnings.reserve(names_of_reason.size());
   for (const auto& [reason, names] : names_of_reason) {
     warnings.emplace_back(WarningCode::options_ignored, "without effect: " + names + "; " + reason);
   }
