@@ -6,6 +6,8 @@ of them and an environment variable chooses one (mutant.hpp).
 A line of mutations.tsv, by tabs: file, code with the part that changes in ⟦ ⟧, what that part
 becomes, and for a mutation that survives the reason. Code that is not found once is an error. A part
 that ends in a semicolon is a statement, any other an expression. Constants lose their constexpr.
+
+Run by itself, it looks whether the code of every line is found once.
 """
 import re
 import shutil
@@ -106,3 +108,8 @@ def weave(mutations, into):
     for path in [p for p in into.rglob("*") if p.is_file()]:
         if str(path.relative_to(into)) not in files:
             path.unlink()
+
+
+if __name__ == "__main__":
+    for each in read_mutations():
+        place(each, (ROOT / each.file).read_text())
