@@ -108,6 +108,8 @@ std::string plain_number(double value) {
   return counts ? decimals(value, 0) : number_text(value);
 }
 
+std::string hundredths(double value) { return number_text(std::round(value * 100.0) / 100.0); }
+
 std::string decimals(double value, int digits) {
   char text[400];
   const auto end =

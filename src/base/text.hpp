@@ -22,6 +22,8 @@ std::string number_text(double value);
 
 /// The same, whole numbers below 1e15 without an exponent, for messages.
 std::string plain_number(double value);
+/// The number to two digits after the point, without zeros at the end: "0.35".
+std::string hundredths(double value);
 /// The number with so many digits after the point: "0.350".
 std::string decimals(double value, int digits);
 /// A human-readable number: at least so many significant digits, never an exponent; 0 if it is less

@@ -31,8 +31,6 @@ std::string litres_as_m3(double volume) {
 
 std::string millimetres(double metres) { return readable(1000.0 * metres, 2) + " mm"; }
 
-std::string hundredths(double value) { return number_text(std::round(value * 100.0) / 100.0); }
-
 std::string place_of(const ZoneSum& zone) {
   return "(" + hundredths(zone.centre.x()) + ", " + hundredths(zone.centre.y()) + ") m";
 }

@@ -47,8 +47,6 @@ constexpr double deep_share = 0.5;        // likewise
 constexpr double swing_bulge = 1.25;      // ellipse about hole and heap
 constexpr double swing_room = 0.5;        // [m]
 
-std::string hundredths(double value) { return number_text(std::round(value * 100.0) / 100.0); }
-
 /// Finds the changes of a scene.
 class ChangeReader {
  public:

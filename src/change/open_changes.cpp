@@ -33,8 +33,6 @@ constexpr double pressed_weight = 0.04;  // that it gave way, without ruts that 
 /// proportion to pressure (Bekker 1969 with n = 1).
 constexpr double pressed_to_rut = 0.2;
 
-std::string hundredths(double value) { return number_text(std::round(value * 100.0) / 100.0); }
-
 /// A combination against the one that is given.
 struct Alternative {
   const Combination* combination;
