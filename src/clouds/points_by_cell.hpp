@@ -70,8 +70,8 @@ class PointsByCell {
   void for_each_group(const Visit& visit) {
     if (side_ == 1) return for_each_cell(visit);
     for_each_band([&](std::size_t first, std::size_t last) {
-      const std::size_t rows = static_cast<std::size_t>(group_rows());
-      const std::size_t in_columns = static_cast<std::size_t>(rows_ * side_);
+      const auto rows = static_cast<std::size_t>(group_rows());
+      const auto in_columns = static_cast<std::size_t>(rows_ * side_);
       for (std::size_t column = first / in_columns; column * in_columns < last; ++column) {
         for (std::size_t row = 0; row < rows; ++row) {
           const std::size_t group = row + rows * column;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -16,9 +17,10 @@ namespace excavplan {
 /// ray per unit of fall is nearly linear, and they are 0 where the points lie even in plan.
 class SensorPlace {
  public:
-  SensorPlace(const Eigen::Vector3d& middle, const Eigen::Vector3d& inverse,
-              const Eigen::Matrix3d& covariance)
-      : middle_(middle), inverse_(inverse), covariance_(covariance) {}
+  SensorPlace(Eigen::Vector3d middle, Eigen::Vector3d inverse, Eigen::Matrix3d covariance)
+      : middle_(std::move(middle)),
+        inverse_(std::move(inverse)),
+        covariance_(std::move(covariance)) {}
 
   /// In the frame of the heights [m].
   Eigen::Vector3d place() const;
