@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include <Eigen/Core>
 
 /// @file
@@ -21,7 +23,8 @@ class NormalEquations {
   explicit NormalEquations(Eigen::Index count = terms)
       : matrix_(Matrix::Zero(count, count)), right_(Vector::Zero(count)) {}
   /// Those that are summed up elsewhere; their squares are not known, 0.
-  NormalEquations(const Matrix& matrix, const Vector& right) : matrix_(matrix), right_(right) {}
+  NormalEquations(Matrix matrix, Vector right)
+      : matrix_(std::move(matrix)), right_(std::move(right)) {}
 
   /// Takes in that the terms times the unknowns are `value`.
   void add(const Vector& row, double value, double weight = 1.0) {

@@ -169,6 +169,7 @@ std::optional<LevelFloor> level_patch(const HeightMap& after, const std::vector<
   constexpr double most_below = 0.02;   // ours, likewise
   constexpr double least_inner = 0.5;   // ours, of the patch
   std::vector<double> heights;
+  heights.reserve(hole.size());
   for (const Cell at : hole) heights.push_back(after.z(at.row, at.col));
   const double level = commonest(heights, reach);
   const auto in_patch = [&](Cell at) { return std::abs(after.z(at.row, at.col) - level) < reach; };

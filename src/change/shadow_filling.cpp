@@ -138,6 +138,7 @@ class ShadowFiller {
     constexpr double fewest = 20.0;  // ours: cells of a face
     const double sign = is_hole ? -1.0 : 1.0;
     std::vector<double> heights;
+    heights.reserve(cells.size());
     for (const Cell at : cells) heights.push_back(sign * change(at));
     const double top = quantile(heights, 0.95);
     double slopes = 0.0;
@@ -183,6 +184,7 @@ class ShadowFiller {
     constexpr std::size_t fewest = 12;    // ours: cells
     constexpr double least_share = 0.03;  // ours: of the depth, by which floors are uneven
     std::vector<double> heights;
+    heights.reserve(cells.size());
     for (const Cell at : cells) heights.push_back(change(at));
     const double lowest = quantile(heights, 0.03);
     heights.clear();
@@ -341,9 +343,9 @@ class ShadowFiller {
       const double ceiling = sight_.ceiling(cell) - before_.z(cell.row, cell.col) - ground_.datum;
       double sum = 0.0;
       for (int n = 0; n < along * along; ++n) {
-        const Eigen::Vector2d point(
-            static_cast<double>(cell.col) + (n % along + 0.5) / along - 0.5,
-            static_cast<double>(cell.row) + (n / along + 0.5) / along - 0.5);
+        const int line = n / along;
+        const Eigen::Vector2d point(static_cast<double>(cell.col) + (n % along + 0.5) / along - 0.5,
+                                    static_cast<double>(cell.row) + (line + 0.5) / along - 0.5);
         const double height = std::max(bottom, highest_from(shadow.rim, point, descent));
         filled.on_floor += fell[i] && height <= floor ? 1.0 / (along * along) : 0.0;
         sum += height;
@@ -418,7 +420,8 @@ class ShadowFiller {
                        static_cast<Eigen::Index>(rim.place.x())};
       double sum = 0.0;
       for (int n = 0; n < along * along; ++n) {
-        const Eigen::Vector2d off((n % along + 0.5) / along - 0.5, (n / along + 0.5) / along - 0.5);
+        const int line = n / along;
+        const Eigen::Vector2d off((n % along + 0.5) / along - 0.5, (line + 0.5) / along - 0.5);
         const double hidden = std::max(0.0, off.dot(rim.outward) - rim.beyond);
         const double way = descent.way(rim.height) - hidden;
         sum += std::max(floor, descent.height(way)) - rim.height;

@@ -156,6 +156,7 @@ class Parter {
   /// A tail reaches through the zone's edge up to where the zone is higher than it.
   void add_tail(int index, std::vector<Cell> cells, Eigen::ArrayXXi& label, double reach) {
     std::vector<double> heights;
+    heights.reserve(cells.size());
     for (const Cell at : cells) heights.push_back(std::abs(ground_.difference(at.row, at.col)));
     const double usual = median(heights);
     Mask own = Mask::Constant(label.rows(), label.cols(), false);
@@ -231,7 +232,7 @@ class Parter {
     }
     const Mask is_track = distance_to(tracks) * cell_size_ < track_room;
     const Mask high = high_ground(zones);
-    const Mask found = large_parts(churned_where(is_track || high));
+    Mask found = large_parts(churned_where(is_track || high));
     if (!found.any()) return found;
     const Mask beside = distance_to(found) * cell_size_ < 2.0 * churn_window;
     return (found || (high && beside)) && !is_track && !ground_.difference.isNaN();

@@ -102,6 +102,7 @@ Figure runs_figure(const DrawnRuns& drawn) {
   Figure figure;
   figure.title = "Efficiency of each run";
   std::vector<BarGroup> groups;
+  groups.reserve(runs.size());
   for (const DigEfficiency& run : runs) {
     groups.push_back({name_of(run), {bar_of(run)}, readable(run.value().value, run.value().sd)});
   }

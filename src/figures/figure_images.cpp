@@ -19,7 +19,7 @@ namespace excavplan {
 namespace {
 
 std::string image_of(const Figure& figure, ImageFormat format) {
-  const std::size_t ending = static_cast<std::size_t>(format);
+  const auto ending = static_cast<std::size_t>(format);
   return image_of(lay_out(figure), "figure" + image_endings()[ending]);
 }
 

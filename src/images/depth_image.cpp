@@ -120,7 +120,8 @@ AveragedDepth average_depth_images(const std::vector<std::string>& image_paths,
     const bool is_known =
         mean.count > 0 && 2 * static_cast<std::size_t>(mean.count) >= frames.size();
     const auto column = static_cast<double>(pixel % first.width);
-    const auto row = static_cast<double>(pixel / first.width);
+    const auto line = pixel / first.width;
+    const auto row = static_cast<double>(line);
     average.frames.push_back(is_known ? mean.count : 0);
     average.cloud.points.push_back(is_known ? camera.point_of_counts(column, row, mean.value)
                                             : Eigen::Vector3d::Constant(unknown));

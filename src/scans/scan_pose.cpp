@@ -48,7 +48,7 @@ std::vector<Eigen::Vector3d> seen_from(const Eigen::Vector3d& place,
   std::vector<Eigen::Vector3d> points;
   points.reserve(scan.size());
   for (const Eigen::Vector3d& p : scan) {
-    if (p.allFinite() && p != place) points.push_back(p - place);
+    if (p.allFinite() && p != place) points.emplace_back(p - place);
   }
   return points;
 }

@@ -7,7 +7,7 @@
 namespace excavplan::tools {
 
 /// Of a thread: twice what any tool was measured to need [byte].
-constexpr std::size_t stack_reserve = 512 * 1024;
+constexpr std::size_t stack_reserve = std::size_t{512} * 1024;
 
 /// Takes the reserve for the main thread, whose stack else grows while the tool works: where memory
 /// is limited and used up by then, that ends the program by a signal.

@@ -34,7 +34,7 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
   for (const RecordingTopic& topic : contents.topics) {
     listing.lines.push_back(topic_line(topic));
   }
-  if (contents.is_cut_off) listing.lines.push_back("its end is missing");
+  if (contents.is_cut_off) listing.lines.emplace_back("its end is missing");
   const auto is_scan = [](const RecordingTopic& topic) { return topic.is_scan; };
   const bool has_scans = std::any_of(contents.topics.begin(), contents.topics.end(), is_scan);
   listing.lines.push_back(has_scans ? "* scans: name one as " + text + ":TOPIC@TIME+SPAN"

@@ -114,8 +114,8 @@ std::string describe(const DigCycleSession& session);
 
 /// As JSON with the keys that estimate-density prints, as far as it has them; plan-path
 /// \-\-density-from reads it (docs/ros.md#answers).
-std::string to_json(const CycleEstimate& estimate);
+std::string to_json(const CycleEstimate& answer);
 /// As JSON with the keys that plan-path prints, as far as it has them (docs/ros.md#answers).
-std::string to_json(const CyclePlan& plan);
+std::string to_json(const CyclePlan& answer);
 
 }  // namespace excavplan
