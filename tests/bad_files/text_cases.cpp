@@ -238,6 +238,8 @@ BadFiles bad_tables(const string& format) {
   add_spoiled_text(files, valid, false);
   for (BadFile& file : files) {
     if (file.name.rfind("UTF-16", 0) == 0) file.expected = same;
+    // Names of its columns count by their letters of ASCII: loggers write others in any encoding.
+    if (format == "log" && file.name == "bytes of Latin-1") file.expected = same;
   }
   const std::size_t names_end = valid.find('\n', valid.front() == '#' ? valid.find('\n') + 1 : 0);
   const string names = valid.substr(0, names_end);
