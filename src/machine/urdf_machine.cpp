@@ -78,8 +78,10 @@ json& at(json& value, const string& key) {
 
 /// The zx120 in another size. Its cylinders are left out: pins do not scale with a joint's range.
 json usual_machine(const UrdfFront& front) {
-  json machine =
-      parse_json("machines/zx120.json", read_file(find_data_file("machines/zx120.json")));
+  const string file = find_data_file("machines/zx120.json");
+  const string text = read_file(file);
+  read_machine(JsonObject::of_text(file, text, "excavplan-machine"));  // it holds all of these
+  json machine = parse_json(file, text);
   for (const char* key :
        {"format", "version", "name", "description", "cylinders", "data_sheet", "robot_joints"}) {
     machine.erase(key);
