@@ -144,7 +144,8 @@ function(check_tool_rooms file line)
   endif()
 endfunction()
 
-# The library answers by values and exceptions: it prints nothing and never ends the program.
+# The library answers by values and exceptions: it prints nothing, never ends the program and knows no
+# options of a command line.
 function(check_manners file)
   file(STRINGS ${ROOT}/${file} lines
     REGEX "(^|[^a-zA-Z_])(std::)?(cout|cerr|clog|printf|fprintf|puts|perror|abort|exit|_Exit|quick_exit|terminate)($|[^a-zA-Z_])")
@@ -154,6 +155,12 @@ function(check_manners file)
     if(code MATCHES "(cout|cerr|clog)($|[^a-zA-Z_])|(^|[^a-zA-Z_])[f]?(printf|puts|perror|abort|exit|_Exit|quick_exit|terminate) *\\(")
       message(SEND_ERROR "${file}: the library neither prints nor exits: ${line}")
     endif()
+  endforeach()
+  # "JSON of a tool --json" is where a file is from.
+  file(STRINGS ${ROOT}/${file} lines REGEX "\"[^\"]*--[a-z][a-z-]+[^\"]*\"")
+  list(FILTER lines EXCLUDE REGEX "--json\"|^ *//")
+  foreach(line IN LISTS lines)
+    message(SEND_ERROR "${file}: names an option of the tools, which these say of `its_name`: ${line}")
   endforeach()
 endfunction()
 

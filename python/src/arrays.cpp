@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 
+#include <excavplan/base/ceilings.hpp>
 #include <excavplan/base/error.hpp>
 
 namespace excavplan::python {
@@ -79,40 +84,67 @@ std::string text(const Shape& shape) {
   return text + (shape.size() == 1 ? ",)" : ")");
 }
 
-template <typename Number>
+/// @tparam swapped  in the other order of bytes than this machine's
+template <typename Number, bool swapped>
 double number_at(const char* place) {
+  std::array<char, sizeof(Number)> bytes;
+  std::copy_n(place, bytes.size(), bytes.begin());
+  if (swapped) std::reverse(bytes.begin(), bytes.end());
   Number number;
-  std::memcpy(&number, place, sizeof number);
+  std::memcpy(&number, bytes.data(), sizeof number);
   return static_cast<double>(number);
 }
 
 using Reader = double (*)(const char* place);
 
-/// Reads a number of a format of the module struct; null: it is none of numbers.
-Reader reader_of(const py::buffer_info& buffer) {
-  std::string format = buffer.format;
-  if (format.size() == 2 && (format[0] == '@' || format[0] == '=' || format[0] == '<')) {
-    format.erase(0, 1);  // of this machine, which is little-endian
-  }
-  if (format == "d") return number_at<double>;
-  if (format == "f") return number_at<float>;
+template <bool swapped>
+Reader reader_of(const std::string& format, py::ssize_t size) {
+  if (format == "d" && size == 8) return number_at<double, swapped>;
+  if (format == "f" && size == 4) return number_at<float, swapped>;
   const bool is_signed =
       format == "b" || format == "h" || format == "i" || format == "l" || format == "q";
   const bool is_unsigned =
       format == "B" || format == "H" || format == "I" || format == "L" || format == "Q";
   if (!is_signed && !is_unsigned) return nullptr;
-  switch (buffer.itemsize) {
+  switch (size) {
     case 1:
-      return is_signed ? number_at<std::int8_t> : number_at<std::uint8_t>;
+      return is_signed ? number_at<std::int8_t, swapped> : number_at<std::uint8_t, swapped>;
     case 2:
-      return is_signed ? number_at<std::int16_t> : number_at<std::uint16_t>;
+      return is_signed ? number_at<std::int16_t, swapped> : number_at<std::uint16_t, swapped>;
     case 4:
-      return is_signed ? number_at<std::int32_t> : number_at<std::uint32_t>;
+      return is_signed ? number_at<std::int32_t, swapped> : number_at<std::uint32_t, swapped>;
     case 8:
-      return is_signed ? number_at<std::int64_t> : number_at<std::uint64_t>;
+      return is_signed ? number_at<std::int64_t, swapped> : number_at<std::uint64_t, swapped>;
     default:
       return nullptr;
   }
+}
+
+/// Reads a number of a format of the module struct; null: it is none of numbers.
+Reader reader_of(const py::buffer_info& buffer) {
+  std::string format = buffer.format;
+  const bool has_order = format.size() == 2 && std::strchr("@=<>!", format[0]) != nullptr;
+  const bool is_big = has_order && (format[0] == '>' || format[0] == '!');
+  if (has_order) format.erase(0, 1);
+  // This machine is little-endian.
+  return is_big ? reader_of<true>(format, buffer.itemsize)
+                : reader_of<false>(format, buffer.itemsize);
+}
+
+/// Numbers that share their places in memory, as those of a row that is broadcast, may be more than
+/// any memory holds: they are no more than the cells of a height map.
+void require_room(const std::string& what, const py::buffer_info& buffer) {
+  double places = 1.0;  // from the first number to the last
+  for (std::size_t i = 0; i < buffer.shape.size(); ++i) {
+    places +=
+        std::abs(static_cast<double>(buffer.strides[i]) / static_cast<double>(buffer.itemsize)) *
+        static_cast<double>(buffer.shape[i] - 1);
+  }
+  const auto size = static_cast<double>(buffer.size);
+  if (size <= most_cells || size <= places) return;
+  refuse(what, "the shape " + text(buffer.shape) + ", broadcast",
+         "at most " + std::to_string(static_cast<std::int64_t>(most_cells)) +
+             " numbers that share memory");
 }
 
 void append(const py::buffer_info& buffer, Reader read, std::size_t dimension, const char* place,
@@ -130,6 +162,7 @@ Numbers of_buffer(const std::string& what, const py::object& object) {
   const py::buffer_info buffer = py::reinterpret_borrow<py::buffer>(object).request();
   const Reader read = reader_of(buffer);
   if (read == nullptr) refuse(what, "items of the format '" + buffer.format + "'", "numbers");
+  require_room(what, buffer);
   Numbers numbers{{}, buffer.shape};
   numbers.values.reserve(static_cast<std::size_t>(buffer.size));
   append(buffer, read, 0, static_cast<const char*>(buffer.ptr), numbers.values);

@@ -4,6 +4,7 @@
 #include <excavplan/planning/goal_words.hpp>
 #include <excavplan/planning/plan_motion.hpp>
 #include <excavplan/planning/uncertain_soil.hpp>
+#include <excavplan/results/result_json.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "arrays.hpp"
@@ -276,7 +277,17 @@ void bind_plan(py::module_& module) {
       .def_readonly("trustworthy", &DigPlan::trustworthy, "False: see the warnings.")
       .def_readonly("warnings", &DigPlan::warnings)
       .def_readonly("reason", &DigPlan::reason, "Why there is no dig; empty if there is one.")
-      .def_readonly("nearest", &DigPlan::nearest, "If a search found no dig.");
+      .def_readonly("nearest", &DigPlan::nearest, "If a search found no dig.")
+      .def(
+          "to_json",
+          [](const DigPlan& plan, const GroundDensity& density,
+             const std::optional<DigObjective>& objective) {
+            return to_json(plan, density, objective.value_or(DigObjective{}));
+          },
+          arg("density"), arg("objective") = py::none(),
+          "The text that plan-path prints with --json, but for its options.\n\n"
+          "density: that was planned for; objective: that the dig was searched for, else the "
+          "usual.");
 }
 
 DigPlan planned(const Machine& machine, const SoilKind& soil, const GroundDensity& density,

@@ -3,6 +3,7 @@
 #include <excavplan/calibration/calibration.hpp>
 #include <excavplan/ground/terrain.hpp>
 #include <excavplan/machine/dig_path.hpp>
+#include <excavplan/results/result_json.hpp>
 #include <excavplan/sensing/scene.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 #include <excavplan/simulation/height_map_simulator.hpp>
@@ -320,7 +321,11 @@ void bind_scene(py::module_& module) {
       .def_readonly("bulking_factor_true", &DigScene::bulking_factor_true,
                     "By the balance of dry mass [-].")
       .def_readonly("duration", &DigScene::duration, "Of penetrate, drag and scoop [s].")
-      .def_readonly("warnings", &DigScene::warnings);
+      .def_readonly("warnings", &DigScene::warnings)
+      .def(
+          "to_json",
+          [](const DigScene& scene, const Machine& machine) { return to_json(machine, scene); },
+          arg("machine"), "The text that simulate-dig prints with --json, but for its options.");
   module.def(
       "simulate_dig", &simulated, arg("machine"), arg("soil"), arg("density_percent"),
       arg("terrain") = py::none(), py::kw_only(), arg("path") = py::none(),

@@ -5,6 +5,7 @@
 #include <excavplan/clouds/cloud.hpp>
 #include <excavplan/density/density_estimate.hpp>
 #include <excavplan/paper/paper_change.hpp>
+#include <excavplan/results/result_json.hpp>
 #include <excavplan/scans/scan_pose.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
 
@@ -107,7 +108,10 @@ void bind_clouds(py::module_& module) {
       .def_readonly("max", &CloudSummary::max, "[m]")
       .def_readonly("extent", &CloudSummary::extent, "In plan; None without finite points.")
       .def_readonly("density", &CloudSummary::density, "Points per m^2 of occupied ground.")
-      .def_readonly("frame_guess", &CloudSummary::frame_guess);
+      .def_readonly("frame_guess", &CloudSummary::frame_guess)
+      .def(
+          "to_json", [](const CloudSummary& summary) { return to_json(summary); },
+          "The text that inspect-cloud prints with --json, but for its options.");
   module.def(
       "read_cloud", [](const File& file) { return call([&] { return read_cloud(file.path); }); },
       arg("file"), "Reads PCD, PLY, LAS or XYZ, told by the content.");
@@ -266,6 +270,9 @@ void bind_estimate(py::module_& module) {
           "were not registered.")
       .def("ground_density", &E::ground_density,
            "The density for plan_dig(); None if there is none.")
+      .def(
+          "to_json", [](const E& estimate) { return to_json(estimate); },
+          "The text that estimate-density prints with --json, but for its options.")
       .def("__repr__", [](const E& estimate) {
         const auto& density = estimate.density;
         return density ? "<DensityEstimate " + number(density->percent) + " % +- " +

@@ -58,7 +58,7 @@ void warn_of_others(const std::vector<Area>& areas, VolumeChange& change) {
   if (!(sum > least_warned_share * change.excavated.value)) return;
   std::string message =
       text_of(*largest) +
-      " is neither hole, spill nor heap: excluded from all volumes; --dig-area and --dump-area "
+      " is neither hole, spill nor heap: excluded from all volumes; `dig_area` and `dump_area` "
       "take it in, if it belongs to them";
   if (count > 1) {
     message += "; with " + std::to_string(count - 1) + " more such zones " + litres_as_m3(sum) +
@@ -145,7 +145,7 @@ void warn_of_doubtful(const DoubtfulZones& zones, const ChangeOptions& options,
     warnings.emplace_back(WarningCode::zone_at_border,
                           text_of(*cut.largest) +
                               " reaches the edge of the surveyed ground: its volume may be "
-                              "incomplete; scan farther around it, or widen --area" +
+                              "incomplete; scan farther around it, or widen `area`" +
                               cut.rest());
   }
   if (const SuchZones& unseen = zones.unseen; unseen.count > 0) {
@@ -182,7 +182,7 @@ void warn_of_doubt(const std::optional<PlaceDoubt>& doubt, const std::string& wh
           (doubt->inferred ? ", but by the number of its points on slopes it was at about " +
                                  text_of(*doubt->inferred)
                            : ", which is below the ground") +
-          ": ground that it did not see is filled wrongly; check --sensor-origin, its frame and "
+          ": ground that it did not see is filled wrongly; check `sensor_origin`, its frame and "
           "unit, or the VIEWPOINT of the file");
 }
 
@@ -197,7 +197,7 @@ void warn_of_place(const Area& area, std::vector<Warning>& warnings) {
         "slopes it was at about " +
             text_of(area.inferred->place()) +
             ", from where ground was filled that it did not see; give the place by "
-            "--sensor-origin");
+            "`sensor_origin`");
   }
 }
 
@@ -220,7 +220,7 @@ void warn_of_bends(const Area& area, std::vector<Warning>& warnings) {
             " between the scans over " + readable(area.noise.length, 2) +
             " m, which is not noise of single points: one of the scans is bent, or "
             "the ground was driven on; scan again from one place, or leave out by "
-            "--area what changed");
+            "`area` what changed");
   }
 }
 
@@ -240,8 +240,8 @@ void warn_of_ground(const Area& area, std::vector<Warning>& warnings) {
                           "ground that did not change differs by " + hundredths(ground.noise_sd) +
                               " m between the scans (one standard deviation), more than " +
                               hundredths(largest_noise) +
-                              " m: bring both scans into one frame by --before-frame and "
-                              "--after-frame, or leave out by --area what moved between them");
+                              " m: bring both scans into one frame by `before_frame` and "
+                              "`after_frame`, or leave out by `area` what moved between them");
     return;
   }
   warn_of_bends(area, warnings);
@@ -266,7 +266,7 @@ void warn_of_balance(VolumeChange& change) {
             " rose away from it and " + litres_as_m3(after - dumped) +
             " beside it: the dumped soil is not in the scans, so the bulking "
             "factor is unknown; give scans that show it, or those of the dump "
-            "area by --dump-before and --dump-after");
+            "area by `dump_before` and `dump_after`");
     return;
   }
   const double error =
@@ -282,7 +282,7 @@ void warn_of_balance(VolumeChange& change) {
             "; the volume of dug soil is " + hundredths(least_bulking) + " to " +
             hundredths(largest_bulking) +
             " times that of the hole; exchange BEFORE and AFTER; or leave out what "
-            "is no soil, a vehicle, by --dig-area and --dump-area; or, if z "
+            "is no soil, a vehicle, by `dig_area` and `dump_area`; or, if z "
             "points down, give frames with z up");
   }
 }

@@ -311,7 +311,7 @@ std::optional<Warning> shadowed(const SurfacePair& pair, const VolumeChange& cha
       WarningCode::hole_in_shadow,
       readable(100.0 * more / cells, 2) +
           " % of the hole's cells hold no point after the dig, but did before: its walls "
-          "hide part of it; tell where the sensor stood by --sensor-origin, or scan it "
+          "hide part of it; tell where the sensor stood by `sensor_origin`, or scan it "
           "from a second standpoint"};
 }
 

@@ -275,7 +275,7 @@ class OpenChanges {
             hundredths(given.bulking.value) + " as counted, and " +
             hundredths(likeliest->bulking.value) + " " + likeliest->what + " (weights " +
             hundredths(given.weight) + " and " + hundredths(likeliest->weight) +
-            "): tell which changes belong to the dig with --dig-area and --dump-area",
+            "): tell which changes belong to the dig with `dig_area` and `dump_area`",
         other > as_likely);
   }
 
@@ -289,7 +289,7 @@ class OpenChanges {
     result_.warnings.emplace_back(
         WarningCode::stirred_ground,
         "ground rose and fell in many small places: it was stirred, by tracks or a blade, and "
-        "counts as noise; scan where nothing drove, or give --dig-area and --dump-area",
+        "counts as noise; scan where nothing drove, or give `dig_area` and `dump_area`",
         is_large);
   }
 

@@ -25,7 +25,7 @@ std::optional<ForeignContent> foreign_content(FileStream& file) {
     const char* hint;
   };
   constexpr const char* name_topic =
-      "; inspect-cloud FILE lists its topics, and FILE:TOPIC@TIME --out writes one as a cloud";
+      "; inspect-cloud FILE lists its topics, and writes one, FILE:TOPIC@TIME, as a cloud";
   constexpr Signature known[] = {
       {"ASTM-E57", "an E57 file",
        "; convert it by pdal translate in.e57 out.las, or CloudCompare -SILENT -O in.e57 "

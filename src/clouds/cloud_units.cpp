@@ -46,11 +46,11 @@ std::optional<Warning> doubt_of_volume(double volume, const std::string& what, d
   const CloudUnit& likely = likely_unit(volume, unit, usual);
   std::string message = what + " of " + readable(volume) + " m^3 is none of a bucket";
   if (likely.length == unit) {
-    message += ": check --unit, and the depth unit of a camera";
+    message += ": check `unit`, and the depth unit of a camera";
   } else {
     message += "; with coordinates in " + likely.word + " it would be " +
                readable(volume * std::pow(likely.length / unit, 3)) +
-               " m^3: give the unit of the clouds by --unit, probably --unit " + likely.word;
+               " m^3: give the unit of the clouds by `unit`, probably `unit` " + likely.word;
   }
   return Warning{WarningCode::units, message};
 }
@@ -70,7 +70,7 @@ std::optional<Warning> doubt_of_extent(const Rectangle& extent, double density, 
     message += "; with coordinates in " + likely.word + " it would be " +
                size_of(extent, likely.length / unit);
   }
-  return Warning{WarningCode::units, message + ": is --unit that of the coordinates?"};
+  return Warning{WarningCode::units, message + ": is `unit` that of the coordinates?"};
 }
 
 }  // namespace excavplan

@@ -264,7 +264,7 @@ LawsForDig laws_for_dig(const DensityLaw& law, const DensityOptions& options,
   if (options.soil.assumed) {
     laws.warnings.emplace_back(WarningCode::soil_assumed,
                                "the soil is assumed to be " + law.soil +
-                                   ": --soil says which it is; `soils` has the "
+                                   ": `soil` says which it is; `soils` has the "
                                    "density in others");
   }
   const auto& kind = options.soil.kind;

@@ -194,15 +194,14 @@ void require_fonts() {
   const FcFontSet* fonts = FcConfigGetFonts(nullptr, FcSetSystem);
   if (fonts != nullptr && fonts->nfont > 0) return;
   throw Error(ErrorKind::bad_input,
-              "--plot: no font is installed, which PNG and PDF need for their texts; install one, "
+              "no font is installed, which PNG and PDF need for their texts; install one, "
               "such as fonts-dejavu-core, or write .svg");
 }
 #else
 [[noreturn]] void require_fonts() {
-  throw Error(
-      ErrorKind::bad_input,
-      "--plot: PNG and PDF need cairo, which this program was built without; build it where "
-      "pkg-config, libcairo2-dev and libfontconfig-dev are installed, or write .svg");
+  throw Error(ErrorKind::bad_input,
+              "PNG and PDF need cairo, which this program was built without; build it where "
+              "pkg-config, libcairo2-dev and libfontconfig-dev are installed, or write .svg");
 }
 std::string png(const Drawing& /*drawing*/) { require_fonts(); }
 std::string pdf(const Drawing& /*drawing*/) { require_fonts(); }

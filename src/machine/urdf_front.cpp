@@ -22,24 +22,15 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using std::string;
 
-constexpr double most_skew = 1e-3;      // sine of an angle; pi / 2 is often rounded to 1.5708
 constexpr double shortest_link = 0.05;  // [m]; ours
-
-/// A joint at the zero of all joints, in the frame of the root.
-struct PlacedJoint {
-  const UrdfJoint* joint = nullptr;
-  Vector3d pin = Vector3d::Zero();
-  Vector3d axis = Vector3d::UnitZ();
-};
+constexpr double rounded = 1e-3;        // error of pi / 2 as 1.571 and the like [rad]
 
 class Front {
  public:
-  Front(const UrdfTree& tree, const UrdfNames& names) : tree_(tree), names_(names) {}
+  Front(const UrdfTree& tree, const UrdfNames& names)
+      : tree_(tree), names_(names), chain_(chain_of(tree, names)) {}
 
-  UrdfFront front() {
-    place_chain();
-    check_axes();
-    set_plane();
+  UrdfFront front() const {
     UrdfFront front;
     front.boom_pin = {(parts_[0].pin - swing_.pin).dot(forward_),
                       parts_[0].pin.z() - names_.ground};
@@ -53,102 +44,6 @@ class Front {
   }
 
  private:
-  const UrdfJoint& named(const string& name, const char* what) const {
-    if (const UrdfJoint* joint = tree_.joint(name)) return *joint;
-    string all;
-    for (const UrdfJoint& joint : tree_.joints) {
-      if (joint.type == "fixed" || all.size() > 300) continue;
-      all += (all.empty() ? "" : ", ") + joint.name;
-    }
-    throw Error(ErrorKind::bad_file,
-                tree_.file + ": has no joint " + in_quotes(name) + " (" + what +
-                    "); its moving joints: " + (all.empty() ? "none" : all) +
-                    "; say in the JSON beside it which is which, as {\"urdf\": {\"" + what +
-                    "\": \"NAME\"}}");
-  }
-
-  string tip_link() const {
-    if (const UrdfJoint* joint = tree_.joint(names_.tip)) return joint->child;
-    if (tree_.link(names_.tip)) return names_.tip;
-    return named(names_.tip, "tip").child;
-  }
-
-  /// Places the joints from the root to the tip, and sees that they come in this order.
-  void place_chain() {
-    const std::array<const char*, 3> words = {"boom", "arm", "bucket"};
-    if (names_.swing) swing_.joint = &named(*names_.swing, "swing");
-    for (std::size_t i = 0; i < 3; ++i) parts_[i].joint = &named(names_.joints[i], words[i]);
-    std::vector<PlacedJoint*> wanted;
-    if (swing_.joint) wanted.push_back(&swing_);
-    for (PlacedJoint& part : parts_) wanted.push_back(&part);
-    auto next = wanted.begin();
-    Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
-    for (const UrdfJoint* joint : tree_.chain_to(tip_link())) {
-      frame = frame * joint->origin;
-      const bool inside = next != wanted.begin() && next != wanted.end();
-      if (next != wanted.end() && (*next)->joint == joint) {
-        **next = {joint, frame.translation(), frame.linear() * joint->axis};
-        ++next;
-      } else if (inside && joint->type != "fixed") {
-        tree_.refuse(*joint, "moves too, between " + in_quotes((*std::prev(next))->joint->name) +
-                                 " and " + in_quotes((*next)->joint->name) +
-                                 ": only swing, boom, arm and bucket may");
-      }
-    }
-    if (next != wanted.end()) {
-      tree_.refuse(*(*next)->joint,
-                   "does not lie on the way to the tip " + in_quotes(names_.tip) + " in its place");
-    }
-    tip_ = frame.translation();
-  }
-
-  void check_axes() const {
-    const Vector3d up = Vector3d::UnitZ();
-    if (swing_.joint) {
-      require_turning(*swing_.joint);
-      if (swing_.axis.cross(up).norm() > most_skew) {
-        tree_.refuse(*swing_.joint, "has an axis that is not upright");
-      }
-    }
-    for (const PlacedJoint& part : parts_) {
-      require_turning(*part.joint);
-      if (std::abs(part.axis.dot(up)) > most_skew) {
-        tree_.refuse(*part.joint, "has an axis that is not level");
-      }
-      if (part.axis.cross(parts_[0].axis).norm() > most_skew) {
-        tree_.refuse(*part.joint,
-                     "has an axis that is not parallel to that of the boom: the front "
-                     "is not planar");
-      }
-    }
-  }
-
-  void require_turning(const UrdfJoint& joint) const {
-    if (joint.mimics) {
-      tree_.refuse(joint, "has a 'mimic', expected a joint that moves by itself");
-    }
-    if (joint.type == "revolute" || joint.type == "continuous") return;
-    tree_.refuse(joint, "is " + in_quotes(joint.type) + ", expected 'revolute' or 'continuous'");
-  }
-
-  /// Forward is where the tip is with all joints in the middle of their ranges.
-  void set_plane() {
-    forward_ = parts_[0].axis.cross(Vector3d::UnitZ()).normalized();
-    JointAngles middle;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const UrdfPart at = part(i);
-      middle[static_cast<int>(i)] =
-          0.5 * (at.limits.lower.value_or(0.0) + at.limits.upper.value_or(0.0));
-    }
-    double ahead = 0.0;
-    double angle = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      angle -= middle[static_cast<int>(i)];
-      ahead += part(i).length * std::cos(angle);
-    }
-    if (ahead < 0.0) forward_ = -forward_;
-  }
-
   void add_swing(UrdfFront& front) const {
     const double sign = swing_.axis.z() > 0.0 ? 1.0 : -1.0;
     front.swing_angle = {swing_.joint->name, sign};
@@ -165,9 +60,21 @@ class Front {
 
   Vector2d in_plane(const Vector3d& point) const { return {point.dot(forward_), point.z()}; }
   Vector2d link(std::size_t i) const {
-    return in_plane((i < 2 ? parts_[i + 1].pin : tip_) - parts_[i].pin);
+    return in_plane((i < 2 ? parts_[i + 1].pin : chain_.tip) - parts_[i].pin);
   }
   double direction_of(std::size_t i) const { return std::atan2(link(i).y(), link(i).x()); }
+
+  /// The zero of an angle up to whole turns: so that the middle of the range stated is within half
+  /// a turn of the URDF's zero, else that of the URDF's range, `middle`, within half a turn of
+  /// ours.
+  static double nearest_turn(double zero, double sign, double middle, const UrdfLimits& stated) {
+    if (stated.lower && stated.upper) {
+      const double ours = 0.5 * (*stated.lower + *stated.upper);
+      return ours + std::remainder(zero - ours, 2.0 * pi);
+    }
+    const double ours = sign * middle + zero;
+    return zero + std::remainder(ours, 2.0 * pi) - ours;
+  }
 
   UrdfPart part(std::size_t i) const {
     const UrdfJoint& joint = *parts_[i].joint;
@@ -183,14 +90,17 @@ class Front {
     double zero = (i == 0 ? 0.0 : direction_of(i - 1)) - direction_of(i);
     part.limits = joint.limits;
     auto& [lower, upper, velocity, effort] = part.limits;
-    if (joint.type == "continuous") lower = upper = std::nullopt;
-    const double middle = sign * 0.5 * (lower.value_or(0.0) + upper.value_or(0.0)) + zero;
-    zero += std::remainder(middle, 2.0 * pi) - middle;
+    if (!chain_.has_range[i]) lower = upper = std::nullopt;
+    zero =
+        nearest_turn(zero, sign, lower && upper ? 0.5 * (*lower + *upper) : 0.0, names_.ranges[i]);
     if (std::abs(zero) < 1e-12) zero = 0.0;
     part.angle = {joint.name, sign, zero};
     if (lower) lower = sign * *lower + zero;
     if (upper) upper = sign * *upper + zero;
     if (sign < 0.0) std::swap(lower, upper);
+    const double least = i == 1 ? 0.0 : -pi;  // of read_machine()
+    if (lower && std::abs(*lower - least) < rounded) lower = std::max(*lower, least);
+    if (upper && std::abs(*upper - pi) < rounded) upper = std::min(*upper, pi);
     return part;
   }
 
@@ -231,10 +141,10 @@ class Front {
 
   const UrdfTree& tree_;
   const UrdfNames& names_;
-  PlacedJoint swing_;
-  std::array<PlacedJoint, 3> parts_;
-  Vector3d tip_ = Vector3d::Zero();
-  Vector3d forward_ = Vector3d::UnitX();
+  const UrdfChain chain_;
+  const PlacedJoint& swing_ = chain_.swing;
+  const std::array<PlacedJoint, 3>& parts_ = chain_.parts;
+  const Vector3d& forward_ = chain_.forward;
 };
 
 }  // namespace

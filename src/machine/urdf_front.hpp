@@ -3,29 +3,19 @@
 #pragma once
 
 #include <array>
-#include <optional>
-#include <string>
 
 #include <excavplan/machine/machine.hpp>
 
-#include "machine/urdf_tree.hpp"
+#include "machine/urdf_chain.hpp"
 
 /// @file Boom, arm and bucket of a URDF in the plane of the boom. Private to the project.
 
 namespace excavplan {
 
-/// What is what in a URDF; by default the names of OPERA's machines.
-struct UrdfNames {
-  std::optional<std::string> swing = "swing_joint";  ///< nothing: the root turns by no joint
-  std::array<std::string, 3> joints = {"boom_joint", "arm_joint", "bucket_joint"};
-  std::string tip = "bucket_end_joint";  ///< a joint, whose child is the tip, or a link
-  double ground = 0.0;                   ///< z of the ground in the frame of the root [m]
-};
-
 /// A joint and the links that it moves but the next does not, in the conventions of a Machine.
 struct UrdfPart {
   RobotJoint angle;
-  UrdfLimits limits;    ///< its range in the angles of a Machine
+  UrdfLimits limits;    ///< its range in the angles of a Machine, where the URDF has one
   double length = 0.0;  ///< to the next pin or the tip [m]
   LinkMass mass;        ///< mass 0: the URDF states none
 };
@@ -39,9 +29,7 @@ struct UrdfFront {
   double ahead = 0.0;  ///< direction of the boom from x in the frame of the root [rad]
 };
 
-/// @throws Error (bad_file) if a joint is missing or of a wrong kind, the order differs, or the
-/// axes
-///         are not parallel, level and across an upright swing axis within 1e-3 rad
+/// @throws Error (bad_file) as chain_of(), or if two pins are nearer than 0.05 m
 UrdfFront front_of(const UrdfTree& tree, const UrdfNames& names);
 
 }  // namespace excavplan

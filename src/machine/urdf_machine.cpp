@@ -78,8 +78,10 @@ json& at(json& value, const string& key) {
 
 /// The zx120 in another size. Its cylinders are left out: pins do not scale with a joint's range.
 json usual_machine(const UrdfFront& front) {
-  json machine =
-      parse_json("machines/zx120.json", read_file(find_data_file("machines/zx120.json")));
+  const string file = find_data_file("machines/zx120.json");
+  const string text = read_file(file);
+  read_machine(JsonObject::of_text(file, text, "excavplan-machine"));  // it holds all of these
+  json machine = parse_json(file, text);
   for (const char* key :
        {"format", "version", "name", "description", "cylinders", "data_sheet", "robot_joints"}) {
     machine.erase(key);
@@ -172,40 +174,72 @@ struct Side {
   UrdfNames names;
 };
 
-UrdfNames read_names(JsonObject file) {
-  UrdfNames names;
-  if (file.has("swing")) {
+Eigen::Vector3d read_direction(JsonObject& file) {
+  const string text = file.text("forward");
+  const std::array<std::pair<const char*, Eigen::Vector3d>, 4> directions = {
+      {{"x", Eigen::Vector3d::UnitX()},
+       {"-x", -Eigen::Vector3d::UnitX()},
+       {"y", Eigen::Vector3d::UnitY()},
+       {"-y", -Eigen::Vector3d::UnitY()}}};
+  for (const auto& [name, direction] : directions) {
+    if (text == name) return direction;
+  }
+  file.fail("forward", "is " + in_quotes(text) + ", expected 'x', '-x', 'y' or '-y'");
+}
+
+void read_names(JsonObject file, UrdfNames& names) {
+  names.swing_stated = file.has("swing");
+  if (names.swing_stated) {
     const bool none = !file.states("swing");
     if (none) names.swing = std::nullopt;
     if (!none) names.swing = file.text("swing");
     file.ignore("swing");
   }
   for (std::size_t i = 0; i < 3; ++i) names.joints[i] = file.text_or(words[i], names.joints[i]);
+  if (file.has("tip_m")) {
+    if (file.has("tip")) file.fail("tip_m", "found it beside 'tip', expected one of the two");
+    const std::vector<double> at = file.numbers("tip_m", 3);
+    names.tip_at = {at[0], at[1], at[2]};
+  }
   names.tip = file.text_or("tip", names.tip);
   names.ground = file.number_or("ground_z_m", 0.0, -100.0, 100.0);
+  if (file.has("forward")) names.forward = read_direction(file);
   file.done();
-  return names;
+}
+
+/// What the JSON says of the ranges; of wrong kinds read_machine() complains.
+void read_ranges(const json& numbers, UrdfNames& names) {
+  const auto stated = [&](const string& key) -> std::optional<double> {
+    const json::json_pointer at("/joints/" + key);
+    if (!numbers.contains(at) || !numbers.at(at).is_number()) return std::nullopt;
+    return numbers.at(at).get<double>();
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    names.ranges[i].lower = stated(string(words[i]) + "/lower_rad");
+    names.ranges[i].upper = stated(string(words[i]) + "/upper_rad");
+  }
 }
 
 Side side_of(const string& urdf) {
   Side side;
   const std::filesystem::path path = std::filesystem::path(urdf).replace_extension(".json");
+  side.names.beside = path.string();
   std::error_code none;
   if (path == urdf || !std::filesystem::exists(path, none)) return side;
   side.file = path.string();
   JsonObject file = JsonObject::open(side.file, "excavplan-machine");
-  if (file.has("urdf")) side.names = read_names(file.object("urdf"));
+  if (file.has("urdf")) read_names(file.object("urdf"), side.names);
   side.numbers = parse_json(side.file, read_file(side.file));
   for (const char* key : {"format", "version", "urdf"}) side.numbers.erase(key);
+  read_ranges(side.numbers, side.names);
   return side;
 }
 
-/// The URDF gives lengths and ranges; a file that gives others is of another machine.
+/// The URDF gives the lengths; a file that gives others is of another machine.
 void refuse_doubles(const json& urdf, const Side& side) {
   const std::set<string> stated = keys_of(side.numbers);
   for (const string& key : keys_of(urdf)) {
-    const bool is_shape = key.rfind("geometry.", 0) == 0 || key.find("er_rad") != string::npos;
-    if (!is_shape || stated.count(key) == 0) continue;
+    if (key.rfind("geometry.", 0) != 0 || stated.count(key) == 0) continue;
     throw Error(
         ErrorKind::bad_file,
         side.file + ": " + key + ": found it here and in the URDF, expected it in the URDF");
@@ -244,18 +278,6 @@ std::set<string> without_absent(std::set<string> keys, const std::set<string>& o
     }
   }
   return keys;
-}
-
-/// The range of a joint is never that of the zx120.
-void require_ranges(const std::set<string>& scaled, const string& path) {
-  for (const char* word : words) {
-    for (const char* end : {".lower_rad", ".upper_rad"}) {
-      const string key = string("joints.") + word + end;
-      if (scaled.count(key) == 0) continue;
-      throw Error(ErrorKind::bad_file, path + ": " + word + " has no range: state " + key +
-                                           " in the JSON beside it, in the angles of excavplan");
-    }
-  }
 }
 
 void warn_of_numbers(const string& path, const std::set<string>& scaled, const string& placeholders,
@@ -322,7 +344,6 @@ UrdfDraft draft_of_urdf(const string& path, const string& content) {
   const std::set<string> of_urdf = without(keys_of(said.numbers), of_side);
   const std::set<string> scaled =
       without_absent(without(without(keys_of(machine), of_urdf), of_side), of_side);
-  require_ranges(scaled, path);
 
   UrdfDraft draft;
   machine.merge_patch(said.numbers);

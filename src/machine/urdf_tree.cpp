@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -56,10 +57,17 @@ class Parser {
     if (element.name.rfind("xacro:", 0) == 0 ||
         std::any_of(attributes.begin(), attributes.end(), has_macro)) {
       refuse(element, in_quotes(element.name) +
-                          " is a macro: this is a xacro, expand it first, with " +
-                          "ROS: xacro FILE.urdf.xacro > machine.urdf");
+                          " is a macro: this is a xacro, expand it first, with ROS: " + "xacro " +
+                          path_ + " > " + expanded());
     }
     for (const XmlElement& child : element.children) refuse_xacro(child);
+  }
+
+  /// The name of the file that a xacro becomes.
+  string expanded() const {
+    std::filesystem::path path = path_;
+    if (path.extension() == ".xacro") return path.replace_extension().string();
+    return path.replace_filename(path.stem().string() + "-plain.urdf").string();
   }
 
   string attribute(const XmlElement& of, const string& key) const {

@@ -76,16 +76,6 @@ std::optional<std::int64_t> last_before(RecordingFile& recording, const Recorded
 
 }  // namespace
 
-std::int64_t later(std::int64_t time, std::int64_t by) {
-  std::int64_t sum = 0;
-  return __builtin_add_overflow(time, by, &sum) ? (by > 0 ? latest : earliest) : sum;
-}
-
-std::int64_t time_between(std::int64_t from, std::int64_t to) {
-  std::int64_t result = 0;
-  return __builtin_sub_overflow(to, from, &result) ? (to > from ? latest : earliest) : result;
-}
-
 double seconds_of(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
 
 std::int64_t nanoseconds_of(double seconds, const char* what) {

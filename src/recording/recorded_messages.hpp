@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,18 +10,11 @@
 
 #include "recording/recording_file.hpp"
 #include "recording/ros_messages.hpp"
+#include "recording/times.hpp"
 
 /// @file Which messages of a recording are meant: by topic and time. Private to the library.
 
 namespace excavplan {
-
-constexpr std::int64_t earliest = std::numeric_limits<std::int64_t>::min();  ///< [ns]
-constexpr std::int64_t latest = std::numeric_limits<std::int64_t>::max();    ///< [ns]
-constexpr std::int64_t one_second = 1000000000;                              ///< [ns]
-
-/// Times of a hostile file may be any, so that these stop at the ends of the range.
-std::int64_t later(std::int64_t time, std::int64_t by);
-std::int64_t time_between(std::int64_t from, std::int64_t to);
 
 double seconds_of(std::int64_t nanoseconds);
 /// @throws Error (bad_input) naming `what` unless they are 0 to 1e9

@@ -13,6 +13,7 @@
 #include "base/angles.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "recording/times.hpp"
 
 namespace excavplan {
 namespace {
@@ -195,16 +196,16 @@ Eigen::Isometry3d TransformTree::pose(Links::const_iterator link, std::int64_t t
   const std::string what =
       "transform of " + in_quotes(link->first) + " in " + in_quotes(link->second.parent);
   if (after == samples.begin() || after == samples.end()) {
-    if (std::abs(before->stamp - time) <= longest_hold) return pose(link, *before);
+    if (std::abs(time_between(before->stamp, time)) <= longest_hold) return pose(link, *before);
     refuse(what + " at " + time_text(time) + ": found it from " + time_text(samples.front().stamp) +
            " to " + time_text(samples.back().stamp) + ", expected it at that time");
   }
-  if (after->stamp - before->stamp > longest_gap && apart(*before, *after)) {
+  if (time_between(before->stamp, after->stamp) > longest_gap && apart(*before, *after)) {
     refuse(what + " at " + time_text(time) + ": found it at " + time_text(before->stamp) +
            " and at " + time_text(after->stamp) + ", where it had moved, expected it every second");
   }
-  const double part =
-      static_cast<double>(time - before->stamp) / static_cast<double>(after->stamp - before->stamp);
+  const double part = static_cast<double>(time_between(before->stamp, time)) /
+                      static_cast<double>(time_between(before->stamp, after->stamp));
   const Eigen::Isometry3d start = pose(link, *before);
   const Eigen::Isometry3d end = pose(link, *after);
   Eigen::Isometry3d between = Eigen::Isometry3d::Identity();

@@ -14,6 +14,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "recording/times.hpp"
 #include "robot/live_scan.hpp"
 #include "robot/message_clock.hpp"
 #include "robot/recent_joints.hpp"
@@ -97,7 +98,7 @@ void DigCycleSession::State::come(const RobotMessage& message, Time time) {
   constexpr std::int64_t set_back = 1'000'000'000;  // the clock, not the order of messages; ours
   if (message.received) {
     now = message.received;
-    if (marked && *now < *marked - set_back) marked.reset();
+    if (marked && *now < later(*marked, -set_back)) marked.reset();
   } else if (time && (!now || *time > *now)) {
     now = time;
   }

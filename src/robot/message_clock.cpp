@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "recording/times.hpp"
+
 namespace excavplan {
 
 std::optional<std::int64_t> MessageClock::time(std::int64_t stamp,
@@ -12,11 +14,11 @@ std::optional<std::int64_t> MessageClock::time(std::int64_t stamp,
   constexpr std::size_t remembered = 20;
   if (stamp == 0) return received;
   if (!received) return stamp;
-  delays_.push_back(*received - stamp);
+  delays_.push_back(time_between(stamp, *received));
   if (delays_.size() > remembered) delays_.pop_front();
   const std::int64_t least = *std::min_element(delays_.begin(), delays_.end());
   const bool same = least >= -other_clock && least <= other_clock;
-  return same ? stamp : stamp + least;
+  return same ? stamp : later(stamp, least);
 }
 
 }  // namespace excavplan

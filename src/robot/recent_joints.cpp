@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "recording/times.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -17,7 +19,7 @@ bool earlier(const JointSample& sample, std::int64_t time) { return sample.time 
 
 void RecentJoints::add(const std::string& name, const JointSample& sample) {
   std::deque<JointSample>& samples = joints_[name];
-  if (!samples.empty() && sample.time < samples.back().time - kept) samples.clear();
+  if (!samples.empty() && sample.time < later(samples.back().time, -kept)) samples.clear();
   auto place = samples.end();
   while (place != samples.begin() && sample.time < std::prev(place)->time) --place;
   if (place != samples.begin() && std::prev(place)->time == sample.time) {
@@ -25,7 +27,8 @@ void RecentJoints::add(const std::string& name, const JointSample& sample) {
   } else {
     samples.insert(place, sample);
   }
-  while (samples.size() > most_samples || samples.front().time < samples.back().time - kept) {
+  while (samples.size() > most_samples ||
+         samples.front().time < later(samples.back().time, -kept)) {
     samples.pop_front();
   }
 }
@@ -37,7 +40,9 @@ std::optional<JointSample> RecentJoints::nearest(const std::string& name, std::i
   const auto after = std::lower_bound(samples.begin(), samples.end(), time, earlier);
   if (after == samples.begin()) return *after;
   const JointSample& before = *std::prev(after);
-  return after == samples.end() || time - before.time < after->time - time ? before : *after;
+  return after == samples.end() || time_between(before.time, time) < time_between(time, after->time)
+             ? before
+             : *after;
 }
 
 std::optional<double> RecentJoints::turned(const std::string& name, std::int64_t span) const {
@@ -48,7 +53,7 @@ std::optional<double> RecentJoints::turned(const std::string& name, std::int64_t
   for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
     lowest = std::min(lowest, sample->position);
     highest = std::max(highest, sample->position);
-    if (sample->time <= samples.back().time - span) return highest - lowest;
+    if (sample->time <= later(samples.back().time, -span)) return highest - lowest;
   }
   return {};
 }

@@ -8,6 +8,8 @@
 
 #include <excavplan/base/error.hpp>
 
+#include "recording/times.hpp"
+
 namespace excavplan {
 namespace {
 
@@ -42,12 +44,12 @@ void RecentTransforms::add_moving(StampedTransform transform) {
     of.pop_front();
     --count_;
   };
-  while (!frame.empty() && transform.stamp < frame.back().stamp - kept) drop_first(frame);
+  while (!frame.empty() && transform.stamp < later(frame.back().stamp, -kept)) drop_first(frame);
   auto place = frame.end();
   while (place != frame.begin() && transform.stamp < std::prev(place)->stamp) --place;
   frame.insert(place, std::move(transform));
   ++count_;
-  while (frame.size() > 1 && frame[1].stamp < frame.back().stamp - kept) drop_first(frame);
+  while (frame.size() > 1 && frame[1].stamp < later(frame.back().stamp, -kept)) drop_first(frame);
   if (count_ <= most_moving) return;
   const auto largest = std::max_element(
       moving_.begin(), moving_.end(),

@@ -26,8 +26,8 @@ namespace {
 
 constexpr double degree = pi / 180.0;
 constexpr const char* give_frames =
-    "let --level find the ground, or give the transform into a frame with z up by --frame, or "
-    "--before-frame and --after-frame";
+    "let `level` find the ground, or give the transform into a frame with z up by `frame`, or "
+    "`before_frame` and `after_frame`";
 
 std::string degrees(double angle) { return readable(angle / degree, 2) + " degrees"; }
 
@@ -63,7 +63,7 @@ std::optional<Warning> other_units(const OutlinedPair& pair) {
                  "the scans show " + size_of(a) + " m before and " + size_of(b) +
                      " m after, in both directions a factor of " +
                      readable(std::exp(std::abs(factor))) +
-                     ": one of them is in other units: give --before-unit or --after-unit"};
+                     ": one of them is in other units: give `before_unit` or `after_unit`"};
 }
 
 std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
@@ -114,7 +114,7 @@ std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
                  name_of(scan) +
                      ": all points lie ahead of the origin along z, as in the frame of a camera, "
                      "where hole and heap are exchanged: " +
-                     give_frames + "; if z is up, say so by --frame lidar"};
+                     give_frames + "; if z is up, say so by `frame` lidar"};
 }
 
 /// Of the plane through the ground that did not change.
@@ -345,7 +345,7 @@ std::vector<Warning> check_registration(const RegisteredPair& pair) {
   return {{WarningCode::registration_beyond_prior,
            message + ", and the ground that did not change still differs by " +
                readable(1000.0 * found.residual_sd, 2) +
-               " mm: give the transform of the scan after by --after-frame",
+               " mm: give the transform of the scan after by `after_frame`",
            true}};
 }
 
@@ -640,7 +640,7 @@ void refuse_swapped(const VolumeChange& change, const std::string& names, double
   const bool both = dig.rose > dig.fell;
   refuse("before and after are probably swapped" + std::string(both ? "" : " in the dump area") +
          ": there the ground fell by " + readable(dump.fell) + " m^3 and rose by " +
-         readable(dump.rose) + " m^3; exchange --dump-before and --dump-after" +
+         readable(dump.rose) + " m^3; exchange `dump_before` and `dump_after`" +
          (both ? ", BEFORE and AFTER; or if z points down, " + std::string(give_frames) : ""));
 }
 

@@ -167,7 +167,7 @@ void require_memory(const OutlinedPair& pair, const Rectangle& extent, double ce
           "a survey of " + readable(width) + " m x " + readable(depth) + " m in cells of " +
               number_text(cell_size) + " m needs about " + readable(needed / 1e9) +
               " GB of memory, most are " + number_text(most_survey_memory / 1e9) +
-              " GB: are the scans in the unit that --unit says?");
+              " GB: are the scans in the unit that `unit` says?");
 }
 
 RegisteredPair survey_pair(const OutlinedPair& pair, double cell_size, bool registered,

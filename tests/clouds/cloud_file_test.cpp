@@ -662,8 +662,8 @@ TEST(BadText, IsNotACloud) {
        "translate in.e57 out.las, or CloudCompare -SILENT -O in.e57"},
       {"SQLite format 3",
        "found a recording (ROS 2 bag) or another database, expected a cloud as PCD, PLY, LAS or "
-       "XYZ text; inspect-cloud FILE lists its topics, and FILE:TOPIC@TIME --out writes one as "
-       "a cloud"},
+       "XYZ text; inspect-cloud FILE lists its topics, and writes one, FILE:TOPIC@TIME, as a "
+       "cloud"},
       {"\x89MCAP0\r\n", "found a recording (MCAP)"},
       {"#ROSBAG V2.0\n", "found a recording (ROS 1 bag)"},
       {"\x89PNG\r\n\x1a\n", "found a PNG image"},

@@ -524,7 +524,7 @@ TEST(VolumeChange, UnrelatedChangesAreLeftOutWithAWarning) {
   EXPECT_EQ(
       change.warnings[0].message,
       "ground that rose by 0.06 m^3 over 0.34 m^2 around (10.15, 4.25) m is neither hole, "
-      "spill nor heap: excluded from all volumes; --dig-area and --dump-area take it in, if it "
+      "spill nor heap: excluded from all volumes; `dig_area` and `dump_area` take it in, if it "
       "belongs to them");
 }
 
@@ -545,7 +545,7 @@ TEST(VolumeChange, DumpedSoilOutsideTheScansIsSaid) {
       message_of(change, "no_dumped_soil"),
       "the hole is 0.56 m^3, but only 0 m^3 rose away from it and 0.078 m^3 beside it: the "
       "dumped soil is not in the scans, so the bulking factor is unknown; give scans that show "
-      "it, or those of the dump area by --dump-before and --dump-after");
+      "it, or those of the dump area by `dump_before` and `dump_after`");
   EXPECT_FALSE(bulking_factor(change));
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <regex>
 #include <set>
 
@@ -11,23 +10,15 @@
 
 #include <Eigen/Geometry>
 
-#include <excavplan/machine/kinematics.hpp>
 #include <excavplan/machine/machine_file.hpp>
 
-#include "base/random.hpp"
-#include "base/text.hpp"
 #include "support/machine_file.hpp"
 #include "support/run_program.hpp"
 #include "support/urdf_file.hpp"
 
-#ifdef EXCAVPLAN_URDFDOM
-#include <urdf_parser/urdf_parser.h>
-#endif
-
 namespace excavplan {
 namespace {
 
-using Eigen::Vector2d;
 using nlohmann::json;
 using test::urdf_of;
 using test::WrittenJoint;
@@ -90,130 +81,6 @@ TEST_F(Urdf, BecomesAMachineFileOfOurs) {
 
 // ---- conventions --------------------------------------------------------------------------------
 
-std::string triple(double x, double y, double z) {
-  return number_text(x) + " " + number_text(y) + " " + number_text(z);
-}
-
-/// A machine drawn at random whose frames stand in all ways and whose axes point to either side.
-std::vector<WrittenJoint> drawn_joints(Random& random) {
-  const auto lower_upper = [](double low, double high) {
-    return "lower=\"" + number_text(low) + "\" upper=\"" + number_text(high) +
-           "\" effort=\"1\" velocity=\"1\"";
-  };
-  std::vector<WrittenJoint> joints = {{"s", "revolute", "base_link", "l0",
-                                       triple(random.uniform(-1, 1), random.uniform(-1, 1), 0.8),
-                                       "0 0 " + number_text(random.uniform(-3, 3)),
-                                       random.uniform() < 0.5 ? "0 0 1" : "0 0 -1",
-                                       lower_upper(-1, 1)}};
-  double ours = 0.0;  // direction of the link before, down positive
-  const double turn = random.uniform() < 0.5 ? 0.0 : 3.14159265358979323846;  // of the front
-  const std::array<double, 4> middle = {-0.2, 1.4, 0.9, 0.0};
-  std::string parent = "l0";
-  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d plane;  // columns: forward, left, up
-  plane = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  for (std::size_t i = 0; i < 4; ++i) {
-    // The link before, in the plane, at the zero of the URDF.
-    const double length = i == 0 ? 0.0 : random.uniform(1.0, 4.0);
-    const Eigen::Vector3d offset =
-        i == 0 ? Eigen::Vector3d(plane * Eigen::Vector3d(0.2, random.uniform(-0.3, 0.3), 0.4))
-               : Eigen::Vector3d(plane * Eigen::Vector3d(length * std::cos(ours),
-                                                         random.uniform(-0.2, 0.2),
-                                                         -length * std::sin(ours)));
-    const Eigen::Vector3d rpy(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const Eigen::Matrix3d next = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-                                  Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                                  Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
-                                     .toRotationMatrix();
-    const Eigen::Vector3d at = frame.transpose() * offset;
-    frame = frame * next;
-    const double side = random.uniform() < 0.5 ? 1.0 : -1.0;
-    const Eigen::Vector3d axis = frame.transpose() * plane * Eigen::Vector3d(0.0, 2.0 * side, 0.0);
-    const double zero = random.uniform(-0.5, 0.5);
-    const double centre = side * (middle[i] - zero);
-    const std::string name(1, "bakt"[i]);
-    joints.push_back({name, i < 3 ? "revolute" : "fixed", parent, "l" + name,
-                      triple(at.x(), at.y(), at.z()), triple(rpy.x(), rpy.y(), rpy.z()),
-                      triple(axis.x(), axis.y(), axis.z()),
-                      lower_upper(centre - 0.6, centre + 0.6)});
-    parent = "l" + name;
-    ours += zero;
-  }
-  return joints;
-}
-
-const json drawn_names = {
-    {"format", "excavplan-machine"},
-    {"version", 1},
-    {"urdf", {{"swing", "s"}, {"boom", "b"}, {"arm", "a"}, {"bucket", "k"}, {"tip", "t"}}}};
-
-#ifdef EXCAVPLAN_URDFDOM
-/// The tip in the frame of the root, by the poses and axes that urdfdom reads.
-Eigen::Vector3d tip_by_urdfdom(const urdf::ModelInterface& model,
-                               const std::map<std::string, double>& angles,
-                               const std::string& tip) {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  for (auto link = model.getLink(tip); link->parent_joint; link = link->getParent()) {
-    const urdf::Joint& joint = *link->parent_joint;
-    const auto& pose = joint.parent_to_joint_origin_transform;
-    const Eigen::Quaterniond turn(pose.rotation.w, pose.rotation.x, pose.rotation.y,
-                                  pose.rotation.z);
-    const auto angle = angles.find(joint.name);
-    if (angle != angles.end()) {
-      const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
-      point = Eigen::AngleAxisd(angle->second, axis.normalized()) * point;
-    }
-    point = turn * point + Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
-  }
-  return point;
-}
-
-TEST_F(Urdf, ReachesWhereUrdfdomDoesForDrawnMachinesAndJoints) {
-  Random random(7);
-  for (int each = 0; each < 40; ++each) {
-    const std::string text = urdf_of(drawn_joints(random));
-    const MachineFile file = read(text, drawn_names);
-    const auto model = urdf::parseURDF(text);
-    ASSERT_TRUE(model);
-    const auto& swing = model->getJoint("s")->parent_to_joint_origin_transform.position;
-    std::set<double> sides, lateral;
-    for (int posture = 0; posture < 20; ++posture) {
-      JointAngles joints;
-      std::map<std::string, double> angles;
-      for (int i = 0; i < 3; ++i) {
-        const RobotJoint& angle = file.machine.robot_joints[static_cast<std::size_t>(i)];
-        const JointLimits& limits = file.machine.limits[static_cast<std::size_t>(i)];
-        joints[i] = random.uniform(limits.lower, limits.upper);
-        angles[angle.name] = angle.from_ours(joints[i]);
-        const auto& own = *model->getJoint(angle.name)->limits;
-        EXPECT_GE(angles[angle.name], own.lower - 1e-9);
-        EXPECT_LE(angles[angle.name], own.upper + 1e-9);
-      }
-      const RobotJoint& swing_angle = file.machine.robot_joints[3];
-      const double swung = random.uniform(file.machine.swing->lower, file.machine.swing->upper);
-      angles["s"] = swing_angle.from_ours(swung);
-      const Eigen::Vector3d in_site =
-          file.machine.site_from_root * tip_by_urdfdom(*model, angles, "lt");
-      const Eigen::Vector3d in_plane =
-          Eigen::AngleAxisd(-swung, Eigen::Vector3d::UnitZ()) * in_site;
-      EXPECT_NEAR(in_plane.x(), link_positions(file.machine, joints).tip.x(), 1e-8);
-      EXPECT_NEAR(in_plane.z(), link_positions(file.machine, joints).tip.y(), 1e-8);
-      lateral.insert(in_plane.y());
-      const Eigen::Vector3d tip = tip_by_urdfdom(*model, angles, "lt");
-      const Vector2d ours = link_positions(file.machine, joints).tip;
-      EXPECT_NEAR(ours.y(), tip.z(), 1e-9);
-      // Forward is either way of the boom plane: x is the distance from the swing axis, less the
-      // lateral offset, which does not change.
-      const Eigen::Vector2d flat(tip.x() - swing.x, tip.y() - swing.y);
-      sides.insert(flat.squaredNorm() - ours.x() * ours.x());
-    }
-    EXPECT_LE(*sides.rbegin() - *sides.begin(), 1e-8);
-    EXPECT_LE(*lateral.rbegin() - *lateral.begin(), 1e-8) << "the offset of the boom";
-  }
-}
-#endif
-
-/// The tip in the boom plane by the transforms of the joints, written down once more.
 TEST_F(Urdf, SignsAndZerosFollowTheAxes) {
   auto joints = zx120_joints();
   joints[1].axis = "0 -3 0";  // up positive
@@ -340,8 +207,9 @@ TEST_F(Urdf, SaysWhatIsWrong) {
     EXPECT_EQ(found.substr(0, with_text.size()), with_text) << found;
   };
   begins(with(2, [](auto& j) { j.name = "stick"; }),
-         "has no joint 'arm_joint' (arm); its moving joints: swing_joint, boom_joint, stick, "
-         "bucket_joint; say in the JSON beside it which is which");
+         "it does not say all; state in " + folder.file("digger.json") +
+             " beside it: urdf.arm, the name of its joint (there is no 'arm_joint'). Its moving "
+             "joints: swing_joint, boom_joint, stick, bucket_joint");
   begins(with(2, [](auto& j) { j.axis = "0 0 1"; }),
          "line #: joint 'arm_joint' has an axis that is not level");
   begins(with(2, [](auto& j) { j.axis = "1 1 0"; }),
@@ -373,7 +241,10 @@ TEST_F(Urdf, SaysWhatIsWrong) {
   begins(with(3, [](auto& j) { j.xyz = "0 0 0"; }),
          "line #: joint 'arm_joint' is 0 m from the next pin, expected at least 0.05");
   begins(with(3, [](auto& j) { j.axis = "0 0 0"; }), "line #: joint 'bucket_joint' has an axis");
-  begins(with(3, [](auto& j) { j.limit = ""; }), "bucket has no range");
+  begins(with(3, [](auto& j) { j.limit = ""; }),
+         "it does not say all; state in " + folder.file("digger.json") +
+             " beside it: joints.bucket.lower_rad, joints.bucket.upper_rad, in the angles of "
+             "excavplan");
   begins(with(3, [](auto& j) { j.parent = "boom_link"; }),
          "line #: joint 'bucket_joint' moves too, between 'boom_joint' and 'arm_joint'");
   begins(with(3, [](auto& j) { j.parent = "nothing"; }),
@@ -389,15 +260,20 @@ TEST_F(Urdf, SaysWhatIsWrong) {
 }
 
 TEST_F(Urdf, ShowsHowToExpandAXacro) {
-  const std::string said =
-      "is a macro: this is a xacro, expand it first, with ROS: xacro FILE.urdf.xacro > "
-      "machine.urdf";
+  const auto said = [](const std::string& command) {
+    return "is a macro: this is a xacro, expand it first, with ROS: xacro " + command;
+  };
+  const std::string here = said(folder.file("digger.urdf > ") + folder.file("digger-plain.urdf"));
   EXPECT_EQ(complaint("<robot name=\"a\">\n<xacro:include filename=\"b\"/></robot>"),
-            "line 2: 'xacro:include' " + said);
+            "line 2: 'xacro:include' " + here);
   EXPECT_EQ(complaint("<robot name=\"a\"><link name=\"${prefix}_b\"/></robot>"),
-            "line 1: 'link' " + said);
+            "line 1: 'link' " + here);
   EXPECT_EQ(complaint("<robot name=\"a\"><link name=\"$(arg prefix)_b\"/></robot>"),
-            "line 1: 'link' " + said);
+            "line 1: 'link' " + here);
+  const std::string xacro =
+      folder.write("a.urdf.xacro", "<robot name=\"a\"><xacro:macro name=\"b\"/></robot>");
+  EXPECT_EQ(test::error_about([&] { load_machine_file(xacro); }, xacro),
+            "line 1: 'xacro:macro' " + said(xacro + " > " + folder.file("a.urdf")));
 }
 
 TEST_F(Urdf, RefusesXmlThatIsNoneOrABomb) {

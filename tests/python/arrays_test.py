@@ -3,6 +3,7 @@
 """Arrays in and out, with and without NumPy; they outlive what they came from."""
 
 import array
+import ctypes
 import gc
 import subprocess
 import sys
@@ -29,6 +30,16 @@ class Arrays(unittest.TestCase):
         for code in "fdbBhHiIlLqQ":
             flat = memoryview(array.array(code, range(6))).cast("B").cast(code, (2, 3))
             self.assertEqual(ex.HeightMap(flat).z.tolist(), HEIGHTS, code)
+
+    def test_numbers_in_the_other_order_of_bytes(self):
+        for kind in (ctypes.c_double, ctypes.c_float, ctypes.c_int16, ctypes.c_uint32,
+                     ctypes.c_int64):
+            swapped = kind.__ctype_be__ if sys.byteorder == "little" else kind.__ctype_le__
+            flat = (swapped * 3 * 2)()
+            for row, numbers in enumerate(HEIGHTS):
+                for col, each in enumerate(numbers):
+                    flat[row][col] = kind(int(each)).value
+            self.assertEqual(ex.HeightMap(flat).z.tolist(), HEIGHTS, kind)
 
     def test_an_array_outlives_its_owner_and_cannot_be_written(self):
         z = ex.HeightMap(HEIGHTS).z
@@ -74,6 +85,17 @@ class Arrays(unittest.TestCase):
         self.assertIsInstance(z, numpy.ndarray)
         self.assertEqual(z.tolist(), whole[::2, ::-2].tolist())
         self.assertEqual(ex.HeightMap(numpy.asfortranarray(whole)).z.tolist(), whole.tolist())
+
+    @unittest.skipUnless(numpy, "NumPy is not installed")
+    def test_a_row_that_is_broadcast_fills_no_memory(self):
+        self.assertEqual(ex.HeightMap(numpy.broadcast_to(2.0, (4, 5))).z.sum(), 40.0)
+        row = numpy.zeros(3)
+        for rows in (10 ** 9, 10 ** 15):
+            with self.assertRaisesRegex(ex.Error, "broadcast, expected at most 20000000 numbers"):
+                ex.Cloud(numpy.broadcast_to(row, (rows, 3)))
+        for order in "<>":
+            whole = numpy.arange(24, dtype=order + "f8").reshape(4, 6)
+            self.assertEqual(ex.HeightMap(whole).z.tolist(), whole.tolist())
 
     @unittest.skipUnless(numpy, "NumPy is not installed")
     def test_the_first_arrays_may_be_asked_for_by_several_threads(self):

@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 import excavplan as ex
-from tools import result_of
+from tools import is_part_of, result_of
 
 MACHINE = ex.load_machine("zx120")
 LOAM = ex.load_soil("loam")
@@ -119,6 +119,7 @@ class Digs(unittest.TestCase):
     def test_simulate_dig_is_that_of_the_tool(self):
         told = result_of("simulate-dig", "--density", 40)
         scene = ex.simulate_dig(MACHINE, LOAM, 40)
+        is_part_of(self, scene.to_json(MACHINE), told)
         dig = scene.dig
         self.assertEqual(dig.payload_mass, told["payload_mass_kg"])
         self.assertEqual(dig.energy.total / 1000.0, told["energy_kj"])
@@ -164,6 +165,7 @@ class Plans(unittest.TestCase):
         told = result_of("plan-path", "--density", 43)
         plan = ex.plan_dig(MACHINE, LOAM, 43)
         self.compare(plan, told)
+        is_part_of(self, plan.to_json(43), told)
         self.assertEqual(plan.look_up.error.loss, told["look_up_loss"])
         self.assertGreater(len(plan.trajectory), 10)
 
@@ -174,6 +176,7 @@ class Plans(unittest.TestCase):
                            search=ex.DigSearchOptions(evaluations=40, seed=3,
                                                       objective=ex.DigObjective("energy")))
         self.compare(plan, told)
+        is_part_of(self, plan.to_json(ex.GroundDensity(40, 8), ex.DigObjective("energy")), told)
         self.assertEqual(100.0 * plan.search.value_of_knowing, told["value_of_knowing_percent"])
         self.assertEqual(plan.spread.energy / 1000.0, told["energy_sd_kj"])
         self.assertEqual(plan.evaluations, told["evaluations"])

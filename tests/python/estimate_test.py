@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 import excavplan as ex
-from tools import result_of
+from tools import is_part_of, result_of
 
 BEFORE = ex.data_file("quickstart/before.pcd")
 AFTER = ex.data_file("quickstart/after.pcd")
@@ -42,7 +42,9 @@ class Estimates(unittest.TestCase):
 
     def test_files(self):
         estimate = ex.estimate_density(pathlib.Path(BEFORE), AFTER)
-        self.compare(estimate, result_of("estimate-density", BEFORE, AFTER))
+        told = result_of("estimate-density", BEFORE, AFTER)
+        self.compare(estimate, told)
+        is_part_of(self, estimate.to_json(), told)
         self.assertEqual(estimate.warnings[-1].code, "soil_assumed")
         self.assertEqual(estimate.change.areas[0].difference.z.shape,
                          estimate.change.areas[0].zone.shape)
@@ -53,6 +55,10 @@ class Estimates(unittest.TestCase):
         self.compare(ex.estimate_density(before, after, soil="loam"), told)
         scan = ex.Scan(before.points, sensor_origin=before.sensor_origin)
         self.compare(ex.estimate_density(scan, ex.Scan([after]), soil="loam"), told)
+
+    def test_a_summary_is_that_of_the_tool(self):
+        is_part_of(self, ex.summarise(ex.read_cloud(BEFORE)).to_json(),
+                   result_of("inspect-cloud", BEFORE))
 
     def test_any_soil_and_payload(self):
         told = result_of("estimate-density", BEFORE, AFTER, "--soil", "unknown",

@@ -19,3 +19,11 @@ def result_of(tool, *arguments):
     done = subprocess.run([program, *map(str, arguments), "--json"], stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, check=False)
     return json.loads(done.stdout)
+
+
+def is_part_of(test, text, told):
+    """The JSON of a result has keys of the tool's, with their values."""
+    own = json.loads(text)
+    test.assertGreater(len(own), 5)
+    for key, value in own.items():
+        test.assertEqual(value, told[key], key)

@@ -14,6 +14,9 @@
 #include <excavplan/scans/scan_terrain.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
+#include "recording/times.hpp"
+#include "robot/message_clock.hpp"
+#include "robot/recent_joints.hpp"
 #include "support/errors.hpp"
 #include "support/ros_bytes.hpp"
 
@@ -451,6 +454,29 @@ TEST(DigCycleSession, AMarkEndsWithItsClock) {
   session.end_dig(now + 60 * second);
   scan(session, now + second, now + second);  // a recording that begins again
   EXPECT_EQ(session.stage(), CycleStage::done);
+}
+
+// A sender may state any time: sums and differences stop at the ends of the range.
+TEST(DigCycleSession, TimesAtTheEndsOfTheirRangeAreTimesToo) {
+  MessageClock clock;
+  EXPECT_EQ(clock.time(now, earliest), now - latest);
+  EXPECT_EQ(MessageClock().time(-now, latest), latest - now);
+  EXPECT_EQ(time_between(0, earliest), -latest);
+  EXPECT_EQ(time_between(earliest, latest), latest);
+  RecentJoints joints;
+  joints.add("boom", {earliest, 1.0});
+  EXPECT_EQ(joints.nearest("boom", latest)->position, 1.0);
+  joints.add("boom", {latest, 2.0});
+  EXPECT_EQ(joints.nearest("boom", earliest)->position, 2.0) << "the first is too old to be kept";
+  for (const std::int64_t received : {earliest, latest}) {
+    DigCycleSession session(settings_of());
+    scan(session, now, received);
+    session.start_dig(received);
+    session.end_dig(earliest);
+    scan(session, now, now);  // after the mark, which is not of another clock
+    EXPECT_EQ(session.stage(), CycleStage::done);
+    EXPECT_EQ(session.early_scans(), 0U);
+  }
 }
 
 /// Tells the joint states of a machine: boom, arm, bucket, swing.

@@ -152,7 +152,7 @@ TEST(ScanChecks, AHoleNoBucketDigsNamesTheUnit) {
     const Answer answer = answer_to(scans);
     const Warning* units = answer.warning("units");
     ASSERT_NE(units, nullptr) << word;
-    EXPECT_TRUE(contains(units->message, std::string("--unit ") + word)) << units->message;
+    EXPECT_TRUE(contains(units->message, std::string("`unit` ") + word)) << units->message;
     for (const Warning& warning : answer.estimate->warnings) {
       EXPECT_TRUE(warning.code == WarningCode::units || !warning.ends_trust) << warning.message;
       EXPECT_NE(warning.code, WarningCode::sensor_place_inferred) << word;
@@ -172,7 +172,7 @@ TEST(ScanChecks, TheLikelyUnitIsFoundFromAWrongOneToo) {
   scans.before.unit = scans.after.unit = 0.3048;
   const Answer answer = answer_to(scans);
   ASSERT_NE(answer.warning("units"), nullptr);
-  EXPECT_TRUE(contains(answer.warning("units")->message, "--unit mm"));
+  EXPECT_TRUE(contains(answer.warning("units")->message, "`unit` mm"));
 }
 
 TEST(ScanChecks, ACauseStandsForWhatFollowsFromIt) {
@@ -194,7 +194,7 @@ TEST(ScanChecks, OneScanInOtherUnitsIsNamed) {
   Survey survey(3, true);
   Survey::move(survey.after, Affine(Eigen::Scaling(1000.0)));
   DigScans scans = survey.scans();
-  EXPECT_TRUE(contains(answer_to(scans).error, "--after-unit"));
+  EXPECT_TRUE(contains(answer_to(scans).error, "`after_unit`"));
   scans.after.unit = 0.001;
   EXPECT_TRUE(answer_to(scans).trusted());
 }
@@ -205,7 +205,7 @@ TEST(ScanChecks, ACameraFrameNamesTheOption) {
   const Answer answer = answer_to(survey.scans());
   const std::string text = answer.estimate ? answer.warning("frame")->message : answer.error;
   EXPECT_TRUE(contains(text, "as in the frame of a camera")) << text;
-  EXPECT_TRUE(contains(text, "--before-frame")) << text;
+  EXPECT_TRUE(contains(text, "`before_frame`")) << text;
 }
 
 TEST(ScanChecks, GroundUprightInTheFrameIsNoGround) {
@@ -250,7 +250,7 @@ TEST(ScanChecks, AScanThatMovedTooFarEndsTrust) {
   const Answer answer = answer_to(survey.scans());
   EXPECT_FALSE(answer.trusted());
   if (const Warning* moved = answer.warning("registration_beyond_prior")) {
-    EXPECT_TRUE(contains(moved->message, "--after-frame")) << moved->message;
+    EXPECT_TRUE(contains(moved->message, "`after_frame`")) << moved->message;
   }
 }
 
@@ -372,7 +372,7 @@ TEST(Cover, AWallThatWasSeenBeforeAloneEndsTrust) {
     hide_a_wall(survey.dig, survey.after);
     const Answer hidden = answer_to(survey.scans());
     ASSERT_NE(hidden.warning("hole_in_shadow"), nullptr) << seed;
-    EXPECT_TRUE(contains(hidden.warning("hole_in_shadow")->message, "--sensor-origin"));
+    EXPECT_TRUE(contains(hidden.warning("hole_in_shadow")->message, "`sensor_origin`"));
     EXPECT_FALSE(hidden.trusted());
     hide_a_wall(survey.dig, survey.before);
     EXPECT_EQ(answer_to(survey.scans()).warning("hole_in_shadow"), nullptr) << seed;

@@ -26,8 +26,8 @@ TEST_F(Tools, FromAUrdfToAPlan) {
                "digging_force_kn/arm", "capacity_m3/struck", "capacity_m3/heaped",
                "robot_joints/boom/sign", "robot_joints/boom/zero_rad", "soils/0/entries",
                "soils/0/evaluations", "soils/0/example/payload_mass_kg", "wall_time_s"});
-  for (const char* file :
-       {"machine.json", "reach.svg", "laws/digger-loam.json", "libraries/digger-loam-cycle.json"}) {
+  for (const char* file : {"machine.json", "joints.svg", "reach.svg", "laws/digger-loam.json",
+                           "libraries/digger-loam-cycle.json"}) {
     EXPECT_TRUE(fs::is_regular_file(folder.file("digger-kit") + "/" + file)) << file;
   }
   const json plan = answer("plan-path", {"--machine", urdf, "--density", "40"});
@@ -43,6 +43,20 @@ TEST_F(Tools, FromAUrdfToAPlan) {
   const json experiment = answer("run-experiment", {"--machine", folder.file("digger-kit"),
                                                     "--goal", "cycle", "--densities", "40"});
   EXPECT_EQ(experiment.at("conditions").size(), 1U);
+}
+
+// The picture is there though the machine cannot make the dig of a kit.
+TEST_F(Tools, AUrdfIsDrawnAsUnderstood) {
+  auto joints = zx120_joints();
+  joints[1].axis = "0 -1 0";
+  joints[1].limit = "lower=\"1.1\" upper=\"1.2\"";
+  const std::string urdf = folder.write("digger.urdf", urdf_of(joints));
+  const std::string plot = folder.file("joints.svg");
+  EXPECT_EQ(run_program("machine-kit", Words{urdf, "--plot", plot} + small_kit).code, 2);
+  const std::string drawn = content_of(plot);
+  for (const char* text : {"boom = -boom_joint", "arm = arm_joint", "swing_joint", "tooth tip"}) {
+    EXPECT_TRUE(contains(drawn, text)) << text;
+  }
 }
 
 TEST_F(Tools, AKitHoldsTheLawOfItsMachine) {

@@ -15,6 +15,7 @@
 #include "support/report_page.hpp"
 #include "support/svg_figure.hpp"
 #include "support/tool_answers.hpp"
+#include "support/urdf_file.hpp"
 
 /// @file
 /// plan-path: look-up and search, what it warns of, and the trajectory it writes.
@@ -402,6 +403,31 @@ TEST_F(Tools, SearchIsTheSameForAnyNumberOfThreads) {
   const std::string one = plan("1");
   EXPECT_EQ(one, plan("2"));
   EXPECT_EQ(one, plan("8"));
+}
+
+TEST_F(Tools, ABrokenDataFolderIsNamed) {
+  const std::string data = folder.file("data");
+  fs::copy(EXCAVPLAN_DATA_SOURCE, data, fs::copy_options::recursive);
+  ::setenv("EXCAVPLAN_DATA", data.c_str(), 1);
+  const auto said = [&](const Words& words) {
+    const ProgramResult result = run_program("plan-path", Words{"--density", "40"} + words);
+    EXPECT_EQ(result.code, 3) << result.err;
+    return result.err;
+  };
+  const Words report = {"--report", folder.file("report.html")};
+  const std::string start = "plan-path: " + data + "/report/page.html: ";
+  for (const auto& [broken, why] :
+       {std::pair{"<p>{{nothing}}</p>", "'nothing' is no part of a report"},
+        {"<p>{{title", "'title' is not closed by '}}'"},
+        {"", "it has no place for 'app'"}}) {
+    folder.write("data/report/page.html", broken);
+    EXPECT_EQ(said(report), start + why + "\n");
+  }
+  EXPECT_FALSE(fs::exists(report[1]));
+  folder.write("data/machines/zx120.json", R"({"format": "excavplan-machine", "version": 1})");
+  const std::string urdf = folder.write("digger.urdf", urdf_of(zx120_joints()));
+  EXPECT_TRUE(contains(said({"--machine", urdf}), data + "/machines/zx120.json: "));
+  ::unsetenv("EXCAVPLAN_DATA");
 }
 
 TEST_F(Tools, SearchWarnsOfADamagedShippedLibraryAndGoesOn) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "inputs/plots.hpp"
 #include "inputs/simulator_inputs.hpp"
 #include "support/errors.hpp"
 #include "support/tool_answers.hpp"
@@ -21,6 +22,9 @@ class SettingsText : public ::testing::Test {
     arguments.text("soil", "NAME", soil, "");
     arguments.text("range", "FROM,TO", range, "");
     arguments.option("camera", cameras, "");
+    arguments.output("trajectory", trajectory, "");
+    arguments.folder("output", output, "");
+    declare_plots(arguments, plots, {{"section", ""}});
     declare_simulator(arguments, simulator);
   }
   std::vector<std::string> texts(const std::string& toml, const std::string& name) const {
@@ -40,6 +44,8 @@ class SettingsText : public ::testing::Test {
   bool search = false;
   std::vector<CameraPlace> cameras;
   SimulatorInputs simulator;
+  std::optional<std::string> trajectory, output;
+  Plots plots;
 };
 
 using Texts = std::vector<std::string>;
@@ -101,6 +107,15 @@ TEST_F(SettingsText, NothingInItRunsCode) {
       refusal("[plan-path]\nsimulator-command = 'touch x'"),
       "site.toml: line 2, column 21: --simulator-command is of the command line alone: a file "
       "names no program to run");
+}
+
+// Nor does it replace files of who runs it.
+TEST_F(SettingsText, NothingInItWrites) {
+  for (const std::string name : {"trajectory", "output", "plot"}) {
+    EXPECT_EQ(refusal("[plan-path]\n" + name + " = '../.bashrc'"),
+              "site.toml: line 2, column " + std::to_string(name.size() + 4) + ": --" + name +
+                  " is of the command line alone: a file names nothing to write");
+  }
 }
 
 }  // namespace

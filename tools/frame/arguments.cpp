@@ -52,6 +52,20 @@ std::string with_option_names(std::string message, const OptionNames& names) {
   return message;
 }
 
+std::string with_options(std::string text, const std::vector<Arguments::Entry>& entries) {
+  for (std::size_t at = text.find('`'); at != text.npos; at = text.find('`', at + 1)) {
+    const std::size_t end = text.find('`', at + 1);
+    if (end == text.npos) break;
+    std::string name = text.substr(at + 1, end - at - 1);
+    std::replace(name.begin(), name.end(), '_', '-');
+    const bool is_option = std::any_of(entries.begin(), entries.end(), [&](const auto& entry) {
+      return !entry.positional && entry.name == name;
+    });
+    if (is_option) text.replace(at, end + 1 - at, "--" + name);
+  }
+  return text;
+}
+
 void Arguments::add(Entry entry) { entries_.push_back(std::move(entry)); }
 
 void Arguments::positional(const std::string& name, std::string& value, const std::string& help) {

@@ -138,4 +138,8 @@ class Arguments {
   std::vector<Entry> entries_;
 };
 
+/// A text of the library with "--dig-area" for `dig_area`, an input by its name, where the tool has
+/// an option of that name.
+std::string with_options(std::string text, const std::vector<Arguments::Entry>& entries);
+
 }  // namespace excavplan::tools

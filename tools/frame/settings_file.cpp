@@ -95,6 +95,9 @@ class Settings {
       stated_.left_out.push_back(name);
       return;
     }
+    if (entry->output || entry->place) {
+      refuse(value, "--" + name + " is of the command line alone: a file names nothing to write");
+    }
     const auto index = static_cast<std::size_t>(entry - entries_.begin());
     StatedSettings::Option option = {index, texts_of(*entry, value), place(value.source())};
     if (entry->check_in_file) check(*entry, option);

@@ -23,8 +23,8 @@ struct StatedSettings {
 
 /// Reads a file of settings in TOML 1.0 (`docs/formats.md#settings`). Keys are options; those in
 /// the table [TOOL] must be of this tool, those before all tables are used if it has them, those in
-/// tables of other tools are not looked at. Of one option the table wins. Nothing in it runs code:
-/// Arguments::Entry::check_in_file.
+/// tables of other tools are not looked at. Of one option the table wins. Nothing in it runs code,
+/// Arguments::Entry::check_in_file, or names a file to write, Entry::output and Entry::place.
 ///
 /// A list is one value after the other where an option may be repeated, else joined with commas.
 /// @throws Error (bad_file) naming file, line, column and rule

@@ -25,6 +25,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "frame/command_line.hpp"
+#include "frame/option_names.hpp"
 #include "frame/signals.hpp"
 #include "frame/stack.hpp"
 #include "results/warning_results.hpp"
@@ -139,6 +140,27 @@ void add_option_warnings(const std::vector<Arguments::Entry>& entries, const Par
   }
 }
 
+/// All texts of a result.
+void name_options(const std::vector<Arguments::Entry>& entries, nlohmann::ordered_json& json) {
+  if (json.is_string()) json = with_options(json.get<std::string>(), entries);
+  if (!json.is_structured()) return;
+  for (auto& each : json) name_options(entries, each);
+}
+
+/// Runs `work`; what the library says then names the options.
+Outcome with_options(const std::vector<Arguments::Entry>& entries,
+                     const std::function<Outcome()>& work) {
+  try {
+    Outcome outcome = work();
+    name_options(entries, outcome.json);
+    for (std::string& line : outcome.lines) line = with_options(line, entries);
+    for (Warning& each : outcome.warnings) each.message = with_options(each.message, entries);
+    return outcome;
+  } catch (const Error& error) {
+    throw Error(error.kind(), with_options(error.what(), entries));
+  }
+}
+
 int run(int argc, const char* const* argv, const About& about,
         const std::function<void(Arguments&)>& declare,
         const std::function<Outcome(Console&)>& work, StandardInput& input) {
@@ -173,7 +195,9 @@ int run(int argc, const char* const* argv, const About& about,
   if (common.json) refuse_beside_json(arguments.entries(), words);
   Console console(common.quiet, ::isatty(STDERR_FILENO) == 1, signals);
   if (!settings.empty()) console.note("settings from " + input.named(settings));
-  Outcome outcome = naming_settings(arguments.entries(), words, [&] { return work(console); });
+  Outcome outcome = naming_settings(arguments.entries(), words, [&] {
+    return with_options(arguments.entries(), [&] { return work(console); });
+  });
   add_option_warnings(arguments.entries(), words, outcome);
   console.clear();
   if (outcome.page) {

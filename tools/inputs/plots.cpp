@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "drawing/render.hpp"
 #include "frame/named_file.hpp"
+#include "frame/option_names.hpp"
 
 namespace excavplan::tools {
 namespace {
@@ -99,7 +100,9 @@ void declare_plots(Arguments& arguments, Plots& plots, const std::vector<FigureN
   plot.check = [&plots, figures](const std::string& text) {
     const std::string file = named_file(text).file;
     plots.files.push_back({figure_of(text, figures).name, file});
-    require_fonts(file);
+    naming_options({{"no font is", "--plot: no font is"},
+                    {"PNG and PDF need cairo", "--plot: PNG and PDF need cairo"}},
+                   [&] { require_fonts(file); });
   };
   arguments.add(plot);
   arguments.only_if({[&plots] { return !plots.files.empty(); }, "there is no --plot"}, [&] {

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "machine_kit/kit_plots.hpp"
 
+#include "figures/joints_figure.hpp"
 #include "figures/reach_figure.hpp"
 
 namespace excavplan::tools {
 
 const FigureTable<Machine>& kit_figures() {
   static const FigureTable<Machine> figures = {
+      {{"joints", "the machine as understood: its joints at zero, their ranges and directions"},
+       joints_figure},
       {{"reach", "the machine, how far its tip comes and how hard it digs there"}, reach_figure}};
   return figures;
 }

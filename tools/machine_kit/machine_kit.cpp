@@ -49,7 +49,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("machine", inputs.machine, "machine file, URDF, or a shipped machine");
   arguments.folder(
       "output", inputs.output,
-      "folder for machine.json, reach.svg, laws and libraries (default: NAME-kit beside "
+      "folder for machine.json, pictures, laws and libraries (default: NAME-kit beside "
       "the machine)");
   arguments.text("soil", "NAME,..", inputs.soils, "loam, sand, clay, gravel or soil files");
   declare_goal(arguments, inputs.goal);
@@ -80,8 +80,10 @@ KitOptions options_of(const Inputs& inputs, const Machine& machine, Console& con
 /// Of a machine that digs.
 void write_machine(const Inputs& inputs, const MachineFile& file, Outcome& outcome) {
   write_file(inputs.folder() + "/" + kit_machine, file.text);
-  Plots plots = inputs.plots;
-  plots.files.push_back({"reach", inputs.folder() + "/reach.svg"});
+  Plots plots;
+  for (const char* figure : {"joints", "reach"}) {
+    plots.files.push_back({figure, inputs.folder() + "/" + figure + ".svg"});
+  }
   write_plots(plots, kit_figures(), file.machine, outcome.lines, outcome.warnings);
 }
 
@@ -123,6 +125,7 @@ Outcome work(const Inputs& inputs, Console& console) {
     outcome.warnings.push_back(std::move(each));
   }
   outcome.json["soils"] = nlohmann::ordered_json::array();
+  write_plots(inputs.plots, kit_figures(), file.machine, outcome.lines, outcome.warnings);
   in_folder(inputs.folder(), [&] { make_kits(inputs, file, console, outcome); });
   outcome.json["wall_time_s"] = watch.seconds();
   if (!outcome.stopped_early) {

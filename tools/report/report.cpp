@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/report.hpp"
 
+#include <algorithm>
 #include <map>
+#include <set>
 
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/base/error.hpp>
 
 #include "base/files.hpp"
 #include "base/json.hpp"
@@ -42,16 +45,31 @@ std::string app() {
   return text;
 }
 
-/// Replaces "{{name}}" in the template, not in what replaces it.
-std::string filled(const std::string& page, const std::map<std::string, std::string>& parts) {
+/// Fills the template, not what replaces "{{name}}" in it.
+/// @throws Error (bad_file) unless it names each part, and nothing else
+std::string filled(const std::map<std::string, std::string>& parts) {
+  const std::string file = find_data_file("report/page.html");
+  const std::string page = read_file(file);
   std::string text;
   std::size_t at = 0;
+  std::set<std::string> unused;
+  for (const auto& [name, part] : parts) unused.insert(name);
   for (std::size_t open = page.find("{{"); open != std::string::npos; open = page.find("{{", at)) {
     const std::size_t close = page.find("}}", open);
-    text += page.substr(at, open - at) + parts.at(page.substr(open + 2, close - open - 2));
+    const std::string name = page.substr(open + 2, std::min(close, page.size()) - open - 2);
+    if (close == page.npos) {
+      throw Error(ErrorKind::bad_file, file + ": " + in_quotes(name) + " is not closed by '}}'");
+    }
+    const auto part = parts.find(name);
+    if (part == parts.end()) {
+      throw Error(ErrorKind::bad_file, file + ": " + in_quotes(name) + " is no part of a report");
+    }
+    text += page.substr(at, open - at) + part->second;
+    unused.erase(name);
     at = close + 2;
   }
-  return text + page.substr(at);
+  if (unused.empty()) return text + page.substr(at);
+  throw Error(ErrorKind::bad_file, file + ": it has no place for " + in_quotes(*unused.begin()));
 }
 
 std::string verdict(const Report& report, const ReportedRun& run) {
@@ -130,7 +148,7 @@ std::string html_page(const Report& report, const ReportedRun& run) {
       {"style", shipped("vendor/uplot.css") + shipped("style.css")},
       {"vendor", shipped("vendor/vendor.js")},
       {"app", app()}};
-  return filled(shipped("page.html"), parts);
+  return filled(parts);
 }
 
 Page page_of(Report report, const std::string& file) {
