@@ -49,6 +49,7 @@ set(thorough_optimisation_test
   SearchCheckpointFile.KilledAtAHundredMomentsAndResumedGivesTheSameBytes)
 # Libraries built and compared again; one shipped library of each goal stays.
 set(thorough_planning_test
+  StandingGround.NoPlanIsTrustedInTwoHundredScenesWithFewFalseAlarms
   PlanDig.OnUnevenGroundAnUncertainDensityIsSearchedAsThoroughlyAsAKnownOne
   LibraryBuilding.LooksUpWhatIsBestMidway
   LibraryBuilding.SeveralBuildsShareAFolder

@@ -147,6 +147,11 @@ void compare(const char* what, std::optional<double> stated, double computed, do
                             " by its data sheet");
 }
 
+bool is_empty(const DataSheet& sheet) {
+  return !sheet.operating_mass && !sheet.bucket_capacity && !sheet.bucket_force &&
+         !sheet.arm_force && !sheet.ground_reach && !sheet.depth && !sheet.height;
+}
+
 void add_sheet(const Machine& machine, const Reach& reach, const DataSheet& sheet,
                std::vector<Warning>& warnings) {
   constexpr double length = 0.05, force = 0.15, volume = 0.1, weight = 0.05;  // ours
@@ -215,6 +220,12 @@ double bucket_force(const Machine& machine) {
 
 double arm_force(const Machine& machine) {
   return machine.limits[1].torque / (machine.arm_length + machine.bucket_length);
+}
+
+std::vector<Warning> check_data_sheet(const Machine& machine, const DataSheet& sheet) {
+  std::vector<Warning> warnings;
+  if (!is_empty(sheet)) add_sheet(machine, reach_of(machine), sheet, warnings);
+  return warnings;
 }
 
 std::vector<Warning> check_machine(const Machine& machine, const DataSheet& sheet) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include <excavplan/machine/kinematics.hpp>
@@ -26,15 +27,17 @@ inline Eigen::Vector2d cavity_centre(const Bucket& bucket) {
   return sum / area;
 }
 
-/// Distances of the links' centres of mass from the swing axis, along x [m].
-inline Eigen::Vector3d link_centres(const Machine& machine, const LinkPositions& at) {
-  const double pins[] = {machine.boom_pin.x(), at.arm_pin.x(), at.bucket_pin.x()};
-  const double angles[] = {at.phi1, at.phi2, at.phi3};
-  Eigen::Vector3d centres;
+/// Centres of mass of the links, x and z [m].
+inline std::array<Eigen::Vector2d, 3> link_centres(const Machine& machine,
+                                                   const LinkPositions& at) {
+  const std::array<Eigen::Vector2d, 3> pins = {machine.boom_pin, at.arm_pin, at.bucket_pin};
+  const std::array<double, 3> angles = {at.phi1, at.phi2, at.phi3};
+  std::array<Eigen::Vector2d, 3> centres;
   for (std::size_t i = 0; i < machine.links.size(); ++i) {
     const LinkMass& link = machine.links[i];
-    centres[static_cast<Eigen::Index>(i)] =
-        pins[i] + link.along * std::cos(angles[i]) - link.across * std::sin(angles[i]);
+    const Eigen::Vector2d along = direction(angles[i]);
+    centres[i] =
+        pins[i] + link.along * along + link.across * Eigen::Vector2d(-along.y(), along.x());
   }
   return centres;
 }
@@ -44,10 +47,10 @@ inline Eigen::Vector3d link_centres(const Machine& machine, const LinkPositions&
 inline double swing_inertia(const Machine& machine, const Eigen::Vector2d& centre,
                             const JointAngles& joints, double payload) {
   const LinkPositions at = link_positions(machine, joints);
-  const Eigen::Vector3d centres = link_centres(machine, at);
+  const auto centres = link_centres(machine, at);
   double sum = machine.swing->inertia + payload * std::pow(bucket_point(at, centre).x(), 2);
   for (std::size_t i = 0; i < machine.links.size(); ++i) {
-    sum += machine.links[i].mass * std::pow(centres[static_cast<Eigen::Index>(i)], 2);
+    sum += machine.links[i].mass * std::pow(centres[i].x(), 2);
   }
   return sum;
 }

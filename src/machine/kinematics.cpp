@@ -132,16 +132,19 @@ JointAngles torque_against_force(const Machine& machine, const LinkPositions& at
           cross(point - at.bucket_pin, force)};
 }
 
-JointAngles torque_against_link_weight(const Machine& machine, const LinkPositions& at) {
+JointAngles torque_against_link_weight(const Machine& machine, const LinkPositions& at,
+                                       double swing) {
   const std::array<Vector2d, 3> pins = {machine.boom_pin, at.arm_pin, at.bucket_pin};
   const std::array<double, 3> angles = {at.phi1, at.phi2, at.phi3};
+  const Vector2d up = machine.up(swing);
   JointAngles torque = JointAngles::Zero();
   for (std::size_t i = 0; i < pins.size(); ++i) {
     const LinkMass& link = machine.links[i];
     const Vector2d along = direction(angles[i]);
-    const double center_x = pins[i].x() + link.along * along.x() - link.across * along.y();
+    const Vector2d center =
+        pins[i] + link.along * along + link.across * Vector2d(-along.y(), along.x());
     for (std::size_t j = 0; j <= i; ++j) {
-      torque[static_cast<int>(j)] -= link.mass * standard_gravity * (center_x - pins[j].x());
+      torque[static_cast<int>(j)] -= link.mass * standard_gravity * cross(center - pins[j], up);
     }
   }
   return torque;

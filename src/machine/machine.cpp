@@ -40,6 +40,27 @@ double Machine::beta() const {
   return std::atan2(floor.y(), -floor.x());
 }
 
+Eigen::Matrix3d Attitude::to_site() const {
+  return Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()).toRotationMatrix() *
+         Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()).toRotationMatrix();
+}
+
+Eigen::Vector3d Attitude::up() const {
+  if (is_level()) return Eigen::Vector3d::UnitZ();
+  return to_site().row(2).transpose();
+}
+
+Vector2d Machine::up(double swung) const {
+  if (attitude.is_level()) return Vector2d::UnitY();
+  const Eigen::Vector3d against = attitude.up();
+  return {std::cos(swung) * against.x() + std::sin(swung) * against.y(), against.z()};
+}
+
+Machine with_attitude(Machine machine, const Attitude& attitude) {
+  machine.attitude = attitude;
+  return machine;
+}
+
 double Machine::swing_reach() const {
   return std::hypot(std::abs(boom_pin.x()) + full_length(), 0.5 * bucket.width_outside);
 }

@@ -76,6 +76,9 @@ std::string fingerprint(const Machine& machine) {
   add_bucket(machine.bucket, numbers);
   add_hydraulics(machine, numbers);
   add_body_and_drive(machine, numbers);
+  if (const Attitude& stands = machine.attitude; !stands.is_level()) {
+    numbers << stands.roll << stands.pitch;
+  }
   return numbers.digest();
 }
 

@@ -28,7 +28,8 @@ constexpr double widest_swing = 2.0 * pi;  // from dig to dump [rad]
 
 /// That hold the front on the way between two places: of each joint that which takes more power.
 JointAngles heavier(const FrontLoad& load, const FrontJoints& from, const FrontJoints& to) {
-  const JointAngles first = load.torque(from.head<3>()), last = load.torque(to.head<3>());
+  const JointAngles first = load.torque(from.head<3>(), from[3]),
+                    last = load.torque(to.head<3>(), to[3]);
   const JointAngles move = to.head<3>() - from.head<3>();
   return ((last - first).array() * move.array() > 0.0).select(last, first);
 }

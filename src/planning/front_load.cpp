@@ -29,10 +29,11 @@ double within(double value, double lowest, double highest) {
 FrontLoad::FrontLoad(const Machine& machine, double payload)
     : machine_(machine), payload_(payload), centre_(cavity_centre(machine.bucket)) {}
 
-JointAngles FrontLoad::torque(const JointAngles& joints) const {
+JointAngles FrontLoad::torque(const JointAngles& joints, double swing) const {
   const LinkPositions at = link_positions(machine_, joints);
-  return torque_against_link_weight(machine_, at) +
-         torque_against_force(machine_, at, bucket_point(at, centre_), {0.0, -payload_ * gravity});
+  return torque_against_link_weight(machine_, at, swing) +
+         torque_against_force(machine_, at, bucket_point(at, centre_),
+                              -payload_ * gravity * machine_.up(swing));
 }
 
 double FrontLoad::inertia(const JointAngles& joints) const {

@@ -14,8 +14,8 @@ class FrontLoad {
   /// @param payload  in the centre of the bucket's cavity [kg]
   explicit FrontLoad(const Machine& machine, double payload = 0.0);
 
-  /// That holds it [N m].
-  JointAngles torque(const JointAngles& joints) const;
+  /// That holds it, swung to the left by `swing` [N m].
+  JointAngles torque(const JointAngles& joints, double swing = 0.0) const;
   /// About the swing axis, with the upper structure: links and payload as points [kg m^2].
   double inertia(const JointAngles& joints) const;
 

@@ -11,6 +11,7 @@
 
 #include <excavplan/base/ceilings.hpp>
 #include <excavplan/base/data_files.hpp>
+#include <excavplan/planning/standing_ground.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
 #include "base/check.hpp"
@@ -36,11 +37,12 @@ constexpr int least_to_divide = 60;    // digs of a search in two parts; ours
 constexpr double worth_making = 0.1;   // fill of the bucket; ours
 
 struct Task {
-  const Machine& machine;
+  const Machine& machine;  ///< as it stands
+  const Machine& filed;    ///< level, as libraries know it
   const SoilKind& soil;
   const GroundDensity& density;
   const Terrain& ground;
-  bool level;  ///< no ground was given
+  bool level;  ///< no ground was given, and the machine stands level
   const PlanOptions& options;
 
   bool uncertain() const { return density.sd_percent > 0.0; }
@@ -81,25 +83,16 @@ void add_known_heights(const HeightMap& map, Eigen::Index col, double half_width
   }
 }
 
-/// Machines stand at z = 0, and so does the ground just ahead of them, or lower: not far above.
-void judge_ground(const Task& task, DigPlan& plan) {
-  constexpr double ahead = 1.0;  // of the tracks, and to both sides [m]; ours
-  constexpr double most = 0.5;   // [m]; ours: a slope of 30 degrees rises so far
-  const HeightMap map = task.ground.surface();
-  const double front = task.machine.track_front;
-  std::vector<double> heights;
-  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
-    if (map.x(col) < front || map.x(col) > front + ahead) continue;
-    add_known_heights(map, col, ahead, heights);
+/// Of a terrain alone it goes without saying that it does not show all that the machine stands on.
+void judge_standing(const Task& task, DigPlan& plan) {
+  const std::optional<HeightMap>& given = task.options.standing_on;
+  const HeightMap ground = given ? *given : task.ground.surface();
+  StandingGround found = standing_ground(task.machine, ground);
+  plan.on_slope.roll += found.rise_left.value_or(0.0);
+  plan.on_slope.pitch -= found.rise_ahead.value_or(0.0);
+  for (Warning& each : found.warnings) {
+    if (given || each.code != WarningCode::ground_at_tracks_unseen) warn(plan, std::move(each));
   }
-  if (heights.empty()) return;
-  const double height = median(heights);
-  if (height <= most) return;
-  warn(plan, {WarningCode::ground_above_tracks,
-              "the ground ahead of the tracks, x = " + readable(front) + " .. " +
-                  readable(front + ahead) + " m, lies " + readable(height, 2) +
-                  " m above the ground that the machine stands on, z = 0: are the heights of the "
-                  "terrain those of the site frame?"});
 }
 
 /// The simulators dig all ground as soil: they do not know a post or a rock.
@@ -126,10 +119,10 @@ std::shared_ptr<const PathLibrary> library_of(const Task& task) {
   const PlanOptions& options = task.options;
   if (!options.library) {
     return std::make_shared<PathLibrary>(
-        shipped_library(task.machine, task.soil, task.objective(), options.data_folder));
+        shipped_library(task.filed, task.soil, task.objective(), options.data_folder));
   }
   const std::string& own = options.simulator.name;
-  require_fit(*options.library, task.machine, task.soil, task.objective(),
+  require_fit(*options.library, task.filed, task.soil, task.objective(),
               options.library->simulator == own ? own : default_simulator().name);
   return options.library;
 }
@@ -530,8 +523,9 @@ DigPlan plan_dig(const Task& task) {
   require_in("search: stop.evaluations", task.options.search.stop.evaluations, 0, most_evaluations);
   DigPlan plan;
   plan.method = task.options.method;
+  plan.attitude = plan.on_slope = task.options.attitude;
   judge_density(task, plan);
-  if (!task.level) judge_ground(task, plan);
+  if (!task.level || task.options.standing_on) judge_standing(task, plan);
   std::optional<PossibleGround> ground;  // not for a density taken as known that is looked up
   if (plan.method == PlanMethod::search || task.uncertain()) {
     ground.emplace(task.options.simulator, task.machine, task.soil, task.density);
@@ -574,14 +568,17 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const Terrain& terrain, const PlanOptions& options) {
-  return plan_dig(Task{machine, soil, density, terrain, false, options});
+  const Machine standing = with_attitude(machine, options.attitude);
+  return plan_dig(Task{standing, machine, soil, density, terrain, false, options});
 }
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const PlanOptions& options) {
   const Terrain level =
       level_planning_ground(machine, options.cell_size.value_or(usual_cell(machine)));
-  return plan_dig(Task{machine, soil, density, level, true, options});
+  const Machine standing = with_attitude(machine, options.attitude);
+  const bool is_level = standing.attitude.is_level();
+  return plan_dig(Task{standing, machine, soil, density, level, is_level, options});
 }
 
 }  // namespace excavplan

@@ -12,9 +12,10 @@
 
 namespace excavplan {
 
-std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const Terrain& ground,
+std::variant<Trajectory, BlockedWay> plan_motion(const Machine& filed, const Terrain& ground,
                                                  const DigPlan& plan, const CycleWayOptions& way,
                                                  const MotionOptions& motion) {
+  const Machine machine = with_attitude(filed, plan.attitude);
   if (!plan.dig) return Trajectory{machine.name, {}, machine.robot_joints};
   require(plan.trajectory.machine == machine.name, "motion: the plan is of the machine " +
                                                        in_quotes(plan.trajectory.machine) +
@@ -24,7 +25,7 @@ std::variant<Trajectory, BlockedWay> plan_motion(const Machine& machine, const T
   if (const auto* blocked = std::get_if<BlockedWay>(&laid)) return *blocked;
   Trajectory timed = time_way(machine, std::get<Way>(laid), motion);
   timed.warnings = std::get<Way>(laid).warnings;
-  for (Warning& each : load_warnings(machine, std::get<Way>(laid))) {
+  for (Warning& each : load_warnings(machine, std::get<Way>(laid), plan.on_slope)) {
     timed.warnings.push_back(std::move(each));
   }
   return timed;

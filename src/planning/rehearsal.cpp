@@ -6,7 +6,8 @@
 
 namespace excavplan {
 
-DigResult rehearse(const Machine& machine, const DigPlan& plan, const PlanSite& site) {
+DigResult rehearse(const Machine& filed, const DigPlan& plan, const PlanSite& site) {
+  const Machine machine = with_attitude(filed, plan.attitude);
   const auto simulator = make_simulator(site.simulator, machine, site.soil, site.density_percent);
   DigOptions options;
   options.history = true;

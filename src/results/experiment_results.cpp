@@ -3,6 +3,7 @@
 #include "results/experiment_results.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include <excavplan/base/data_files.hpp>
@@ -60,6 +61,17 @@ DensityRegression density_regression(const Machine& machine, const SoilKind& soi
   return {calibration.samples, line(as_measured), line(""), std::get<DensityLine>(paper.form)};
 }
 
+namespace {
+
+/// By a measure; null where it is not known of both.
+template <typename Measure>
+Json gain_percent(const ExperimentResult& result, const Measure& measure) {
+  const double gain = 100.0 * (measure(result.planned) / measure(result.fixed) - 1.0);
+  return std::isfinite(gain) ? Json(gain) : Json(nullptr);
+}
+
+}  // namespace
+
 Json experiment_json(const NamedExperiment& experiment) {
   const ExperimentResult& result = experiment.result;
   const HeightMapVolumes& volumes = result.volumes;
@@ -76,6 +88,11 @@ Json experiment_json(const NamedExperiment& experiment) {
           {"gain_percent", result.gain_percent()},
           {"gain_path_percent", result.path_gain_percent()},
           {"gain_start_percent", result.start_gain_percent()},
+          {"payload_gain_percent",
+           gain_percent(result, [](const PlannedDig& dig) { return dig.payload_mass; })},
+          {"cycle_gain_percent",
+           gain_percent(result,
+                        [](const PlannedDig& dig) { return dig.payload_mass / dig.cycle_energy; })},
           {"start_rule", describe(result.start_rule)},
           {"machine_held_down", !result.held_because.empty()}};
 }

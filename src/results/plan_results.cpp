@@ -83,6 +83,9 @@ Json plan_json(const DigPlan& plan, const GroundDensity& density, const DigObjec
   if (plan.cycle) json["cycle"]["by_part"] = parts_json(*plan.cycle);
   json["source"] = name(plan.method);
   json["start_rule"] = plan.start_rule;
+  if (const Attitude& stands = plan.attitude; !stands.is_level()) {
+    json["attitude"] = {{"roll_rad", stands.roll}, {"pitch_rad", stands.pitch}};
+  }
   json["evaluations"] = plan.evaluations;
   const DigGoalInfo& goal = info_of(objective.goal);
   const bool uncertain = density.sd_percent > 0.0;

@@ -10,6 +10,7 @@
 
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "ground/plane_fit.hpp"
 
 namespace excavplan {
 namespace {
@@ -74,6 +75,34 @@ double distance_to(const std::vector<Rectangle>& holes, const Rectangle& here) {
   return std::isfinite(least) ? least : 0.0;
 }
 
+/// What ground lies below the plane of that about an extent; nothing where less than half of either
+/// is seen [m^3].
+std::optional<double> hole_in(const HeightMap& ground, const Rectangle& extent) {
+  constexpr double about = 0.5;  // [m]; ours
+  std::vector<Eigen::Vector3d> inside, around;
+  for (Eigen::Index col = 0; col < ground.z.cols(); ++col) {
+    for (Eigen::Index row = 0; row < ground.z.rows(); ++row) {
+      const Eigen::Vector3d p(ground.x(col), ground.y(row), ground.z(row, col));
+      const double beyond = std::max(extent.x_min - p.x(), p.x() - extent.x_max);
+      const double aside = std::max(extent.y_min - p.y(), p.y() - extent.y_max);
+      if (std::isnan(p.z()) || std::max(beyond, aside) > about) continue;
+      (extent.contains(p.x(), p.y()) ? inside : around).push_back(p);
+    }
+  }
+  const double cell = ground.cell_size * ground.cell_size;
+  const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
+  const double whole = width * height;
+  const double whole_around = (width + 2.0 * about) * (height + 2.0 * about) - whole;
+  const auto seen = [&](const auto& points) { return cell * static_cast<double>(points.size()); };
+  if (seen(inside) < 0.5 * whole || seen(around) < 0.5 * whole_around) return std::nullopt;
+  const GroundPlane plane = robust_plane(around).plane;
+  double sum = 0.0;
+  for (const Eigen::Vector3d& p : inside) {
+    sum += cell * std::max(0.0, plane.at(p.x(), p.y()) - p.z());
+  }
+  return sum;
+}
+
 }  // namespace
 
 StatedDensity stated_density(const std::string& file) {
@@ -108,6 +137,10 @@ StatedDensity stated_density(const std::string& file) {
   stated.is_whole = result.has("tool");
   stated.holes = holes_in(result);
   stated.volumes = volumes_in(result);
+  if (result.states("volume")) {
+    JsonObject volume = result.object("volume");
+    if (volume.states("excavated_m3")) stated.excavated = volume.number("excavated_m3");
+  }
   return stated;
 }
 
@@ -119,6 +152,23 @@ std::optional<Warning> elsewhere(const StatedDensity& stated, const std::string&
                  file + ": the density was measured " + readable(away) +
                      " m from where this dig begins; it holds for ground near its hole that is of "
                      "the same soil"};
+}
+
+std::optional<Warning> older_ground(const StatedDensity& stated, const std::string& file,
+                                    const HeightMap& ground) {
+  constexpr double least = 1.0 / 3.0;  // of the hole; ours
+  if (!stated.excavated || stated.holes.empty()) return std::nullopt;
+  double seen = 0.0;
+  for (const Rectangle& hole : stated.holes) {
+    const auto volume = hole_in(ground, hole);
+    if (!volume) return std::nullopt;
+    seen += *volume;
+  }
+  if (seen >= least * *stated.excavated) return std::nullopt;
+  return Warning{WarningCode::ground_before_dig,
+                 file + ": the density was measured in a hole of " + readable(*stated.excavated) +
+                     " m3, of which the terrain shows " + readable(seen, 2) +
+                     " m3: it is of before that dig, or of another place"};
 }
 
 }  // namespace excavplan

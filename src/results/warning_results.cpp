@@ -9,7 +9,9 @@ namespace excavplan {
 Json warnings_json(const std::vector<Warning>& warnings) {
   auto list = Json::array();
   for (const Warning& warning : warnings) {
-    list.push_back({{"code", code_text(warning.code)}, {"message", warning.message}});
+    list.push_back({{"code", code_text(warning.code)},
+                    {"message", warning.message},
+                    {"ends_trust", warning.ends_trust}});
   }
   return list;
 }

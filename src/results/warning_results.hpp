@@ -10,7 +10,7 @@
 
 namespace excavplan {
 
-/// Key `warnings` of a result: code and message of each.
+/// Key `warnings` of a result: of each its code, its message and whether it ends trust.
 Json warnings_json(const std::vector<Warning>& warnings);
 
 }  // namespace excavplan

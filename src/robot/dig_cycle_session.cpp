@@ -68,6 +68,7 @@ struct DigCycleSession::State {
   std::optional<Scan> last_scan();
   ScannedTerrain terrain(const std::optional<Scan>& scan) const;
   ScannedTerrain ground_around(const std::optional<Scan>& scan) const;
+  HeightMap ground_at_tracks(const Scan& scan) const;
   PlanOptions plan_options() const;
   std::optional<FrontJoints> start() const;
   void add_motion(const Terrain& ground, CyclePlan& answer) const;
@@ -316,6 +317,13 @@ ScannedTerrain DigCycleSession::State::ground_around(const std::optional<Scan>& 
   return with_surroundings(present, *settings.surroundings);
 }
 
+/// What the machine stands on, as scan and surroundings show it.
+HeightMap DigCycleSession::State::ground_at_tracks(const Scan& scan) const {
+  HeightMap present = standing_ground_from_scan(scan, settings.machine);
+  if (!settings.surroundings) return present;
+  return known_from_both(present, settings.surroundings->surface());
+}
+
 void DigCycleSession::State::add_motion(const Terrain& ground, CyclePlan& answer) const {
   const CycleWayOptions way = {start(), settings.whole_cycle, settings.plan.search.objective};
   answer.posture_known = way.start.has_value();
@@ -501,8 +509,9 @@ CyclePlan DigCycleSession::plan(Time time) {
   ScannedTerrain ground = state.terrain(scan);
   const DigCycleSettings& settings = state.settings;
   CyclePlan answer;
-  answer.plan = plan_dig(settings.machine, settings.soil, state.density, ground.terrain,
-                         state.plan_options());
+  PlanOptions options = state.plan_options();
+  if (scan) options.standing_on = state.ground_at_tracks(*scan);
+  answer.plan = plan_dig(settings.machine, settings.soil, state.density, ground.terrain, options);
   answer.density = state.density;
   answer.density_is_stated = state.density_is_stated;
   answer.previous_density = state.last_refused;

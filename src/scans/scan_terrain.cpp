@@ -144,6 +144,16 @@ ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine)
   return result;
 }
 
+HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine) {
+  const Rectangle extent = standing_extent(machine);
+  const double cell_size = 2.0 * usual_cell(machine);
+  try {
+    return terrain_from_scan(scan, extent, cell_size).terrain.surface();
+  } catch (const FrameError&) {  // a scan of the ground ahead alone
+    return flat_ground(extent, cell_size, std::nan(""));
+  }
+}
+
 ScannedTerrain with_surroundings(const Terrain& present, const Terrain& earlier) {
   const HeightMap ground = present.surface();
   const HeightMap around = earlier.surface();

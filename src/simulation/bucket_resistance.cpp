@@ -222,7 +222,8 @@ struct BucketResistance::FaceTerms {
 BucketResistance::FaceForce BucketResistance::slide(const SlidingFace& face, const Vector2d& tip,
                                                     Index col, double turn,
                                                     const Fill& fill) const {
-  const double slope = surface_slope(col);
+  const Vector2d up = model_.machine.up();
+  const double slope = surface_slope(col) - std::atan2(up.x(), up.y());  // as gravity sees it
   // Where the bucket rises it pushes no wedge: the passive force decreases with the cosine of the
   // climb, and the bucket shears off the soil above it instead.
   const double fade = std::cos(turn);

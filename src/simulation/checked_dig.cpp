@@ -19,6 +19,7 @@
 #include "base/text.hpp"
 #include "ground/map_check.hpp"
 #include "ground/terrain.hpp"
+#include "machine/front_mass.hpp"
 #include "simulation/bucket_cavity.hpp"
 #include "simulation/dig_account.hpp"
 #include "soil/soil.hpp"
@@ -193,20 +194,16 @@ class Examination {
 
 /// Sum of mass times height of boom, arm and bucket [kg m].
 double moment_of_links(const Machine& machine, const JointAngles& joints) {
-  const LinkPositions at = link_positions(machine, joints);
-  const double pins[] = {machine.boom_pin.y(), at.arm_pin.y(), at.bucket_pin.y()};
-  const double angles[] = {at.phi1, at.phi2, at.phi3};
+  const auto centres = link_centres(machine, link_positions(machine, joints));
   double sum = 0.0;
-  for (std::size_t i = 0; i < machine.links.size(); ++i) {
-    const LinkMass& link = machine.links[i];
-    sum += link.mass *
-           (pins[i] + link.along * std::sin(angles[i]) + link.across * std::cos(angles[i]));
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    sum += machine.links[i].mass * centres[i].dot(machine.up());
   }
   return sum;
 }
 
-/// Of the surface over which the bucket passes [m].
-double highest_ground(const Terrain& terrain, const DigPath& path) {
+/// Of the surface over which the bucket passes, along `up` [m].
+double highest_ground(const Terrain& terrain, const DigPath& path, const Eigen::Vector2d& up) {
   const auto [first, last] = std::minmax_element(
       path.poses.begin(), path.poses.end(),
       [](const DigPose& a, const DigPose& b) { return a.bucket.x < b.bucket.x; });
@@ -216,7 +213,8 @@ double highest_ground(const Terrain& terrain, const DigPath& path) {
     const bool under = map.x(col) >= first->bucket.x - map.cell_size &&
                        map.x(col) <= last->bucket.x + map.cell_size;
     for (Index row = 0; under && row < map.z.rows(); ++row) {
-      const double height = map.z(row, col) + terrain.loose(row, col);
+      const double height =
+          up.dot(Eigen::Vector2d(map.x(col), map.z(row, col) + terrain.loose(row, col)));
       if (height > highest) highest = height;
     }
   }
@@ -239,13 +237,16 @@ void Examination::check_energy(const Machine& machine, const Terrain& terrain,
                           [](const DigPose& pose) { return pose.phase == DigPhase::lift; });
   const DigPose& first = path.poses.front();
   const DigPose& last = end == path.poses.begin() ? first : *std::prev(end);
+  const Eigen::Vector2d up = machine.up();
+  const Eigen::Vector2d first_tip(first.bucket.x, first.bucket.z);
+  const Eigen::Vector2d last_tip(last.bucket.x, last.bucket.z);
   // Nothing in the bucket lies higher above its tip than its pin can.
-  if (weight * (last.bucket.z + machine.bucket_length - first.bucket.z) <= energy) return;
+  if (weight * (up.dot(last_tip) + machine.bucket_length - up.dot(first_tip)) <= energy) return;
   Cavity cavity(machine.bucket);
   cavity.turn_to(link_positions(machine, last.joints).phi3);
   const double held = std::min(result_.payload_volume, struck_capacity(machine));
   const double rise =
-      last.bucket.z + cavity.packed(held).centroid.y() - highest_ground(terrain, path);
+      up.dot(last_tip + cavity.packed(held).centroid) - highest_ground(terrain, path, up);
   const double released =
       gravity * (moment_of_links(machine, first.joints) - moment_of_links(machine, last.joints));
   lifting(rise - std::max(0.0, released) / weight);

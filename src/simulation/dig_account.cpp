@@ -38,15 +38,19 @@ std::optional<Excess> lifted_or_dragged(const Machine& machine, const DigStep& s
     const Eigen::Vector2d pin(machine.boom_pin.x() - edge, machine.boom_pin.y());
     return step.by_soil[0] + step.by_payload[0] + cross(pin, step.force);
   };
+  const Eigen::Vector2d up = machine.up();
   const auto of_weight = [&](double edge) {
-    return step.by_links[0] - links * (machine.boom_pin.x() - edge) -
-           weight * (body.centre.x() - edge);
+    const Eigen::Vector2d foot(edge, 0.0);
+    return step.by_links[0] - links * cross(machine.boom_pin - foot, up) -
+           weight * cross(body.centre - foot, up);
   };
-  const double on_ground = std::max(0.0, weight + links - step.force.y());
+  const Eigen::Vector3d down = -(weight + links) * machine.attitude.up();
+  const double along = std::hypot(step.force.x() + down.x(), down.y());
+  const double on_ground = std::max(0.0, -down.z() - step.force.y());
   for (const Excess& excess :
        {Excess{Stall::Cause::front_lifts, of_bucket(body.rear_edge), -of_weight(body.rear_edge)},
         Excess{Stall::Cause::rear_lifts, -of_bucket(body.front_edge), of_weight(body.front_edge)},
-        Excess{Stall::Cause::slides, std::abs(step.force.x()), body.track_friction * on_ground}}) {
+        Excess{Stall::Cause::slides, along, body.track_friction * on_ground}}) {
     if (excess.needed > excess.held) return excess;
   }
   return std::nullopt;

@@ -78,6 +78,14 @@ Rectangle swing_extent(const Machine& machine) {
   return {-far, -far, far, far};
 }
 
+Rectangle standing_extent(const Machine& machine) {
+  constexpr double about = 6.0;  // [m]; ours: the foot of a drop 3 m deep may be hidden up to there
+  require_machine(machine);
+  const double x = machine.track_front + about;
+  const double y = 0.5 * machine.undercarriage_width() + about;
+  return {-x, -y, x, y};
+}
+
 Terrain level_swing_ground(const Machine& machine) {
   return undisturbed(flat_ground(swing_extent(machine), usual_cell(machine)));
 }

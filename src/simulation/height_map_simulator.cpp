@@ -242,9 +242,9 @@ class Dig {
         machine, s.at, s.at.tip,
         s.length > 0.0 ? Vector2d(-resistance.edge * s.direction()) : Vector2d::Zero());
     step.by_payload = torque_against_force(machine, s.at, s.at.tip + cavity_.packed(fill_).centroid,
-                                           {0.0, -payload_weight});
+                                           -payload_weight * machine.up());
     step.by_links = torque_against_link_weight(machine, s.at);
-    step.force = resistance.total() - Vector2d(0.0, payload_weight);
+    step.force = resistance.total() - payload_weight * machine.up();
     if (s.phase != DigPhase::lift) account_.note_force(step, resistance.total(), fill_);
     account_.stalls(step);
     account_.book(step);

@@ -111,7 +111,7 @@ class SectionDig {
     step.by_edge = torque_against_force(machine_, at, soil.tip_at, soil.edge);
     const double carried = std::max(0.0, contents_ - soil.on_floor);
     step.by_payload = carry(at, carried);
-    step.force = soil.total() - Vector2d(0.0, carried * model_.loose.unit_weight);
+    step.force = soil.total() - carried * model_.loose.unit_weight * machine_.up();
     step.by_links = torque_against_link_weight(machine_, at);
     account_.note_force(step, soil.total(), contents_);
     if (account_.stalls(step)) return false;
@@ -138,7 +138,8 @@ class SectionDig {
   /// A part of the soil in the bucket, all of which lies packed into its corner.
   JointAngles carry(const LinkPositions& at, double volume) {
     const Vector2d centre = at.tip + bucket_.turned(model_.packed.of(contents_).centre);
-    return torque_against_force(machine_, at, centre, {0.0, -volume * model_.loose.unit_weight});
+    return torque_against_force(machine_, at, centre,
+                                -volume * model_.loose.unit_weight * machine_.up());
   }
 
   void cut(const Vector2d& p, const Vector2d& q, double wedge_length) {

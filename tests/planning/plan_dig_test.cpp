@@ -242,13 +242,14 @@ TEST_F(PlanDig, DistrustsGroundThatTheLibraryDoesNotCover) {
   EXPECT_FALSE(found.trustworthy || found.look_up->error);
 }
 
-TEST_F(PlanDig, DistrustsGroundFarAboveTheTracks) {
-  for (const double height : {-1.5, 0.0, 0.3, 0.8, 1.4}) {
+TEST_F(PlanDig, DistrustsGroundAboveOrBelowTheTracks) {
+  for (const double height : {-1.5, -0.5, -0.1, 0.0, 0.1, 0.4, 1.4}) {
     Terrain ground = level_planning_ground(machine_);
     ground.bank.z += height;
     const DigPlan found = plan_dig(machine_, loam_, 40.0, ground);
-    EXPECT_EQ(warns(found, "ground_above_tracks"), height > 0.5) << height;
-    EXPECT_TRUE(found.trustworthy <= (height <= 0.5)) << height;
+    EXPECT_EQ(warns(found, "ground_above_tracks"), height > 0.2) << height;
+    EXPECT_EQ(warns(found, "ground_below_tracks"), height < -0.2) << height;
+    EXPECT_EQ(found.trustworthy, std::abs(height) < 0.2) << height;
   }
 }
 

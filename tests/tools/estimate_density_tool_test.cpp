@@ -146,14 +146,14 @@ TEST_F(Tools, AHoleOfManyBucketsIsSaidAndTrusted) {
   EXPECT_EQ(found["trustworthy"], true);
 }
 
-TEST_F(Tools, ALawOfAnotherMachineIsSaidAndTrusted) {
+TEST_F(Tools, ALawOfAnotherMachineEndsTrust) {
   EXPECT_FALSE(warns(answer("estimate-density", quickstart(folder)), "law_of_other_machine"));
   json machine = json::parse(content_of(shipped("machines/zx120.json")));
   machine["name"] = "larger";
   const std::string larger = folder.write("larger.json", machine.dump());
   const json found = answer("estimate-density", quickstart(folder) + Words{"--machine", larger});
   EXPECT_TRUE(warns(found, "law_of_other_machine")) << found["warnings"];
-  EXPECT_EQ(found["trustworthy"], true);
+  EXPECT_EQ(found["trustworthy"], false);
 }
 
 TEST_F(Tools, OneWarningNamesTheUnitOfAllClouds) {
@@ -247,7 +247,9 @@ TEST_F(BadInput, ThePriorOfTheLastDigIsCombined) {
   EXPECT_TRUE(ignored["prior"].is_null());
   json away = alone;
   for (json& zone : away["zones"]) zone["extent_m"] = {20.0, 20.0, 21.0, 21.0};
-  EXPECT_TRUE(warns(with(away), "density_from_elsewhere"));
+  const json moved = with(away, {"--strict"}, 4);
+  EXPECT_TRUE(warns(moved, "density_from_elsewhere"));
+  EXPECT_EQ(moved["trustworthy"], false);
 
   const auto refuses = [&](json prior, const char* key, const json& value,
                            const std::string& reason) {

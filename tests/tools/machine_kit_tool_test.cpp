@@ -79,6 +79,23 @@ TEST_F(Tools, AKitOfAnotherMachineIsRefused) {
   EXPECT_TRUE(contains(result.err, "digger-kit/libraries/zx200-loam-cycle.json")) << result.err;
 }
 
+/// The right one of 0.42 m3 too.
+TEST_F(Tools, AMachineThatItsDataSheetContradictsIsNotTrusted) {
+  for (const double capacity : {0.25, 0.42}) {
+    json machine = json::parse(content_of(shipped("machines/zx120.json")));
+    machine["data_sheet"] = {{"bucket_capacity_m3", capacity}};
+    const std::string file = folder.write("sheet.json", machine.dump());
+    for (const Words& words : {Words{"plan-path", "--density", "40", "--machine", file},
+                               Words{"run-experiment", "--densities", "40", "--machine", file}}) {
+      const json found = answer(words[0], Words(words.begin() + 1, words.end()));
+      EXPECT_EQ(warns(found, "data_sheet_differs"), capacity < 0.4) << words[0];
+      if (found.contains("trustworthy")) {
+        EXPECT_EQ(found.at("trustworthy"), capacity > 0.4) << found.at("warnings");
+      }
+    }
+  }
+}
+
 TEST_F(Tools, AMachineWithoutAKitIsToldOfIt) {
   const ProgramResult result = run_program("plan-path", {"--machine", "zx200", "--density", "40"});
   EXPECT_EQ(result.code, 2);

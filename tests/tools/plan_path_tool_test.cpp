@@ -137,6 +137,52 @@ TEST_F(Tools, TrajectoryIsClearOfAllScannedGround) {
   EXPECT_TRUE(contains(blocked.out + blocked.err, "swing: the machine would be ")) << blocked.err;
 }
 
+/// A plane 0.1 rad up to the left, then the same with a cliff behind the machine.
+TEST_F(Tools, TheGroundThatTheMachineStandsOnDecidesTrust) {
+  const auto scan = [&](const std::string& name, double rise, double cliff) {
+    std::ostringstream points;
+    for (double x = -7.0; x < 9.45; x += 0.1) {
+      for (double y = -6.0; y < 6.0; y += 0.1) {
+        points << x << ' ' << y << ' ' << rise * y + (x < -2.5 ? cliff : 0.0) << '\n';
+      }
+    }
+    return folder.write(name, points.str());
+  };
+  const auto plan = [&](const std::string& terrain, const Words& more) {
+    return answer("plan-path", Words{"--density", "40", "--terrain", terrain} + more);
+  };
+  const std::string level = scan("level.xyz", 0.0, 0.0), tilted = scan("tilted.xyz", 0.1, 0.0);
+  const json good = plan(level, {});
+  EXPECT_TRUE(good.at("trustworthy")) << good.at("warnings");
+  EXPECT_FALSE(good.contains("attitude"));
+  EXPECT_TRUE(warns(plan(tilted, {}), "ground_tilted"));
+  const json stated = plan(tilted, {"--attitude", "0.0997,0"});
+  EXPECT_FALSE(warns(stated, "ground_tilted"));
+  EXPECT_TRUE(stated.at("trustworthy")) << stated.at("warnings");
+  EXPECT_EQ(stated["attitude"]["roll_rad"], 0.0997);
+  EXPECT_TRUE(warns(plan(tilted, {"--attitude", "-0.0997,0"}), "ground_tilted"));
+  EXPECT_TRUE(warns(plan(level, {"--attitude", "0,5deg"}), "ground_tilted"));
+  const std::string cliff = scan("cliff.xyz", 0.0, -2.5);
+  const json drop = plan(cliff, {});
+  EXPECT_TRUE(warns(drop, "drop_at_tracks"));
+  EXPECT_FALSE(drop.at("trustworthy"));
+  const std::string strip = folder.write("strip.xyz", [] {
+    std::ostringstream points;
+    for (double x = 0.8; x < 9.45; x += 0.1) {
+      for (double y = -1.6; y < 1.65; y += 0.1) points << x << ' ' << y << " 0\n";
+    }
+    return points.str();
+  }());
+  const json ahead = plan(strip, {});
+  EXPECT_TRUE(warns(ahead, "ground_at_tracks_unseen"));
+  EXPECT_TRUE(ahead.at("trustworthy")) << ahead.at("warnings");
+  const json known = plan(strip, {"--surroundings", level});
+  EXPECT_FALSE(warns(known, "ground_at_tracks_unseen"));
+  EXPECT_TRUE(known.at("trustworthy")) << known.at("warnings");
+  EXPECT_TRUE(warns(plan(strip, {"--surroundings", cliff}), "drop_at_tracks"));
+  EXPECT_EQ(run_program("plan-path", {"--density", "40", "--attitude", "5deg"}).code, 2);
+}
+
 TEST_F(Tools, TrajectoryDumpsToTheRightIfTheSwingIsBelowZero) {
   const std::string file = folder.file("right.json");
   const json right = answer(
@@ -622,8 +668,23 @@ TEST_F(Tools, ADensityMeasuredElsewhereIsWarnedOf) {
   const std::string near = result("[4.5, -0.5, 6.1, 0.5]");
   EXPECT_FALSE(warns(plan(near, ground), "density_from_elsewhere"));
   const std::string far = result("[4.5, 19.5, 6.1, 20.5]");
-  EXPECT_TRUE(warns(plan(far, ground), "density_from_elsewhere"));
+  const json other_site = plan(far, ground);
+  EXPECT_TRUE(warns(other_site, "density_from_elsewhere"));
+  EXPECT_FALSE(other_site.at("trustworthy"));
   EXPECT_FALSE(warns(plan(far, {}), "density_from_elsewhere"));  // whose ground is not known
+}
+
+/// That of the quick start, of before and after the dig that the density is from.
+TEST_F(Tools, AScanOfBeforeTheDigThatTheDensityIsFromIsNotTrusted) {
+  if (!std::filesystem::exists(std::string(EXCAVPLAN_BIN) + "/estimate-density")) GTEST_SKIP();
+  const json estimate = answer("estimate-density", quickstart(folder));
+  const std::string file = folder.write("density.json", estimate.dump());
+  for (const char* scan : {"before", "after"}) {
+    const json plan = answer("plan-path", {"--density-from", file, "--terrain",
+                                           shipped(std::string("quickstart/") + scan + ".pcd")});
+    EXPECT_EQ(warns(plan, "ground_before_dig"), scan == std::string("before"))
+        << plan.at("warnings");
+  }
 }
 
 // docs/formats.md: more than 5 m from the hole. The holes are long in x, so that the distance is

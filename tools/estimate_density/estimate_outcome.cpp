@@ -65,7 +65,7 @@ void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Ou
     const auto same = [&](const Warning& w) { return w.message == warning.message; };
     if (std::any_of(counts.warnings.begin(), counts.warnings.end(), same)) continue;
     outcome.warnings.emplace_back(
-        warning.code, std::string("method ") + name(other.method) + ": " + warning.message);
+        warning.code, std::string("method ") + name(other.method) + ": " + warning.message, false);
   }
 }
 

@@ -17,6 +17,7 @@
 
 #include <excavplan/base/data_files.hpp>
 #include <excavplan/kit/kit_files.hpp>
+#include <excavplan/kit/workspace.hpp>
 #include <excavplan/machine/machine_file.hpp>
 #include <excavplan/planning/plan_dig.hpp>
 #include <excavplan/simulation/simulators.hpp>
@@ -101,7 +102,8 @@ void print_outcome(const About& about, const Common& common, const Outcome& outc
                    const StandardInput& input) {
   if (!common.quiet) {
     for (const Warning& warning : outcome.warnings) {
-      std::cerr << about.name << ": warning: " << shown(input, warning.message) << '\n';
+      const char* kind = warning.ends_trust ? ": warning (ends trust): " : ": warning: ";
+      std::cerr << about.name << kind << shown(input, warning.message) << '\n';
     }
   }
   std::string text;
@@ -114,15 +116,26 @@ void print_outcome(const About& about, const Common& common, const Outcome& outc
   print(outcome.output.value_or(text));
 }
 
-/// MachineFile::warnings of machines in a list.
+/// Of the files of machines in a list: MachineFile::warnings, and what their data sheets
+/// contradict.
 std::vector<Warning> machine_warnings(const std::string& list) {
   std::vector<Warning> warnings;
   for (const std::string& machine : split(list, ',')) {
-    for (Warning& each : load_machine_file(machine_path(machine)).warnings) {
-      warnings.push_back(std::move(each));
+    const MachineFile file = load_machine_file(machine_path(machine));
+    for (const auto& more : {file.warnings, check_data_sheet(file.machine, file.data_sheet)}) {
+      warnings.insert(warnings.end(), more.begin(), more.end());
     }
   }
   return warnings;
+}
+
+/// No result outlives a warning that ends trust, whoever added it.
+void settle_trust(Outcome& outcome) {
+  for (const Warning& warning : outcome.warnings) {
+    if (warning.ends_trust) outcome.trustworthy = false;
+  }
+  const bool is_told = outcome.json.contains("trustworthy");
+  if (is_told && !outcome.trustworthy) outcome.json["trustworthy"] = false;
 }
 
 /// Options without effect, and in every tool that has --machine what the files of machines are not
@@ -199,6 +212,7 @@ int run(int argc, const char* const* argv, const About& about,
     return with_options(arguments.entries(), [&] { return work(console); });
   });
   add_option_warnings(arguments.entries(), words, outcome);
+  if (about.can_be_untrustworthy) settle_trust(outcome);
   console.clear();
   if (outcome.page) {
     write_report(about, outcome, input, settings_of(arguments.entries(), words, own));

@@ -29,17 +29,21 @@ void refuse_recording(const TerrainInput& terrain) {
                                        "FILE:TOPIC@TIME+SPAN --out scan.pcd writes one as a cloud");
 }
 
-/// @param read  a ScannedTerrain from a scan
+/// @param read  what is asked for, from a scan
 template <typename Read>
-Site scanned(const TerrainInput& terrain, const Read& read) {
+auto scanned(const TerrainInput& terrain, const Read& read) {
   refuse_recording(terrain);
   Scan scan;
   scan.files = {*terrain.cloud};
   scan.unit = unit_length(terrain.unit);
   if (terrain.frame) scan.site_from_scan = frame_named("--terrain-frame", *terrain.frame);
-  ScannedTerrain seen = with_frame_hint("--terrain-frame transforms it into the site frame",
-                                        [&] { return read(scan); });
-  return {std::move(seen.terrain), std::move(seen.warnings)};
+  if (!terrain.attitude.is_level()) {
+    Eigen::Matrix4d to_machine = Eigen::Matrix4d::Identity();
+    to_machine.topLeftCorner<3, 3>() = terrain.attitude.to_site().transpose();
+    scan.site_from_scan = to_machine * scan.site_from_scan;
+  }
+  return with_frame_hint("--terrain-frame transforms it into the site frame",
+                         [&] { return read(scan); });
 }
 
 }  // namespace
@@ -69,15 +73,21 @@ Site make_site(const TerrainInput& terrain, const Rectangle& extent, double cell
   return naming_options(cell_option, [&] {
     require_simulated_cell(cell_size);
     if (!terrain.cloud) return Site{undisturbed(flat_ground(extent, cell_size)), {}};
-    return scanned(terrain,
-                   [&](const Scan& scan) { return terrain_from_scan(scan, extent, cell_size); });
+    ScannedTerrain seen = scanned(
+        terrain, [&](const Scan& scan) { return terrain_from_scan(scan, extent, cell_size); });
+    return Site{std::move(seen.terrain), std::move(seen.warnings)};
   });
 }
 
 Terrain make_swing_ground(const TerrainInput& terrain, const Machine& machine) {
   if (!terrain.cloud) return level_swing_ground(machine);
   return scanned(terrain, [&](const Scan& scan) { return swing_terrain_from_scan(scan, machine); })
-      .ground;
+      .terrain;
+}
+
+HeightMap make_standing_ground(const TerrainInput& terrain, const Machine& machine) {
+  return scanned(terrain,
+                 [&](const Scan& scan) { return standing_ground_from_scan(scan, machine); });
 }
 
 }  // namespace excavplan::tools

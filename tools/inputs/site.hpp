@@ -21,6 +21,7 @@ struct TerrainInput {
   std::optional<std::string>
       frame;  ///< that transforms the cloud into the site frame, as frame_named() takes it
   std::string unit = "m";  ///< of the coordinates in the cloud
+  Attitude attitude = {};  ///< of the machine, into whose frame the cloud is taken from the site's
 };
 
 /// --terrain, --terrain-frame and --unit.
@@ -38,6 +39,11 @@ struct Site {
 /// Ground that a motion must be clear of: swing_terrain_from_scan() of a cloud, else level.
 /// @throws Error as make_site()
 Terrain make_swing_ground(const TerrainInput& terrain, const Machine& machine);
+
+/// Ground that the machine stands on: standing_ground_from_scan() of the cloud, which must be
+/// given.
+/// @throws Error as make_site()
+HeightMap make_standing_ground(const TerrainInput& terrain, const Machine& machine);
 
 /// The ground of `extent` on cells of this size: terrain_from_scan() if a cloud is given, else
 /// level.

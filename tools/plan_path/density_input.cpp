@@ -16,10 +16,15 @@ namespace {
 
 /// Of a plan for the density of a file.
 std::vector<Warning> source_warnings(const DigPlan& plan, const std::string& file,
-                                     bool scanned_ground) {
+                                     const Terrain* scanned) {
   const StatedDensity stated = stated_density(file);
   std::vector<Warning> warnings;
-  if (scanned_ground && plan.dig) {
+  if (scanned) {
+    if (const auto older = older_ground(stated, file, scanned->surface())) {
+      warnings.push_back(*older);
+    }
+  }
+  if (scanned && plan.dig) {
     const double x = plan.dig->start_x;
     if (const auto far = elsewhere(stated, file, {x, 0.0, x, 0.0})) warnings.push_back(*far);
   }
@@ -68,10 +73,10 @@ GroundDensity density_of(const DensityInput& input) {
 }
 
 std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input,
-                                   bool scanned_ground) {
+                                   const Terrain* scanned) {
   std::vector<Warning> warnings = plan.warnings;
   if (input.file) {
-    for (Warning& each : source_warnings(plan, *input.file, scanned_ground)) {
+    for (Warning& each : source_warnings(plan, *input.file, scanned)) {
       warnings.push_back(std::move(each));
     }
   }

@@ -30,8 +30,9 @@ GroundDensity density_of(const DensityInput& input);
 
 /// Those of the plan; where they are about a density from a file they name it. On scanned ground
 /// also density_from_elsewhere: the dig begins more than 5 m (ours) from the hole that the density
-/// was measured in.
+/// was measured in; and ground_before_dig: the ground does not show that hole.
+/// @param scanned  null: no ground was scanned
 std::vector<Warning> plan_warnings(const DigPlan& plan, const DensityInput& input,
-                                   bool scanned_ground);
+                                   const Terrain* scanned);
 
 }  // namespace excavplan::tools

@@ -10,6 +10,7 @@
 
 #include <excavplan/machine/joint_motion.hpp>
 #include <excavplan/planning/plan_motion.hpp>
+#include <excavplan/planning/standing_ground.hpp>
 #include <excavplan/scans/scan_terrain.hpp>
 #include <excavplan/simulation/dig_ground.hpp>
 
@@ -140,6 +141,13 @@ Trajectory motion_of(const MotionInputs& inputs, const PlannedMotion& planned) {
   return none;
 }
 
+TerrainInput surroundings_of(const MotionInputs& inputs, const TerrainInput& terrain) {
+  TerrainInput around = terrain;
+  around.cloud = inputs.surroundings;
+  around.option = "--surroundings";
+  return around;
+}
+
 void check(const MotionInputs& inputs, const Machine& machine, const CycleOptions& cycle) {
   if (!inputs.file) return;
   naming_options(option_names, [&] {
@@ -152,6 +160,10 @@ void check(const MotionInputs& inputs, const Machine& machine, const CycleOption
 }  // namespace
 
 void declare_motion(Arguments& arguments, MotionInputs& inputs) {
+  arguments.file(
+      "surroundings", inputs.surroundings,
+      "earlier cloud of the ground around and under the machine, for what --terrain does "
+      "not see; in its frame and unit");
   arguments.output("trajectory", inputs.file,
                    "write the joint motion: .csv, .json, .yaml or .yml (ROS 2 JointTrajectory), "
                    ".com3 (OPERA's JointCmd); - is standard output, as CSV");
@@ -172,13 +184,6 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs) {
         arguments.add(joints);
         arguments.flag("whole-cycle", inputs.whole_cycle,
                        "go on over swing, dump and back to above the dig");
-        arguments.only_if(
-            {[&inputs] { return leaves_the_dig(inputs); }, "the trajectory does not leave the dig"},
-            [&] {
-              arguments.file("surroundings", inputs.surroundings,
-                             "earlier cloud of the ground around the machine, for "
-                             "what --terrain does not see; in its frame and unit");
-            });
         arguments.option("rate", inputs.options.rate, Quantity::frequency,
                          "points of the trajectory per second, 10 .. 500");
         Arguments::Entry jerk;
@@ -199,11 +204,17 @@ Site motion_ground(const MotionInputs& inputs, const Machine& machine, const Ter
   if (!inputs.file || !leaves_the_dig(inputs)) return {level_swing_ground(machine), {}};
   const Terrain present = make_swing_ground(terrain, machine);
   if (!inputs.surroundings) return {present, {}};
-  TerrainInput around = terrain;
-  around.cloud = inputs.surroundings;
-  around.option = "--surroundings";
-  ScannedTerrain both = with_surroundings(present, make_swing_ground(around, machine));
+  ScannedTerrain both =
+      with_surroundings(present, make_swing_ground(surroundings_of(inputs, terrain), machine));
   return {std::move(both.terrain), std::move(both.warnings)};
+}
+
+std::optional<HeightMap> ground_at_tracks(const MotionInputs& inputs, const Machine& machine,
+                                          const TerrainInput& terrain) {
+  if (!terrain.cloud) return std::nullopt;
+  HeightMap present = make_standing_ground(terrain, machine);
+  if (!inputs.surroundings) return present;
+  return known_from_both(present, make_standing_ground(surroundings_of(inputs, terrain), machine));
 }
 
 Trajectory dig_motion(const MotionInputs& inputs, const Machine& machine, const DigPlan& plan) {

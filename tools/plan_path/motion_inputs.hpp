@@ -34,6 +34,10 @@ void declare_motion(Arguments& arguments, MotionInputs& inputs);
 Site motion_ground(const MotionInputs& inputs, const Machine& machine, const TerrainInput& terrain,
                    const CycleOptions& cycle);
 
+/// Ground for PlanOptions::standing_on: likewise of both clouds; nothing without --terrain.
+std::optional<HeightMap> ground_at_tracks(const MotionInputs& inputs, const Machine& machine,
+                                          const TerrainInput& terrain);
+
 /// A plan with the ground on which the machine stands and the objective that has its swing and dump
 /// height.
 struct PlannedMotion {

@@ -41,6 +41,7 @@ struct Inputs {
   std::optional<std::string> library;
   bool search = false;
   TerrainInput terrain;
+  std::optional<std::string> attitude;
   std::string soil = "loam";
   std::string machine = "zx120";
   SimulatorInputs simulator;
@@ -60,7 +61,8 @@ SearchUse use_of(const Inputs& inputs) {
 /// Whether any dig is simulated; a density from a file mostly has an error.
 bool simulates(const Inputs& inputs) {
   const double sd = inputs.density.sd.value_or(inputs.density.file ? 1.0 : 0.0);
-  return use_of(inputs) != SearchUse::none || sd > 0.0 || !is_default(inputs.simulator);
+  return use_of(inputs) != SearchUse::none || sd > 0.0 || !is_default(inputs.simulator) ||
+         inputs.attitude.has_value();
 }
 
 void declare(Arguments& arguments, Inputs& inputs) {
@@ -70,6 +72,10 @@ void declare(Arguments& arguments, Inputs& inputs) {
       "path library (default: that of machine-kit, or the shipped one, of machine, soil and goal)");
   arguments.flag("search", inputs.search, "search for the path instead of looking it up");
   declare_terrain(arguments, inputs.terrain);
+  arguments.text(
+      "attitude", "ROLL,PITCH", inputs.attitude,
+      "how the machine stands: roll, its left side up, and pitch, its front down, such as "
+      "3deg,-5deg; the path is then in its own frame [rad]");
   arguments.soil(inputs.soil);
   arguments.machine(inputs.machine);
   declare_simulator(arguments, inputs.simulator);
@@ -84,6 +90,17 @@ void declare(Arguments& arguments, Inputs& inputs) {
       names_of(plan_figures(searches, [&inputs] { return machine_named(inputs.machine); })));
   declare_maps(arguments, inputs.maps, plan_map_names());
   arguments.report(inputs.report);
+}
+
+Attitude attitude_of(const Inputs& inputs) {
+  if (!inputs.attitude) return {};
+  const std::string option = "--attitude";
+  const std::vector<std::string> parts = split(*inputs.attitude, ',');
+  if (parts.size() != 2) {
+    usage_error(option + ": '" + *inputs.attitude + "' is not ROLL,PITCH such as 3deg,-5deg");
+  }
+  return {parse_quantity(option, parts[0], Quantity::angle),
+          parse_quantity(option, parts[1], Quantity::angle)};
 }
 
 PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilKind& soil,
@@ -102,8 +119,10 @@ PlanOptions options_of(const Inputs& inputs, const Machine& machine, const SoilK
   return options;
 }
 
-Outcome work(const Inputs& inputs, Console& console) {
+Outcome work(const Inputs& given, Console& console) {
   const Stopwatch watch;
+  Inputs inputs = given;
+  inputs.terrain.attitude = attitude_of(inputs);
   check(inputs.density);
   check(inputs.dig_search);
   const GroundDensity density = density_of(inputs.density);
@@ -111,7 +130,9 @@ Outcome work(const Inputs& inputs, Console& console) {
   const SoilKind soil = soil_named(inputs.soil);
   const Site site = make_site(inputs.terrain, planning_extent(machine),
                               inputs.cell_size.value_or(usual_cell(machine)));
-  const PlanOptions options = options_of(inputs, machine, soil, console);
+  PlanOptions options = options_of(inputs, machine, soil, console);
+  options.attitude = inputs.terrain.attitude;
+  options.standing_on = ground_at_tracks(inputs.motion, machine, inputs.terrain);
   const Site area = motion_ground(inputs.motion, machine, inputs.terrain, options.search.objective);
   DigPlan plan = naming_options(search_option_names, [&] {
     return inputs.terrain.cloud ? plan_dig(machine, soil, density, site.ground, options)
@@ -120,7 +141,8 @@ Outcome work(const Inputs& inputs, Console& console) {
   Outcome outcome;
   outcome.stopped_early = plan.stopped;
   outcome.trustworthy = plan.trustworthy && plan.reason.empty();
-  outcome.warnings = plan_warnings(plan, inputs.density, inputs.terrain.cloud.has_value());
+  outcome.warnings =
+      plan_warnings(plan, inputs.density, inputs.terrain.cloud ? &site.ground : nullptr);
   for (const auto& more : {goal_warnings(inputs.dig_search.goal, {machine}), site.warnings}) {
     outcome.warnings.insert(outcome.warnings.begin(), more.begin(), more.end());
   }

@@ -9,6 +9,23 @@
 namespace excavplan::tools {
 namespace {
 
+/// What a gain by the goal may cost.
+std::string losses_text(const ExperimentResult& result) {
+  const PlannedDig &fixed = result.fixed, &planned = result.planned;
+  const auto change = [](double from, double to) {
+    const double percent = 100.0 * (to / from - 1.0);
+    return " (" + std::string(percent < 0.0 ? "" : "+") + readable(percent, 2) + " %)";
+  };
+  std::string text = "; payload " + readable(fixed.payload_mass) + " to " +
+                     readable(planned.payload_mass) + " kg" +
+                     change(fixed.payload_mass, planned.payload_mass);
+  if (!(fixed.cycle_energy > 0.0 && planned.cycle_energy > 0.0)) return text;
+  const double before = 1e3 * fixed.payload_mass / fixed.cycle_energy;
+  const double after = 1e3 * planned.payload_mass / planned.cycle_energy;
+  return text + ", over the whole cycle " + readable(before) + " to " + readable(after) + " kg/kJ" +
+         change(before, after);
+}
+
 std::string experiment_line(const std::string& condition, const ExperimentResult& result) {
   return condition_text({condition, result.density_percent}) + ", k " +
          readable(result.volumes.bulking_factor, 4) + ", estimated " +
@@ -17,7 +34,7 @@ std::string experiment_line(const std::string& condition, const ExperimentResult
          worth_text(result.objective, result.objective.worth(result.planned)) + " (" +
          path_text(result.planned) + "), gain " + readable(result.gain_percent()) + " % (path " +
          readable(result.path_gain_percent()) + " %, start " +
-         readable(result.start_gain_percent()) + " %)";
+         readable(result.start_gain_percent()) + " %)" + losses_text(result);
 }
 
 }  // namespace

@@ -50,8 +50,12 @@ double bucket_force(const Machine& machine);
 /// The digging force of the arm, at the tip, with bucket and arm in line [N].
 double arm_force(const Machine& machine);
 
-/// What does not fit: ground_out_of_reach *, no_body, no_cycle, force_beyond_stability,
-/// data_sheet_differs. Those marked * end trust.
+/// data_sheet_differs, which ends trust, for each number that the file does not share with the data
+/// sheet. @throws Error (bad_input) as require_machine()
+std::vector<Warning> check_data_sheet(const Machine& machine, const DataSheet& sheet);
+
+/// What does not fit: ground_out_of_reach *, no_body, no_cycle, force_beyond_stability, and those
+/// of check_data_sheet() *. Those marked * end trust.
 std::vector<Warning> check_machine(const Machine& machine, const DataSheet& sheet = {});
 
 }  // namespace excavplan

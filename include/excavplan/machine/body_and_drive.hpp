@@ -11,6 +11,19 @@
 
 namespace excavplan {
 
+/// How a machine stands: turns of right-handed sense from the level site frame (x forward, y left,
+/// z up), first about y, then about the x so turned.
+struct Attitude {
+  double roll = 0.0;   ///< positive: its left side is up [rad]
+  double pitch = 0.0;  ///< positive: its front is down [rad]
+
+  bool is_level() const { return roll == 0.0 && pitch == 0.0; }
+  /// Takes vectors of the frame of the machine into the level site frame.
+  Eigen::Matrix3d to_site() const;
+  /// Unit vector against gravity in the frame of the machine.
+  Eigen::Vector3d up() const;
+};
+
 /// What stands on the ground: the machine without boom, arm and bucket.
 struct Body {
   double mass = 0.0;                                 ///< [kg]

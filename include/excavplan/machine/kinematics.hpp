@@ -76,8 +76,10 @@ LimitMargin limit_margin(const Machine& machine, const JointAngles& joints);
 JointAngles torque_against_force(const Machine& machine, const LinkPositions& at,
                                  const Eigen::Vector2d& point, const Eigen::Vector2d& force);
 
-/// Torque of the joints [N m] that balances the weight of boom, arm and bucket.
-JointAngles torque_against_link_weight(const Machine& machine, const LinkPositions& at);
+/// Torque of the joints [N m] that balances the weight of boom, arm and bucket, with the machine as
+/// it stands (Machine::attitude) and swung to the left [rad].
+JointAngles torque_against_link_weight(const Machine& machine, const LinkPositions& at,
+                                       double swing = 0.0);
 
 /// A point of the bucket frame (along, across) in the boom plane.
 Eigen::Vector2d bucket_point(const LinkPositions& at, const Eigen::Vector2d& along_across);

@@ -95,6 +95,9 @@ struct Machine {
   std::optional<Engine> engine;          ///< nothing: its power sets no limit
   RobotJoints robot_joints = {{{"boom"}, {"arm"}, {"bucket"}, {"swing"}}};  ///< of its controller
   std::optional<double> track_width;  ///< over both tracks [m]; nothing: undercarriage_width()
+  /// On the site, not of the file; coordinates of a machine that does not stand level, and of all
+  /// ground that it digs, are those of its own frame: z along the swing axis, 0 under the tracks.
+  Attitude attitude = {};
   /// Takes points from the root frame of the robot's URDF to the site frame: a shift and a turn
   /// about z. Affects no dig.
   Eigen::Isometry3d site_from_root = Eigen::Isometry3d::Identity();
@@ -106,9 +109,15 @@ struct Machine {
   /// Over both tracks [m]: track_width, without it as the zx120's in proportion to track_front;
   /// ours.
   double undercarriage_width() const;
+  /// Unit vector against gravity in the boom plane, as far as it lies in it: (0, 1) if level.
+  /// @param swung  of the upper structure to the left [rad]
+  Eigen::Vector2d up(double swung = 0.0) const;
   /// Angle between bucket floor and the line from tip to bucket pin [rad]; Error without a profile.
   double beta() const;
 };
+
+/// The same machine, standing so.
+Machine with_attitude(Machine machine, const Attitude& attitude);
 
 /// Reads a machine file (docs/formats.md); every number in it names its source.
 /// @throws Error (bad_file) naming file, key, value and rule; among the rules: lengths and masses

@@ -53,6 +53,12 @@ struct PlanOptions {
   TrajectoryOptions trajectory = {};              ///< how fast the machine moves
   /// Of the level ground, if none is given; nothing: usual_cell() [m].
   std::optional<double> cell_size = {};
+  /// How the machine stands: enters torques, tipping and the forces of the soil. The terrain is
+  /// then in the frame of the machine (Machine::attitude), and no figure of a library holds.
+  Attitude attitude = {};
+  /// Ground that the machine stands on, for standing_ground(): standing_ground_from_scan(). Without
+  /// it the terrain is judged as far as it goes.
+  std::optional<HeightMap> standing_on = {};
 };
 
 /// Results of the search.
@@ -95,13 +101,16 @@ struct DigPlan {
   std::optional<PlanSearch> search;         ///< if searched
   std::optional<PlanLookUp> look_up;        ///< if looked up
 
+  Attitude attitude;  ///< of PlanOptions
+  Attitude on_slope;  ///< likewise, turned by the slope of the ground about the tracks
+
   bool stopped = false;     ///< the search was cancelled; the dig is the best until then
   bool trustworthy = true;  ///< false after a warning marked * below
   /// density_as_fraction *, density_not_trustworthy *, law_of_other_soil *, library_unreadable (the
   /// search began with nothing), simulator_failed (at some digs of the search, which were left
   /// out), min_fill_relaxed (no dig was found that fills the bucket as asked),
-  /// ground_above_tracks *, obstacle_in_strip *, slope_outside_library *, ground_unlike_library *,
-  /// may_stall *, approach_blocked (the trajectory begins on the ground).
+  /// those of standing_ground() *, obstacle_in_strip *, slope_outside_library *,
+  /// ground_unlike_library *, may_stall *, approach_blocked (the trajectory begins on the ground).
   std::vector<Warning> warnings;
 
   /// Why there is no dig: none can be done, or none is worth making, with a payload of at least a

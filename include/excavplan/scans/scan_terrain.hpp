@@ -35,6 +35,11 @@ ScannedTerrain terrain_from_scan(const Scan& scan, const Rectangle& extent, doub
 /// @throws Error as terrain_from_scan()
 ScannedTerrain swing_terrain_from_scan(const Scan& scan, const Machine& machine);
 
+/// Ground that a machine stands on: standing_extent() in cells twice as large as usual_cell(); with
+/// no more than 10 points there all of it is unknown.
+/// @throws Error (bad_file) if a file cannot be read or changes meanwhile
+HeightMap standing_ground_from_scan(const Scan& scan, const Machine& machine);
+
 /// The present ground, and where that is unknown an earlier one of the surroundings, both of
 /// swing_terrain_from_scan(). Warning surroundings_differ, which ends trust, if less than a fifth
 /// of what both know has the same height to 0.15 m (ours): the frame of one is wrong. Level ground

@@ -43,6 +43,9 @@ Terrain level_planning_ground(const Machine& machine);  ///< in cells of usual_c
 
 /// Ground that the front can pass over: the square around the circle of its reach, swung all round.
 Rectangle swing_extent(const Machine& machine);
+/// What decides whether the machine can stand: its tracks and 6 m (ours) about them [m].
+/// @throws Error (bad_input) as require_machine()
+Rectangle standing_extent(const Machine& machine);
 
 /// swing_extent() as level ground, in cells of usual_cell().
 Terrain level_swing_ground(const Machine& machine);
