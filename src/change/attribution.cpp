@@ -32,18 +32,24 @@ double likelihood_of_bulking(double k) {
   return never + (1.0 - never) * likelihood;
 }
 
-/// How well the soil of some changes balances; 0 without a hole that could be the dig.
+/// How well the soil of some changes balances; 0 without a hole that could be the dig. Where too
+/// little rose by its shape the heap is not in the scans, and there is no balance to judge by.
 double likelihood_of(const std::vector<Change>& changes, const std::vector<bool>& counted) {
   constexpr double least_hole = 0.3;  // of the largest fall; ours
   double before = 0.0;
   double after = 0.0;
   double largest = 0.0;
+  double rose = 0.0;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    if (changes[i].prior >= counted_first) largest = std::max(largest, -changes[i].volume);
+    if (changes[i].prior >= counted_first) {
+      largest = std::max(largest, -changes[i].volume);
+      rose += std::max(0.0, changes[i].volume);
+    }
     if (counted[i]) (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
   }
   if (largest == 0.0) return 1.0;
-  return before > least_hole * largest ? likelihood_of_bulking(after / before) : 0.0;
+  if (!(before > least_hole * largest)) return 0.0;
+  return rose < least_after_share * largest ? 1.0 : likelihood_of_bulking(after / before);
 }
 
 /// All combinations of combined_changes(), each as likely as its shapes, places and bulking factor;

@@ -233,13 +233,17 @@ double gap_between(const Rectangle& a, const Rectangle& b) {
 }
 
 /// Volume of other ground that fell beside the heap, as the spill does where scans are swapped, and
-/// deeper than tracks.
+/// deeper than tracks and its error. Nothing where the heap is too small to be a hole.
 double lost_beside_heap(const VolumeChange& change) {
-  constexpr double track = 0.05;  // ours, mean depth [m]
+  constexpr double track = 0.05;       // ours, mean depth [m]
+  constexpr double least_heap = 0.2;   // ours, of what was dug
+  constexpr double established = 2.0;  // ours [sd]
   const double beside = ChangeOptions{}.spill_distance;
   double lost = 0.0;
+  if (change.dumped.value < least_heap * change.excavated.value) return lost;
   for (const ChangeZone& zone : change.zones) {
-    if (zone.kind != ZoneKind::other || !(zone.volume.value < -track * zone.area)) continue;
+    const double least = std::max(track * zone.area, established * zone.volume.sd);
+    if (zone.kind != ZoneKind::other || !(zone.volume.value < -least)) continue;
     if (std::any_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& heap) {
           return heap.kind == ZoneKind::dump && gap_between(heap.extent, zone.extent) < beside;
         })) {
