@@ -46,7 +46,7 @@ constexpr double small_share = 0.03;      // of the hole's volume: a clod, a ble
 constexpr double shallow = 0.03;          // what feet, tracks and settling do [m]
 constexpr double shallow_share = 0.2;     // of the hole's height
 constexpr double deep_share = 0.5;        // likewise
-constexpr double most_at_rim = 0.1;       // of the hole's volume
+constexpr double most_at_rim = 0.25;      // of the hole's volume
 constexpr double established = 2.0;       // sd: a change is there
 constexpr double hardly_there = 1.0;      // sd: nothing tells that it is
 constexpr double least_reach = 10.0;      // of a dig, from the edge of its hole [m]
@@ -106,14 +106,22 @@ class ChangeReader {
     return given(sign) && in_given(p, sign);
   }
 
-  /// The largest zone of a sign; of those that rose, one away from the hole.
+  /// The largest zone of a sign that is more than its error, or of all; of those that rose, one
+  /// away from the hole.
   std::optional<Place> largest(std::size_t area, double sign) const {
     std::optional<Place> found;
+    bool is_found_sure = false;
     for (std::size_t z = 0; z < areas_[area].zones.size(); ++z) {
       const Place p{area, z};
-      const bool is_candidate = sign * zone(p).volume > 0.0 && in_given(p, sign) &&
+      const double volume = sign * zone(p).volume;
+      const bool is_candidate = volume > 0.0 && in_given(p, sign) &&
                                 (sign < 0.0 || areas_.size() > 1 || given(sign) || !beside(p));
-      if (is_candidate && (!found || sign * zone(p).volume > sign * zone(*found).volume)) found = p;
+      if (!is_candidate) continue;
+      const bool is_sure = significance(p) > established;
+      const bool is_larger = !found || volume > sign * zone(*found).volume;
+      if (is_sure == is_found_sure ? !is_larger : is_found_sure) continue;
+      found = p;
+      is_found_sure = is_sure;
     }
     return found;
   }
@@ -184,7 +192,7 @@ class ChangeReader {
       return {ChangeKind::in_area, fell ? "a hole in the given area" : "a heap in the given area",
               certain, false};
     }
-    if (const double sds = significance(p); sds < established) {
+    if (const double sds = significance(p); sds < established && !is_main(p)) {
       if (sds < hardly_there) return {ChangeKind::within_error, "noise", excluded, true};
       const bool is_near = p.area == 0 && beside(p);
       return {ChangeKind::within_error,
@@ -216,7 +224,6 @@ class ChangeReader {
   /// seen, which errs by more than normal errors do, or at a step in both scans.
   double significance(Place p) const {
     constexpr double by_filling = 3.0;  // ours
-    if (is_main(p)) return std::numeric_limits<double>::infinity();
     const ZoneErrors& errors = areas_[p.area].errors;
     const auto i = static_cast<Eigen::Index>(p.zone);
     const double variance = zone(p).variance() + errors.correlated(i, i) + errors.datum(i, i);
