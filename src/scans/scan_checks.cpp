@@ -78,6 +78,19 @@ std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
           " m: volumes of a dig need finer ones; write the coordinates with more digits"};
 }
 
+/// Of points that hold no data, which were left out.
+std::optional<Warning> no_data(const ScanOutline& seen, const Scan& scan) {
+  if (seen.no_data.empty()) return std::nullopt;
+  std::string heights;
+  for (const double height : seen.no_data) {
+    heights += (heights.empty() ? "" : " or ") + number_text(height);
+  }
+  return Warning{WarningCode::outliers, name_of(scan) + ": " +
+                                            readable(100.0 * seen.no_data_share, 2) +
+                                            " % of the points have z = " + heights +
+                                            ", which stands for no data: they were left out"};
+}
+
 /// Of a machine that takes nothing out of scans, or most of them.
 std::optional<Warning> not_in_view(const OutlinedPair& pair) {
   constexpr double most = 0.5;  // ours, of a scan
@@ -324,6 +337,8 @@ std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   const auto add = [&found](std::optional<Warning> warning) {
     if (warning) found.push_back(std::move(*warning));
   };
+  add(no_data(pair.before, pair.scans.before));
+  add(no_data(pair.after, pair.scans.after));
   add(too_small(pair));
   add(other_units(pair));
   add(coarse_heights(pair));
