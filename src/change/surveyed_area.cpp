@@ -149,6 +149,10 @@ void sum_borders(Area& area) {
     for_each_neighbour(zone, at, [&](Cell n) {
       const int other = zone(n.row, n.col);
       if (other < 0 || other == index) return;
+      const auto is_layer = [&](int i) {
+        return area.ground.zone_is_layer[static_cast<std::size_t>(i)];
+      };
+      if (is_layer(index) || is_layer(other)) return;  // hides next to nothing
       const double step = std::abs(difference(at.row, at.col) - difference(n.row, n.col));
       if (step > 0.0) hidden[static_cast<std::size_t>(index)] += cell_area * step;
     });
