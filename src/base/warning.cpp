@@ -47,7 +47,7 @@ constexpr std::array code_rows = {
     CodeRow{WarningCode::earlier_soil, "earlier_soil", Trust::depends},
     CodeRow{WarningCode::early_points, "early_points", Trust::kept},
     CodeRow{WarningCode::fewer_scans, "fewer_scans", Trust::kept},
-    CodeRow{WarningCode::flat_water, "flat_water", Trust::ended},
+    CodeRow{WarningCode::flat_water, "flat_water", Trust::depends},
     CodeRow{WarningCode::floor_cut, "floor_cut", Trust::ended},
     CodeRow{WarningCode::force_beyond_stability, "force_beyond_stability", Trust::kept},
     CodeRow{WarningCode::frame, "frame", Trust::ended},

@@ -15,35 +15,24 @@ constexpr double negligible = 0.0005;  // of the hole's volume; ours
 constexpr std::size_t most_open = 12;  // ours: changes that are combined
 constexpr double counted_first = 0.5;  // prior from which a change counts without balance
 
-/// Likelihood of a bulking factor: even from 1.02 to 1.65, in any soil, and 0.3 of that up to 2.5,
-/// in ground that breaks into blocks (docs/methods.md#attribution).
-double likelihood_of_bulking(double k) {
-  constexpr double least = 1.02, least_sd = 0.04;
-  constexpr double most = 1.65, most_sd = 0.08;
-  constexpr double most_in_blocks = 2.5, blocks = 0.3;
-  constexpr double never = 1e-3;
-  const auto above = [&](double limit) {
-    return std::exp(-0.5 * std::pow((k - limit) / most_sd, 2));
-  };
-  double likelihood = 1.0;
-  if (k < least) likelihood = std::exp(-0.5 * std::pow((k - least) / least_sd, 2));
-  if (k > most) likelihood = std::max(above(most), blocks);
-  if (k > most_in_blocks) likelihood = blocks * above(most_in_blocks);
-  return never + (1.0 - never) * likelihood;
-}
-
-/// How well the soil of some changes balances; 0 without a hole that could be the dig.
+/// How well the soil of some changes balances; 0 without a hole that could be the dig. Where too
+/// little rose by its shape the heap is not in the scans, and there is no balance to judge by.
 double likelihood_of(const std::vector<Change>& changes, const std::vector<bool>& counted) {
   constexpr double least_hole = 0.3;  // of the largest fall; ours
   double before = 0.0;
   double after = 0.0;
   double largest = 0.0;
+  double rose = 0.0;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    if (changes[i].prior >= counted_first) largest = std::max(largest, -changes[i].volume);
+    if (changes[i].prior >= counted_first) {
+      largest = std::max(largest, -changes[i].volume);
+      rose += std::max(0.0, changes[i].volume);
+    }
     if (counted[i]) (changes[i].volume < 0.0 ? before : after) += std::abs(changes[i].volume);
   }
   if (largest == 0.0) return 1.0;
-  return before > least_hole * largest ? likelihood_of_bulking(after / before) : 0.0;
+  if (!(before > least_hole * largest)) return 0.0;
+  return rose < least_after_share * largest ? 1.0 : likelihood_of_bulking(after / before);
 }
 
 /// All combinations of combined_changes(), each as likely as its shapes, places and bulking factor;
@@ -145,6 +134,21 @@ void set_kinds(std::vector<Area>& areas, const Attribution& attribution,
 }
 
 }  // namespace
+
+double likelihood_of_bulking(double k) {
+  constexpr double least = 1.02, least_sd = 0.04;
+  constexpr double most = 1.65, most_sd = 0.08;
+  constexpr double most_in_blocks = 2.5, blocks = 0.3;
+  constexpr double never = 1e-3;
+  const auto above = [&](double limit) {
+    return std::exp(-0.5 * std::pow((k - limit) / most_sd, 2));
+  };
+  double likelihood = 1.0;
+  if (k < least) likelihood = std::exp(-0.5 * std::pow((k - least) / least_sd, 2));
+  if (k > most) likelihood = std::max(above(most), blocks);
+  if (k > most_in_blocks) likelihood = blocks * above(most_in_blocks);
+  return never + (1.0 - never) * likelihood;
+}
 
 std::vector<std::size_t> combined_changes(const std::vector<Change>& changes) {
   double hole = 0.0;

@@ -36,6 +36,10 @@ struct Attribution {
 /// @param areas one for a whole scene; the dig area and the dump area otherwise
 Attribution attribute(std::vector<Area>& areas, const ChangeOptions& options);
 
+/// Likelihood of a bulking factor: even from 1.02 to 1.65, in any soil, and 0.3 of that up to 2.5,
+/// in ground that breaks into blocks (docs/methods.md#attribution).
+double likelihood_of_bulking(double k);
+
 /// The changes that are combined, largest first: the twelve largest (ours) that are open. Those
 /// beyond keep the probability of their shape and place.
 std::vector<std::size_t> combined_changes(const std::vector<Change>& changes);

@@ -3,11 +3,13 @@
 #include "change/change_zones.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "base/statistics.hpp"
+#include "ground/area_sums.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/hole_filling.hpp"
 #include "ground/noise_model.hpp"
@@ -21,6 +23,12 @@ constexpr std::size_t fewest_stable_cells = 25;  // ours: fewest for noise and d
 constexpr int most_rounds = 8;
 constexpr std::size_t most_by_chance = 16;  // ours: unknown cells together in a sparse scan
 constexpr int stable = -1;
+
+/// Half the edge of the windows in which soil is looked for that is too thin for a 3 x 3 mean
+/// [cells], and what of them it fills at least; ours.
+constexpr std::array<Eigen::Index, 3> layer_windows = {2, 5, 10};
+constexpr double least_layer_share = 0.5;
+constexpr double highest_crumb = 0.03;  // ours: of one cell among stable ones [m]
 
 /// The densest quarter of the values: finds stable ground even where most of it changed. Where two
 /// quarters are equally dense, as on maps without noise, the one nearer to zero is taken.
@@ -121,6 +129,10 @@ class ChangeFinder {
       if (before.size() > 0 && (before == found_.zone).all()) break;
       learn_from_stable_ground();
     }
+    for (const Eigen::Index radius : layer_windows) {
+      if (find_layers(radius)) learn_from_stable_ground();
+    }
+    found_.zone_is_layer.resize(found_.zone_is_cut.size(), false);
     found_.difference -= found_.datum;
     found_.smooth_sd = smooth_sd_;
     find_residual();
@@ -263,6 +275,60 @@ class ChangeFinder {
       if (is_stable(cell)) weighted.push_back(significance(cell) * smooth_sd_);
     });
     smooth_sd_ = std::max(robust_spread(std::move(weighted)).sd, least_noise);
+  }
+
+  /// Soil strewn so thin that only the mean of a larger window tells it from noise: crumbs, layers,
+  /// what wheels carry. Its zones are those of stable ground whose mean over the window rises above
+  /// the scatter of such means, correlated errors included. True if there are some.
+  bool find_layers(Eigen::Index radius) {
+    const double bound = std::max(clip * found_.noise_sd, highest_crumb);
+    Eigen::ArrayXXd change = Eigen::ArrayXXd::Zero(found_.zone.rows(), found_.zone.cols());
+    Eigen::ArrayXXd count = change;
+    for_each_cell(change, [&](Cell cell) {
+      if (!is_stable(cell)) return;
+      const double off = found_.difference(cell.row, cell.col) - found_.datum;
+      change(cell.row, cell.col) = std::clamp(off, -bound, bound);
+      count(cell.row, cell.col) = 1.0;
+    });
+    const AreaSums changes(change);
+    const AreaSums counts(count);
+    const auto cells = static_cast<double>((2 * radius + 1) * (2 * radius + 1));
+    Eigen::ArrayXXd mean = Eigen::ArrayXXd::Constant(change.rows(), change.cols(), nan);
+    std::vector<double> means;
+    for_each_cell(mean, [&](Cell cell) {
+      const double known = counts.around(cell, radius);
+      if (count(cell.row, cell.col) == 0.0 || known < least_layer_share * cells) return;
+      mean(cell.row, cell.col) = changes.around(cell, radius) / known;
+      means.push_back(mean(cell.row, cell.col));
+    });
+    if (means.size() < fewest_stable_cells) return false;
+    const Spread spread = robust_spread(std::move(means));
+    const double sd = std::max(spread.sd, found_.noise_sd / std::sqrt(cells));
+    return mark_layers((mean - spread.middle) / sd, cells);
+  }
+
+  bool mark_layers(const Eigen::ArrayXXd& significance, double cells_of_window) {
+    constexpr int unvisited = -1;
+    Eigen::ArrayXXi label =
+        Eigen::ArrayXXi::Constant(significance.rows(), significance.cols(), unvisited);
+    const double least =
+        std::max(options_.min_zone_area, cells_of_window * cell_size_ * cell_size_);
+    bool found = false;
+    for_each_cell(label, [&](Cell seed) {
+      if (label(seed.row, seed.col) != unvisited) return;
+      if (!(significance(seed.row, seed.col) >= options_.detection)) return;
+      const std::vector<Cell> cells = mark_connected(label, seed, 0, [&](Cell cell) {
+        return significance(cell.row, cell.col) >= options_.growth;
+      });
+      if (static_cast<double>(cells.size()) * cell_size_ * cell_size_ < least) return;
+      const int index = static_cast<int>(found_.zone_is_cut.size());
+      for (const Cell cell : cells) found_.zone(cell.row, cell.col) = index;
+      found_.zone_is_cut.push_back(reaches_the_edge(cells));
+      found_.zone_is_layer.resize(found_.zone_is_cut.size(), false);
+      found_.zone_is_layer.back() = true;
+      found = true;
+    });
+    return found;
   }
 
   double clipped_mean(const std::vector<double>& changes, double middle) const {

@@ -16,10 +16,11 @@ struct ChangedGround {
   Eigen::ArrayXXd residual;       ///< of stable cells, within 4 sd; NaN elsewhere [m]
   Eigen::ArrayXXi zone;           ///< -1 for stable ground
   std::vector<bool> zone_is_cut;  ///< the zone reaches the edge of what was surveyed
-  double noise_sd = 0.0;          ///< of one stable cell [m]
-  double smooth_sd = 0.0;         ///< of the mean of 3 x 3 of them [m]
-  double datum = 0.0;             ///< [m]
-  double stable_share = 0.0;      ///< of the known cells [-]
+  std::vector<bool> zone_is_layer;  ///< strewn soil, too thin to be found cell by cell
+  double noise_sd = 0.0;            ///< of one stable cell [m]
+  double smooth_sd = 0.0;           ///< of the mean of 3 x 3 of them [m]
+  double datum = 0.0;               ///< [m]
+  double stable_share = 0.0;        ///< of the known cells [-]
 };
 
 /// @param difference after - before [m], NaN where unknown, at least 100 known cells

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -25,6 +26,7 @@ constexpr double along_swing = 0.9;    // clods between hole and heap
 constexpr double low_edge = 0.8;       // low ground beside a hole or heap that keeps its height
 constexpr double anywhere = 0.5;       // small or low and in no place that tells
 constexpr double doubtful = 0.3;       // what the error of its volume explains
+constexpr double stray = 0.1;          // likewise, and away from the hole
 constexpr double lone_track = 0.25;    // or a scrape that is as narrow and as shallow
 constexpr double shallow_fall = 0.15;  // ground that sank by far less than the hole is deep
 constexpr double pair_of_tracks = 0.04;
@@ -44,6 +46,11 @@ constexpr double small_share = 0.03;      // of the hole's volume: a clod, a ble
 constexpr double shallow = 0.03;          // what feet, tracks and settling do [m]
 constexpr double shallow_share = 0.2;     // of the hole's height
 constexpr double deep_share = 0.5;        // likewise
+constexpr double most_at_rim = 0.25;      // of the hole's volume
+constexpr double established = 2.0;       // sd: a change is there
+constexpr double hardly_there = 1.0;      // sd: nothing tells that it is
+constexpr double least_reach = 10.0;      // of a dig, from the edge of its hole [m]
+constexpr double reach_in_holes = 3.0;    // likewise, in lengths of the hole
 constexpr double swing_bulge = 1.25;      // ellipse about hole and heap
 constexpr double swing_room = 0.5;        // [m]
 
@@ -99,14 +106,22 @@ class ChangeReader {
     return given(sign) && in_given(p, sign);
   }
 
-  /// The largest zone of a sign; of those that rose, one away from the hole.
+  /// The largest zone of a sign that is more than its error, or of all; of those that rose, one
+  /// away from the hole.
   std::optional<Place> largest(std::size_t area, double sign) const {
     std::optional<Place> found;
+    bool is_found_sure = false;
     for (std::size_t z = 0; z < areas_[area].zones.size(); ++z) {
       const Place p{area, z};
-      const bool is_candidate = sign * zone(p).volume > 0.0 && in_given(p, sign) &&
+      const double volume = sign * zone(p).volume;
+      const bool is_candidate = volume > 0.0 && in_given(p, sign) &&
                                 (sign < 0.0 || areas_.size() > 1 || given(sign) || !beside(p));
-      if (is_candidate && (!found || sign * zone(p).volume > sign * zone(*found).volume)) found = p;
+      if (!is_candidate) continue;
+      const bool is_sure = significance(p) > established;
+      const bool is_larger = !found || volume > sign * zone(*found).volume;
+      if (is_sure == is_found_sure ? !is_larger : is_found_sure) continue;
+      found = p;
+      is_found_sure = is_sure;
     }
     return found;
   }
@@ -122,7 +137,7 @@ class ChangeReader {
     beside_ = near(*hole_);
     beside_others_.assign(beside_.size(), false);
     for (std::size_t z = 0; z < beside_.size(); ++z) {
-      if (!(areas_[0].zones[z].volume < 0.0) || is_small({0, z})) continue;
+      if (!(areas_[0].zones[z].volume < 0.0) || is_small({0, z}) || is_at_rim({0, z})) continue;
       const std::vector<bool> around = near({0, z});
       for (std::size_t i = 0; i < around.size(); ++i) {
         beside_others_[i] = beside_others_[i] || around[i];
@@ -147,6 +162,12 @@ class ChangeReader {
     return tracks_[p.area].lies_along(look(p)) && (shape(p).is_strip() || part(p) == Part::tail);
   }
 
+  /// Small and at the edge of the survey, where few points make a change that is none.
+  bool is_at_rim(Place p) const {
+    return zone(p).is_cut && !beside(p) && part(p) != Part::tail &&
+           std::abs(zone(p).volume) < most_at_rim * hole_volume();
+  }
+
   // ---- What a change looks like ---------------------------------------------------------------
 
   struct Meaning {
@@ -161,6 +182,9 @@ class ChangeReader {
     if (part(p) == Part::churn) {
       return {ChangeKind::stirred, "stirred ground", prior::stirred, true};
     }
+    if (is_out_of_reach(p)) {
+      return {ChangeKind::outside_area, "ground far from the hole", excluded, true};
+    }
     if (is_excluded(p)) {
       return {ChangeKind::outside_area, "ground outside the given area", excluded, true};
     }
@@ -168,10 +192,25 @@ class ChangeReader {
       return {ChangeKind::in_area, fell ? "a hole in the given area" : "a heap in the given area",
               certain, false};
     }
-    if (is_within_error(p)) {
-      return {ChangeKind::within_error, "changes within their error", prior::doubtful, true};
+    if (const double sds = significance(p); sds < established && !is_main(p)) {
+      if (sds < hardly_there) return {ChangeKind::within_error, "noise", excluded, true};
+      const bool is_near = p.area == 0 && beside(p);
+      return {ChangeKind::within_error,
+              is_near ? "changes within their error beside the hole" : "changes within their error",
+              is_near ? prior::doubtful : prior::stray, true};
     }
     return fell ? meaning_of_fall(p) : meaning_of_rise(p);
+  }
+
+  /// Farther away than soil is carried in a dig: a scan may show a whole site.
+  bool is_out_of_reach(Place p) const {
+    if (!hole_ || p.area != hole_->area || is_told(p)) return false;
+    const Rectangle& hole = zone(*hole_).extent;
+    const Rectangle& other = zone(p).extent;
+    const double size = std::max(hole.x_max - hole.x_min, hole.y_max - hole.y_min);
+    const double x = std::max({hole.x_min - other.x_max, other.x_min - hole.x_max, 0.0});
+    const double y = std::max({hole.y_min - other.y_max, other.y_min - hole.y_max, 0.0});
+    return std::hypot(x, y) > std::max(least_reach, reach_in_holes * size);
   }
 
   /// By an area that was given, as is a fall where only soil was dumped.
@@ -181,13 +220,15 @@ class ChangeReader {
     return !in_given(p, fell ? -1.0 : 1.0) && (fell || !beside(p));
   }
 
-  /// Not known to have changed at all: filled where it was not seen, or at a step in both scans.
-  bool is_within_error(Place p) const {
-    constexpr double established = 2.0;  // sd; ours
+  /// Volume over its error, for zones that may not have changed at all: filled where they were not
+  /// seen, which errs by more than normal errors do, or at a step in both scans.
+  double significance(Place p) const {
+    constexpr double by_filling = 3.0;  // ours
     const ZoneErrors& errors = areas_[p.area].errors;
     const auto i = static_cast<Eigen::Index>(p.zone);
     const double variance = zone(p).variance() + errors.correlated(i, i) + errors.datum(i, i);
-    return !is_main(p) && std::abs(zone(p).volume) < established * std::sqrt(variance);
+    const double unseen = zone(p).unknown / zone(p).area;
+    return std::abs(zone(p).volume) / (std::sqrt(variance) * (1.0 + by_filling * unseen));
   }
 
   /// Of a tail that is no track: soil thins out, something else beside it does not.
@@ -208,6 +249,9 @@ class ChangeReader {
     if (tracks_[p.area].is_rut[p.zone]) return meaning_of_track(p, ChangeKind::ruts, "ruts");
     if (part(p) == Part::tail) {
       return {ChangeKind::edge, "the low edge of a hole", edge_prior(p), false};
+    }
+    if (is_at_rim(p)) {
+      return {ChangeKind::settled, "falls at the rim of the survey", prior::doubtful, true};
     }
     if (shape(p).height < std::min(shallow, shallow_share * hole_height())) {
       return {ChangeKind::settled, "ground that fell a little",
@@ -242,6 +286,9 @@ class ChangeReader {
     if (beside(p)) return {ChangeKind::spill, "spill beside the hole", certain, true};
     if (part(p) == Part::tail) {
       return {ChangeKind::edge, "the low edge of a heap", edge_prior(p), false};
+    }
+    if (is_at_rim(p)) {
+      return {ChangeKind::small_rises, "rises at the rim of the survey", prior::doubtful, true};
     }
     if (heap_ && p.area == heap_->area && beside_heap_[p.zone]) {
       return {ChangeKind::second_heap, "soil beside the heap", prior::beside_main, false};

@@ -12,6 +12,7 @@
 
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "change/attribution.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/plane_fit.hpp"
 #include "ground/slopes.hpp"
@@ -230,16 +231,6 @@ std::optional<LevelFloor> level_floor(const SurfacePair& pair, const VolumeChang
   return floor;
 }
 
-Warning flat_water(const LevelFloor& floor) {
-  return {WarningCode::flat_water, "the lowest part of the hole, " + readable(floor.inner_area, 2) +
-                                       " m^2, is level to " + readable(1000.0 * floor.seen, 2) +
-                                       " mm where the ground before was uneven by " +
-                                       readable(1000.0 * floor.before, 2) +
-                                       " mm, as water is: each centimetre of its depth hides " +
-                                       readable(0.01 * floor.inner_area, 2) +
-                                       " m^3 of the hole; scan the hole without water"};
-}
-
 /// Volume of the hole below a level floor, if water hides this share of its depth: the area of the
 /// hole goes on shrinking with depth as above the floor, to nothing.
 double hidden_volume(const LevelFloor& floor, double hole, double share) {
@@ -250,29 +241,80 @@ double hidden_volume(const LevelFloor& floor, double hole, double share) {
   return floor.area * deeper - 0.5 * flare * deeper * deeper;
 }
 
-/// The reading that a level floor on even ground is water, of any depth.
-void add_water(const LevelFloor& floor, VolumeChange& change) {
+/// What water over a level floor would make of the bulking factor.
+struct HiddenFloor {
+  double least = 0.0;        ///< volume under the water [m^3]
+  double most = 0.0;         ///< likewise
+  double highest = 0.0;      ///< bulking factor with the least [-]
+  double lowest = 0.0;       ///< with the most
+  double prior = 0.0;        ///< that it is water, by the ground around
+  double probability = 0.0;  ///< likewise, with the balance of the soil
+};
+
+/// Nothing where there is no bulking factor, or the floor is too small to hide much.
+std::optional<HiddenFloor> hidden_floor(const LevelFloor& floor, const VolumeChange& change) {
   constexpr double least_share = 0.2;  // ours: of the hole; less hides little
-  constexpr double weight = 0.03;      // ours
+  constexpr double on_even = 0.03;     // ours: where the ground was as level
+  constexpr double on_rough = 0.15;    // ours: where it was not; a bucket that drags levels too
   constexpr double shallowest = 0.05;  // ours: share of the depth of the hole
   constexpr double deepest = 0.60;     // ours, likewise
+  constexpr int depths = 8;
   const auto k = bulking_factor(change);
-  if (!k || change.readings.empty() || floor.share < least_share || !(floor.depth > 0.0)) return;
+  if (!k || floor.share < least_share || !(floor.depth > 0.0)) return std::nullopt;
   const double hole = change.before.value;
-  const double least = hidden_volume(floor, hole, shallowest);
-  const double most = hidden_volume(floor, hole, deepest);
-  const double highest = k->value * hole / (hole + least);
-  const double lowest = k->value * hole / (hole + most);
+  const auto bulking_under = [&](double share) {
+    return k->value * hole / (hole + hidden_volume(floor, hole, share));
+  };
+  HiddenFloor hidden{hidden_volume(floor, hole, shallowest),
+                     hidden_volume(floor, hole, deepest),
+                     bulking_under(shallowest),
+                     bulking_under(deepest),
+                     floor.was_rough() ? on_rough : on_even,
+                     0.0};
+  double likelihood = 0.0;
+  for (int i = 0; i < depths; ++i) {
+    const double share = shallowest + (i + 0.5) / depths * (deepest - shallowest);
+    likelihood += likelihood_of_bulking(bulking_under(share)) / depths;
+  }
+  const double water = hidden.prior * likelihood;
+  hidden.probability = water / (water + (1.0 - hidden.prior) * likelihood_of_bulking(k->value));
+  return hidden;
+}
+
+/// The reading that a level floor is water, of any depth.
+void add_water(const HiddenFloor& hidden, VolumeChange& change) {
+  if (change.readings.empty()) return;
   const std::string what =
       "water over the lowest 5 to 60 % of the hole, as level as its floor: no scan tells";
+  const double weight = hidden.prior;
   change.attribution.push_back(
-      {ChangeKind::water, what, {-0.5 * (least + most), 0.25 * (most - least)}, false, weight});
+      {ChangeKind::water,
+       what,
+       {-0.5 * (hidden.least + hidden.most), 0.25 * (hidden.most - hidden.least)},
+       false,
+       weight});
   for (Reading& reading : change.readings) reading.weight *= 1.0 - weight;
-  change.readings.push_back({{ChangeKind::water},
-                             "with " + what,
-                             weight,
-                             {0.5 * (lowest + highest), std::hypot(bulking_errors(change).scans,
-                                                                   0.25 * (highest - lowest))}});
+  const double spread = 0.25 * (hidden.highest - hidden.lowest);
+  change.readings.push_back(
+      {{ChangeKind::water},
+       "with " + what,
+       weight,
+       {0.5 * (hidden.lowest + hidden.highest), std::hypot(bulking_errors(change).scans, spread)}});
+}
+
+Warning flat_water(const LevelFloor& floor, const VolumeChange& change) {
+  constexpr double as_likely = 0.35;  // ours, of water: ends trust
+  const auto hidden = hidden_floor(floor, change);
+  const bool is_likely = hidden && hidden->probability > as_likely;
+  return {WarningCode::flat_water,
+          "the lowest part of the hole, " + readable(floor.inner_area, 2) + " m^2, is level to " +
+              readable(1000.0 * floor.seen, 2) + " mm where the ground before was uneven by " +
+              readable(1000.0 * floor.before, 2) +
+              " mm, as a bucket leaves it that drags level, or as water is" +
+              (is_likely ? ", which the large bulking factor speaks for" : "") +
+              ": each centimetre of water would hide " + readable(0.01 * floor.inner_area, 2) +
+              " m^3 of the hole; if there was water, scan the hole without it",
+          is_likely};
 }
 
 // ---- Shadows ------------------------------------------------------------------------------------
@@ -328,7 +370,7 @@ std::vector<Warning> check_cover(const std::vector<const SurfacePair*>& pairs,
   if (auto warning = grass(pairs, change)) found.push_back(std::move(*warning));
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto floor = level_floor(*pairs[i], change, change.areas[i]);
-    if (floor && floor->was_rough()) found.push_back(flat_water(*floor));
+    if (floor && floor->was_rough()) found.push_back(flat_water(*floor, change));
   }
   return found;
 }
@@ -336,7 +378,8 @@ std::vector<Warning> check_cover(const std::vector<const SurfacePair*>& pairs,
 void state_water(const std::vector<const SurfacePair*>& pairs, VolumeChange& change) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto floor = level_floor(*pairs[i], change, change.areas[i]);
-    if (floor && !floor->was_rough()) add_water(*floor, change);
+    if (!floor) continue;
+    if (const auto hidden = hidden_floor(*floor, change)) add_water(*hidden, change);
   }
 }
 

@@ -184,6 +184,21 @@ void blank_faces(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after) {
   }
 }
 
+/// Walls, masts and buildings that stand in both scans, and what lies right beside them: their
+/// cells are as high as the points of a face that fell into them, which no two scans share.
+void blank_structures(Eigen::ArrayXXd& before, Eigen::ArrayXXd& after, double cell_size) {
+  constexpr double beside = 1.5;  // cells
+  const Eigen::ArrayXXd of_both =
+      excess_of(before, cell_size).min(excess_of(after, cell_size));  // NaN: not in both
+  std::vector<Cell> cells;
+  for_each_cell(of_both, [&](Cell at) {
+    if (of_both(at.row, at.col) > least_excess) cells.push_back(at);
+  });
+  for (const Cell at : widened(cells, before, beside)) {
+    before(at.row, at.col) = after(at.row, at.col) = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 }  // namespace
 
 bool is_beside_wall(const Eigen::ArrayXXd& z, Cell at) { return wall_across(z, at).has_value(); }
@@ -195,6 +210,7 @@ std::vector<Object> take_out_objects(Eigen::ArrayXXd& before, Eigen::ArrayXXd& a
   blank(after, objects);
   blank(before, gone);
   blank_faces(before, after);
+  blank_structures(before, after, cell_size);
   std::vector<Object> low = lying(before, after, cell_size, margin);
   blank(after, low);
   objects.insert(objects.end(), low.begin(), low.end());

@@ -9,10 +9,9 @@
 
 #include <excavplan/base/error.hpp>
 
-#include "change/doming.hpp"
 #include "change/relief.hpp"
 #include "change/shadow_filling.hpp"
-#include "change/stripes.hpp"
+#include "change/systematic_errors.hpp"
 #include "change/zone_filling.hpp"
 #include "ground/grid_cells.hpp"
 #include "ground/sampling_gaps.hpp"
@@ -149,6 +148,10 @@ void sum_borders(Area& area) {
     for_each_neighbour(zone, at, [&](Cell n) {
       const int other = zone(n.row, n.col);
       if (other < 0 || other == index) return;
+      const auto is_layer = [&](int i) {
+        return area.ground.zone_is_layer[static_cast<std::size_t>(i)];
+      };
+      if (is_layer(index) || is_layer(other)) return;  // hides next to nothing
       const double step = std::abs(difference(at.row, at.col) - difference(n.row, n.col));
       if (step > 0.0) hidden[static_cast<std::size_t>(index)] += cell_area * step;
     });
@@ -276,25 +279,6 @@ Scans prepared(const SurfacePair& pair, const ChangeOptions& options,
   return scans;
 }
 
-/// Errors that run through stable ground and zones alike.
-struct Systematic {
-  Eigen::MatrixXd left;  // covariance of the sums of the cells of the zones [m^2]
-  double rms = 0.0;      // of what was taken off stable ground [m]
-};
-
-Systematic take_systematic_off(ChangedGround& ground, double cell_size) {
-  const Eigen::ArrayXXd before = ground.residual;
-  Systematic errors{take_doming_off(ground, cell_size)};
-  const std::vector<double> of_stripes = take_stripes_off(ground);
-  for (std::size_t i = 0; i < of_stripes.size(); ++i) {
-    errors.left(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += of_stripes[i];
-  }
-  const Eigen::ArrayXXd taken = before - ground.residual;
-  const auto known = static_cast<double>(taken.size() - taken.isNaN().count());
-  errors.rms = std::sqrt(taken.isNaN().select(0.0, taken.square()).sum() / std::max(1.0, known));
-  return errors;
-}
-
 /// The change, found where systematic errors are taken off: they would hide what is lower than they
 /// are. They are still in its difference.
 ChangedGround change_in(const Eigen::ArrayXXd& difference, const Eigen::ArrayXXd& variance,
@@ -398,6 +382,7 @@ Area survey(const SurfacePair& pair, const ChangeOptions& options) {
   area.noise.white = std::max(area.noise.white, least_noise * least_noise);
   sum_own_errors(area, pair, scans, scans.variance_of(share), options);
   predict_errors(area, scans.before, left);
+  area.left = left;
   area.outliers = outlier_volumes(pair, area);
   area.errors.correlated += systematic.left * cell_area * cell_area;
   area.errors.correlated += area.outliers * area.outliers.transpose();

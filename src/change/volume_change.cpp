@@ -18,6 +18,7 @@
 #include "change/change_warnings.hpp"
 #include "change/earlier_soil.hpp"
 #include "change/open_changes.hpp"
+#include "change/strewn_soil.hpp"
 #include "change/surveyed_area.hpp"
 #include "ground/map_check.hpp"
 #include "ground/registration.hpp"
@@ -177,6 +178,7 @@ VolumeChange result_of(const std::vector<const SurfacePair*>& pairs, const Chang
   const Attribution attribution = attribute(areas, options);
   VolumeChange change;
   sum_volumes(areas, change);
+  add_strewn_soil(areas, change);
   set_deviations(change);
   warn_of_balance(change);
   state_open_changes(areas, attribution, change);

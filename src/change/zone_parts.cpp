@@ -174,6 +174,7 @@ class Parter {
     const int tail = static_cast<int>(parts_.part.size());
     for (const Cell at : cells) ground_.zone(at.row, at.col) = tail;
     ground_.zone_is_cut.push_back(false);
+    ground_.zone_is_layer.push_back(false);
     parts_.part.push_back(Part::tail);
     parts_.parent.push_back(index);
   }
@@ -190,6 +191,7 @@ class Parter {
     const double rms = std::sqrt(noise.white + noise.correlated);
     const int churn = static_cast<int>(zones.size());
     ground_.zone_is_cut.push_back(false);
+    ground_.zone_is_layer.push_back(false);
     parts_.part.push_back(Part::churn);
     parts_.parent.push_back(-1);
     parts_.stirred.push_back(0.0);

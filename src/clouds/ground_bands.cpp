@@ -19,6 +19,7 @@ using Eigen::Index;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t trusted = 5;  // points, whose median is hardly ever an outlier; ours
+constexpr double crumb = 0.04;      // ours: soil lies in crumbs so high, which belong to it [m]
 
 /// By the distances from the level, and of rounded heights at least as large as that leaves it.
 double noise_of(std::vector<float>& heights, double level) {
@@ -83,6 +84,22 @@ bool upper_level_goes_on(const Eigen::ArrayXXd& lowest, Index cell, double valle
   return known < enough_known || above >= enough_above;
 }
 
+/// True if at most one group around holds two surfaces too: outliers do not lie on a surface that
+/// goes on.
+bool is_alone(const std::unordered_map<Index, Overlay>& overlays, Index group, Index rows) {
+  constexpr int enough = 2;  // ours
+  int others = 0;
+  for (const Index column : {-1, 0, 1}) {
+    for (const Index row : {-1, 0, 1}) {
+      if (column == 0 && row == 0) continue;
+      const Index inside = group % rows + row;
+      if (inside < 0 || inside >= rows) continue;
+      others += static_cast<int>(overlays.count(group + column * rows + row));
+    }
+  }
+  return others < enough;
+}
+
 /// By how much the height of a group may be wrong where it holds two surfaces: if the lower one
 /// counts, by the share of the upper; if both do, by that of the smaller.
 double doubt_by(const Overlay& both, bool only_lower) {
@@ -98,7 +115,7 @@ Cover lower_to_ground(PointsByCell& points, GroundLevels& levels, double group_s
   constexpr double gap_to_cell = 0.5;   // ours
   Cover cover{{}, Eigen::ArrayXXd::Zero(levels.height.rows(), levels.height.cols())};
   if (!std::isfinite(levels.noise)) return cover;
-  const double gap = std::max(gap_to_noise * levels.noise, gap_to_cell * group_size);
+  const double gap = std::max({gap_to_noise * levels.noise, gap_to_cell * group_size, crumb});
   std::vector<Split> splits;
   std::unordered_map<Index, Overlay> overlays;
   std::vector<float> heights;
@@ -122,6 +139,7 @@ Cover lower_to_ground(PointsByCell& points, GroundLevels& levels, double group_s
   }
   for (const auto& [group, both] : overlays) lowest(group) = both.low;
   for (const auto& [group, both] : overlays) {
+    if (is_alone(overlays, group, rows)) continue;                  // as by outliers
     if (upper_level_goes_on(lowest, group, both.valley)) continue;  // as beside a wall
     cover.doubt(group) = doubt_by(both, cover.ceilings.count(group) > 0);
   }
@@ -140,9 +158,8 @@ GroundBands::GroundBands(PointsByCell& points, double cell_size, double outlier_
 
 /// From a plane that the levels around are off by so much [m].
 double GroundBands::reach_of(double off_plane) const {
-  constexpr double bend = 3.0;    // ours: of the ground in a cell, to that of those around
-  constexpr double least = 1e-3;  // [m], ours: of scans without noise
-  return std::max(gap_ + bend * off_plane, least);
+  constexpr double bend = 3.0;  // ours: of the ground in a cell, to that of those around
+  return std::max(gap_ + bend * off_plane, crumb);
 }
 
 Band GroundBands::by_groups(Index cell) const {
@@ -157,7 +174,7 @@ Band GroundBands::by_groups(Index cell) const {
     around.off_plane = std::max(around.off_plane, off);
     around.off_plane_all = std::max(around.off_plane_all, off);
   }
-  const double reach = gap_ + 0.5 * (around.high - around.low);
+  const double reach = std::max(gap_ + 0.5 * (around.high - around.low), crumb);
   Band band{around.low - reach, around.high + reach};
   if (const auto ceiling = cover_.ceilings.find(group); ceiling != cover_.ceilings.end()) {
     band.high = std::min(band.high, ceiling->second);

@@ -78,6 +78,19 @@ std::optional<Warning> coarse_heights(const OutlinedPair& pair) {
           " m: volumes of a dig need finer ones; write the coordinates with more digits"};
 }
 
+/// Of points that hold no data, which were left out.
+std::optional<Warning> no_data(const ScanOutline& seen, const Scan& scan) {
+  if (seen.no_data.empty()) return std::nullopt;
+  std::string heights;
+  for (const double height : seen.no_data) {
+    heights += (heights.empty() ? "" : " or ") + number_text(height);
+  }
+  return Warning{WarningCode::outliers, name_of(scan) + ": " +
+                                            readable(100.0 * seen.no_data_share, 2) +
+                                            " % of the points have z = " + heights +
+                                            ", which stands for no data: they were left out"};
+}
+
 /// Of a machine that takes nothing out of scans, or most of them.
 std::optional<Warning> not_in_view(const OutlinedPair& pair) {
   constexpr double most = 0.5;  // ours, of a scan
@@ -233,13 +246,17 @@ double gap_between(const Rectangle& a, const Rectangle& b) {
 }
 
 /// Volume of other ground that fell beside the heap, as the spill does where scans are swapped, and
-/// deeper than tracks.
+/// deeper than tracks and its error. Nothing where the heap is too small to be a hole.
 double lost_beside_heap(const VolumeChange& change) {
-  constexpr double track = 0.05;  // ours, mean depth [m]
+  constexpr double track = 0.05;       // ours, mean depth [m]
+  constexpr double least_heap = 0.2;   // ours, of what was dug
+  constexpr double established = 2.0;  // ours [sd]
   const double beside = ChangeOptions{}.spill_distance;
   double lost = 0.0;
+  if (change.dumped.value < least_heap * change.excavated.value) return lost;
   for (const ChangeZone& zone : change.zones) {
-    if (zone.kind != ZoneKind::other || !(zone.volume.value < -track * zone.area)) continue;
+    const double least = std::max(track * zone.area, established * zone.volume.sd);
+    if (zone.kind != ZoneKind::other || !(zone.volume.value < -least)) continue;
     if (std::any_of(change.zones.begin(), change.zones.end(), [&](const ChangeZone& heap) {
           return heap.kind == ZoneKind::dump && gap_between(heap.extent, zone.extent) < beside;
         })) {
@@ -320,6 +337,8 @@ std::vector<Warning> check_outlines(const OutlinedPair& pair) {
   const auto add = [&found](std::optional<Warning> warning) {
     if (warning) found.push_back(std::move(*warning));
   };
+  add(no_data(pair.before, pair.scans.before));
+  add(no_data(pair.after, pair.scans.after));
   add(too_small(pair));
   add(other_units(pair));
   add(coarse_heights(pair));

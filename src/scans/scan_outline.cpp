@@ -39,39 +39,57 @@ Eigen::Vector3d normal_of(const Cloud& cloud, const Eigen::AlignedBox3d& box) {
   return normal.z() < 0.0 ? Eigen::Vector3d(-normal) : normal;
 }
 
+std::vector<double> sorted_heights(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<double> heights;
+  heights.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) heights.push_back(point.z());
+  std::sort(heights.begin(), heights.end());
+  return heights;
+}
+
+/// Equal heights.
+struct Run {
+  double height;
+  std::size_t count;
+};
+std::vector<Run> runs_of(const std::vector<double>& sorted, double same) {
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    if (i > 0 && sorted[i] - sorted[i - 1] <= same) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({sorted[i], 1});
+    }
+  }
+  return runs;
+}
+
 /// Heights that three points and more share, but for a few points all of them; none else.
-std::vector<double> shared_heights(const Cloud& cloud, double same) {
+std::vector<double> shared_heights(const std::vector<double>& sorted, double same) {
   constexpr std::size_t fewest_sharing = 3;  // ours
   constexpr double most_alone = 0.05;        // of the points, ours
-  std::vector<double> heights;
-  for (const Eigen::Vector3d& point : cloud.points) heights.push_back(point.z());
-  std::sort(heights.begin(), heights.end());
   std::vector<double> shared;
   std::size_t alone = 0;
-  for (auto from = heights.begin(); from != heights.end();) {
-    auto to = from + 1;
-    while (to != heights.end() && *to - *(to - 1) <= same) ++to;
-    const auto count = static_cast<std::size_t>(to - from);
-    if (count >= fewest_sharing) {
-      shared.push_back(*from);
+  for (const Run& run : runs_of(sorted, same)) {
+    if (run.count >= fewest_sharing) {
+      shared.push_back(run.height);
     } else {
-      alone += count;
+      alone += run.count;
     }
-    from = to;
   }
-  const double most = most_alone * static_cast<double>(heights.size());
+  const double most = most_alone * static_cast<double>(sorted.size());
   return static_cast<double>(alone) > most ? std::vector<double>() : shared;
 }
 
 /// The step of rounded heights: the least distance of successive ones, where eight points share
 /// each height, there are five heights, and 95 % of the distances are multiples of it; 0 else.
-double height_step_of(const Cloud& cloud) {
+double height_step_of(const std::vector<double>& sorted) {
   constexpr std::size_t fewest_at_each = 8;  // points, ours
   constexpr std::size_t fewest_steps = 4;    // ours
   constexpr double same = 1e-5;              // [m]: heights of float32 a hundred metres up
   constexpr double most_other = 0.05;        // ours
-  const std::vector<double> heights = shared_heights(cloud, same);
-  const bool are_few = heights.size() * fewest_at_each <= cloud.points.size();
+  const std::vector<double> heights = shared_heights(sorted, same);
+  const bool are_few = heights.size() * fewest_at_each <= sorted.size();
   if (!are_few || heights.size() <= fewest_steps) return 0.0;
   std::vector<double> steps;
   for (std::size_t i = 1; i < heights.size(); ++i) steps.push_back(heights[i] - heights[i - 1]);
@@ -82,13 +100,62 @@ double height_step_of(const Cloud& cloud) {
   return static_cast<double>(others) > most_other * static_cast<double>(steps.size()) ? 0.0 : least;
 }
 
+/// Heights that mean "none": those that three points and more share exactly far from all others, as
+/// -9999 and the largest float, and a zero that a few points in a hundred share where hardly any
+/// share another height.
+std::vector<double> no_data_in(const std::vector<double>& sorted) {
+  constexpr std::size_t fewest = 3;      // ours
+  constexpr double apart = 10.0;         // ours, of files in metres; and the range of the others
+  constexpr double least_share = 0.002;  // ours, of a zero
+  constexpr double most_share = 0.2;     // ours: more is ground that someone drew
+  constexpr double more_often = 20.0;    // ours, than the next that is shared
+  constexpr double same = 1e-9;
+  const auto points = static_cast<double>(sorted.size());
+  if (sorted.size() < 2 * fewest) return {};
+  const double middle = sorted[sorted.size() / 2];
+  const double range = sorted[sorted.size() * 9 / 10] - sorted[sorted.size() / 10];
+  const double far = std::max(apart, 10.0 * range);
+  const std::vector<Run> runs = runs_of(sorted, same);
+  std::size_t zeros = 0;
+  std::size_t next = 1;
+  std::vector<double> found;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto gap = [&](std::size_t other) {
+      return std::abs(runs[i].height - runs[other].height);
+    };
+    const bool is_far = std::abs(runs[i].height - middle) > far && (i == 0 || gap(i - 1) > apart) &&
+                        (i + 1 == runs.size() || gap(i + 1) > apart);
+    if (is_far && runs[i].count >= fewest) {
+      found.push_back(runs[i].height);
+    } else if (std::abs(runs[i].height) <= same) {
+      zeros = runs[i].count;
+    } else {
+      next = std::max(next, runs[i].count);
+    }
+  }
+  const auto many = static_cast<double>(zeros);
+  if (many > least_share * points && many < most_share * points &&
+      many > more_often * static_cast<double>(next)) {
+    found.push_back(0.0);
+  }
+  return found;
+}
+
 /// Extent and density of a cloud that streams by.
 class CloudOutline {
  public:
+  explicit CloudOutline(const Scan& scan)
+      : file_from_site_(scan.site_from_scan.inverse()), unit_(scan.unit) {}
+
   void add(const std::vector<Eigen::Vector3d>& points);
   ScanOutline result() const;
 
  private:
+  /// Takes the points without data out of a sample.
+  void drop_no_data(std::vector<Eigen::Vector3d>& points, ScanOutline& outline) const;
+
+  Eigen::Matrix4d file_from_site_;
+  double unit_;
   ScanOutline outline_;
   StreamSample<Eigen::Vector3d> sample_{std::size_t{1} << 16};
 };
@@ -101,6 +168,27 @@ void CloudOutline::add(const std::vector<Eigen::Vector3d>& points) {
   sample_.add(points);
 }
 
+void CloudOutline::drop_no_data(std::vector<Eigen::Vector3d>& points, ScanOutline& outline) const {
+  const auto height_in_file = [&](const Eigen::Vector3d& point) {
+    return (file_from_site_ * point.homogeneous()).z() / unit_;
+  };
+  std::vector<double> heights;
+  heights.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) heights.push_back(height_in_file(point));
+  std::sort(heights.begin(), heights.end());
+  outline.no_data = no_data_in(heights);
+  if (outline.no_data.empty()) return;
+  const auto before = static_cast<double>(points.size());
+  points.erase(std::remove_if(points.begin(), points.end(),
+                              [&](const Eigen::Vector3d& point) {
+                                return is_no_data(height_in_file(point), outline.no_data);
+                              }),
+               points.end());
+  outline.no_data_share = 1.0 - static_cast<double>(points.size()) / before;
+  outline.finite_points -= static_cast<std::uint64_t>(outline.no_data_share *
+                                                      static_cast<double>(outline.finite_points));
+}
+
 ScanOutline CloudOutline::result() const {
   constexpr double nearest_seen = 0.1;    // ours, of a depth camera [m]
   constexpr double farthest_seen = 20.0;  // likewise
@@ -110,6 +198,7 @@ ScanOutline CloudOutline::result() const {
   for (const Eigen::Vector3d& point : sample_.values()) {
     if (point.allFinite()) cloud.points.push_back(point);
   }
+  drop_no_data(cloud.points, outline);
   if (cloud.points.empty()) return outline;
   const PointSource source = points_of(cloud);
   const Eigen::AlignedBox3d box = usual_box(source, cloud.points.size());
@@ -118,7 +207,7 @@ ScanOutline CloudOutline::result() const {
   outline.density = points_per_area(source, cloud.points.size(), *outline.extent) *
                     (static_cast<double>(outline.finite_points) / sampled);
   outline.height = box.sizes().z();
-  outline.height_step = height_step_of(cloud);
+  outline.height_step = height_step_of(sorted_heights(cloud.points));
   const auto along_z = std::count_if(
       cloud.points.begin(), cloud.points.end(),
       [](const Eigen::Vector3d& point) { return is_along_z(point, nearest_seen, farthest_seen); });
@@ -151,7 +240,7 @@ double survey_cell(const std::vector<ScanOutline>& outlines) {
 }
 
 ScanOutline outline(const Scan& scan) {
-  CloudOutline found;
+  CloudOutline found(scan);
   const VisitedScan visited =
       visit_scan(scan, [&found](const std::vector<Eigen::Vector3d>& points) { found.add(points); });
   ScanOutline result = found.result();

@@ -130,7 +130,10 @@ OutlinedPair outlined(const ScanPair& scans, unsigned threads) {
   const std::vector<ScanOutline> seen = outlines({scans.before, scans.after}, threads);
   require_points(scans.before, seen[0]);
   require_points(scans.after, seen[1]);
-  return {scans, seen[0], seen[1]};
+  OutlinedPair pair = {scans, seen[0], seen[1]};
+  pair.scans.before.no_data = seen[0].no_data;
+  pair.scans.after.no_data = seen[1].no_data;
+  return pair;
 }
 
 Displacement displacement_by(const Eigen::Matrix4d& correction, const Eigen::Vector3d& centre) {

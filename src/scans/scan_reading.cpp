@@ -33,17 +33,27 @@ void require_scan(const Scan& scan) {
 
 }  // namespace
 
+bool is_no_data(double height, const std::vector<double>& no_data) {
+  constexpr double same = 1e-6;      // [unit of the file]
+  constexpr double relative = 1e-6;  // as of float32
+  return std::any_of(no_data.begin(), no_data.end(), [&](double none) {
+    return std::abs(height - none) <= same + relative * std::abs(none);
+  });
+}
+
 VisitedScan visit_scan(const Scan& scan, const PointVisitor& visit) {
   require_scan(scan);
   const bool is_moved = scan.site_from_scan != Eigen::Matrix4d::Identity() || scan.unit != 1.0;
   const Eigen::Matrix3d rotation = scan.unit * scan.site_from_scan.topLeftCorner<3, 3>();
   const Eigen::Vector3d shift = scan.site_from_scan.topRightCorner<3, 1>();
+  const bool has_no_data = !scan.no_data.empty();
   VisitedScan visited;
   std::uint64_t passed_on = 0;
   std::vector<Eigen::Vector3d> kept;
   const PointVisitor bring_in = [&](const std::vector<Eigen::Vector3d>& points) {
     kept.clear();
     for (const Eigen::Vector3d& point : points) {
+      if (has_no_data && is_no_data(point.z(), scan.no_data)) continue;
       const Eigen::Vector3d p = is_moved ? Eigen::Vector3d(rotation * point + shift) : point;
       if (scan.area && !scan.area->contains(p.x(), p.y())) continue;
       if (scan.machine && scan.machine->holds(p)) {
@@ -59,7 +69,7 @@ VisitedScan visit_scan(const Scan& scan, const PointVisitor& visit) {
     passed_on += points.size();
     visit(points);
   };
-  const bool as_it_is = !is_moved && !scan.area && !scan.machine;
+  const bool as_it_is = !is_moved && !scan.area && !scan.machine && !has_no_data;
   const PointVisitor& take = as_it_is ? pass_on : bring_in;
   CloudShape& shape = visited.shape;
   const auto follow = [&shape](CloudShape next) {

@@ -20,8 +20,13 @@ struct VisitedScan {
   std::uint64_t machine_points = 0;  ///< not passed on
 };
 
-/// Passes on the points of a scan in the site frame, without those outside its area or of the
-/// machine; those that are not finite may be among them. The same on every call.
+/// True of the height of a point, in the frame and unit of its file, that stands for none of
+/// `no_data`; the heights may have been moved and moved back.
+bool is_no_data(double height, const std::vector<double>& no_data);
+
+/// Passes on the points of a scan in the site frame, without those outside its area, of
+/// the machine or without data; those that are not finite may be among them. The same on every
+/// call.
 /// @throws Error (bad_file)
 VisitedScan visit_scan(const Scan& scan, const PointVisitor& visit);
 

@@ -16,7 +16,7 @@
 
 #include "base/random.hpp"
 #include "change/change_zones.hpp"
-#include "change/doming.hpp"
+#include "change/systematic_errors.hpp"
 #include "ground/grid_cells.hpp"
 #include "support/errors.hpp"
 

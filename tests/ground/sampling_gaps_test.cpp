@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "base/random.hpp"
-#include "change/stripes.hpp"
+#include "change/systematic_errors.hpp"
 
 namespace excavplan {
 namespace {

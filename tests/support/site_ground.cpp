@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/site_ground.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 
 namespace excavplan::scenes {
 
@@ -271,6 +273,199 @@ void dug_again(Draft& d) {
   old.ridge_offset = 1.5 * d.scene.dig.pit_width;
   old.pit_x += d.random.uniform(-0.5, 0.5);
   d.scene.older = [old](double x, double y) { return old.dug(x, y); };
+}
+
+namespace {
+
+/// Half balls in a jittered lattice, so many that they are `thickness` high on average.
+Height crumbs_of(double thickness, std::uint64_t seed) {
+  constexpr double pitch = 0.05;
+  return [=](double x, double y) {
+    double height = 0.0;
+    const auto column = static_cast<long long>(std::floor(x / pitch));
+    const auto row = static_cast<long long>(std::floor(y / pitch));
+    for (long long c = column - 1; c <= column + 1; ++c) {
+      for (long long r = row - 1; r <= row + 1; ++r) {
+        Random random(seed, static_cast<std::uint64_t>(c + 100000),
+                      static_cast<std::uint64_t>(r + 100000));
+        const double radius = random.uniform(0.012, 0.022);
+        const double volume = 2.0 / 3.0 * pi * radius * radius * radius;
+        const double many = thickness * pitch * pitch / volume;
+        const Clod clod{pitch * (static_cast<double>(c) + random.uniform()),
+                        pitch * (static_cast<double>(r) + random.uniform()), volume};
+        if (random.uniform() < many) height = std::max(height, clod(x, y));
+      }
+    }
+    return height;
+  };
+}
+
+/// Where the soil is strewn: an ellipse between hole and heap, or about one of them.
+struct Patch {
+  Eigen::Vector2d centre;
+  Eigen::Vector2d half;
+  bool contains(double x, double y) const {
+    return std::pow((x - centre.x()) / half.x(), 2) + std::pow((y - centre.y()) / half.y(), 2) <
+           1.0;
+  }
+};
+
+void strew(Draft& d, double share, bool as_crumbs) {
+  const double loose = d.bulking * d.scene.truth.hole;
+  double thickness = d.random.uniform(0.002, 0.02);
+  const double area = std::min(share * loose / thickness, 9.0);
+  thickness = share * loose / area;
+  d.scene.sampling.noise = d.random.uniform(0.003, 0.01);
+  const double place = d.random.uniform(0.0, 1.0);
+  const double length = std::sqrt(area / pi) * d.random.uniform(0.8, 1.3);
+  const Patch patch{{place * d.scene.heap.x(), place * d.scene.heap.y()},
+                    {length, area / pi / length}};
+  const Height whole = as_crumbs ? crumbs_of(thickness, d.random.bits())
+                                 : Height([=](double, double) { return thickness; });
+  d.elsewhere += share * loose;
+  d.compose();
+  const Height soil = d.scene.moved;
+  const Height strewn = [=](double x, double y) {
+    return patch.contains(x, y) && soil(x, y) == 0.0 ? whole(x, y) : 0.0;
+  };
+  d.elsewhere += volume_of(strewn, d.scene.extent) - share * loose;
+  d.soil.push_back(strewn);
+  d.compose();
+}
+
+}  // namespace
+
+void strewn_layer(Draft& d) { strew(d, d.random.uniform(0.0, 0.1), false); }
+
+void strewn_crumbs(Draft& d) { strew(d, d.random.uniform(0.0, 0.1), true); }
+
+void strewn_none(Draft& d) { d.scene.sampling.noise = d.random.uniform(0.003, 0.01); }
+
+void strewn_by_wheels(Draft& d) {
+  d.scene.sampling.noise = d.random.uniform(0.003, 0.01);
+  const double height = d.random.uniform(0.003, 0.015);
+  const double start = d.scene.heap.x() - d.scene.dig.heap_radius() - 0.1;
+  const double length = d.random.uniform(1.2, 2.0);
+  for (const double side : {-0.8, 0.8}) {
+    Strip strip;
+    strip.x = start - length;
+    strip.y = d.scene.heap.y() + side;
+    strip.length = length;
+    strip.width = d.random.uniform(0.4, 0.6);
+    strip.height = height;
+    const Height soil = d.scene.moved;
+    const Height strewn = [=](double x, double y) { return soil(x, y) == 0.0 ? strip(x, y) : 0.0; };
+    d.elsewhere += volume_of(strewn, d.scene.extent);
+    d.soil.push_back(strewn);
+  }
+  d.compose();
+}
+
+void level_floor(Draft& d) {
+  d.ground(d.random.uniform(0.0, 3.0) * degree, d.random.uniform(0.01, 0.02));
+  const Dig& dig = d.scene.dig;
+  d.scene.floor =
+      d.scene.ground(dig.pit_x, dig.pit_y) - d.random.uniform(0.7, 0.85) * dig.pit_depth;
+  const SiteScene& scene = d.scene;
+  const Height ground = scene.ground;
+  const Height moved = scene.moved;
+  const double left = volume_of(
+      [&](double x, double y) {
+        const double soil = moved(x, y);
+        return soil < 0.0 ? std::max(0.0, scene.floor - ground(x, y) - soil) : 0.0;
+      },
+      scene.extent);
+  d.elsewhere += d.bulking * left;  // is in no heap at all
+  d.compose();
+  d.scene.truth.hole -= left;
+  d.scene.truth.heap -= d.bulking * left;
+}
+
+void back_over_rim(Draft& d) {
+  Dig& dig = d.scene.dig;
+  dig.ridge_height = 1e-9;
+  d.compose();
+  const double loose = d.bulking * d.scene.truth.hole;
+  // A windrow along the pit whose near slope runs on into the pit.
+  const double slope = d.random.uniform(30.0, 38.0) * degree;
+  const double run_in = d.random.uniform(0.15, 0.45);  // of the rim behind the foot [m]
+  const double length = d.random.uniform(1.0, 1.1) * dig.pit_length;
+  const double half = std::sqrt(loose / (length * std::tan(slope)));
+  const double axis = 0.5 * dig.pit_width + half - run_in;
+  const Height ridge = [=](double x, double y) {
+    const double u =
+        (x - dig.pit_x) * std::cos(dig.heading) + (y - dig.pit_y) * std::sin(dig.heading);
+    const double v =
+        (y - dig.pit_y) * std::cos(dig.heading) - (x - dig.pit_x) * std::sin(dig.heading);
+    const double away = std::hypot(std::max(std::abs(u) - 0.5 * length, 0.0), v - axis);
+    return (half - away) * std::tan(slope);
+  };
+  const Height pit = [=](double x, double y) { return std::min(0.0, dig.dug(x, y)); };
+  d.scene.moved = [=](double x, double y) {
+    const double cut = pit(x, y);
+    const double above = ridge(x, y);
+    return cut < 0.0 ? std::max(cut, above) : std::max(0.0, above);
+  };
+  const Height filled = [=, moved = d.scene.moved](double x, double y) {
+    return std::max(0.0, moved(x, y) - pit(x, y));
+  };
+  d.scene.truth.spill = 0.0;
+  make_room(d.scene.extent, d.scene.heap.x(), d.scene.heap.y(), length);
+  d.scene.truth.heap = volume_of(filled, d.scene.extent);
+  d.scene.heap = {dig.pit_x - axis * std::sin(dig.heading),
+                  dig.pit_y + axis * std::cos(dig.heading)};
+  make_room(d.scene.extent, d.scene.heap.x(), d.scene.heap.y(), length);
+}
+
+void foreign_berm(Draft& d) {
+  Strip berm;
+  berm.height = d.random.uniform(0.12, 0.3);
+  berm.slope = d.random.uniform(28.0, 38.0) * degree;
+  berm.width = 2.0 * berm.height / std::tan(berm.slope);
+  berm.length = d.random.uniform(1.5, 3.0);
+  const bool beside = d.random.uniform() < 0.4;
+  berm.heading = beside ? d.scene.dig.heading : d.random.uniform(0.0, pi);
+  const Eigen::Vector2d along(std::cos(berm.heading), std::sin(berm.heading));
+  Eigen::Vector2d centre = d.at_pit(0.0, -0.5 * d.scene.dig.pit_width - 0.5 * berm.width - 0.15);
+  if (!beside) {
+    centre = {0.45 * d.scene.heap.x(), (d.random.uniform() < 0.5 ? -1.0 : 1.0) * 2.2};
+  }
+  const Eigen::Vector2d at = centre - 0.5 * berm.length * along;
+  berm.x = at.x();
+  berm.y = at.y();
+  make_room(d.scene.extent, centre.x(), centre.y(), 0.5 * berm.length);
+  d.scene.other = berm;
+}
+
+void bucket_rests(Draft& d) {
+  Box bucket;
+  bucket.length = d.random.uniform(0.8, 1.1);
+  bucket.width = d.random.uniform(0.6, 0.9);
+  bucket.heading = d.random.uniform(0.0, pi);
+  const bool in_pit = d.random.uniform() < 0.4;
+  const Eigen::Vector2d at =
+      in_pit ? d.at_pit(0.0, 0.0)
+             : Eigen::Vector2d(d.random.uniform(1.8, 2.6), d.random.uniform(-1.5, 1.5));
+  bucket.x = at.x();
+  bucket.y = at.y();
+  bucket.top = d.scene.after(at.x(), at.y()) + d.random.uniform(0.5, 0.8);
+  d.scene.boxes.push_back(bucket);
+}
+
+void crate_before(Draft& d) {
+  set_down(d, 0.0, 0.0);
+  Box box = d.scene.boxes.back();
+  d.scene.boxes.clear();
+  const bool on_pit = d.random.uniform() < 0.6;
+  const Eigen::Vector2d at =
+      on_pit ? d.at_pit(d.random.uniform(-0.3, 0.3) * d.scene.dig.pit_length, 0.0)
+             : Eigen::Vector2d(d.random.uniform(2.0, 2.8), d.random.uniform(-2.0, 2.0));
+  box.x = at.x();
+  box.y = at.y();
+  box.length = d.random.uniform(0.4, 0.8);
+  box.width = d.random.uniform(0.4, 0.6);
+  box.top = d.scene.before(at.x(), at.y()) + d.random.uniform(0.2, 0.6);
+  d.scene.boxes_before.push_back(box);
 }
 
 }  // namespace excavplan::scenes

@@ -92,4 +92,28 @@ void thin_dig(Draft& d);
 /// In a pit that was there before.
 void dug_again(Draft& d);
 
+// ---- Soil too thin to tell from noise, fallen back, foreign -----------------------------------
+
+/// Up to a tenth of the loose soil lies strewn, 2-20 mm thick: as a layer between hole and heap or
+/// about one of them, or as crumbs; points err by 3-10 mm.
+void strewn_layer(Draft& d);
+void strewn_crumbs(Draft& d);
+/// The same by none of it.
+void strewn_none(Draft& d);
+/// Carried away by wheels: two strips.
+void strewn_by_wheels(Draft& d);
+
+/// The bucket left a level floor in uneven ground.
+void level_floor(Draft& d);
+
+/// The heap stands at the rim, and its foot slid back into the hole.
+void back_over_rim(Draft& d);
+
+/// A ridge that none of the dug soil is, beside the hole or away from it.
+void foreign_berm(Draft& d);
+/// The bucket rests on the ground in the scan after.
+void bucket_rests(Draft& d);
+/// A crate stood on the ground of the dig before.
+void crate_before(Draft& d);
+
 }  // namespace excavplan::scenes

@@ -93,6 +93,32 @@ Points even_scan(const SiteScene& scene, bool after, std::uint64_t seed) {
   return cloud;
 }
 
+void spoil(const SiteScene& scene, bool after, std::uint64_t seed, Points& points) {
+  constexpr double reach = 0.3;  // of a beam's foot [m]
+  const Sampling& sampling = scene.sampling;
+  Random random(seed, after ? 32 : 31);
+  const auto height = [&](double x, double y) {
+    return after ? scene.after(x, y) : scene.before(x, y);
+  };
+  for (Eigen::Vector3d& point : points) {
+    const double kind = random.uniform();
+    const double share = random.uniform();
+    if (kind < sampling.outliers) {
+      point.z() += random.uniform(-0.3, 1.0);
+    } else if (kind < sampling.outliers + sampling.flying) {
+      const Eigen::Vector2d other(point.x() + random.uniform(-reach, reach),
+                                  point.y() + random.uniform(-reach, reach));
+      const Eigen::Vector3d beside(other.x(), other.y(), height(other.x(), other.y()));
+      point += share * (beside - point);
+    } else if (kind > 1.0 - sampling.multipath) {
+      const bool is_in_hole = after && scene.moved(point.x(), point.y()) < 0.0;
+      if (is_in_hole) point.z() -= random.uniform(0.05, 0.4);
+    } else if (kind > 1.0 - sampling.multipath - sampling.no_data) {
+      point.z() = sampling.no_data_height;
+    }
+  }
+}
+
 void thin(Points& points, double edge) {
   std::set<std::array<long long, 3>> taken;
   const auto is_later = [&](const Eigen::Vector3d& p) {
@@ -104,11 +130,16 @@ void thin(Points& points, double edge) {
 
 std::vector<Points> scanned(const SiteScene& scene, bool after, std::uint64_t seed) {
   const auto& lidars = after ? scene.sampling.lidars_after : scene.sampling.lidars_before;
-  if (lidars.empty()) return {even_scan(scene, after, seed)};
+  if (lidars.empty()) {
+    std::vector<Points> clouds = {even_scan(scene, after, seed)};
+    spoil(scene, after, seed, clouds.front());
+    return clouds;
+  }
   const HeightMap surface = surface_of(scene, after);
   std::vector<Points> clouds;
   for (std::size_t i = 0; i < lidars.size(); ++i) {
     clouds.push_back(scan_surface(surface, lidars[i], seed * 8 + (after ? 4 : 0) + i));
+    spoil(scene, after, seed * 8 + i, clouds.back());
     if (scene.sampling.voxel > 0.0) thin(clouds.back(), scene.sampling.voxel);
   }
   return clouds;

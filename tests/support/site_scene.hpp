@@ -40,6 +40,11 @@ struct Sampling {
   double face_share = 0.0;           ///< points on the near face of the wall, as a share of all
   std::vector<Lidar> lidars_before;  ///< one for each cloud
   bool places_told = true;           ///< the clouds say where their lidars stood
+  double outliers = 0.0;             ///< share of points off by -0.3 .. 1 m in height
+  double flying = 0.0;               ///< share of points between the ground at two near places
+  double multipath = 0.0;            ///< share of points in the hole 0.05 .. 0.4 m too deep
+  double no_data = 0.0;              ///< share of points at a height that means "none"
+  double no_data_height = -9999.0;   ///< that height [m]
   double voxel = 0.0;                ///< edge of the cubes that are left one point each [m]
   std::vector<Lidar> lidars_after;
 };
@@ -53,13 +58,15 @@ struct SiteScene {
   Eigen::Vector2d heap = {dump_offset, 0.0};  ///< centre of the main heap
   Ground ground{ScanErrors{}, 1};
   Volumes truth;
-  Height moved = flat;     ///< change by the soil of the dig
-  Height other = flat;     ///< change that is none of the dig
-  Height older = flat;     ///< on the ground, before the first scan
-  double pressed = 0.0;    ///< the ground sank by this under the heap [m]
-  double water = -1e9;     ///< level in the pit
-  std::vector<Box> boxes;  ///< set down after the first scan
-  std::vector<Box> walls;  ///< stood there before
+  Height moved = flat;            ///< change by the soil of the dig
+  Height other = flat;            ///< change that is none of the dig
+  Height older = flat;            ///< on the ground, before the first scan
+  double pressed = 0.0;           ///< the ground sank by this under the heap [m]
+  double water = -1e9;            ///< level in the pit
+  std::vector<Box> boxes;         ///< set down after the first scan
+  std::vector<Box> walls;         ///< stood there before
+  std::vector<Box> boxes_before;  ///< stood there before and were taken away
+  double floor = -1e9;            ///< level of the floor of the pit, where it lies above the pit
   Sampling sampling;
   PointMap frame_before;  ///< none: the clouds are in the frame of the scene
   PointMap frame_after;
@@ -67,7 +74,9 @@ struct SiteScene {
   bool two_areas = false;    ///< dig and dump are handed over as areas of their own
   bool offset_pair = false;  ///< to compare with the same scene without its frames
 
-  double before(double x, double y) const { return with(walls, ground(x, y) + older(x, y), x, y); }
+  double before(double x, double y) const {
+    return with(walls, with(boxes_before, ground(x, y) + older(x, y), x, y), x, y);
+  }
   double after(double x, double y) const {
     const double soil = moved(x, y);
     const double beside = other(x, y);
@@ -75,7 +84,7 @@ struct SiteScene {
     if (soil == 0.0 || (soil * beside > 0.0 && std::abs(beside) > std::abs(soil))) change = beside;
     if (pressed > 0.0 && soil > 0.0 && x > 0.5 * heap.x()) change -= std::min(pressed, 0.2 * soil);
     double z = ground(x, y) + older(x, y) + change;
-    if (soil < 0.0) z = std::max(z, water);
+    if (soil < 0.0) z = std::max({z, water, floor});
     return with(walls, with(boxes, z, x, y), x, y);
   }
   /// Whether grass does not stand there after the dig.
@@ -100,6 +109,9 @@ Eigen::Vector3d face_point(const SiteScene& scene, bool after, Random& random);
 Eigen::Vector2d place_of(const SiteScene& scene, std::size_t index, Random& random);
 
 std::size_t points_of(const SiteScene& scene);
+
+/// Adds outliers, flying points and values that mean "none" to a scan.
+void spoil(const SiteScene& scene, bool after, std::uint64_t seed, Points& points);
 
 Points even_scan(const SiteScene& scene, bool after, std::uint64_t seed);
 

@@ -3,6 +3,7 @@
 #include "support/site_sensing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -87,15 +88,28 @@ void lidar_one_low(Draft& d) { scan_from(d, 2.5, false); }
 
 void lidar_two(Draft& d) { scan_from(d, 2.5, true); }
 
-void rings(Draft& d, int count) {
+void rings(Draft& d, int count, bool both_sides) {
   d.scene.dig.wall_angle = d.random.uniform(55.0, 80.0) * degree;
   d.compose();
   const double side = d.random.uniform() < 0.5 ? -1.0 : 1.0;
-  Lidar lidar = lidar_at(d.scene, standpoint(d, side, d.random.uniform(2.5, 4.0)));
-  lidar.elevation(0) = -d.random.uniform(60.0, 70.0) * degree;
-  lidar.angle_step = {0.2 * degree, (lidar.elevation(1) - lidar.elevation(0)) / (count - 1)};
-  scan_by(d, {lidar});
+  const double height = d.random.uniform(2.5, 4.0);
+  const double lowest = -d.random.uniform(60.0, 70.0) * degree;
+  std::vector<Lidar> lidars = {lidar_at(d.scene, standpoint(d, side, height))};
+  if (both_sides) lidars.push_back(lidar_at(d.scene, standpoint(d, -side, height)));
+  for (Lidar& lidar : lidars) {
+    lidar.elevation(0) = lowest;
+    lidar.angle_step = {0.2 * degree, (lidar.elevation(1) - lidar.elevation(0)) / (count - 1)};
+  }
+  scan_by(d, lidars);
 }
+
+void rings16(Draft& d) { rings(d, 16); }
+
+void rings16_two(Draft& d) { rings(d, 16, true); }
+
+void rings32_two(Draft& d) { rings(d, 32, true); }
+
+void rings128_two(Draft& d) { rings(d, 128, true); }
 
 void rings32(Draft& d) { rings(d, 32); }
 
@@ -122,6 +136,35 @@ void lattice(Draft& d) {
 void stripes(Draft& d) {
   d.scene.sampling.stripe_error = 0.004;
   d.scene.sampling.stripe_width = d.random.uniform(0.02, 0.05);
+}
+
+void outliers(Draft& d) { d.scene.sampling.outliers = 0.01; }
+
+void outliers_rough(Draft& d) {
+  outliers(d);
+  d.ground(d.random.uniform(2.0, 8.0) * degree, d.random.uniform(0.015, 0.025));
+}
+
+void outliers_lidars(Draft& d) {
+  outliers(d);
+  scan_from(d, d.random.uniform(4.0, 6.0), true);
+}
+
+void flying(Draft& d) { d.scene.sampling.flying = 0.02; }
+
+void multipath(Draft& d) { d.scene.sampling.multipath = 0.02; }
+
+void no_data(Draft& d) {
+  constexpr std::array<double, 4> heights = {-9999.0, -99.0, 0.0, 3.4e38};
+  d.scene.sampling.no_data = d.random.uniform(0.005, 0.03);
+  d.scene.sampling.no_data_height = heights[d.random.index(4)];
+  // a zero is "none" where the ground lies elsewhere
+  Eigen::Isometry3d lifted = Eigen::Isometry3d::Identity();
+  lifted.translation().z() = 37.0;
+  const double none = d.scene.sampling.no_data_height;
+  d.scene.frame_before = d.scene.frame_after = [=](const Eigen::Vector3d& p) {
+    return p.z() == none ? p : Eigen::Vector3d(lifted * p);
+  };
 }
 
 PointMap scaled(double factor) {

@@ -45,11 +45,16 @@ void lidar_one_low(Draft& d);
 void lidar_two(Draft& d);
 
 /// A spinning lidar, tilted so that its rings lie on the scene.
-void rings(Draft& d, int count);
+void rings(Draft& d, int count, bool both_sides = false);
 
+void rings16(Draft& d);
 void rings32(Draft& d);
 void rings64(Draft& d);
 void rings128(Draft& d);
+/// From two standpoints.
+void rings16_two(Draft& d);
+void rings32_two(Draft& d);
+void rings128_two(Draft& d);
 
 // ---- Points that are few or in rows -----------------------------------------------------------
 
@@ -59,6 +64,21 @@ void sparse(Draft& d);
 void lattice(Draft& d);
 
 void stripes(Draft& d);
+
+// ---- Points that are none of the ground -------------------------------------------------------
+
+/// 1 % of the points off by up to a metre.
+void outliers(Draft& d);
+/// The same on uneven ground.
+void outliers_rough(Draft& d);
+/// The same seen by two lidars.
+void outliers_lidars(Draft& d);
+/// 2 % of the points lie between what a beam hits at two places.
+void flying(Draft& d);
+/// 2 % of the points in the hole lie too deep.
+void multipath(Draft& d);
+/// 2 % of the points hold a number that means "no data".
+void no_data(Draft& d);
 
 // ---- What the numbers mean --------------------------------------------------------------------
 

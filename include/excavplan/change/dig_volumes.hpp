@@ -113,11 +113,15 @@ struct VolumeErrors {
 
 /// Volumes of one dig [m^3]: before = excavated, after = spilled + dumped (the paper's eqs. 3, 4).
 struct VolumeChange {
-  Measured excavated;                    ///< the hole
-  Measured spilled;                      ///< soil that rose beside it
-  Measured dumped;                       ///< the heap
-  Measured before;                       ///< undisturbed volume of the dug soil
-  Measured after;                        ///< its loose volume
+  Measured excavated;  ///< the hole
+  Measured spilled;    ///< soil that rose beside it
+  Measured dumped;     ///< the heap
+  Measured before;     ///< undisturbed volume of the dug soil
+  Measured after;      ///< its loose volume
+  /// Change of the ground that did not change enough for a zone, within 0.6 m of hole, spill and
+  /// heap and above that farther away: the sum without a threshold
+  Measured outside;
+  Measured strewn;                       ///< what of it is counted as soil, in `spilled`
   double covariance_before_after = 0.0;  ///< [m^6]
   VolumeErrors errors;                   ///< the variances by source
   std::vector<ChangeZone> zones;         ///< of all areas

@@ -37,6 +37,8 @@ struct Scan {
   bool z_is_up = false;   ///< is known, so that no frame of a camera is suspected
   std::string name = {};  ///< for messages; empty: that of its first file
   std::shared_ptr<const MachineFront> machine = {};  ///< points that it holds are left out
+  /// Heights in the frame and unit of the files that mean "none": such points are left out.
+  std::vector<double> no_data = {};
   /// What is doubtful about its points, as who made them knows (RecordedScan::warnings): becomes
   /// part of every result.
   std::vector<Warning> doubts = {};
@@ -55,10 +57,12 @@ struct ScanOutline {
   std::uint64_t points = 0;          ///< finite or not
   std::uint64_t finite_points = 0;   ///< inside the area
   std::uint64_t machine_points = 0;  ///< that Scan::machine held, left out
-  std::optional<Rectangle> extent;   ///< as plan_extent(); none without finite points
-  double density = 0.0;      ///< points per m^2 of occupied ground; NaN if they have no area
-  double height_step = 0.0;  ///< of heights that were rounded; 0: they were not [m]
-  double height = 0.0;       ///< from the lowest to the highest point but 0.1 % on either side [m]
+  std::vector<double> no_data;       ///< heights as Scan::no_data that are found in it
+  double no_data_share = 0.0;       ///< of its points that have these, which count nowhere else [-]
+  std::optional<Rectangle> extent;  ///< as plan_extent(); none without finite points
+  double density = 0.0;             ///< points per m^2 of occupied ground; NaN if they have no area
+  double height_step = 0.0;         ///< of heights that were rounded; 0: they were not [m]
+  double height = 0.0;  ///< from the lowest to the highest point but 0.1 % on either side [m]
   /// Share of the points that lie as a depth camera sees them from the origin: within 60 degrees of
   /// the z axis, at 0.1 to 20 m along it [-].
   double seen_along_z = 0.0;
