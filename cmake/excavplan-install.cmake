@@ -55,7 +55,7 @@ if(NOT recordings_links)
 endif()
 excavplan_install(recordings
   SUMMARY "Scans from rosbag2, MCAP and ROS 1 recordings"
-  REQUIRES_PUBLIC excavplan-clouds LINKS ${recordings_links})
+  REQUIRES_PUBLIC excavplan-clouds REQUIRES excavplan-images LINKS ${recordings_links})
 excavplan_install(images
   SUMMARY "Clouds from depth images"
   REQUIRES_PUBLIC excavplan-clouds REQUIRES libpng)

@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.24)
 # The rooms of the library from the ground up, and what each may include of the others beside itself
 # and base.
 set(rooms base optimisation ground change soil machine simulation sensing calibration planning kit
-  clouds scans logs efficiency recording images density paper experiments results maps drawing figures
+  clouds scans logs efficiency images recording density paper experiments results maps drawing figures
   robot)
 set(base_may_use "")
 set(optimisation_may_use "")
@@ -24,8 +24,8 @@ set(clouds_may_use ground)
 set(scans_may_use ground change machine simulation clouds)
 set(logs_may_use machine)
 set(efficiency_may_use ground change clouds scans logs)
-set(recording_may_use clouds scans)
 set(images_may_use clouds scans)
+set(recording_may_use clouds scans images)
 set(density_may_use ground change soil machine simulation calibration scans logs)
 set(paper_may_use change clouds scans density)
 set(experiments_may_use

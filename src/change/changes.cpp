@@ -67,7 +67,8 @@ class ChangeReader {
   }
 
   std::vector<Change> read() {
-    if (!hole_ && areas_.size() == 1) return {};
+    const bool is_told_heap = heap_ && options_.dump_area;
+    if (!hole_ && areas_.size() == 1 && !is_told_heap) return {};
     for (std::size_t a = 0; a < areas_.size(); ++a) {
       tracks_.push_back(find_tracks(areas_[a], looks_[a], possible_tracks(a), hole_height()));
     }

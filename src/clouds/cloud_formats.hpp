@@ -27,6 +27,7 @@ struct CloudShape {
   std::uint64_t height = 1;
   std::optional<Eigen::Vector3d> sensor = {};  ///< Cloud::sensor_origin
   std::uint64_t left_out = 0;                  ///< Cloud::left_out
+  std::optional<double> unit = {};             ///< of the coordinates, where the file tells it [m]
 
   std::uint64_t points() const { return width * height; }
 };

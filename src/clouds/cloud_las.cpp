@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 
 #include "clouds/cloud_formats.hpp"
+#include "clouds/las_system.hpp"
 
 // LAS 1.0 to 1.4 as the American Society for Photogrammetry and Remote Sensing specifies it ("LAS
 // Specification 1.4 - R15", 2019, sections 2.4 to 2.7). All numbers are little-endian.
@@ -159,8 +162,20 @@ void check_end(const FileStream& file, std::string_view head, std::size_t minor,
   }
 }
 
+/// What a record of the coordinate system says; of two the well-known text counts.
+void read_system(std::string_view head, std::string_view content, LasSystem& system) {
+  constexpr std::uint64_t geokeys = 34735, wkt = 2112;
+  const std::uint64_t kind = whole_at(head, 18, 2);
+  if (head.substr(2, 15) != "LASF_Projection" || (kind != geokeys && kind != wkt)) return;
+  const bool is_known = system.plan_unit || system.not_plane != nullptr;
+  if (kind == wkt || !is_known) {
+    system = kind == wkt ? system_of_wkt(content) : system_of_geokeys(content);
+  }
+}
+
 /// Goes to the first point, past records in which a LAZ file says what it is.
-void skip_records(FileStream& file, std::uint64_t records, const Header& header) {
+LasSystem read_records(FileStream& file, std::uint64_t records, const Header& header) {
+  LasSystem system;
   file.skip(header.size);
   for (std::uint64_t i = 0; i < records; ++i) {
     const std::uint64_t left = header.points_at - file.offset();
@@ -173,9 +188,30 @@ void skip_records(FileStream& file, std::uint64_t records, const Header& header)
                      "its end by byte " + std::to_string(header.points_at));
     }
     if (head.substr(2, 14) == "laszip encoded") file.fail_here("a record of LASzip", uncompressed);
+    const std::string_view whole = file.peek(size);
+    read_system(whole.substr(0, record_head), whole.substr(record_head), system);
     file.skip(size);
   }
   file.skip(header.points_at - file.offset());
+  return system;
+}
+
+/// The unit of all coordinates, where the coordinate system tells one [m].
+std::optional<double> require_lengths(const FileStream& file, const LasSystem& system) {
+  constexpr double alike = 1e-5;  // of a foot and a US survey foot, which differ by 2e-6
+  if (system.not_plane != nullptr) {
+    file.refuse(std::string("found ") + system.not_plane +
+                " by its coordinate system, expected lengths with z up: project them, e.g. pdal "
+                "translate in.las out.las reprojection --filters.reprojection.out_srs=EPSG:32632");
+  }
+  const std::optional<double> plan = system.plan_unit;
+  if (plan && system.up_unit && std::abs(*system.up_unit / *plan - 1.0) > alike) {
+    file.refuse("found z in units of " + number_text(*system.up_unit) + " m and x, y in units of " +
+                number_text(*plan) +
+                " m by its coordinate system, expected one unit: convert it, e.g. pdal translate "
+                "in.las out.las assign --filters.assign.value=\"Z = Z * FACTOR\"");
+  }
+  return plan;
 }
 
 /// False of a point that another program withheld or classified as noise: 7 "low point (noise)" and
@@ -188,11 +224,47 @@ bool counts(const char* point, std::size_t format) {
   return !is_withheld && kind != 7 && kind != 18;
 }
 
+/// Counts coordinates at an end of the range of 32 bits, where writers leave what lies beyond it.
+class Saturation {
+ public:
+  void add(const std::array<std::int32_t, 3>& raw) {
+    constexpr auto highest = std::numeric_limits<std::int32_t>::max();
+    constexpr auto lowest = std::numeric_limits<std::int32_t>::min();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (raw[axis] == highest || raw[axis] == lowest) ++points_[axis];
+    }
+  }
+  /// @throws Error (bad_file) where they are more than stray points
+  void check(const FileStream& file, const Header& header) const {
+    constexpr std::uint64_t fewest = 10;  // ours
+    constexpr double most = 0.01;         // ours, of the points
+    const auto worst = std::max_element(points_.begin(), points_.end());
+    if (*worst < fewest ||
+        static_cast<double>(*worst) <= most * static_cast<double>(header.count)) {
+      return;
+    }
+    const auto axis = worst - points_.begin();
+    const std::string name(1, "xyz"[axis]);
+    file.refuse("found " + std::to_string(*worst) + " of " + std::to_string(header.count) +
+                " points at the limit of a 32-bit integer in " + name + ": its offset " +
+                number_text(header.offset[axis]) + " with the scale factor " +
+                number_text(header.scale[axis]) +
+                " cannot hold the coordinates, which are lost; write it anew from its source with "
+                "an offset near the points, e.g. pdal translate in.laz out.las "
+                "--writers.las.offset_" +
+                name + "=auto");
+  }
+
+ private:
+  std::array<std::uint64_t, 3> points_{};  ///< by axis
+};
+
 std::uint64_t stream_points(FileStream& file, const Header& header, PointSink& sink) {
   constexpr std::size_t at_a_time = std::size_t{1} << 18;  // [byte]
   const std::size_t most = std::max<std::size_t>(1, at_a_time / header.row);
   PointBatch batch(sink);
   std::uint64_t kept = 0;
+  Saturation saturation;
   for (std::uint64_t left = header.count; left > 0;) {
     const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(most, left));
     const char* const block = file.peek(rows * header.row).data();
@@ -200,6 +272,7 @@ std::uint64_t stream_points(FileStream& file, const Header& header, PointSink& s
       if (!counts(p, header.format)) continue;
       std::array<std::int32_t, 3> raw;
       std::memcpy(raw.data(), p, sizeof raw);
+      saturation.add(raw);
       const Eigen::Array3d steps(raw[0], raw[1], raw[2]);
       batch.add((steps * header.scale + header.offset).matrix());
       ++kept;
@@ -208,6 +281,7 @@ std::uint64_t stream_points(FileStream& file, const Header& header, PointSink& s
     left -= rows;
   }
   batch.hand_on();
+  saturation.check(file, header);
   return kept;
 }
 
@@ -221,9 +295,9 @@ CloudShape stream_las(FileStream& file, PointSink& sink) {
   check_end(file, head, minor, header);
   const std::uint64_t records = whole_at(head, number_of_records, 4);
   sink.require_memory(header.count, 0);
-  skip_records(file, records, header);
+  const auto unit = require_lengths(file, read_records(file, records, header));
   const std::uint64_t kept = stream_points(file, header, sink);
-  return {kept, 1, {}, header.count - kept};
+  return {kept, 1, {}, header.count - kept, unit};
 }
 
 bool holds_las(FileStream& file) { return file.peek(4) == "LASF"; }

@@ -10,7 +10,9 @@
 #include "clouds/cloud_formats.hpp"
 #include "clouds/lzf_stream.hpp"
 
-// PCD as the Point Cloud Library documents it (versions 0.5 to 0.7).
+// PCD as the Point Cloud Library documents it (versions 0.5 to 0.7), and as others write it: PDAL
+// (io/PcdHeader.cpp) names the fields X Y Z and compressed data "compressed", and reads TYPE and
+// DATA in letters of either case; Ouster (map_export.py) leaves VERSION out.
 
 namespace excavplan {
 namespace {
@@ -43,7 +45,7 @@ struct Header {
 enum Key { version, fields, size, type, count, width, height, viewpoint, points, data };
 constexpr std::array<std::string_view, 10> key_names = {
     "VERSION", "FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
-bool may_be_left_out(std::size_t key) { return key == count || key == viewpoint; }
+bool may_be_left_out(std::size_t key) { return key == version || key == count || key == viewpoint; }
 
 using Words = std::vector<std::string_view>;
 
@@ -52,10 +54,12 @@ void read_field_names(const Words& words, const LineReader& lines, Header& heade
     lines.fail(std::to_string(words.size()) + " fields", "at most " + std::to_string(most_fields));
   }
   for (const auto name : words) header.fields.push_back({std::string(name)});
+  const auto small = std::count(words.begin(), words.end(), "x");
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::string name(1, "xyz"[axis]);
+    const std::string name(1, (small > 0 ? "xyz" : "XYZ")[axis]);
     if (const auto times = std::count(words.begin(), words.end(), name); times != 1) {
-      lines.fail("field " + name + " " + std::to_string(times) + " times", "x, y and z once each");
+      lines.fail("field " + small_letters(name) + " " + std::to_string(times) + " times",
+                 "x, y and z once each");
     }
     header.xyz[axis] =
         static_cast<std::size_t>(std::find(words.begin(), words.end(), name) - words.begin());
@@ -75,10 +79,9 @@ void read_sizes(const Words& words, const LineReader& lines, Header& header) {
 void read_types(const Words& words, const LineReader& lines, Header& header) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     Field& field = header.fields[i];
-    if (words[i] != "I" && words[i] != "U" && words[i] != "F") {
-      lines.fail("TYPE " + in_quotes(words[i]), "I, U or F");
-    }
-    field.type = words[i].front();
+    const std::size_t type = words[i].size() == 1 ? std::string("IUFiuf").find(words[i]) : 6;
+    if (type >= 6) lines.fail("TYPE " + in_quotes(words[i]), "I, U or F");
+    field.type = "IUF"[type % 3];
     if (field.type == 'F' && field.size < 4) {
       lines.fail("TYPE F of SIZE " + std::to_string(field.size), "SIZE 4 or 8");
     }
@@ -101,9 +104,10 @@ void read_counts(const Words& words, const LineReader& lines, Header& header) {
 }
 
 Encoding encoding_of(std::string_view word, const LineReader& lines) {
-  if (word == "ascii") return Encoding::ascii;
-  if (word == "binary") return Encoding::binary;
-  if (word == "binary_compressed") return Encoding::compressed;
+  const std::string small = small_letters(std::string(word));
+  if (small == "ascii") return Encoding::ascii;
+  if (small == "binary") return Encoding::binary;
+  if (small == "binary_compressed" || small == "compressed") return Encoding::compressed;
   lines.fail("DATA " + in_quotes(word), "ascii, binary or binary_compressed");
 }
 
@@ -168,7 +172,8 @@ void read_entry(std::size_t key, const Words& words, const LineReader& lines, He
 
 /// The key of a header line, which must be `due` or stand behind it with nothing needed between.
 std::size_t key_of(std::string_view word, std::size_t due, const LineReader& lines) {
-  const auto found = std::find(key_names.begin(), key_names.end(), word);
+  const std::string_view name = word == "COLUMNS" ? key_names[fields] : word;  // of PCD 0.5
+  const auto found = std::find(key_names.begin(), key_names.end(), name);
   const auto key = static_cast<std::size_t>(found - key_names.begin());
   std::size_t needed = due;
   while (needed < key && may_be_left_out(needed)) ++needed;
@@ -364,7 +369,8 @@ bool holds_pcd(FileStream& file) {
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     const std::string_view word = take_word(line);
     if (word.empty() || word.front() == '#') continue;
-    return std::find(key_names.begin(), key_names.end(), word) != key_names.end();
+    return word == "COLUMNS" ||
+           std::find(key_names.begin(), key_names.end(), word) != key_names.end();
   }
   return false;
 }

@@ -7,7 +7,7 @@
 #include "clouds/cloud_formats.hpp"
 
 // PLY 1.0 as Greg Turk describes it (Stanford, 1994), with the type names int8 ... float64 that
-// later programs write.
+// later programs write, and the names X Y Z of PDAL (io/PlyWriter.cpp, as of 2015).
 
 namespace excavplan {
 namespace {
@@ -24,6 +24,7 @@ struct Element {
   std::string name;
   std::uint64_t count = 0;
   std::vector<Property> properties;
+  const char* axes = "XYZ";  ///< "xyz" once a property is called x
 
   bool has_lists() const {
     return std::any_of(properties.begin(), properties.end(),
@@ -46,10 +47,10 @@ struct Header {
 
 constexpr std::size_t no_axis = 3;
 
-/// 0, 1, 2 for x, y, z of a vertex.
+/// 0, 1, 2 for x, y, z of a vertex, or X, Y, Z where it has no x.
 std::size_t axis_of(const Element& element, const Property& property) {
   if (element.name != "vertex" || property.length_type || property.name.size() != 1) return no_axis;
-  return std::min(std::string("xyz").find(property.name), no_axis);
+  return std::min(std::string(element.axes).find(property.name), no_axis);
 }
 
 ScalarType scalar_type(std::string_view name, const LineReader& lines) {
@@ -86,7 +87,10 @@ Encoding read_encoding(const Words& words, const LineReader& lines) {
 
 Element read_element(const Words& words, const LineReader& lines) {
   if (words.size() != 3) lines.fail(in_quotes(lines.line()), "element NAME COUNT");
-  return {std::string(words[1]), count_of(words[2], lines), {}};
+  Element element;
+  element.name = words[1];
+  element.count = count_of(words[2], lines);
+  return element;
 }
 
 Property read_property(const Words& words, const LineReader& lines) {
@@ -147,7 +151,9 @@ Header read_header(LineReader& lines) {
     if (words[0] == "element") {
       header.elements.push_back(read_element(words, lines));
     } else if (words[0] == "property" && !header.elements.empty()) {
-      header.elements.back().properties.push_back(read_property(words, lines));
+      Element& element = header.elements.back();
+      element.properties.push_back(read_property(words, lines));
+      if (element.properties.back().name == "x") element.axes = "xyz";
       ++properties;
     } else {
       lines.fail(in_quotes(words[0]), "element, property of an element or end_header");

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <new>
 #include <string_view>
+#include <utility>
 
 #include <png.h>
 
@@ -59,8 +60,8 @@ void ignore(png_structp /*png*/, png_const_charp /*warning*/) {}
 
 class PngReader {
  public:
-  explicit PngReader(const std::string& path) : path_(path) {
-    source_.content = read_file(path, most_image_bytes);
+  PngReader(const std::string& path, std::string content) : path_(path) {
+    source_.content = std::move(content);
     png_ = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &source_, stop, ignore, &source_,
                                     allocate, release);
     info_ = png_ ? png_create_info_struct(png_) : nullptr;
@@ -151,6 +152,12 @@ class PngReader {
 
 }  // namespace
 
-DepthPng read_depth_png(const std::string& path) { return PngReader(path).read(); }
+DepthPng read_depth_png(const std::string& path) {
+  return decode_depth_png(path, read_file(path, most_image_bytes));
+}
+
+DepthPng decode_depth_png(const std::string& name, std::string content) {
+  return PngReader(name, std::move(content)).read();
+}
 
 }  // namespace excavplan

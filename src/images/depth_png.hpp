@@ -28,5 +28,7 @@ struct DepthPng {
 /// pixels do not need are skipped but for their sums.
 /// @throws Error (bad_file)
 DepthPng read_depth_png(const std::string& path);
+/// The same of an image in memory. @param name  for messages
+DepthPng decode_depth_png(const std::string& name, std::string content);
 
 }  // namespace excavplan

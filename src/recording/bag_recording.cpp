@@ -100,45 +100,65 @@ struct ChunkHead {
 
 class BagRecording : public ChunkedContainer {
  public:
-  explicit BagRecording(const std::string& path) : ChunkedContainer(path) {
-    read_bag_header();
+  BagRecording(const std::string& path, SkippedParts& skipped) : ChunkedContainer(path, skipped) {
+    require_version();
+    bool has_index = false;
+    skipped_.guard(no_time, [&] { has_index = read_index(); });
+    if (!has_index) {
+      forget_index();
+      scan();
+    }
     finish();
   }
+
+  bool is_cut_off() const override { return is_cut_off_; }
 
  private:
   void list(std::uint32_t chunk, const std::vector<bool>& wanted,
             std::vector<MessagePlace>& places) const override;
+  void scan_content(const RecordedChunk& chunk, std::string_view content,
+                    std::vector<MessagePlace>& places) override;
+  bool begins_chunk(std::string_view bytes, std::uint64_t left) const override;
   Bytes load(const RecordedChunk& chunk) const override;
   std::string_view message_at(const MessagePlace& place) override;
 
-  void read_bag_header();
-  void read_index(std::uint64_t start, std::uint32_t connections, std::uint32_t chunks);
-  void read_connection(ByteReader& records);
+  void require_version() const;
+  bool read_index();
+  void read_records(std::uint64_t start, std::uint32_t connections, std::uint32_t chunks);
+  void take_connection(const Fields& fields, ByteReader content, const ByteReader& place);
   void read_chunk_info(ByteReader& records, std::uint64_t end);
   void bound_chunks(std::uint64_t end);
+  void scan();
+  std::uint64_t scan_record(std::uint64_t offset);
+  void scan_chunk(std::uint64_t offset, std::uint64_t length);
   Bytes header_at(std::uint64_t offset) const;
   ChunkHead head_of(const RecordedChunk& chunk) const;
+
+  bool is_cut_off_ = false;
 };
 
-void BagRecording::read_bag_header() {
+void BagRecording::require_version() const {
   const Bytes start = file_.read(0, std::min<std::uint64_t>(file_.size(), magic.size()), "magic");
   if (start.view() != magic) {
     file_.fail(0, in_quotes(start.view()),
                "'#ROSBAG V2.0'; 'rosbag fix' converts bags of earlier versions");
   }
+}
+
+/// @return false if the bag has none, as its recording was cut off
+bool BagRecording::read_index() {
   const Bytes bytes = header_at(magic.size());
   const Fields fields(ByteReader({file_, magic.size() + 4}, bytes.view()));
   fields.require_op(Op::bag);
-  const std::uint64_t index = fields.number("index_pos", 8);
-  if (index == 0) {
-    file_.refuse("is not indexed, as its recording was cut off; run 'rosbag reindex " +
-                 file_.path() + "'");
-  }
   if (fields.has("encryptor") && !fields.text("encryptor").empty()) {
     file_.refuse("is encrypted by " + in_quotes(fields.text("encryptor")) +
                  ", which is not supported");
   }
-  read_index(index, fields.u32("conn_count"), fields.u32("chunk_count"));
+  const std::uint64_t index = fields.number("index_pos", 8);
+  is_cut_off_ = index == 0 || index >= file_.size();
+  if (is_cut_off_) return false;
+  read_records(index, fields.u32("conn_count"), fields.u32("chunk_count"));
+  return true;
 }
 
 /// The header of a record, without its length before it.
@@ -152,30 +172,118 @@ Bytes BagRecording::header_at(std::uint64_t offset) const {
   return file_.read(offset + 4, length, "header of a record");
 }
 
-void BagRecording::read_index(std::uint64_t start, std::uint32_t connections,
-                              std::uint32_t chunks) {
-  if (start > file_.size() || file_.size() - start > most_index_bytes) {
+void BagRecording::read_records(std::uint64_t start, std::uint32_t connections,
+                                std::uint32_t chunks) {
+  if (file_.size() - start > most_index_bytes) {
     file_.fail(magic.size(), "an index at byte " + std::to_string(start),
                "one of at most " + std::to_string(most_index_bytes) + " bytes in the " +
                    std::to_string(file_.size()) + " of the file");
   }
   const Bytes bytes = file_.read(start, file_.size() - start, "index");
   ByteReader records({file_, start}, bytes.view());
-  for (std::uint32_t i = 0; i < connections; ++i) read_connection(records);
+  for (std::uint32_t i = 0; i < connections; ++i) {
+    const Fields fields(records.part("header of a connection"));
+    fields.require_op(Op::connection);
+    take_connection(fields, records.part("connection"), records);
+  }
   for (std::uint32_t i = 0; i < chunks; ++i) read_chunk_info(records, start);
   bound_chunks(start);
 }
 
-void BagRecording::read_connection(ByteReader& records) {
-  const Fields fields(records.part("header of a connection"));
-  fields.require_op(Op::connection);
-  const Fields about(records.part("connection"));
+/// A bag without an index from front to back: chunks and what connects their messages with topics.
+/// The last record of one that was cut off is just not whole.
+void BagRecording::scan() {
+  for (std::uint64_t offset = magic.size(); offset < file_.size();) {
+    try {
+      offset = scan_record(offset);
+    } catch (const Unsupported&) {
+      throw;
+    } catch (const Error& error) {
+      offset = next_chunk(offset + 1, file_.size());
+      const std::int64_t last = chunks_.empty() ? earliest : chunks_.back().end;
+      if (!is_cut_off_ || offset < file_.size()) skipped_.add(error.what(), {last, latest});
+    }
+  }
+}
+
+/// @return where the next one begins
+std::uint64_t BagRecording::scan_record(std::uint64_t offset) {
+  const Bytes bytes = header_at(offset);
+  const Fields fields(ByteReader({file_, offset + 4}, bytes.view()));
+  const std::uint64_t op = fields.number("op", 1);
+  const std::uint64_t after = offset + 4 + bytes.size();
+  const Bytes four = file_.read(after, 4, "length of a record");
+  const std::uint64_t length = ByteReader({file_, after}, four.view()).u32("length of a record");
+  const std::uint64_t end = after + 4 + length;
+  if (end > file_.size()) {
+    file_.fail(after, "a record of " + std::to_string(length) + " bytes",
+               "one that ends before byte " + std::to_string(file_.size()));
+  }
+  if (op == Op::chunk) scan_chunk(offset, end - offset);
+  if (op == Op::connection) {
+    const Bytes content = file_.read(after + 4, length, "connection");
+    const ByteReader reader({file_, after + 4}, content.view());
+    take_connection(fields, reader, reader);
+  }
+  return end;
+}
+
+void BagRecording::scan_chunk(std::uint64_t offset, std::uint64_t length) {
+  RecordedChunk chunk;
+  chunk.offset = offset;
+  chunk.length = length;
+  chunk.start = chunks_.empty() ? earliest : chunks_.back().end;
+  chunk.end = latest;
+  Bytes content;
+  if (!skipped_.guard(chunk.times(), [&] { content = load(chunk); })) return;
+  scan_content(chunk, content.view(), chunk.places);
+  keep_chunk(std::move(chunk));
+}
+
+void BagRecording::scan_content(const RecordedChunk& chunk, std::string_view content,
+                                std::vector<MessagePlace>& places) {
+  skipped_.guard(chunk.times(), [&] {
+    for (ByteReader all({file_, 0, chunk.offset}, content); all.left() > 0;) {
+      const std::uint64_t place = all.offset();
+      const Fields fields(all.part("header of a record"));
+      const std::uint64_t op = fields.number("op", 1);
+      const ByteReader inside = all.part("record");
+      skipped_.guard(no_time, [&] {
+        if (op == Op::connection) take_connection(fields, inside, all);
+        if (op != Op::message) return;
+        const std::uint32_t id = fields.u32("conn");
+        const std::uint32_t channel = channel_of(id);
+        if (channel == channels_.size()) {
+          fields.fail("a message of connection " + std::to_string(id), "one that comes before");
+        }
+        places.push_back({time_field(fields, "time"), place, 0, channel});
+      });
+      if (places.size() > most_places) {
+        file_.refuse("has a chunk of more than " + std::to_string(most_places) + " messages");
+      }
+    }
+  });
+}
+
+/// By its header: a few short fields, one of them "op=" of a chunk.
+bool BagRecording::begins_chunk(std::string_view bytes, std::uint64_t /*left*/) const {
+  constexpr std::string_view op_of_chunk = "op=\x05";
+  if (bytes.size() < 40 || bytes[1] != 0 || bytes[2] != 0 || bytes[3] != 0) return false;
+  const std::size_t size = static_cast<unsigned char>(bytes[0]);
+  const std::string_view header = bytes.substr(4, size);
+  return size >= 40 && header.size() == size && bytes[5] == 0 && bytes[6] == 0 && bytes[7] == 0 &&
+         header.find(op_of_chunk) != header.npos && header.find("compression=") != header.npos;
+}
+
+void BagRecording::take_connection(const Fields& fields, ByteReader content,
+                                   const ByteReader& place) {
+  const Fields about(content);
   RecordedChannel channel;
   channel.id = fields.u32("conn");
   channel.topic = fields.text("topic");
   channel.type = ros2_type(about.text("type"));
   channel.serialization = Serialization::ros1;
-  add_channel(std::move(channel), records);
+  add_channel(std::move(channel), place);
 }
 
 void BagRecording::read_chunk_info(ByteReader& records, std::uint64_t end) {
@@ -199,6 +307,7 @@ void BagRecording::read_chunk_info(ByteReader& records, std::uint64_t end) {
     channels_[number].messages += counts.u32("count of messages");
     chunk.channels.emplace_back(number, 0);
   }
+  require_order(chunk, records);
   chunks_.push_back(std::move(chunk));
 }
 
@@ -297,8 +406,8 @@ std::string_view BagRecording::message_at(const MessagePlace& place) {
 
 }  // namespace
 
-std::unique_ptr<Container> open_bag_recording(const std::string& path) {
-  return std::make_unique<BagRecording>(path);
+std::unique_ptr<Container> open_bag_recording(const std::string& path, SkippedParts& skipped) {
+  return std::make_unique<BagRecording>(path, skipped);
 }
 
 }  // namespace excavplan

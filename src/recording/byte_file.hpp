@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/input_file.hpp"
+#include "recording/skipped_parts.hpp"
 
 /// @file Parts of a file read where they lie, the fields in them, and errors that name the place.
 /// Private to the library.
@@ -52,8 +53,8 @@ class ByteFile {
   /// @throws Error (bad_file) naming the byte
   [[noreturn]] void fail(std::uint64_t offset, const std::string& found,
                          const std::string& expected) const;
-  /// @throws Error (bad_file): "file: why"
-  [[noreturn]] void refuse(const std::string& why) const { file_.refuse(why); }
+  /// @throws Unsupported "file: why"
+  [[noreturn]] void refuse(const std::string& why) const { throw Unsupported(path() + ": " + why); }
 
  private:
   InputFile file_;
@@ -78,6 +79,10 @@ class ByteReader {
   std::uint64_t u64(const char* what) { return number(8, what); }
   /// A count of nanoseconds of 64 bits, which must be below 2^63.
   std::int64_t nanoseconds(const char* what);
+  /// The same, or the latest time there is of a larger one.
+  std::int64_t nanoseconds_at_most(const char* what) {
+    return static_cast<std::int64_t>(std::min<std::uint64_t>(u64(what), latest));
+  }
   std::string_view take(std::uint64_t count, const char* what);
   /// Bytes after their count of 32 bits.
   std::string_view text(const char* what) { return take(u32(what), what); }

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The excavplan authors
 // SPDX-License-Identifier: Apache-2.0
 #include "recording/chunked_container.hpp"
-#include "base/text.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <queue>
 #include <tuple>
+
+#include "base/text.hpp"
 
 namespace excavplan {
 namespace {
@@ -83,20 +84,43 @@ std::unique_ptr<MessageCursor> ChunkedContainer::messages(const std::vector<std:
   return std::make_unique<ChunkedCursor>(*this, std::move(wanted), from, to);
 }
 
-std::vector<MessagePlace> ChunkedContainer::places_of(std::uint32_t chunk,
-                                                      const std::vector<bool>& wanted) const {
-  const RecordedChunk& listed = chunks_[chunk];
+/// By the index or, where that is damaged, by the chunk itself.
+std::vector<MessagePlace> ChunkedContainer::listed_places(std::uint32_t chunk,
+                                                          const std::vector<bool>& wanted) {
+  RecordedChunk& listed = chunks_[chunk];
   std::vector<MessagePlace> places = listed.places;
-  if (places.empty()) list(chunk, wanted, places);
-  const auto is_unwanted = [&](const MessagePlace& place) { return !wanted[place.channel]; };
-  places.erase(std::remove_if(places.begin(), places.end(), is_unwanted), places.end());
-  for (MessagePlace& place : places) {
-    place.chunk = chunk;
-    if (place.time >= listed.start && place.time <= listed.end) continue;
-    file_.fail(listed.offset, "a chunk with a message at " + std::to_string(place.time) + " ns",
-               "messages at " + std::to_string(listed.start) + " to " + std::to_string(listed.end) +
-                   " ns, as the index of the file says");
+  if (!places.empty() || !listed.lost.empty()) return places;
+  if (skipped_.guard(no_time, [&] { list(chunk, wanted, places); })) return places;
+  try {
+    scan_content(listed, load(listed).view(), listed.places);
+    if (listed.places.empty()) file_.fail(listed.offset, "a chunk without a message", "some");
+  } catch (const Unsupported&) {
+    throw;
+  } catch (const Error& error) {
+    listed.lost = error.what();
+    skipped_.add(listed.lost, listed.times());
   }
+  return listed.places;
+}
+
+std::vector<MessagePlace> ChunkedContainer::places_of(std::uint32_t chunk,
+                                                      const std::vector<bool>& wanted) {
+  std::vector<MessagePlace> places = listed_places(chunk, wanted);
+  const RecordedChunk& listed = chunks_[chunk];
+  const auto is_left_out = [&](const MessagePlace& place) {
+    if (!wanted[place.channel]) return true;
+    const TimeRange& usual = usual_times_[channels_[place.channel].topic_index];
+    if (place.time < usual.from || place.time > usual.to) return true;
+    if (place.time >= listed.start && place.time <= listed.end) return false;
+    skipped_.guard({place.time, place.time}, [&] {
+      file_.fail(listed.offset, "a chunk with a message at " + std::to_string(place.time) + " ns",
+                 "messages at " + std::to_string(listed.start) + " to " +
+                     std::to_string(listed.end) + " ns, as the index of the file says");
+    });
+    return true;
+  };
+  places.erase(std::remove_if(places.begin(), places.end(), is_left_out), places.end());
+  for (MessagePlace& place : places) place.chunk = chunk;
   return places;
 }
 
@@ -107,18 +131,66 @@ std::uint32_t ChunkedContainer::channel_of(std::uint32_t id) const {
 }
 
 void ChunkedContainer::add_channel(RecordedChannel channel, const ByteReader& reader) {
+  if (is_finished_) return;
   const auto number = static_cast<std::uint32_t>(channels_.size());
   const auto [entry, is_new] = channel_of_id_.try_emplace(channel.id, number);
   if (is_new) {
     channels_.push_back(std::move(channel));
     return;
   }
-  const RecordedChannel& known = channels_[entry->second];
-  if (known.topic != channel.topic || known.type != channel.type) {
+  RecordedChannel& known = channels_[entry->second];
+  if (known.is_doubtful) {
+    known = std::move(channel);
+  } else if (!channel.is_doubtful && (known.topic != channel.topic || known.type != channel.type)) {
     reader.fail("channel " + std::to_string(channel.id) + " of " + in_quotes(channel.topic) +
                     " and of " + in_quotes(known.topic),
                 "one topic and one type a channel");
   }
+}
+
+void ChunkedContainer::require_order(const RecordedChunk& chunk, const ByteReader& reader) {
+  if (chunk.start <= chunk.end) return;
+  reader.fail(
+      "a chunk from " + std::to_string(chunk.start) + " to " + std::to_string(chunk.end) + " ns",
+      "one that ends after its start");
+}
+
+void ChunkedContainer::forget_index() {
+  channels_.clear();
+  channel_of_id_.clear();
+  chunks_.clear();
+}
+
+std::uint64_t ChunkedContainer::next_chunk(std::uint64_t offset, std::uint64_t end) const {
+  constexpr std::uint64_t block = std::uint64_t{1} << 20;
+  while (offset < end) {
+    const std::uint64_t size = std::min(block + longest_chunk_head, end - offset);
+    const Bytes bytes = file_.read(offset, size, "records");
+    const std::uint64_t places = std::min(block, size);
+    for (std::uint64_t at = 0; at < places; ++at) {
+      if (begins_chunk(bytes.view().substr(at), end - offset - at)) return offset + at;
+    }
+    offset += places;
+  }
+  return end;
+}
+
+void ChunkedContainer::keep_chunk(RecordedChunk chunk) {
+  if (chunk.places.empty()) return;
+  const auto is_earlier = [](const MessagePlace& a, const MessagePlace& b) {
+    return a.time < b.time;
+  };
+  const auto [first, last] =
+      std::minmax_element(chunk.places.begin(), chunk.places.end(), is_earlier);
+  chunk.start = first->time;
+  chunk.end = last->time;
+  std::vector<bool> is_listed(channels_.size());
+  for (const MessagePlace& place : chunk.places) {
+    ++channels_[place.channel].messages;
+    if (!is_listed[place.channel]) chunk.channels.emplace_back(place.channel, 0);
+    is_listed[place.channel] = true;
+  }
+  chunks_.push_back(std::move(chunk));
 }
 
 std::string_view ChunkedContainer::chunk_of(const MessagePlace& place) {
@@ -129,9 +201,9 @@ std::string_view ChunkedContainer::chunk_of(const MessagePlace& place) {
     return kept_.front().second.view();
   }
   if (++loads_[place.chunk] > most_loads) {
-    file_.fail(chunks_[place.chunk].offset,
-               "a chunk that overlaps in time with more than can be kept in memory",
-               "chunks that follow each other");
+    file_.refuse("byte " + std::to_string(chunks_[place.chunk].offset) +
+                 ": found a chunk that overlaps in time with more than can be kept in memory, "
+                 "expected chunks that follow each other");
   }
   // Messages come in the order of their times.
   kept_.remove_if([&](const auto& kept) { return chunks_[kept.first].end < place.time; });
@@ -141,8 +213,19 @@ std::string_view ChunkedContainer::chunk_of(const MessagePlace& place) {
     held -= kept_.back().second.size();
     kept_.pop_back();
   }
-  kept_.emplace_front(place.chunk, load(chunks_[place.chunk]));
-  return kept_.front().second.view();
+  RecordedChunk& chunk = chunks_[place.chunk];
+  if (chunk.lost.empty()) {
+    try {
+      kept_.emplace_front(place.chunk, load(chunk));
+      return kept_.front().second.view();
+    } catch (const Unsupported&) {
+      throw;
+    } catch (const Error& error) {
+      chunk.lost = error.what();
+      skipped_.add(chunk.lost, chunk.times());
+    }
+  }
+  throw Error(ErrorKind::bad_file, chunk.lost);
 }
 
 void ChunkedContainer::finish() {
@@ -151,6 +234,7 @@ void ChunkedContainer::finish() {
   };
   std::sort(chunks_.begin(), chunks_.end(), is_earlier);
   make_topics();
+  is_finished_ = true;
   date_topics();
 }
 
@@ -162,6 +246,7 @@ void ChunkedContainer::make_topics() {
     if (is_new) topics_.push_back({channel.topic, channel.type});
     RecordedTopic& topic = topics_[channel.topic_index];
     topic.messages += channel.messages;
+    usual_times_.resize(topics_.size());
     if (topic.type != channel.type) {
       channel.unreadable = "found messages of " + in_quotes(channel.type) + " and of " +
                            in_quotes(topic.type) + ", expected one type";
@@ -187,6 +272,23 @@ void ChunkedContainer::date_topics() {
   });
   Dating last{false, none, no_channel};
   for (const std::uint32_t chunk : order) date_by(chunk, last);
+  for (std::size_t topic = 0; topic < topics_.size(); ++topic) {
+    if (!first.dated[topic]) topics_[topic].messages = 0;
+    if (time_span(topics_[topic]) > longest_topic) leave_out_strays(topic);
+  }
+}
+
+/// By the middle one of its messages.
+void ChunkedContainer::leave_out_strays(std::size_t topic) {
+  std::vector<bool> wanted;
+  for (const RecordedChannel& channel : channels_) wanted.push_back(channel.topic_index == topic);
+  std::vector<std::int64_t> times;
+  for (std::uint32_t chunk = 0; chunk < chunks_.size() && times.size() < most_places; ++chunk) {
+    if (!has_any(chunks_[chunk], wanted)) continue;
+    for (const MessagePlace& place : places_of(chunk, wanted)) times.push_back(place.time);
+  }
+  usual_times_[topic] = usual_times(times);
+  date_without_strays(file_.path(), times, usual_times_[topic], topics_[topic], skipped_);
 }
 
 // Lists a chunk only if it may hold a first (last) message of a topic.

@@ -25,8 +25,9 @@ namespace {
 
 [[maybe_unused, noreturn]] void refuse_without(const std::string& name, const std::string& package,
                                                const std::string& file, const std::string& place) {
-  fail_at(file, place, "data compressed with " + name,
-          "none: this build is without " + name + "; build it anew with Debian's " + package);
+  throw Unsupported(file + ": " + place + ": found data compressed with " + name +
+                    ", expected none: this build is without " + name +
+                    "; build it anew with Debian's " + package);
 }
 
 [[maybe_unused]] void require_size(const CompressedPart& part, std::uint64_t delivered) {

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "recording/skipped_parts.hpp"
+
 /// @file One file of a recording. Private to the library.
 
 namespace excavplan {
@@ -38,12 +40,15 @@ class MessageCursor {
   virtual ~MessageCursor() = default;
   virtual bool next() = 0;  ///< to the next message, at first to the first; false at the end
   virtual std::int64_t time() const = 0;  ///< of the message [ns since 1970]
+  /// @throws Error (bad_file) if it is damaged; the next ones may not be
   virtual StoredMessage read() = 0;
 };
 
-/// One file. All its functions throw Error (bad_file) where it is damaged.
+/// One file. What is damaged in it is noted and left out, or an Error (bad_file) that its functions
+/// and cursors throw where nothing else is left.
 class Container {
  public:
+  explicit Container(SkippedParts& skipped) : skipped_(skipped) {}
   virtual ~Container() = default;
   /// A topic's name once only, in any order.
   const std::vector<RecordedTopic>& topics() const { return topics_; }
@@ -55,12 +60,21 @@ class Container {
                                                   std::int64_t from, std::int64_t to) = 0;
 
  protected:
+  SkippedParts& skipped_;
   std::vector<RecordedTopic> topics_;
 };
 
-std::unique_ptr<Container> open_sqlite_recording(const std::string& path);
-std::unique_ptr<Container> open_mcap_recording(const std::string& path);
-std::unique_ptr<Container> open_bag_recording(const std::string& path);
+/// Each outlived by `skipped`, where it notes what it leaves out.
+std::unique_ptr<Container> open_sqlite_recording(const std::string& path, SkippedParts& skipped);
+std::unique_ptr<Container> open_mcap_recording(const std::string& path, SkippedParts& skipped);
+std::unique_ptr<Container> open_bag_recording(const std::string& path, SkippedParts& skipped);
+
+/// From its first message to its last [ns].
+std::int64_t time_span(const RecordedTopic& topic);
+/// Sets when a topic begins and ends, and the number of its messages, by those in `usual`; notes
+/// the others. @param times  of its messages
+void date_without_strays(const std::string& file, const std::vector<std::int64_t>& times,
+                         const TimeRange& usual, RecordedTopic& topic, SkippedParts& skipped);
 
 /// How the file of each kind begins.
 constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/scalar.hpp"
 #include "base/text.hpp"
 #include "recording/chunked_container.hpp"
 #include "recording/compression.hpp"
@@ -37,6 +38,8 @@ struct Record {
   ByteReader content;
 };
 
+std::uint64_t load_u64(std::string_view bytes) { return load<std::uint64_t>(bytes.data(), false); }
+
 Record next_record(ByteReader& reader) {
   const std::uint8_t opcode = reader.u8("opcode");
   const std::uint64_t length = reader.u64("length of a record");
@@ -44,8 +47,9 @@ Record next_record(ByteReader& reader) {
   return {opcode, reader.part(length, "record")};
 }
 
-/// The fields of a Chunk record that come before its data, but for its times.
+/// The fields of a Chunk record that come before its data.
 struct ChunkHead {
+  TimeRange times;
   std::uint64_t uncompressed = 0;  // [byte]
   std::uint32_t crc = 0;           // 0: none
   std::string compression;
@@ -57,9 +61,11 @@ struct ChunkHead {
 /// scan of the whole.
 class McapRecording : public ChunkedContainer {
  public:
-  explicit McapRecording(const std::string& path) : ChunkedContainer(path) {
+  McapRecording(const std::string& path, SkippedParts& skipped) : ChunkedContainer(path, skipped) {
     const std::uint64_t data_start = read_header();
-    if (!read_summary(data_start)) {
+    bool has_index = false;
+    skipped_.guard(no_time, [&] { has_index = read_summary(data_start); });
+    if (!has_index) {
       chunks_.clear();
       for (RecordedChannel& channel : channels_) channel.messages = 0;
       scan(data_start);
@@ -72,6 +78,9 @@ class McapRecording : public ChunkedContainer {
  private:
   void list(std::uint32_t chunk, const std::vector<bool>& wanted,
             std::vector<MessagePlace>& places) const override;
+  void scan_content(const RecordedChunk& chunk, std::string_view content,
+                    std::vector<MessagePlace>& places) override;
+  bool begins_chunk(std::string_view bytes, std::uint64_t left) const override;
   Bytes load(const RecordedChunk& chunk) const override;
   std::string_view message_at(const MessagePlace& place) override;
 
@@ -90,17 +99,19 @@ class McapRecording : public ChunkedContainer {
   void scan(std::uint64_t data_start);
   void scan_record(std::uint8_t opcode, std::uint64_t offset, std::uint64_t length);
   void scan_chunk(std::uint64_t offset, std::uint64_t length);
-  void scan_message(RecordedChunk& chunk, std::uint64_t offset, ByteReader fields);
-  void keep_chunk(RecordedChunk chunk);
+  void scan_message(std::uint64_t offset, ByteReader fields, std::vector<MessagePlace>& places);
+  void take_channels_of_damaged(std::uint64_t offset, std::uint64_t length);
 
   ByteReader reader_at(const MessagePlace& place);
   ChunkHead head_of(std::uint64_t offset, std::uint64_t length) const;
+  Bytes unpack(std::uint64_t offset, const ChunkHead& head) const;
   Bytes load(std::uint64_t offset, std::uint64_t length) const;
   ByteReader reader(std::uint64_t offset, const Bytes& bytes) const {
     return {{file_, offset}, bytes.view()};
   }
 
-  bool is_closed_ = false;  // ends as a complete file does
+  bool is_closed_ = false;   // ends as a complete file does
+  bool is_damaged_ = false;  // the chunk that is read
   bool has_statistics_ = false;
   bool lacks_index_ = false;  // has a chunk whose messages are not listed
   std::map<std::uint16_t, std::string> schemas_;
@@ -115,8 +126,10 @@ std::uint64_t McapRecording::read_header() {
   if (start.view() != magic) {
     file_.fail(0, in_quotes(start.view()), "the magic of MCAP version 0, '\\x89MCAP0\\r\\n'");
   }
-  const std::uint64_t end = magic.size() + record_head +
-                            content_length(magic.size(), file_.size(), Opcode::header, "header");
+  std::uint64_t end = magic.size();
+  skipped_.guard(no_time, [&] {
+    end += record_head + content_length(end, file_.size(), Opcode::header, "header");
+  });
   is_closed_ = file_.size() - end >= footer_size + magic.size() &&
                file_.read(file_.size() - magic.size(), magic.size(), "magic").view() == magic;
   return end;
@@ -235,6 +248,7 @@ void McapRecording::read_channel(ByteReader record) {
     channel.unreadable = "found messages in the encoding " + in_quotes(encoding) +
                          ", expected 'cdr' (ROS 2) or 'ros1'";
   }
+  channel.is_doubtful = is_damaged_;
   add_channel(std::move(channel), record);
 }
 
@@ -278,8 +292,9 @@ void McapRecording::read_chunk_index(ByteReader record) {
     return;
   }
   require_once_each(chunk, record);
-  chunk.start = times.nanoseconds("start of a chunk");
-  chunk.end = times.nanoseconds("end of a chunk");
+  chunk.start = times.nanoseconds_at_most("start of a chunk");
+  chunk.end = times.nanoseconds_at_most("end of a chunk");
+  require_order(chunk, record);
   chunks_.push_back(std::move(chunk));
 }
 
@@ -313,8 +328,11 @@ void McapRecording::list(std::uint32_t chunk, const std::vector<bool>& wanted,
                  "one of channel " + std::to_string(channels_[number].id));
     }
     for (ByteReader entries = index.part("entries of a message index"); entries.left() > 0;) {
-      const std::int64_t time = entries.nanoseconds("time of a message");
-      places.push_back({time, entries.u64("offset of a message"), chunk, number});
+      ByteReader entry = entries.part(16, "entry of a message index");
+      skipped_.guard(no_time, [&] {
+        const std::int64_t time = entry.nanoseconds("time of a message");
+        places.push_back({time, entry.u64("offset of a message"), chunk, number});
+      });
     }
   }
 }
@@ -324,7 +342,8 @@ ChunkHead McapRecording::head_of(std::uint64_t offset, std::uint64_t length) con
   const Bytes bytes = file_.read(offset, count, "chunk");
   ByteReader fields = reader(offset, bytes);
   ChunkHead head;
-  fields.take(16, "times of a chunk");
+  head.times.from = fields.nanoseconds_at_most("start of a chunk");
+  head.times.to = fields.nanoseconds_at_most("end of a chunk");
   head.uncompressed = fields.u64("size of a chunk");
   head.crc = fields.u32("CRC of a chunk");
   head.compression = fields.text("compression of a chunk");
@@ -342,8 +361,7 @@ Bytes McapRecording::load(const RecordedChunk& chunk) const {
               content_length(chunk.offset, chunk.offset + chunk.length, Opcode::chunk, "chunk"));
 }
 
-Bytes McapRecording::load(std::uint64_t offset, std::uint64_t length) const {
-  const ChunkHead head = head_of(offset, length);
+Bytes McapRecording::unpack(std::uint64_t offset, const ChunkHead& head) const {
   Bytes bytes = file_.read(head.data, head.length, "a chunk");
   const std::string place = "byte " + std::to_string(head.data);
   if (head.compression == "lz4" || head.compression == "zstd") {
@@ -355,6 +373,12 @@ Bytes McapRecording::load(std::uint64_t offset, std::uint64_t length) const {
     file_.fail(offset, "a chunk of " + std::to_string(head.length) + " bytes",
                std::to_string(head.uncompressed) + ", as it says");
   }
+  return bytes;
+}
+
+Bytes McapRecording::load(std::uint64_t offset, std::uint64_t length) const {
+  const ChunkHead head = head_of(offset, length);
+  Bytes bytes = unpack(offset, head);
   if (head.crc != 0 && crc32(bytes.view()) != head.crc) {
     file_.fail(offset, "a chunk of CRC " + std::to_string(crc32(bytes.view())),
                std::to_string(head.crc) + ", as it says");
@@ -393,38 +417,49 @@ std::string_view McapRecording::message_at(const MessagePlace& place) {
   return fields.take(fields.left(), "message");
 }
 
-/// Reads what is whole. A complete file has no record that is cut off; another one ends there.
+/// Reads what is whole, and looks for the next chunk behind what is no record. The end of a file
+/// that is not complete is just missing.
 void McapRecording::scan(std::uint64_t data_start) {
   const std::uint64_t end = file_.size() - (is_closed_ ? magic.size() + footer_size : 0);
+  std::int64_t last = earliest;  // of the messages before
   for (std::uint64_t offset = data_start; end - offset >= record_head;) {
     const Bytes bytes = file_.read(offset, record_head, "record");
     ByteReader head = reader(offset, bytes);
     const std::uint8_t opcode = head.u8("opcode");
     const std::uint64_t length = head.u64("length of a record");
     const std::uint64_t room = end - offset - record_head;
-    const bool is_whole = opcode != 0 && length <= room;
-    if (opcode == Opcode::data_end || (!is_closed_ && !is_whole)) break;
-    if (!is_whole) {
-      file_.fail(offset,
-                 "a record of opcode " + std::to_string(opcode) + " and " + std::to_string(length) +
-                     " bytes",
-                 "one of opcode 1 to 255 and at most " + std::to_string(room));
+    if (opcode == Opcode::data_end) break;
+    if (opcode != 0 && length <= room) {
+      scan_record(opcode, offset, length);
+      if (!chunks_.empty()) last = chunks_.back().end;
+      offset += record_head + length;
+      continue;
     }
-    scan_record(opcode, offset, length);
-    offset += record_head + length;
+    const std::uint64_t next = next_chunk(offset + 1, end);
+    if (is_closed_ || next < end) {
+      skipped_.guard({last, latest}, [&] {
+        file_.fail(offset,
+                   "a record of opcode " + std::to_string(opcode) + " and " +
+                       std::to_string(length) + " bytes",
+                   "one of opcode 1 to 255 and at most " + std::to_string(room));
+      });
+    }
+    offset = next;
   }
-  if (!loose_.places.empty()) keep_chunk(std::move(loose_));
+  keep_chunk(std::move(loose_));
 }
 
 void McapRecording::scan_record(std::uint8_t opcode, std::uint64_t offset, std::uint64_t length) {
   const std::uint64_t content = offset + record_head;
   if (opcode == Opcode::schema || opcode == Opcode::channel) {
-    const Bytes bytes = file_.read(content, length, "record");
-    opcode == Opcode::schema ? read_schema(reader(content, bytes))
-                             : read_channel(reader(content, bytes));
+    skipped_.guard(no_time, [&] {
+      const Bytes bytes = file_.read(content, length, "record");
+      opcode == Opcode::schema ? read_schema(reader(content, bytes))
+                               : read_channel(reader(content, bytes));
+    });
   } else if (opcode == Opcode::message) {
     const Bytes bytes = file_.read(content, std::min(length, message_head), "message");
-    scan_message(loose_, offset, reader(content, bytes));
+    scan_message(offset, reader(content, bytes), loose_.places);
   } else if (opcode == Opcode::chunk) {
     scan_chunk(offset, length);
   }
@@ -434,53 +469,90 @@ void McapRecording::scan_chunk(std::uint64_t offset, std::uint64_t length) {
   RecordedChunk chunk;
   chunk.offset = offset;
   chunk.length = record_head + length;
-  const Bytes bytes = load(offset + record_head, length);
-  for (ByteReader all({file_, 0, offset}, bytes.view()); all.left() > 0;) {
-    const std::uint64_t place = all.offset();
-    const Record record = next_record(all);
-    if (record.opcode == Opcode::schema) read_schema(record.content);
-    if (record.opcode == Opcode::channel) read_channel(record.content);
-    if (record.opcode == Opcode::message) scan_message(chunk, place, record.content);
+  chunk.start = earliest;
+  chunk.end = latest;
+  const auto read_times = [&] {
+    const TimeRange times = head_of(offset + record_head, length).times;
+    chunk.start = times.from;
+    chunk.end = times.to;
+  };
+  Bytes content;
+  if (skipped_.guard({}, read_times) &&
+      skipped_.guard(chunk.times(), [&] { content = load(offset + record_head, length); })) {
+    scan_content(chunk, content.view(), chunk.places);
+    keep_chunk(std::move(chunk));
+  } else {
+    take_channels_of_damaged(offset + record_head, length);
   }
-  if (!chunk.places.empty()) keep_chunk(std::move(chunk));
 }
 
-void McapRecording::scan_message(RecordedChunk& chunk, std::uint64_t offset, ByteReader fields) {
-  const std::uint16_t id = fields.u16("channel");
-  const std::uint32_t channel = channel_of(id);
-  if (channel == channels_.size()) {
-    fields.fail("a message of channel " + std::to_string(id), "a channel that comes before");
+/// What topics its messages and those of later chunks are of, as far as it is whole.
+void McapRecording::take_channels_of_damaged(std::uint64_t offset, std::uint64_t length) {
+  is_damaged_ = true;
+  try {
+    const Bytes content = unpack(offset, head_of(offset, length));
+    for (ByteReader all({file_, 0, offset}, content.view()); all.left() > 0;) {
+      const Record record = next_record(all);
+      if (record.opcode == Opcode::schema) read_schema(record.content);
+      if (record.opcode == Opcode::channel) read_channel(record.content);
+    }
+  } catch (const Unsupported&) {
+    throw;
+  } catch (const Error&) {
+    // the damage is noted already
   }
-  fields.u32("sequence of a message");
-  const std::int64_t time = fields.nanoseconds("time of a message");
-  chunk.places.push_back({time, offset, 0, channel});
+  is_damaged_ = false;
+}
+
+void McapRecording::scan_content(const RecordedChunk& chunk, std::string_view content,
+                                 std::vector<MessagePlace>& places) {
+  skipped_.guard(chunk.times(), [&] {
+    for (ByteReader all({file_, 0, chunk.offset}, content); all.left() > 0;) {
+      const std::uint64_t place = all.offset();
+      const Record record = next_record(all);
+      if (record.opcode == Opcode::message) scan_message(place, record.content, places);
+      if (record.opcode != Opcode::schema && record.opcode != Opcode::channel) continue;
+      skipped_.guard(no_time, [&] {
+        record.opcode == Opcode::schema ? read_schema(record.content)
+                                        : read_channel(record.content);
+      });
+    }
+  });
+}
+
+void McapRecording::scan_message(std::uint64_t offset, ByteReader fields,
+                                 std::vector<MessagePlace>& places) {
+  skipped_.guard(no_time, [&] {
+    const std::uint16_t id = fields.u16("channel");
+    const std::uint32_t channel = channel_of(id);
+    if (channel == channels_.size()) {
+      fields.fail("a message of channel " + std::to_string(id), "a channel that comes before");
+    }
+    fields.u32("sequence of a message");
+    const std::int64_t time = fields.nanoseconds("time of a message");
+    places.push_back({time, offset, 0, channel});
+  });
   if (++places_ > most_places) {
     file_.refuse("has no index and more than " + std::to_string(most_places) +
                  " messages; 'mcap recover' writes one with an index");
   }
 }
 
-void McapRecording::keep_chunk(RecordedChunk chunk) {
-  const auto is_earlier = [](const MessagePlace& a, const MessagePlace& b) {
-    return a.time < b.time;
-  };
-  const auto [first, last] =
-      std::minmax_element(chunk.places.begin(), chunk.places.end(), is_earlier);
-  chunk.start = first->time;
-  chunk.end = last->time;
-  std::vector<bool> is_listed(channels_.size());
-  for (const MessagePlace& place : chunk.places) {
-    ++channels_[place.channel].messages;
-    if (!is_listed[place.channel]) chunk.channels.emplace_back(place.channel, 0);
-    is_listed[place.channel] = true;
-  }
-  chunks_.push_back(std::move(chunk));
+/// By the lengths of the record, of the name of its compression and of its data, which must agree.
+bool McapRecording::begins_chunk(std::string_view bytes, std::uint64_t left) const {
+  if (bytes.size() < record_head + chunk_head + 8 || bytes[0] != Opcode::chunk) return false;
+  const auto number = [&](std::size_t at) { return load_u64(bytes.substr(at)); };
+  const std::uint64_t length = number(1);
+  const std::uint64_t name = number(record_head + 28) & 0xFFFFFFFF;
+  if (length > left - record_head || (name != 0 && name != 3 && name != 4)) return false;
+  if (bytes.size() < record_head + chunk_head + name + 8) return false;
+  return number(record_head + chunk_head + name) == length - chunk_head - name - 8;
 }
 
 }  // namespace
 
-std::unique_ptr<Container> open_mcap_recording(const std::string& path) {
-  return std::make_unique<McapRecording>(path);
+std::unique_ptr<Container> open_mcap_recording(const std::string& path, SkippedParts& skipped) {
+  return std::make_unique<McapRecording>(path, skipped);
 }
 
 }  // namespace excavplan

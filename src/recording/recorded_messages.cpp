@@ -20,7 +20,9 @@ constexpr std::int64_t largest_clock_step = one_second;  // of stamps against ti
 
 std::string scan_topics_text(const RecordingFile& recording) {
   std::vector<std::string> names = topics_for(recording, MessageUse::points);
-  for (std::string& name : topics_for(recording, MessageUse::depth)) names.push_back(name);
+  for (const RecordedTopic& topic : recording.topics()) {
+    if (holds_images(topic) && holds_scans(topic)) names.push_back(topic.name);
+  }
   return "topics that hold clouds or images: " + name_list(names);
 }
 
@@ -56,22 +58,29 @@ std::optional<std::int64_t> last_before(RecordingFile& recording, const Recorded
   return last;
 }
 
+/// Of one message alone also what it holds, as nothing takes the place of its points.
+MessageHead read_head(const std::string& file, const RecordedMessage& message, bool is_alone) {
+  if (is_alone && holds_images(message.topic)) decode_depths(file, message);
+  if (is_alone && use_of(message.topic.type) == MessageUse::points) decode_points(file, message);
+  return {message.time, decode_header(file, message), decode_size(file, message)};
+}
+
 [[noreturn]] void refuse_gap(RecordingFile& recording, const RecordedTopic& topic,
                              std::int64_t from, std::int64_t to) {
   std::string near;
   const auto before = last_before(recording, topic, from);
-  if (before) near = "the last one before is at " + time_text(recording, *before);
+  if (before) near = "the last one before is at " + time_text(topic, *before);
   if (to < latest) {
     recording.visit({topic.name}, to, latest, [&](const RecordedMessage& message) {
       near += (near.empty() ? "" : ", ");
-      near += "the next one after at " + time_text(recording, message.time);
+      near += "the next one after at " + time_text(topic, message.time);
       return false;
     });
   }
-  refuse_recording(recording, "found no message of " + topic.name + " at " +
-                                  time_text(recording, from) +
-                                  (to < latest ? " to " + time_text(recording, to) : " or later") +
-                                  ": " + (near.empty() ? "the recording holds none" : near));
+  refuse_recording(recording,
+                   "found no message of " + topic.name + " at " + time_text(topic, from) +
+                       (to < latest ? " to " + time_text(topic, to) : " or later") + ": " +
+                       (near.empty() ? "the recording holds none" : near) + damage_text(recording));
 }
 
 }  // namespace
@@ -83,8 +92,13 @@ std::int64_t nanoseconds_of(double seconds, const char* what) {
   return std::llround(seconds * 1e9);
 }
 
-std::string time_text(const RecordingFile& recording, std::int64_t time) {
-  return decimals(seconds_of(time_between(recording.start(), time)), 3) + " s";
+std::string time_text(const RecordedTopic& topic, std::int64_t time) {
+  return decimals(seconds_of(time_between(topic.first, time)), 3) + " s";
+}
+
+std::string damage_text(RecordingFile& recording) {
+  const std::string text = recording.skipped().text();
+  return text.empty() ? "" : "; " + text;
 }
 
 [[noreturn]] void refuse_recording(const RecordingFile& recording, const std::string& why) {
@@ -92,8 +106,17 @@ std::string time_text(const RecordingFile& recording, std::int64_t time) {
 }
 
 bool holds_scans(const RecordedTopic& topic) {
+  constexpr std::string_view depth = "/compressedDepth";
   const MessageUse use = use_of(topic.type);
-  return use == MessageUse::points || use == MessageUse::depth;
+  const std::string& name = topic.name;
+  return use == MessageUse::points || use == MessageUse::depth ||
+         (use == MessageUse::compressed && name.size() > depth.size() &&
+          name.compare(name.size() - depth.size(), depth.size(), depth) == 0);
+}
+
+bool holds_images(const RecordedTopic& topic) {
+  const MessageUse use = use_of(topic.type);
+  return use == MessageUse::depth || use == MessageUse::compressed;
 }
 
 std::vector<std::string> topics_for(const RecordingFile& recording, MessageUse use) {
@@ -132,13 +155,7 @@ const RecordedTopic& scan_topic(const RecordingFile& recording, const std::strin
                                     (meant ? ", did you mean " + in_quotes(*meant) + "? " : "; ") +
                                     scan_topics_text(recording));
   }
-  if (use_of(topic->type) == MessageUse::compressed) {
-    refuse_recording(recording,
-                     in_quotes(name) +
-                         ": found compressed images, expected raw ones: record the raw topic, or "
-                         "play the recording through image_transport's republish");
-  }
-  if (!holds_scans(*topic)) {
+  if (!holds_scans(*topic) && !holds_images(*topic)) {
     refuse_recording(recording, in_quotes(name) + ": found messages of type " +
                                     in_quotes(topic->type) + "; " + scan_topics_text(recording));
   }
@@ -149,14 +166,15 @@ std::vector<MessageHead> read_heads(RecordingFile& recording, const RecordedTopi
                                     const RecordingQuery& query) {
   const std::int64_t span = nanoseconds_of(query.span, "span");
   TimeRange range;
-  range.from =
-      query.time ? later(recording.start(), nanoseconds_of(*query.time, "time")) : topic.first;
+  range.from = later(topic.first, query.time ? nanoseconds_of(*query.time, "time") : 0);
   if (span > 0) range.to = later(range.from, span);
   std::vector<MessageHead> heads;
   std::uint64_t points = 0;
   recording.visit({topic.name}, range.from, range.to, [&](const RecordedMessage& message) {
-    heads.push_back({message.time, decode_header(recording.path(), message),
-                     decode_size(recording.path(), message)});
+    MessageHead head;
+    const auto read = [&] { head = read_head(recording.path(), message, span == 0); };
+    if (!recording.skipped().guard({message.time, message.time}, read)) return true;
+    heads.push_back(std::move(head));
     points += std::min<std::uint64_t>(heads.back().size.pixels(), most_recorded_points);
     if (span > 0 && points > most_recorded_points) {
       refuse(recording.path() + ": the span of " + number_text(query.span) + " s holds more than " +
@@ -169,7 +187,8 @@ std::vector<MessageHead> read_heads(RecordingFile& recording, const RecordedTopi
   return heads;
 }
 
-void require_steady_clock(const RecordingFile& recording, const std::vector<MessageHead>& heads) {
+void require_steady_clock(const RecordingFile& recording, const RecordedTopic& topic,
+                          const std::vector<MessageHead>& heads) {
   for (std::size_t i = 1; i < heads.size(); ++i) {
     const std::int64_t recorded = time_between(heads[i - 1].time, heads[i].time);
     const std::int64_t stamped = time_between(heads[i - 1].header.stamp, heads[i].header.stamp);
@@ -177,7 +196,7 @@ void require_steady_clock(const RecordingFile& recording, const std::vector<Mess
     if (stamped == 0) continue;  // never set, or the same points once more
     if (step >= -largest_clock_step && step <= largest_clock_step) continue;
     refuse_recording(
-        recording, "a clock jumped: the message at " + time_text(recording, heads[i].time) +
+        recording, "a clock jumped: the message at " + time_text(topic, heads[i].time) +
                        " was recorded " + decimals(seconds_of(recorded), 3) +
                        " s after the one before, but stamped " + decimals(seconds_of(stamped), 3) +
                        " s after it, expected the same within 1 s; choose a time or span "

@@ -19,8 +19,8 @@ namespace excavplan {
 double seconds_of(std::int64_t nanoseconds);
 /// @throws Error (bad_input) naming `what` unless they are 0 to 1e9
 std::int64_t nanoseconds_of(double seconds, const char* what);
-/// "12.500 s", from the first message of the recording.
-std::string time_text(const RecordingFile& recording, std::int64_t time);
+/// "12.500 s", from the first message of a topic.
+std::string time_text(const RecordedTopic& topic, std::int64_t time);
 
 /// @throws Error (bad_file): "file: why"
 [[noreturn]] void refuse_recording(const RecordingFile& recording, const std::string& why);
@@ -28,7 +28,13 @@ std::string time_text(const RecordingFile& recording, std::int64_t time);
 /// Names in quotes, "none" if there are none.
 std::string name_list(const std::vector<std::string>& names);
 
+/// "; 3 parts are damaged ...", as the end of an error; empty if none are.
+std::string damage_text(RecordingFile& recording);
+
+/// Clouds, depth images, or by their name compressed depth images.
 bool holds_scans(const RecordedTopic& topic);
+/// Raw or compressed.
+bool holds_images(const RecordedTopic& topic);
 std::vector<std::string> topics_for(const RecordingFile& recording, MessageUse use);
 const RecordedTopic* find_topic(const RecordingFile& recording, const std::string& name);
 /// The topic of that name or, without one, the only one that holds scans.
@@ -42,12 +48,6 @@ struct MessageHead {
   FrameSize size;
 };
 
-/// Times at which messages were recorded, both included.
-struct TimeRange {
-  std::int64_t from = earliest;
-  std::int64_t to = latest;
-};
-
 /// Of the first message at or after the time of the query, or of all in its span.
 /// @throws Error (bad_file) naming the nearest messages if there is none; (bad_input) if the time
 /// or span is out of range, or the span holds too much
@@ -56,6 +56,7 @@ std::vector<MessageHead> read_heads(RecordingFile& recording, const RecordedTopi
 
 /// @throws Error (bad_file) if the sensor's clock, or that of the recording, jumped by over 1 s
 /// (ours) between two messages; not where both bear the same stamp
-void require_steady_clock(const RecordingFile& recording, const std::vector<MessageHead>& heads);
+void require_steady_clock(const RecordingFile& recording, const RecordedTopic& topic,
+                          const std::vector<MessageHead>& heads);
 
 }  // namespace excavplan

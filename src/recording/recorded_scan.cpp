@@ -15,6 +15,7 @@
 #include <excavplan/scans/depth_intrinsics.hpp>
 
 #include "base/check.hpp"
+#include "base/statistics.hpp"
 #include "recording/frame_average.hpp"
 #include "recording/recorded_messages.hpp"
 #include "recording/transform_tree.hpp"
@@ -41,6 +42,7 @@ bool is_of_robot(const std::string& transforms, const std::string& topic) {
 /// For which scan transforms are read.
 struct ForScan {
   std::string topic;           ///< its namespace's transforms, if there are; "": all
+  std::int64_t start = 0;      ///< from which times are counted in messages
   std::int64_t time = latest;  ///< static transforms are those that held then
 };
 
@@ -54,15 +56,21 @@ TransformTree read_transforms(RecordingFile& recording, const std::vector<TimeRa
       return other.child == one.child && other.parent == one.parent;
     });
   };
+  const auto transforms_in = [&](const RecordedMessage& message) {
+    std::vector<StampedTransform> found;
+    recording.skipped().guard({message.time, message.time},
+                              [&] { found = decode_transforms(recording.path(), message); });
+    return found;
+  };
   const auto take_static = [&](const RecordedMessage& message) {
-    for (StampedTransform& transform : decode_transforms(recording.path(), message)) {
+    for (StampedTransform& transform : transforms_in(message)) {
       if (message.time > scan.time && is_known(transform)) continue;
       transforms.push_back(std::move(transform));
     }
     return true;
   };
   const auto take = [&](const RecordedMessage& message) {
-    for (StampedTransform& transform : decode_transforms(recording.path(), message)) {
+    for (StampedTransform& transform : transforms_in(message)) {
       transform.delay = time_between(transform.stamp, message.time);
       transforms.push_back(std::move(transform));
     }
@@ -82,7 +90,7 @@ TransformTree read_transforms(RecordingFile& recording, const std::vector<TimeRa
   for (const TimeRange& range : ranges) {
     if (!others.empty()) recording.visit(others, range.from, range.to, take);
   }
-  return {recording.path(), recording.start(), std::move(transforms)};
+  return {recording.path(), scan.start, std::move(transforms)};
 }
 
 // ---- Points -----------------------------------------------------------------------------------
@@ -100,6 +108,15 @@ bool is_rectified(const std::string& topic) {
   return topic.find("rect", topic.rfind('/')) != topic.npos;
 }
 
+/// Of the image that a compressed one stands for, as image_transport names them.
+std::string raw_name(const RecordedTopic& image) {
+  const bool is_raw = use_of(image.type) == MessageUse::depth;
+  const std::size_t slash = image.name.rfind('/');
+  return is_raw || slash == 0 || image.name.compare(slash + 1, 10, "compressed") != 0
+             ? image.name
+             : image.name.substr(0, slash);
+}
+
 std::string rectified_beside(const RecordingFile& recording, const std::string& folder) {
   for (const std::string& name : topics_for(recording, MessageUse::depth)) {
     if (name.rfind(folder, 0) == 0 && is_rectified(name)) return "read " + in_quotes(name);
@@ -112,18 +129,20 @@ CameraMessage read_camera(RecordingFile& recording, const std::string& topic, st
   for (const std::int64_t from : {time, earliest}) {
     if (camera) break;
     recording.visit({topic}, from, latest, [&](const RecordedMessage& message) {
-      camera = decode_camera(recording.path(), message);
-      return false;
+      return !recording.skipped().guard({message.time, message.time},
+                                        [&] { camera = decode_camera(recording.path(), message); });
     });
   }
   if (!camera)
-    refuse_recording(recording, "found no message of " + topic + ", expected the intrinsics");
+    refuse_recording(recording, "found no message of " + topic + ", expected the intrinsics" +
+                                    damage_text(recording));
   return *camera;
 }
 
 /// From the camera info of the same camera: K of a raw image, P of a rectified one.
 Pinhole read_pinhole(RecordingFile& recording, const RecordedTopic& image, std::int64_t time) {
-  const std::string folder = image.name.substr(0, image.name.rfind('/') + 1);
+  const std::string raw = raw_name(image);
+  const std::string folder = raw.substr(0, raw.rfind('/') + 1);
   const std::string topic = folder + "camera_info";
   if (find_topic(recording, topic) == nullptr) {
     refuse_recording(recording, "found no topic " + in_quotes(topic) +
@@ -134,7 +153,7 @@ Pinhole read_pinhole(RecordingFile& recording, const RecordedTopic& image, std::
   const CameraMessage camera = read_camera(recording, topic, time);
   const bool is_distorted = std::any_of(camera.distortion.begin(), camera.distortion.end(),
                                         [](double value) { return value != 0.0; });
-  const bool rectified = is_rectified(image.name);
+  const bool rectified = is_rectified(raw);
   if (is_distorted && !rectified) {
     refuse_recording(recording,
                      in_quotes(image.name) + ": found a raw image of a lens with distortion, " +
@@ -183,23 +202,27 @@ class ScanReader {
                               target_.empty() && heads_.size() == 1
                                   ? std::vector<TimeRange>()
                                   : std::vector<TimeRange>{around(transforms_about)},
-                              {topic_.name, heads_.back().time})) {
+                              for_scan())),
+        asked_from_(query.time.value_or(0.0) == 0.0
+                        ? earliest
+                        : later(topic_.first, nanoseconds_of(*query.time, "time"))),
+        depth_unit_(query.depth_unit) {
     if (!target_.empty() && !is_target_known()) {
-      tree_ = read_transforms(recording, farther(), {topic_.name, heads_.back().time});
+      tree_ = read_transforms(recording, farther(), for_scan());
     }
-    require_steady_clock(recording, heads_);
-    if (use_of(topic_.type) == MessageUse::depth) {
-      pinhole_ = read_pinhole(recording, topic_, heads_.front().time);
-    }
+    require_steady_clock(recording, topic_, heads_);
+    if (holds_images(topic_)) pinhole_ = read_pinhole(recording, topic_, heads_.front().time);
+    require_depth_unit();
   }
 
   RecordedScan read() {
     RecordedScan scan;
+    scan.topic = topic_.name;
     scan.recorded_frame = first().header.frame;
     scan.frame = target_.empty() ? scan.recorded_frame : target_;
     scan.messages = heads_.size();
-    scan.first = seconds_of(time_between(recording_.start(), first().time));
-    scan.last = seconds_of(time_between(recording_.start(), heads_.back().time));
+    scan.first = seconds_of(time_between(topic_.first, first().time));
+    scan.last = seconds_of(time_between(topic_.first, heads_.back().time));
     const bool stood = stood_still();
     const bool averages = heads_.size() > 1 && stood && same_organised_frames();
     if (heads_.size() == 1) {
@@ -207,9 +230,13 @@ class ScanReader {
     } else if (!averages || !average(scan)) {
       join(scan);
     }
+    if (scan.cloud.points.empty() && recording_.skipped().count() > 0) {
+      refuse_recording(recording_, "found no points of " + topic_.name + damage_text(recording_));
+    }
     if (stood && is_sensor_frame()) {
       scan.cloud.sensor_origin = Eigen::Vector3d(pose_of(first()).translation());
     }
+    scan.is_counted = is_counted_;
     add_doubts(scan.warnings);
     return scan;
   }
@@ -220,13 +247,19 @@ class ScanReader {
     return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
   }
   const MessageHead& first() const { return heads_.front(); }
+  ForScan for_scan() const { return {topic_.name, topic_.first, heads_.back().time}; }
   TimeRange around(std::int64_t margin) const {
     return {later(first().time, -margin), later(heads_.back().time, margin)};
   }
-  /// With the start of the recording, where what is sent once is.
+  /// With the start of the transforms, where what is sent once is.
   std::vector<TimeRange> farther() const {
     const TimeRange wide = around(transforms_farther);
-    const std::int64_t start = recording_.start();
+    std::int64_t start = latest;
+    for (const std::string& name : topics_for(recording_, MessageUse::transforms)) {
+      const RecordedTopic& topic = *find_topic(recording_, name);
+      if (topic.messages > 0 && !holds_static_transforms(name))
+        start = std::min(start, topic.first);
+    }
     const TimeRange first = {start, std::min(later(start, transforms_about), later(wide.from, -1))};
     return first.from <= first.to ? std::vector<TimeRange>{first, wide}
                                   : std::vector<TimeRange>{wide};
@@ -265,8 +298,8 @@ class ScanReader {
     const bool one_frame = same_frame_ids();
     if (one_frame && !moved()) return true;
     if (!target_.empty()) return false;
-    refuse(recording_.path() + ": between " + time_text(recording_, first().time) + " and " +
-           time_text(recording_, heads_.back().time) + " frame " + in_quotes(first().header.frame) +
+    refuse(recording_.path() + ": between " + time_text(topic_, first().time) + " and " +
+           time_text(topic_, heads_.back().time) + " frame " + in_quotes(first().header.frame) +
            " of " + topic_.name + (one_frame ? " moved" : " became another") +
            ": name the frame into which the points are put, or a span in which it stood; frames: " +
            name_list(tree_.frames()));
@@ -285,7 +318,7 @@ class ScanReader {
     return tree_.moved(target_, head.header.frame, from, to);
   }
   void add_doubts(std::vector<Warning>& warnings) const {
-    const std::string which = topic_.name + " at " + time_text(recording_, first().time) + ": ";
+    const std::string which = topic_.name + " at " + time_text(topic_, first().time) + ": ";
     const auto misplaced = std::find_if(heads_.begin(), heads_.end(), [&](const MessageHead& head) {
       return !target_.empty() && is_misplaced(head);
     });
@@ -306,18 +339,52 @@ class ScanReader {
               "span, by which the ground in it is smeared: name a frame that stands "
               "on the ground, or a span in which it stood");
     }
+    add_missing(warnings);
+    const auto unit = doubt_of_unit();
+    if (unit) warnings.push_back(*unit);
+  }
+  /// Where parts of the recording are not there.
+  void add_missing(std::vector<Warning>& warnings) const {
+    constexpr std::int64_t soon = one_second;  // ours
     if (recording_.is_cut_off()) {
       warnings.emplace_back(WarningCode::recording_cut_off,
                             recording_.path() +
                                 ": its end is missing, as that of a recorder that was "
                                 "killed: messages from " +
-                                time_text(recording_, topic_.last) + " of " + topic_.name +
-                                " on are lost");
+                                time_text(topic_, topic_.last) + " of " + topic_.name +
+                                " on are lost",
+                            false);
     }
+    if (recording_.skipped().count() == 0) return;
+    // A message that was asked for may be lost, and a much later one have taken its place.
+    const auto lost = recording_.skipped().first_lost(asked_from_, first().time);
+    const bool is_late = lost && time_between(*lost, first().time) > soon;
+    warnings.emplace_back(
+        WarningCode::recording_cut_off,
+        recording_.path() + ": " + recording_.skipped().text() +
+            (is_late ? "; the message asked for may be among what is lost, for the first one that "
+                       "is left was recorded more than a second later"
+                     : ""),
+        is_late);
+  }
+  /// Counts that are none of millimetres, by where they would see.
+  std::optional<Warning> doubt_of_unit() const {
+    constexpr double farthest = 10.0;  // ours: what depth cameras measure [m]
+    if (depth_unit_ || !is_counted_ || !(middle_depth_ > farthest)) return std::nullopt;
+    std::string units;
+    for (const DepthUnit& unit : other_depth_units) {
+      units += (units.empty() ? "" : ", or ") + std::string(unit.word) + ", which gives " +
+               readable(middle_depth_ * unit.length / millimetre, 2) + " m";
+    }
+    return Warning(WarningCode::units,
+                   topic_.name + " at " + time_text(topic_, first().time) +
+                       ": half of its depths lie beyond " + readable(middle_depth_, 3) +
+                       " m as counts of 1 mm, farther than depth cameras see: give the unit of its "
+                       "counts by --depth-unit, such as " +
+                       units);
   }
   bool is_sensor_frame() const {
-    const bool by_type = use_of(topic_.type) == MessageUse::depth ||
-                         topic_.type.find("CustomMsg") != std::string::npos;
+    const bool by_type = holds_images(topic_) || topic_.type.find("CustomMsg") != std::string::npos;
     return by_type || tree_.is_leaf(first().header.frame);
   }
 
@@ -329,33 +396,57 @@ class ScanReader {
       const std::int64_t off = time_between(head.time, head.header.stamp);
       if (off >= -longest_delay && off <= longest_delay) throw;
       throw Error(error.kind(), std::string(error.what()) + "; the message recorded at " +
-                                    time_text(recording_, head.time) + " is stamped " +
+                                    time_text(topic_, head.time) + " is stamped " +
                                     decimals(seconds_of(off), 3) +
                                     " s later: the clocks of sensor and transforms differ");
     }
   }
 
-  std::vector<Eigen::Vector3d> points_of(const RecordedMessage& message) const {
+  void require_depth_unit() const {
+    if (!depth_unit_) return;
+    require(*depth_unit_ > 0.0 && std::isfinite(*depth_unit_), "depth_unit", *depth_unit_,
+            "above 0 m and finite");
+    require(holds_images(topic_),
+            recording_.path() + ": " + topic_.name +
+                " holds points in metres, expected depth images where a depth unit is given");
+  }
+  std::vector<Eigen::Vector3d> points_of(const RecordedMessage& message) {
     if (!pinhole_) return decode_points(recording_.path(), message).points;
-    const DepthMessage image = decode_depths(recording_.path(), message);
+    const DepthMessage image =
+        decode_depths(recording_.path(), message, depth_unit_.value_or(millimetre));
+    note_depths(image);
     if (!(image.size == pinhole_->size)) {
       const auto text = [](const FrameSize& size) {
         return std::to_string(size.width) + " x " + std::to_string(size.height);
       };
-      refuse_recording(recording_, message.place + ": found " + text(image.size) +
-                                       " pixels, expected " + text(pinhole_->size) +
-                                       " as in the camera info");
+      throw Unsupported(recording_.path() + ": " + message.place + ": found " + text(image.size) +
+                        " pixels, expected " + text(pinhole_->size) + " as in the camera info");
     }
     return points_of_depths(image, *pinhole_);
+  }
+  void note_depths(const DepthMessage& image) {
+    is_counted_ = image.is_counted;
+    if (middle_depth_ > 0.0) return;
+    std::vector<double> depths;
+    for (const float depth : image.depths) {
+      if (depth > 0.0F) depths.push_back(static_cast<double>(depth));
+    }
+    if (!depths.empty()) middle_depth_ = median(depths);
   }
   /// Calls `take(head, points)` message by message until it returns false.
   template <typename Take>
   void each_message(Take take) {
     std::size_t i = 0;
-    recording_.visit({topic_.name}, first().time, heads_.back().time,
-                     [&](const RecordedMessage& message) {
-                       return take(heads_[i], points_of(message)) && ++i < heads_.size();
-                     });
+    const auto show = [&](const RecordedMessage& message) {
+      while (i < heads_.size() && heads_[i].time < message.time) ++i;  // left out
+      if (i == heads_.size()) return false;
+      if (heads_[i].time != message.time) return true;
+      std::vector<Eigen::Vector3d> points;
+      const auto read = [&] { points = points_of(message); };
+      if (!recording_.skipped().guard({message.time, message.time}, read)) return true;
+      return take(heads_[i], std::move(points)) && ++i < heads_.size();
+    };
+    recording_.visit({topic_.name}, first().time, heads_.back().time, show);
   }
 
   void read_one(RecordedScan& scan) {
@@ -407,7 +498,11 @@ class ScanReader {
   std::string target_;
   std::vector<MessageHead> heads_;  ///< of the messages to be used, in the order of their times
   TransformTree tree_;
+  std::int64_t asked_from_;  ///< the earliest time of a message that was asked for
+  std::optional<double> depth_unit_;
   std::optional<Pinhole> pinhole_;  ///< of a depth image
+  bool is_counted_ = false;
+  double middle_depth_ = 0.0;  ///< of the first image that saw something [m]
 };
 
 std::string first_frame(RecordingFile& recording, const RecordedTopic& topic) {
@@ -415,7 +510,8 @@ std::string first_frame(RecordingFile& recording, const RecordedTopic& topic) {
   std::string frame;
   if (use == MessageUse::none || use == MessageUse::transforms) return frame;
   recording.visit({topic.name}, topic.first, topic.first, [&](const RecordedMessage& message) {
-    frame = decode_header(recording.path(), message).frame;
+    recording.skipped().guard({message.time, message.time},
+                              [&] { frame = decode_header(recording.path(), message).frame; });
     return false;
   });
   return frame;
@@ -433,13 +529,18 @@ RecordingContents describe_recording(RecordingFile& recording) {
       entry.first = seconds_of(time_between(recording.start(), topic.first));
       entry.last = seconds_of(time_between(recording.start(), topic.last));
       entry.frame = first_frame(recording, topic);
-      contents.duration = std::max(contents.duration, entry.last);
+      const TimeRange usual = about(recording.start());
+      if (topic.first >= recording.start() && topic.last <= usual.to) {
+        contents.duration = std::max(contents.duration, entry.last);
+      }
     }
     contents.topics.push_back(std::move(entry));
   }
   const std::int64_t start = recording.start();
   contents.frames = read_transforms(recording, {{start, later(start, transforms_about)}}).frames();
   contents.is_cut_off = recording.is_cut_off();
+  contents.damaged_parts = recording.skipped().count();
+  contents.first_damage = recording.skipped().first();
   return contents;
 }
 
@@ -447,10 +548,12 @@ RecordedScan read_recorded_scan(RecordingFile& recording, const RecordingQuery& 
   return ScanReader(recording, query).read();
 }
 
-std::map<std::string, double> joint_positions(RecordingFile& recording, double time) {
+std::map<std::string, double> joint_positions(RecordingFile& recording, double time,
+                                              const std::string& topic) {
   const std::vector<std::string> topics = topics_for(recording, MessageUse::joints);
   if (topics.empty()) refuse_recording(recording, "found no topic of sensor_msgs/JointState");
-  const std::int64_t at = later(recording.start(), nanoseconds_of(time, "time"));
+  const std::int64_t start = topic.empty() ? recording.start() : scan_topic(recording, topic).first;
+  const std::int64_t at = later(start, nanoseconds_of(time, "time"));
   struct Nearest {
     std::int64_t away = latest;
     double position = 0.0;
@@ -459,15 +562,19 @@ std::map<std::string, double> joint_positions(RecordingFile& recording, double t
   recording.visit(topics, later(at, -joints_about), later(at, joints_about),
                   [&](const RecordedMessage& message) {
                     const std::int64_t away = std::abs(time_between(at, message.time));
-                    for (const auto& [name, position] : decode_joints(recording.path(), message)) {
+                    std::vector<std::pair<std::string, double>> found;
+                    recording.skipped().guard({message.time, message.time}, [&] {
+                      found = decode_joints(recording.path(), message);
+                    });
+                    for (const auto& [name, position] : found) {
                       Nearest& nearest = joints[name];
                       if (away < nearest.away) nearest = {away, position};
                     }
                     return true;
                   });
   if (joints.empty()) {
-    refuse_recording(recording, "found no joint positions within 0.5 s of " +
-                                    time_text(recording, at) + " on " + name_list(topics));
+    refuse_recording(recording, "found no joint positions within 0.5 s of " + decimals(time, 3) +
+                                    " s on " + name_list(topics) + damage_text(recording));
   }
   std::map<std::string, double> positions;
   for (const auto& [name, nearest] : joints) positions[name] = nearest.position;
@@ -482,8 +589,9 @@ RecordedScan read_recorded_scan(const RecordingQuery& query) {
   return read_recorded_scan(*open_recording(query.path), query);
 }
 
-std::map<std::string, double> joint_positions(const std::string& path, double time) {
-  return joint_positions(*open_recording(path), time);
+std::map<std::string, double> joint_positions(const std::string& path, double time,
+                                              const std::string& topic) {
+  return joint_positions(*open_recording(path), time, topic);
 }
 
 }  // namespace excavplan

@@ -16,6 +16,7 @@ namespace excavplan {
 RecordingContents describe_recording(RecordingFile& recording);
 /// The path of the query is not used.
 RecordedScan read_recorded_scan(RecordingFile& recording, const RecordingQuery& query);
-std::map<std::string, double> joint_positions(RecordingFile& recording, double time);
+std::map<std::string, double> joint_positions(RecordingFile& recording, double time,
+                                              const std::string& topic = "");
 
 }  // namespace excavplan

@@ -46,15 +46,14 @@ bool is_compressed_file(const std::string& path, std::string_view start) {
   return is_zstd_frame(start) && (ends_with(path, ".db3.zstd") || ends_with(path, ".mcap.zstd"));
 }
 
-std::unique_ptr<Container> open_file(const std::string& path) {
+std::unique_ptr<Container> open_file(const std::string& path, SkippedParts& skipped) {
   const std::string start = start_of(path);
-  if (starts_with(start, sqlite_magic)) return open_sqlite_recording(path);
-  if (starts_with(start, mcap_magic)) return open_mcap_recording(path);
-  if (is_bag(start)) return open_bag_recording(path);
+  if (starts_with(start, sqlite_magic)) return open_sqlite_recording(path, skipped);
+  if (starts_with(start, mcap_magic)) return open_mcap_recording(path, skipped);
+  if (is_bag(start)) return open_bag_recording(path, skipped);
   if (is_compressed_file(path, start)) {
-    throw Error(ErrorKind::bad_file, path +
-                                         ": is compressed as a whole; uncompress it by 'zstd -d " +
-                                         path + "' and name the file or folder again");
+    throw Unsupported(path + ": is compressed as a whole; uncompress it by 'zstd -d " + path +
+                      "' and name the file or folder again");
   }
   fail_at(path, "byte 0", in_quotes(start),
           "the start of a rosbag2 SQLite file, an MCAP file or a ROS 1 bag");
@@ -101,11 +100,16 @@ class Recording : public RecordingFile {
     std::error_code none;
     const auto files =
         fs::is_directory(path, none) ? files_of(path) : std::vector<std::string>{path};
-    for (const std::string& file : files) add(file, open_file(file));
+    for (const std::string& file : files) {
+      skipped().guard({}, [&] { add(file, open_file(file, skipped())); });
+    }
+    if (parts_.empty() && skipped().count() > 0) {
+      throw Error(ErrorKind::bad_file, skipped().first());
+    }
     sort_topics();
     const auto starts_earlier = [](const Part& a, const Part& b) { return a.start < b.start; };
     std::stable_sort(parts_.begin(), parts_.end(), starts_earlier);
-    start_ = parts_.empty() ? 0 : parts_.front().start;
+    set_start();
   }
 
   const std::string& path() const override { return path_; }
@@ -121,8 +125,9 @@ class Recording : public RecordingFile {
     std::string path;
     std::unique_ptr<Container> container;
     std::int64_t start = 0;
-    std::vector<std::size_t> topics;  // of the recording, by that of the file
+    std::vector<std::size_t> topics;  // of the recording, by that of the file; or no_topic
   };
+  static constexpr std::size_t no_topic = static_cast<std::size_t>(-1);
   struct Open {
     const Part* part;
     std::unique_ptr<MessageCursor> cursor;
@@ -131,7 +136,8 @@ class Recording : public RecordingFile {
   void add(const std::string& file, std::unique_ptr<Container> container);
   std::size_t add_topic(const std::string& file, const RecordedTopic& topic);
   void sort_topics();
-  bool show(const Open& open, const MessageVisitor& visitor) const;
+  void set_start();
+  bool show(const Open& open, const MessageVisitor& visitor);
 
   std::string path_;
   std::vector<RecordedTopic> topics_;
@@ -146,8 +152,10 @@ void Recording::add(const std::string& file, std::unique_ptr<Container> containe
   is_cut_off_ = is_cut_off_ || part.container->is_cut_off();
   bool is_empty = true;
   for (const RecordedTopic& topic : part.container->topics()) {
-    part.topics.push_back(add_topic(file, topic));
-    if (topic.messages == 0) continue;
+    std::size_t number = no_topic;
+    skipped().guard(no_time, [&] { number = add_topic(file, topic); });
+    part.topics.push_back(number);
+    if (topic.messages == 0 || number == no_topic) continue;
     is_empty = false;
     part.start = std::min(part.start, topic.first);
   }
@@ -187,7 +195,23 @@ void Recording::sort_topics() {
   }
   topics_ = std::move(sorted);
   for (Part& part : parts_) {
-    for (std::size_t& topic : part.topics) topic = places[topic];
+    for (std::size_t& topic : part.topics) {
+      if (topic != no_topic) topic = places[topic];
+    }
+  }
+}
+
+/// By the topics of the same time as the one of most messages: others have another clock.
+void Recording::set_start() {
+  const auto has_fewer = [](const RecordedTopic& a, const RecordedTopic& b) {
+    return a.messages < b.messages;
+  };
+  const auto most = std::max_element(topics_.begin(), topics_.end(), has_fewer);
+  if (most == topics_.end() || most->messages == 0) return;
+  const TimeRange usual = about(most->first);
+  start_ = most->first;
+  for (const RecordedTopic& topic : topics_) {
+    if (topic.messages > 0 && topic.first >= usual.from) start_ = std::min(start_, topic.first);
   }
 }
 
@@ -208,7 +232,8 @@ void Recording::visit(const std::vector<std::string>& topics, std::int64_t from,
         (first == open.end() || part->start <= first->cursor->time())) {
       std::vector<std::size_t> wanted;
       for (std::size_t i = 0; i < part->topics.size(); ++i) {
-        if (is_asked_for[part->topics[i]]) wanted.push_back(i);
+        if (part->topics[i] == no_topic || !is_asked_for[part->topics[i]]) continue;
+        wanted.push_back(i);
       }
       Open opened{&*part, part->container->messages(wanted, from, to)};
       if (opened.cursor->next()) open.push_back(std::move(opened));
@@ -220,22 +245,27 @@ void Recording::visit(const std::vector<std::string>& topics, std::int64_t from,
   }
 }
 
-bool Recording::show(const Open& open, const MessageVisitor& visitor) const {
+/// Shows a message, unless it is damaged. @return false if no more are wanted
+bool Recording::show(const Open& open, const MessageVisitor& visitor) {
   const std::int64_t time = open.cursor->time();
-  const StoredMessage stored = open.cursor->read();
-  const RecordedTopic& topic = topics_[open.part->topics[stored.topic]];
-  RecordedMessage message{topic, time, stored.serialization, stored.bytes, {}};
-  message.place = "message of " + topic.name + " at " +
-                  decimals(static_cast<double>(time - start_) * 1e-9, 3) + " s";
+  StoredMessage stored;
   Bytes uncompressed;
-  if (stored.serialization == Serialization::cdr && is_zstd_frame(stored.bytes)) {
+  std::string place;
+  const bool is_whole = skipped().guard({time, time}, [&] {
+    stored = open.cursor->read();
+    const RecordedTopic& topic = topics_[open.part->topics[stored.topic]];
+    place = "message of " + topic.name + " at " +
+            decimals((static_cast<double>(time) - static_cast<double>(topic.first)) * 1e-9, 3) +
+            " s";
+    if (stored.serialization != Serialization::cdr || !is_zstd_frame(stored.bytes)) return;
     // rosbag2's compression mode MESSAGE
-    const std::uint64_t size = zstd_content_size(stored.bytes, open.part->path, message.place);
-    uncompressed =
-        decompress({Compression::zstd, stored.bytes, size, open.part->path, message.place});
-    message.bytes = uncompressed.view();
-  }
-  return visitor(message);
+    const std::uint64_t size = zstd_content_size(stored.bytes, open.part->path, place);
+    uncompressed = decompress({Compression::zstd, stored.bytes, size, open.part->path, place});
+    stored.bytes = uncompressed.view();
+  });
+  if (!is_whole) return true;
+  return visitor(
+      {topics_[open.part->topics[stored.topic]], time, stored.serialization, stored.bytes, place});
 }
 
 }  // namespace

@@ -35,12 +35,17 @@ class RecordingFile {
 
   virtual const std::string& path() const = 0;
   virtual const std::vector<RecordedTopic>& topics() const = 0;  ///< sorted by name
-  virtual std::int64_t start() const = 0;            ///< time of the first message of all topics
+  virtual std::int64_t start() const = 0;  ///< of the first message of all topics of one time
   virtual bool is_cut_off() const { return false; }  ///< the end of a file of it is missing
+  /// What was found to be damaged so far, to which readers of messages add; nothing else is lost.
+  SkippedParts& skipped() { return skipped_; }
   /// The messages of some topics recorded at `from` to `to`, both included, in the order of their
-  /// times. @throws Error (bad_file) naming file, place, what was found and what was expected
+  /// times. @throws Unsupported naming file, place, what was found and what was expected
   virtual void visit(const std::vector<std::string>& topics, std::int64_t from, std::int64_t to,
                      const MessageVisitor& visitor) = 0;
+
+ private:
+  SkippedParts skipped_;
 };
 
 /// True if the path is that of a recording, by its content: a rosbag2 folder (with metadata.yaml),
@@ -48,8 +53,8 @@ class RecordingFile {
 bool is_recording(const std::string& path);
 
 /// Opens one. A rosbag2 folder may hold several files, which count as one recording.
-/// @throws Error (bad_file) if it is none, is damaged, or needs a library that this build is
-/// without
+/// @throws Error (bad_file) if it is none, holds no message that can be read, or needs a library
+/// that this build is without
 std::unique_ptr<RecordingFile> open_recording(const std::string& path);
 
 }  // namespace excavplan

@@ -11,6 +11,7 @@
 
 #include "base/scalar.hpp"
 #include "base/text.hpp"
+#include "images/depth_png.hpp"
 
 namespace excavplan {
 namespace {
@@ -213,15 +214,23 @@ std::array<PointField, 3> read_fields(FieldReader& reader) {
   return xyz;
 }
 
-PointMessage decode_cloud(FieldReader& reader) {
-  read_header(reader);
+/// Of a cloud, in the bytes that it was read from.
+struct CloudLayout {
   Grid grid;
+  std::array<PointField, 3> xyz;
+  bool swapped = false;
+};
+
+CloudLayout read_layout(FieldReader& reader) {
+  read_header(reader);
+  CloudLayout layout;
+  Grid& grid = layout.grid;
   grid.size = read_size(reader);
-  const std::array<PointField, 3> xyz = read_fields(reader);
-  const bool swapped = reader.number<std::uint8_t>() != 0;
+  layout.xyz = read_fields(reader);
+  layout.swapped = reader.number<std::uint8_t>() != 0;
   grid.step = reader.number<std::uint32_t>();
   grid.row_step = reader.number<std::uint32_t>();
-  for (const PointField& field : xyz) {
+  for (const PointField& field : layout.xyz) {
     if (field.offset + size_of(field.type) <= grid.step) continue;
     reader.fail("points of " + std::to_string(grid.step) + " bytes",
                 std::to_string(size_of(field.type)) + " bytes of a coordinate at byte " +
@@ -229,12 +238,18 @@ PointMessage decode_cloud(FieldReader& reader) {
   }
   grid.data = reader.take(reader.count("bytes of data", 1));
   require_fits(reader, grid, "points");
+  return layout;
+}
+
+PointMessage decode_cloud(FieldReader& reader) {
+  const auto [grid, xyz, swapped] = read_layout(reader);
   PointMessage cloud;
   cloud.size = grid.size;
   cloud.points.resize(grid.size.pixels());
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    with_type(xyz[axis].type, [&](auto kind) {
-      each_element<decltype(kind)>(grid, xyz[axis].offset, swapped, [&](std::size_t i, auto value) {
+    const PointField& field = xyz[axis];
+    with_type(field.type, [&, &grid = grid, swapped = swapped](auto kind) {
+      each_element<decltype(kind)>(grid, field.offset, swapped, [&](std::size_t i, auto value) {
         cloud.points[i][static_cast<Eigen::Index>(axis)] = static_cast<double>(value);
       });
     });
@@ -279,12 +294,104 @@ bool is_livox(const RecordedMessage& message) {
 
 // ---- Images -----------------------------------------------------------------------------------
 
+float depth_or_unknown(float depth) {
+  return std::isfinite(depth) && depth > 0.0F ? depth : static_cast<float>(unknown);
+}
+
 template <typename T>
-void read_depths(const Grid& grid, bool swapped, float unit, std::vector<float>& depths) {
+void read_depths(const Grid& grid, bool swapped, double unit, std::vector<float>& depths) {
   each_element<T>(grid, 0, swapped, [&](std::size_t i, T value) {
-    const float depth = static_cast<float>(value) * unit;
-    depths[i] = std::isfinite(depth) && depth > 0.0F ? depth : static_cast<float>(unknown);
+    depths[i] = depth_or_unknown(static_cast<float>(value) * static_cast<float>(unit));
   });
+}
+
+/// Of a raw image, in the bytes that it was read from.
+struct ImageLayout {
+  Grid grid;
+  bool is_float = false;
+  bool swapped = false;
+};
+
+ImageLayout read_image(FieldReader& reader) {
+  read_header(reader);
+  ImageLayout layout;
+  Grid& grid = layout.grid;
+  grid.size = read_size(reader);
+  const std::string encoding = reader.name();
+  layout.is_float = encoding == "32FC1";
+  if (!layout.is_float && encoding != "16UC1" && encoding != "mono16") {
+    reader.fail("an image of encoding " + in_quotes(encoding), "depths as 16UC1, mono16 or 32FC1");
+  }
+  grid.step = layout.is_float ? sizeof(float) : sizeof(std::uint16_t);
+  layout.swapped = reader.number<std::uint8_t>() != 0;
+  grid.row_step = reader.number<std::uint32_t>();
+  grid.data = reader.take(reader.count("bytes of data", 1));
+  require_fits(reader, grid, "pixels");
+  return layout;
+}
+
+/// A PNG image in a message, and how its counts mean depths.
+struct CompressedDepth {
+  std::string_view png;
+  FrameSize size;
+  bool is_inverse =
+      false;       ///< depth = a / (count - b), as compressed_depth_image_transport's codec
+  double a = 0.0;  ///< [m]
+  double b = 0.0;
+};
+
+CompressedDepth read_compressed(FieldReader& reader) {
+  constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
+  constexpr std::size_t config = 12;   // before the PNG: its kind, a and b, 4 bytes each
+  constexpr std::size_t size_at = 16;  // in the PNG: width and height, the higher bytes first
+  constexpr std::size_t longest_side = 65535;
+  read_header(reader);
+  const std::string format = reader.name();
+  const std::string_view data = reader.take(reader.count("bytes of data", 1));
+  const bool has_config = data.substr(0, signature.size()) != signature;
+  CompressedDepth image;
+  image.png = data.substr(std::min(has_config ? config : 0, data.size()));
+  const bool is_float = format.rfind("32FC1", 0) == 0;
+  if (image.png.substr(0, signature.size()) != signature || image.png.size() < size_at + 8 ||
+      (is_float && !has_config)) {
+    reader.fail("an image compressed as " + in_quotes(format),
+                "depths as PNG: 16UC1, or what compressedDepth writes; others play through "
+                "image_transport's republish");
+  }
+  image.is_inverse = is_float;
+  if (has_config) {
+    image.a = static_cast<double>(load<float>(data.data() + 4, false));
+    image.b = static_cast<double>(load<float>(data.data() + 8, false));
+  }
+  image.size.width = load<std::uint32_t>(image.png.data() + size_at, true);
+  image.size.height = load<std::uint32_t>(image.png.data() + size_at + 4, true);
+  if (image.size.width > longest_side || image.size.height > longest_side) {
+    reader.fail("an image of " + text_of(image.size) + " pixels", "at most 65535 a side");
+  }
+  return image;
+}
+
+bool is_compressed(const RecordedMessage& message) {
+  return use_of(message.topic.type) == MessageUse::compressed;
+}
+
+DepthMessage decode_compressed(const std::string& file, const RecordedMessage& message,
+                               double unit) {
+  FieldReader reader(file, message);
+  const CompressedDepth compressed = read_compressed(reader);
+  const DepthPng png = decode_depth_png(file + ": " + message.place, std::string(compressed.png));
+  DepthMessage image;
+  image.size.width = png.width;
+  image.size.height = png.height;
+  image.is_counted = !compressed.is_inverse;
+  image.depths.resize(png.pixels());
+  for (std::size_t i = 0; i < png.pixels(); ++i) {
+    const double count = png.count(i);
+    const double inverse = count > 0.0 ? compressed.a / (count - compressed.b) : 0.0;
+    image.depths[i] =
+        depth_or_unknown(static_cast<float>(compressed.is_inverse ? inverse : count * unit));
+  }
+  return image;
 }
 
 }  // namespace
@@ -315,8 +422,10 @@ MessageHeader decode_header(const std::string& file, const RecordedMessage& mess
 FrameSize decode_size(const std::string& file, const RecordedMessage& message) {
   FieldReader reader(file, message);
   if (is_livox(message)) return {read_livox_head(reader), 1};
-  read_header(reader);
-  return read_size(reader);
+  const MessageUse use = use_of(message.topic.type);
+  if (use == MessageUse::depth) return read_image(reader).grid.size;
+  return use == MessageUse::compressed ? read_compressed(reader).size
+                                       : read_layout(reader).grid.size;
 }
 
 PointMessage decode_points(const std::string& file, const RecordedMessage& message) {
@@ -324,27 +433,16 @@ PointMessage decode_points(const std::string& file, const RecordedMessage& messa
   return is_livox(message) ? decode_livox(reader) : decode_cloud(reader);
 }
 
-DepthMessage decode_depths(const std::string& file, const RecordedMessage& message) {
+DepthMessage decode_depths(const std::string& file, const RecordedMessage& message, double unit) {
+  if (is_compressed(message)) return decode_compressed(file, message, unit);
   FieldReader reader(file, message);
-  read_header(reader);
-  Grid grid;
-  grid.size = read_size(reader);
-  const std::string encoding = reader.name();
-  const bool is_float = encoding == "32FC1";
-  if (!is_float && encoding != "16UC1" && encoding != "mono16") {
-    reader.fail("an image of encoding " + in_quotes(encoding), "depths as 16UC1, mono16 or 32FC1");
-  }
-  grid.step = is_float ? sizeof(float) : sizeof(std::uint16_t);
-  const bool swapped = reader.number<std::uint8_t>() != 0;
-  grid.row_step = reader.number<std::uint32_t>();
-  grid.data = reader.take(reader.count("bytes of data", 1));
-  require_fits(reader, grid, "pixels");
+  const auto [grid, is_float, swapped] = read_image(reader);
   DepthMessage image;
   image.size = grid.size;
+  image.is_counted = !is_float;
   image.depths.resize(grid.size.pixels());
-  constexpr float millimetre = 0.001F;
-  is_float ? read_depths<float>(grid, swapped, 1.0F, image.depths)
-           : read_depths<std::uint16_t>(grid, swapped, millimetre, image.depths);
+  is_float ? read_depths<float>(grid, swapped, 1.0, image.depths)
+           : read_depths<std::uint16_t>(grid, swapped, unit, image.depths);
   return image;
 }
 

@@ -54,14 +54,20 @@ struct PointMessage {
 };
 PointMessage decode_points(const std::string& file, const RecordedMessage& message);
 
-/// sensor_msgs/Image with depths: 16UC1 and mono16 [mm], 32FC1 [m] (REP 118).
+constexpr double millimetre = 0.001;  ///< [m]
+
+/// sensor_msgs/Image with depths: 16UC1 and mono16 in counts of a unit (REP 118: 1 mm), 32FC1 [m];
+/// sensor_msgs/CompressedImage of PNG: 16UC1, as it is or after the header of compressedDepth
+/// (compressed_depth_image_transport), and 32FC1 after that header, as inverse depths.
 struct DepthMessage {
   FrameSize size;
   std::vector<float> depths;  ///< row by row [m]; NaN where the message holds 0, NaN or infinity
+  bool is_counted = false;    ///< in counts of the unit
 };
-DepthMessage decode_depths(const std::string& file, const RecordedMessage& message);
+DepthMessage decode_depths(const std::string& file, const RecordedMessage& message,
+                           double unit = millimetre);
 
-/// Width and height of what decode_points() and decode_depths() read.
+/// Width and height of what decode_points() and decode_depths() read, which has room for all of it.
 FrameSize decode_size(const std::string& file, const RecordedMessage& message);
 
 /// sensor_msgs/CameraInfo.

@@ -14,7 +14,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <map>
+#include <optional>
+#include <tuple>
 
 // The tables are those of rosbag2_storage_sqlite3: topics (id, name, type, serialization_format)
 // and messages (id, topic_id, timestamp, data), indexed by timestamp.
@@ -24,6 +28,7 @@ namespace {
 
 constexpr int longest_name = 4096;            // of a topic or type, and of other texts; ours [byte]
 constexpr std::size_t most_topics = 1 << 14;  // ours
+constexpr std::size_t most_rows = 1 << 23;    // at once; ours
 constexpr int steps_between_checks = 1000;    // of SQLite's virtual machine
 
 using Connection = std::unique_ptr<sqlite3, decltype(&sqlite3_close_v2)>;
@@ -57,69 +62,106 @@ std::string uri_of(const std::string& path, const std::string& query) {
   return uri + query;
 }
 
+/// Where a message lies.
+struct MessageRow {
+  std::int64_t time = 0;
+  std::int64_t id = 0;
+  std::size_t topic = 0;
+
+  bool operator<(const MessageRow& other) const {
+    return std::tie(time, id) < std::tie(other.time, other.id);
+  }
+};
+
 class SqliteRecording : public Container {
  public:
-  explicit SqliteRecording(const std::string& path);
+  SqliteRecording(const std::string& path, SkippedParts& skipped);
   std::unique_ptr<MessageCursor> messages(const std::vector<std::size_t>& topics, std::int64_t from,
                                           std::int64_t to) override;
 
-  Statement prepare(const std::string& sql);
-  /// @return false at the end
-  bool step(sqlite3_stmt* statement);
-  std::int64_t integer(sqlite3_stmt* statement, int column, const std::string& name);
   Bytes blob(std::int64_t row);
-  std::size_t topic_of(std::int64_t id) const { return topic_of_id_.at(id); }
   void require_readable(std::size_t topic) const;
 
  private:
+  using RowVisitor = std::function<void(const MessageRow& row)>;
+
   void open();
   void harden();
+  void require_whole() const;
+  Statement prepare(const std::string& sql);
+  bool step(sqlite3_stmt* statement);
+  std::int64_t integer(sqlite3_stmt* statement, int column, const std::string& name);
   void require_table(const std::string& name, const std::vector<std::string>& columns);
   void read_topics();
+  void read_topic(sqlite3_stmt* row);
+  void each_row(const RowVisitor& visit);
+  std::optional<std::int64_t> next_readable(std::int64_t row);
+  void visit_row(sqlite3_stmt* row, const RowVisitor& visit);
   void count_messages();
+  std::vector<MessageRow> rows_by_index(const std::string& ids, std::int64_t from, std::int64_t to);
   std::string text(sqlite3_stmt* statement, int column, const std::string& name);
   [[noreturn]] void fail(const std::string& what);
 
   std::string path_;
-  std::uint64_t size_ = 0;  // [byte]
+  std::uint64_t size_ = 0;      // [byte]
+  bool has_lost_rows_ = false;  // a page of the messages is damaged
   Connection connection_{nullptr, &sqlite3_close_v2};
   std::uint64_t steps_left_ = 0;  // thousands of them, that a statement may still take
   std::map<std::int64_t, std::size_t> topic_of_id_;
-  std::vector<std::string> formats_;  // by topic
+  std::vector<std::string> formats_;    // by topic
+  std::vector<TimeRange> usual_times_;  // by topic; others bear a wrong time
 };
 
 class SqliteCursor : public MessageCursor {
  public:
-  SqliteCursor(SqliteRecording& recording, Statement statement)
-      : recording_(recording), statement_(std::move(statement)) {}
-  bool next() override {
-    if (!recording_.step(statement_.get())) return false;
-    time_ = recording_.integer(statement_.get(), 0, "timestamp");
-    return true;
-  }
-  std::int64_t time() const override { return time_; }
+  SqliteCursor(SqliteRecording& recording, std::vector<MessageRow> rows)
+      : recording_(recording), rows_(std::move(rows)) {}
+  bool next() override { return next_++ < rows_.size(); }
+  std::int64_t time() const override { return row().time; }
   StoredMessage read() override {
-    const auto topic = recording_.topic_of(recording_.integer(statement_.get(), 2, "topic_id"));
-    recording_.require_readable(topic);
-    message_ = recording_.blob(sqlite3_column_int64(statement_.get(), 1));
-    return {topic, Serialization::cdr, message_.view()};
+    recording_.require_readable(row().topic);
+    message_ = recording_.blob(row().id);
+    return {row().topic, Serialization::cdr, message_.view()};
   }
 
  private:
+  const MessageRow& row() const { return rows_[next_ - 1]; }
+
   SqliteRecording& recording_;
-  Statement statement_;
-  std::int64_t time_ = 0;
+  std::vector<MessageRow> rows_;
+  std::size_t next_ = 0;
   Bytes message_;
 };
 
-SqliteRecording::SqliteRecording(const std::string& path) : path_(path) {
+SqliteRecording::SqliteRecording(const std::string& path, SkippedParts& skipped)
+    : Container(skipped), path_(path) {
   size_ = ByteFile(path).size();
   open();
   harden();
+  require_whole();
   require_table("topics", {"id", "name", "type", "serialization_format"});
   require_table("messages", {"topic_id", "timestamp", "data"});
   read_topics();
   count_messages();
+}
+
+/// SQLite would fill what is missing with zeros, where it reads such a file at all.
+void SqliteRecording::require_whole() const {
+  const Bytes head = ByteFile(path_).read(0, 32, "header");
+  const auto number = [&](std::size_t at, std::size_t size) {  // the higher bytes first
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      value = value << 8 | static_cast<unsigned char>(head.view()[at + i]);
+    }
+    return value;
+  };
+  const std::uint64_t page = number(16, 2) == 1 ? 65536 : number(16, 2);
+  const std::uint64_t whole = page * number(28, 4);
+  if (has_bytes(path_ + "-wal") || whole <= size_) return;
+  throw Unsupported(path_ + ": its end is missing: found " + std::to_string(size_) +
+                    " bytes, expected " + std::to_string(whole) +
+                    "; what is whole is saved by 'sqlite3 " + path_ +
+                    " .recover | sqlite3 saved.db3'");
 }
 
 /// Leaves nothing beside the file, and loses nothing that a recorder left there.
@@ -185,10 +227,13 @@ Statement SqliteRecording::prepare(const std::string& sql) {
   return statement;
 }
 
+/// @return false at the end
 bool SqliteRecording::step(sqlite3_stmt* statement) {
   const int result = sqlite3_step(statement);
   if (result == SQLITE_INTERRUPT) {
-    fail_at(path_, "its tables", "more rows than the file has room for", "pages without a loop");
+    throw Unsupported(path_ +
+                      ": its tables: found more rows than the file has room for, expected "
+                      "pages without a loop");
   }
   if (result != SQLITE_ROW && result != SQLITE_DONE) fail("its tables");
   return result == SQLITE_ROW;
@@ -248,39 +293,148 @@ void SqliteRecording::require_table(const std::string& name,
 
 void SqliteRecording::read_topics() {
   const Statement rows = prepare("SELECT id, name, type, serialization_format FROM topics");
-  while (step(rows.get())) {
+  const auto next = [&] {
+    bool has_row = false;
+    skipped_.guard({}, [&] { has_row = step(rows.get()); });
+    return has_row;
+  };
+  while (next()) {
     if (topics_.size() == most_topics) {
-      fail_at(path_, "table topics", "more rows", "at most " + std::to_string(most_topics));
+      throw Unsupported(path_ + ": table topics: found more rows, expected at most " +
+                        std::to_string(most_topics));
     }
-    const std::int64_t id = integer(rows.get(), 0, "id of topics");
-    if (!topic_of_id_.emplace(id, topics_.size()).second) {
-      fail_at(path_, "table topics", "id " + std::to_string(id) + " twice", "each id once");
-    }
-    topics_.push_back({text(rows.get(), 1, "name"), ros2_type(text(rows.get(), 2, "type"))});
-    formats_.push_back(text(rows.get(), 3, "serialization_format"));
+    skipped_.guard(no_time, [&] { read_topic(rows.get()); });
+  }
+  usual_times_.resize(topics_.size());
+}
+
+void SqliteRecording::read_topic(sqlite3_stmt* row) {
+  const std::int64_t id = integer(row, 0, "id of topics");
+  RecordedTopic topic = {text(row, 1, "name"), ros2_type(text(row, 2, "type"))};
+  std::string format = text(row, 3, "serialization_format");
+  if (!topic_of_id_.emplace(id, topics_.size()).second) {
+    fail_at(path_, "table topics", "id " + std::to_string(id) + " twice", "each id once");
+  }
+  topics_.push_back(std::move(topic));
+  formats_.push_back(std::move(format));
+}
+
+/// Reads the first page of each message, as rosbag2 does, in the order of the rows, past pages that
+/// are damaged.
+void SqliteRecording::each_row(const RowVisitor& visit) {
+  constexpr int most_gaps = 100;  // ours
+  std::int64_t from = std::numeric_limits<std::int64_t>::min();
+  std::int64_t last = 0;
+  std::int64_t last_time = earliest;
+  for (int gaps = 0; gaps <= most_gaps; ++gaps) {
+    const Statement rows =
+        prepare("SELECT rowid, topic_id, timestamp FROM messages WHERE rowid >= ? ORDER BY rowid");
+    sqlite3_bind_int64(rows.get(), 1, from);
+    const bool is_whole = skipped_.guard({last_time, latest}, [&] {
+      while (step(rows.get())) {
+        last = sqlite3_column_int64(rows.get(), 0);
+        visit_row(rows.get(), [&](const MessageRow& row) {
+          last_time = row.time;
+          visit(row);
+        });
+      }
+    });
+    if (is_whole) return;
+    has_lost_rows_ = true;
+    const auto next = next_readable(last);
+    if (!next) return;
+    from = *next;
   }
 }
 
-/// Reads the first page of each message, as rosbag2 does.
+/// The row behind a damaged page: looked for in steps that grow, then halved.
+std::optional<std::int64_t> SqliteRecording::next_readable(std::int64_t row) {
+  enum class Found { damage, nothing, message };
+  std::int64_t found_row = 0;
+  const auto look = [&](std::int64_t from) {
+    try {
+      const Statement first =
+          prepare("SELECT rowid FROM messages WHERE rowid >= ? ORDER BY rowid LIMIT 1");
+      sqlite3_bind_int64(first.get(), 1, from);
+      if (!step(first.get())) return Found::nothing;
+      found_row = sqlite3_column_int64(first.get(), 0);
+      return found_row >= from ? Found::message : Found::damage;
+    } catch (const Unsupported&) {
+      throw;
+    } catch (const Error&) {
+      return Found::damage;
+    }
+  };
+  std::int64_t damaged = std::max<std::int64_t>(row, 0);
+  std::int64_t good = 0;
+  std::optional<std::int64_t> next;
+  for (std::int64_t step_size = 1; good == 0 && step_size < latest / 4; step_size *= 2) {
+    const Found found = look(damaged + step_size);
+    if (found == Found::damage) damaged += step_size;
+    if (found != Found::damage) good = damaged + step_size;
+    if (found == Found::message) next = found_row;
+  }
+  while (good - damaged > 1) {
+    const std::int64_t middle = damaged + (good - damaged) / 2;
+    const Found found = look(middle);
+    if (found == Found::message) next = found_row;
+    (found == Found::damage ? damaged : good) = middle;
+  }
+  return next;
+}
+
+void SqliteRecording::visit_row(sqlite3_stmt* row, const RowVisitor& visit) {
+  skipped_.guard(no_time, [&] {
+    const auto found = topic_of_id_.find(integer(row, 1, "topic_id"));
+    if (found == topic_of_id_.end()) return;
+    visit({integer(row, 2, "timestamp"), sqlite3_column_int64(row, 0), found->second});
+  });
+}
+
 void SqliteRecording::count_messages() {
-  const Statement rows = prepare("SELECT topic_id, timestamp FROM messages");
-  while (step(rows.get())) {
-    const auto found = topic_of_id_.find(integer(rows.get(), 0, "topic_id"));
-    if (found == topic_of_id_.end()) continue;
-    const std::int64_t time = integer(rows.get(), 1, "timestamp");
-    RecordedTopic& topic = topics_[found->second];
-    topic.first = topic.messages == 0 ? time : std::min(topic.first, time);
-    topic.last = std::max(topic.last, time);
+  each_row([&](const MessageRow& row) {
+    RecordedTopic& topic = topics_[row.topic];
+    topic.first = topic.messages == 0 ? row.time : std::min(topic.first, row.time);
+    topic.last = topic.messages == 0 ? row.time : std::max(topic.last, row.time);
     ++topic.messages;
+  });
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
+    if (time_span(topics_[i]) <= longest_topic) continue;
+    std::vector<std::int64_t> times;
+    each_row([&](const MessageRow& row) {
+      if (row.topic == i) times.push_back(row.time);
+    });
+    usual_times_[i] = usual_times(times);
+    date_without_strays(path_, times, usual_times_[i], topics_[i], skipped_);
   }
 }
 
 void SqliteRecording::require_readable(std::size_t topic) const {
   if (formats_[topic] == "cdr") return;
-  fail_at(path_, "topic " + topics_[topic].name,
-          "messages in the format " + in_quotes(formats_[topic]), "'cdr'");
+  throw Unsupported(path_ + ": topic " + topics_[topic].name + ": found messages in the format " +
+                    in_quotes(formats_[topic]) + ", expected 'cdr'");
 }
 
+std::vector<MessageRow> SqliteRecording::rows_by_index(const std::string& ids, std::int64_t from,
+                                                       std::int64_t to) {
+  std::vector<MessageRow> found;
+  const Statement rows = prepare(
+      "SELECT rowid, topic_id, timestamp FROM messages WHERE timestamp BETWEEN ? AND ? AND "
+      "typeof(timestamp) = 'integer' AND topic_id IN (" +
+      ids + ") ORDER BY timestamp, rowid");
+  sqlite3_bind_int64(rows.get(), 1, from);
+  sqlite3_bind_int64(rows.get(), 2, to);
+  while (step(rows.get())) {
+    visit_row(rows.get(), [&](const MessageRow& row) { found.push_back(row); });
+    if (found.size() > most_rows) {
+      throw Unsupported(path_ + ": has more than " + std::to_string(most_rows) +
+                        " messages of one query");
+    }
+  }
+  return found;
+}
+
+/// By the index of the times or, where that or the messages are damaged, by all rows.
 std::unique_ptr<MessageCursor> SqliteRecording::messages(const std::vector<std::size_t>& topics,
                                                          std::int64_t from, std::int64_t to) {
   std::vector<bool> is_asked_for(topics_.size());
@@ -289,14 +443,22 @@ std::unique_ptr<MessageCursor> SqliteRecording::messages(const std::vector<std::
   for (const auto& [id, topic] : topic_of_id_) {
     if (is_asked_for[topic]) ids += (ids.empty() ? "" : ",") + std::to_string(id);
   }
-  // Blobs are read by themselves, so that no sorting ever holds them.
-  Statement statement = prepare(
-      "SELECT timestamp, rowid, topic_id FROM messages WHERE timestamp BETWEEN ? AND ? "
-      "AND topic_id IN (" +
-      ids + ") ORDER BY timestamp, rowid");
-  sqlite3_bind_int64(statement.get(), 1, from);
-  sqlite3_bind_int64(statement.get(), 2, to);
-  return std::make_unique<SqliteCursor>(*this, std::move(statement));
+  from = std::max<std::int64_t>(from, 0);
+  std::vector<MessageRow> rows;
+  const auto by_index = [&] { rows = rows_by_index(ids, from, to); };
+  if (has_lost_rows_ || !skipped_.guard(no_time, by_index)) {
+    rows.clear();
+    each_row([&](const MessageRow& row) {
+      if (is_asked_for[row.topic] && row.time >= from && row.time <= to) rows.push_back(row);
+    });
+    std::sort(rows.begin(), rows.end());
+  }
+  const auto is_stray = [&](const MessageRow& row) {
+    const TimeRange& usual = usual_times_[row.topic];
+    return row.time < usual.from || row.time > usual.to;
+  };
+  rows.erase(std::remove_if(rows.begin(), rows.end(), is_stray), rows.end());
+  return std::make_unique<SqliteCursor>(*this, std::move(rows));
 }
 
 Bytes SqliteRecording::blob(std::int64_t row) {
@@ -319,8 +481,8 @@ Bytes SqliteRecording::blob(std::int64_t row) {
 
 }  // namespace
 
-std::unique_ptr<Container> open_sqlite_recording(const std::string& path) {
-  return std::make_unique<SqliteRecording>(path);
+std::unique_ptr<Container> open_sqlite_recording(const std::string& path, SkippedParts& skipped) {
+  return std::make_unique<SqliteRecording>(path, skipped);
 }
 
 }  // namespace excavplan
@@ -329,10 +491,11 @@ std::unique_ptr<Container> open_sqlite_recording(const std::string& path) {
 
 namespace excavplan {
 
-std::unique_ptr<Container> open_sqlite_recording(const std::string& path) {
-  throw Error(ErrorKind::bad_file, path +
-                                       ": is a rosbag2 recording of SQLite, which this build is "
-                                       "without; build it anew with Debian's libsqlite3-dev");
+std::unique_ptr<Container> open_sqlite_recording(const std::string& path, SkippedParts&) {
+  throw Unsupported(
+      path +
+      ": is a rosbag2 recording of SQLite, which this build is without; build it anew "
+      "with Debian's libsqlite3-dev");
 }
 
 }  // namespace excavplan

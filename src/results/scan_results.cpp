@@ -81,7 +81,9 @@ Json recording_json(const std::string& file, const RecordingContents& contents) 
           {"duration_s", contents.duration},
           {"topics", std::move(topics)},
           {"frames", contents.frames},
-          {"cut_off", contents.is_cut_off}};
+          {"cut_off", contents.is_cut_off},
+          {"damaged_parts", contents.damaged_parts},
+          {"first_damage", contents.first_damage}};
 }
 
 }  // namespace excavplan

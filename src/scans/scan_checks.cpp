@@ -118,8 +118,11 @@ std::optional<Warning> not_up(const ScanOutline& seen, const Scan& scan) {
   constexpr double steepest = 45.0 * degree;  // ours: no ground to dig in
   const double off = std::acos(std::min(seen.normal.z(), 1.0));
   if (off > steepest) {
+    const bool is_y = std::abs(seen.normal.y()) > std::cos(steepest);
     return Warning{WarningCode::frame, name_of(scan) + ": the ground lies at " + degrees(off) +
-                                           " to level, so z is not up: " + give_frames};
+                                           " to level, so z is not up" +
+                                           (is_y ? "; if y is, give --frame y-up; else " : ": ") +
+                                           give_frames};
   }
   if (scan.z_is_up || scan.site_from_scan != Eigen::Matrix4d::Identity()) return std::nullopt;
   if (!(seen.seen_along_z >= nearly_all)) return std::nullopt;

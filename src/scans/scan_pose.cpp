@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <string>
 
 #include <Eigen/Dense>
@@ -14,6 +16,7 @@
 #include "base/statistics.hpp"
 #include "base/table.hpp"
 #include "base/text.hpp"
+#include "clouds/cloud_summary.hpp"
 #include "clouds/stream_sample.hpp"
 #include "scans/scan_reading.hpp"
 
@@ -26,7 +29,7 @@ constexpr std::size_t sampled_points = 5000;  // RANSAC counts on these
 constexpr int trials = 3000;           // finds a plane of a tenth of the points, odds 20 to 1
 constexpr double plane_width = 0.01;   // of the median range [-]
 constexpr double least_share = 0.1;    // a lidar that saw a whole site has 0.14 to 0.15
-constexpr double least_height = 0.05;  // [m]
+constexpr double least_height = 0.05;  // [m]; nearer the plane goes through the place
 constexpr double steep_look = 0.9962;  // cosine of 5 deg
 constexpr double upright = 0.7071;     // cosine of 45 deg
 constexpr int most_rounds = 20;
@@ -88,14 +91,19 @@ Plane most_common_plane(const std::vector<Eigen::Vector3d>& points, double width
   return best;
 }
 
+/// From where the points were seen: the origin, as far as it is known.
+enum class SeenFrom { origin, unknown };
+
 /// Least squares over the points within `width` of `plane`.
-Plane refitted(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double width) {
+Plane refitted(const std::vector<Eigen::Vector3d>& points, const Plane& plane, double width,
+               SeenFrom from) {
   double weights = 0.0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& p : points) {
     if (std::abs(plane.distance(p)) > width) continue;
-    const double weight = 1.0 / (p.squaredNorm() * p.squaredNorm());
+    const double squared = from == SeenFrom::origin ? p.squaredNorm() : 1.0;
+    const double weight = 1.0 / (squared * squared);
     weights += weight;
     sum += weight * p;
     squares += weight * p * p.transpose();
@@ -115,14 +123,15 @@ struct Ground {
   double share = 0.0;
 };
 
-Ground find_ground(const std::vector<Eigen::Vector3d>& points, std::uint64_t seed) {
+/// From a plane near it.
+Ground find_ground(const std::vector<Eigen::Vector3d>& points, const Plane& start, SeenFrom from) {
   constexpr double within = 2.5;
   double width = plane_width * median_range(points);
   Ground ground;
-  ground.plane = most_common_plane(points, width, Random(seed));
+  ground.plane = start;
   for (int round = 0; round < most_rounds; ++round) {
     const Plane last = ground.plane;
-    ground.plane = refitted(points, last, width);
+    ground.plane = refitted(points, last, width, from);
     std::vector<double> away;
     for (const Eigen::Vector3d& p : points) {
       const double distance = std::abs(ground.plane.distance(p));
@@ -137,9 +146,40 @@ Ground find_ground(const std::vector<Eigen::Vector3d>& points, std::uint64_t see
     width = std::max(within * ground.sd, 0.1 * plane_width * median_range(points));
     if ((ground.plane.normal - last.normal).norm() < 1e-7) break;
   }
-  if (ground.plane.offset < 0.0) {  // up is where the sensor is
-    ground.plane.normal = -ground.plane.normal;
-    ground.plane.offset = -ground.plane.offset;
+  return ground;
+}
+
+/// Ground through an origin at which no sensor stood, as of apps that lay it on the ground: up is
+/// the axis z or y of the scan that is near its normal. None of another plane, or where all points
+/// lie ahead along z as those of a camera do.
+std::optional<Ground> ground_at_origin(const std::vector<Eigen::Vector3d>& points,
+                                       const Plane& start) {
+  constexpr double nearly_all = 0.99;
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const auto ahead = std::count_if(points.begin(), points.end(), [](const Eigen::Vector3d& p) {
+    return is_along_z(p, 0.0, endless);
+  });
+  if (static_cast<double>(ahead) >= nearly_all * static_cast<double>(points.size())) {
+    return std::nullopt;
+  }
+  Ground ground = find_ground(points, start, SeenFrom::unknown);
+  Plane& plane = ground.plane;
+  const bool is_z = std::abs(plane.normal.z()) > upright;
+  if (std::abs(plane.offset) >= least_height || !(is_z || std::abs(plane.normal.y()) > upright)) {
+    return std::nullopt;
+  }
+  if ((is_z ? plane.normal.z() : plane.normal.y()) < 0.0) plane = {-plane.normal, -plane.offset};
+  return ground;
+}
+
+/// The ground below a sensor at the origin.
+Ground ground_below(const std::vector<Eigen::Vector3d>& points, const Plane& start) {
+  Ground ground = find_ground(points, start, SeenFrom::origin);
+  Plane& plane = ground.plane;
+  if (plane.offset < 0.0) plane = {-plane.normal, -plane.offset};
+  if (plane.offset < least_height) {
+    refuse("its largest plane is " + readable(plane.offset) +
+           " m from the sensor, less than 0.05 m: it is not the ground");
   }
   return ground;
 }
@@ -201,31 +241,33 @@ void check_fit(const PointPose& pose, double spread) {
 }
 
 /// Which axis of the sensor shows ahead.
-Eigen::Vector3d forward(const Eigen::Vector3d& up) {
+Eigen::Vector3d forward(const Eigen::Vector3d& up, SeenFrom from) {
   if (up.z() > upright) return Eigen::Vector3d::UnitX();
+  if (from == SeenFrom::unknown) return -Eigen::Vector3d::UnitZ();
   if (up.z() < -steep_look) return -Eigen::Vector3d::UnitY();
   return Eigen::Vector3d::UnitZ();
 }
 
-LevelPose level(const std::vector<Eigen::Vector3d>& scan, const Eigen::Vector3d& place,
+/// @param origin  of the scan, where the sensor is taken to have stood unless `told` says where
+LevelPose level(const std::vector<Eigen::Vector3d>& scan,
+                const std::optional<Eigen::Vector3d>& told, const Eigen::Vector3d& origin,
                 std::uint64_t seed) {
+  const Eigen::Vector3d place = told.value_or(origin);
   if (!place.allFinite()) refuse("the place of its sensor is not finite");
   const std::vector<Eigen::Vector3d> points = seen_from(place, scan);
   if (points.size() < fewest_points) {
     refuse(std::to_string(points.size()) + " finite points, must be 100 or more to level it");
   }
-  const Ground ground = find_ground(points, seed);
+  const Plane start = most_common_plane(points, plane_width * median_range(points), Random(seed));
+  const auto at_origin = told ? std::nullopt : ground_at_origin(points, start);
+  const Ground ground = at_origin ? *at_origin : ground_below(points, start);
   const Eigen::Vector3d up = ground.plane.normal;
   LevelPose pose;
   pose.height = ground.plane.offset;
   pose.residual_sd = ground.sd;
   pose.ground_share = ground.share;
-  if (pose.height < least_height) {
-    refuse("its largest plane is " + readable(pose.height) +
-           " m from the sensor, less than 0.05 m: it is not the ground");
-  }
   pose.tilt = std::acos(std::clamp(-up.z(), -1.0, 1.0));
-  const Eigen::Vector3d ahead = forward(up);
+  const Eigen::Vector3d ahead = forward(up, at_origin ? SeenFrom::unknown : SeenFrom::origin);
   const Eigen::Vector3d x = (ahead - ahead.dot(up) * up).normalized();
   pose.site_from_scan.topLeftCorner<3, 3>() << x.transpose(), up.cross(x).transpose(),
       up.transpose();
@@ -238,17 +280,16 @@ LevelPose level(const std::vector<Eigen::Vector3d>& scan, const Eigen::Vector3d&
 }  // namespace
 
 LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed) {
-  return level(scan.points, scan.sensor_origin.value_or(Eigen::Vector3d::Zero()), seed);
+  return level(scan.points, scan.sensor_origin, Eigen::Vector3d::Zero(), seed);
 }
 
 LevelPose level_on_ground(const Scan& scan, std::uint64_t seed) {
   StreamSample<Eigen::Vector3d> sample(std::size_t{1} << 16);
   visit_scan(scan, [&sample](const std::vector<Eigen::Vector3d>& points) { sample.add(points); });
   const std::vector<Standpoint> known = standpoints_of(scan);
-  const Eigen::Vector3d place =
-      known.size() == 1 ? known[0].place : scan.site_from_scan.topRightCorner<3, 1>();
+  const auto told = known.size() == 1 ? std::optional(known[0].place) : std::nullopt;
   try {
-    return level(sample.values(), place, seed);
+    return level(sample.values(), told, scan.site_from_scan.topRightCorner<3, 1>(), seed);
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, name_of(scan) + ": " + error.what());
   }

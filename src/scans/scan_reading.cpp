@@ -11,6 +11,7 @@
 #include <excavplan/scans/machine_front.hpp>
 
 #include "base/check.hpp"
+#include "base/text.hpp"
 #include "clouds/point_stream.hpp"
 
 namespace excavplan {
@@ -29,6 +30,20 @@ void require_scan(const Scan& scan) {
   const auto& area = scan.area;
   require(!area || (area->x_max > area->x_min && area->y_max > area->y_min),
           "area is empty, its x and y must grow");
+}
+
+/// A file that names the unit of its coordinates is read in that unit, or not at all.
+void require_unit(const Scan& scan, const std::string& file, const CloudShape& shape) {
+  constexpr double alike = 1e-5;  // of a foot and a US survey foot, which differ by 2e-6
+  if (!shape.unit || std::abs(*shape.unit / scan.unit - 1.0) < alike) return;
+  const bool is_foot = std::abs(*shape.unit / 0.3048 - 1.0) < alike;
+  throw Error(ErrorKind::bad_file,
+              file + ": found coordinates in units of " + number_text(*shape.unit) +
+                  " m by its coordinate system, but they are read in units of " +
+                  number_text(scan.unit) + " m: give " +
+                  (is_foot              ? "--unit ft"
+                   : *shape.unit == 1.0 ? "--unit m"
+                                        : "the right --unit"));
 }
 
 }  // namespace
@@ -76,13 +91,17 @@ VisitedScan visit_scan(const Scan& scan, const PointVisitor& visit) {
     next.left_out += shape.left_out;
     shape = next;
   };
-  for (const std::string& file : scan.files) follow(stream_shape(file, take));
+  for (const std::string& file : scan.files) {
+    const CloudShape next = stream_shape(file, take);
+    require_unit(scan, file, next);
+    follow(next);
+  }
   for (const auto& cloud : scan.clouds) {
     visit_parts(cloud->points, take);
-    follow({cloud->width, cloud->height, {}, cloud->left_out});
+    follow({cloud->width, cloud->height, {}, cloud->left_out, {}});
   }
   const bool is_one = scan.files.size() + scan.clouds.size() == 1;
-  if (!is_one || shape.points() != passed_on) shape = {passed_on, 1, {}, shape.left_out};
+  if (!is_one || shape.points() != passed_on) shape = {passed_on, 1, {}, shape.left_out, {}};
   return visited;
 }
 

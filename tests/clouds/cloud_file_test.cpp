@@ -220,6 +220,42 @@ TEST(ReadCloud, ListsAreSkippedByTheirLength) {
       {{1.0, 2.0, 3.0}});
 }
 
+// As PDAL, Open3D and Ouster write PCD, and PDAL PLY: letters of the other case, no VERSION.
+TEST(ReadCloud, DialectsOfOtherPrograms) {
+  const auto dialect = [](string text, const std::vector<std::pair<string, string>>& changes) {
+    for (const auto& [from, to] : changes) text = replaced(text, from, to);
+    return text;
+  };
+  const std::vector<string> files = {
+      dialect(pcd_ascii, {{"x y z", "X Y Z"}}),
+      dialect(pcd_ascii, {{"F F F", "f f f"}}),
+      dialect(pcd_ascii, {{"ascii", "ASCII"}}),
+      dialect(pcd_ascii, {{"VERSION 0.7\n", ""}, {"VIEWPOINT 0 0 0 1 0 0 0\n", ""}}),
+      dialect(pcd_ascii,
+              {{"# .PCD v0.7 - Point Cloud Data file format\n", ""}, {"VERSION 0.7\n", ""}}),
+      dialect(pcd_ascii, {{"FIELDS", "COLUMNS"}}),
+      dialect(pcd_binary, {{"x y z", "X Y Z"}, {"DATA binary", "DATA BINARY"}}),
+      dialect(ply_ascii, {{"float x", "float X"}, {"float y", "float Y"}, {"float z", "float Z"}}),
+  };
+  const Cloud expected = read_cloud(TempFile(pcd_ascii).path());
+  ASSERT_EQ(expected.points.size(), 2U);
+  for (const string& file : files) {
+    SCOPED_TRACE(file);
+    EXPECT_EQ(read_cloud(TempFile(file).path()).points, expected.points);
+  }
+}
+
+TEST(ReadCloud, OfFieldsOfEitherCaseTheSmallOnesCount) {
+  const string both =
+      replaced(replaced(replaced(replaced(pcd_ascii, "x y z", "x y z X"), "4 4 4", "4 4 4 4"),
+                        "F F F", "F F F F"),
+               "1 1 1", "1 1 1 1");
+  const Cloud cloud =
+      read_cloud(TempFile(both.substr(0, both.find("ascii\n") + 6) + "1 2 3 9\n4 5 6 9\n").path());
+  ASSERT_EQ(cloud.points.size(), 2U);
+  EXPECT_EQ(cloud.points[1], Eigen::Vector3d(4, 5, 6));
+}
+
 TEST(ReadCloud, LineEndsAndPaddingOfOtherSystems) {
   const auto with_crlf = [](string text) {
     for (std::size_t at = 0; (at = text.find('\n', at)) != string::npos; at += 2) {
@@ -455,7 +491,8 @@ TEST(BadPcd, Fields) {
   expect_refused({
       {with_pcd("FIELDS x y z", "FIELDS x y"), "line 3: found field z 0 times"},
       {with_pcd("FIELDS x y z", "FIELDS x y y"), "found field y 2 times"},
-      {with_pcd("FIELDS x y z", "FIELDS X Y Z"), "found field x 0 times"},
+      {with_pcd("FIELDS x y z", "FIELDS x Y Z"), "found field y 0 times"},
+      {with_pcd("FIELDS x y z", "FIELDS X Y Y"), "found field y 2 times"},
       {with_pcd("FIELDS x y z", "FIELDS"), "found field x 0 times"},
       {with_pcd("FIELDS x y z", "FIELDS x y z rgb"), "line 4: found 3 values of SIZE, expected 4"},
       {with_pcd("FIELDS x y z", names), "found 65 fields, expected at most 64"},
@@ -469,6 +506,8 @@ TEST(BadPcd, Fields) {
       {with_pcd("TYPE F F F", "TYPE F F"), "found 2 values of TYPE, expected 3"},
       {with_pcd("TYPE F F F", "TYPE F F D"), "found TYPE 'D', expected I, U or F"},
       {with_pcd("TYPE F F F", "TYPE FFF F F"), "found TYPE 'FFF'"},
+      {with_pcd("TYPE F F F", "TYPE F F IU"), "found TYPE 'IU'"},
+      {with_pcd("TYPE F F F", "TYPE F F d"), "found TYPE 'd', expected I, U or F"},
       {with_pcd("COUNT 1 1 1", "COUNT 1 1"), "found 2 values of COUNT, expected 3"},
       {with_pcd("COUNT 1 1 1", "COUNT 1 1 0"), "found COUNT '0', expected 1 .. 4096"},
       {with_pcd("COUNT 1 1 1", "COUNT 1 1 2"), "found COUNT '2' of field z, expected 1"},
@@ -484,7 +523,7 @@ TEST(BadPcd, ShapeOfTheHeader) {
   expect_refused({
       {pcd_ascii.substr(0, 43), "line 2: found the end of the file, expected VERSION"},
       {pcd_ascii.substr(0, pcd_ascii.find("DATA")), "found the end of the file, expected DATA"},
-      {with_pcd("VERSION 0.7\n", ""), "line 2: found 'FIELDS', expected VERSION"},
+      {with_pcd("VERSION 0.7\nFIELDS x y z\n", ""), "line 2: found 'SIZE', expected VERSION"},
       {with_pcd("FIELDS x y z\n", ""), "line 3: found 'SIZE', expected FIELDS"},
       {with_pcd("SIZE 4 4 4\n", ""), "line 4: found 'TYPE', expected SIZE"},
       {with_pcd("TYPE F F F\n", ""), "found 'COUNT', expected TYPE"},
@@ -497,7 +536,7 @@ TEST(BadPcd, ShapeOfTheHeader) {
       {with_pcd("WIDTH 2\nHEIGHT 1\n", "HEIGHT 1\nWIDTH 2\n"), "found 'HEIGHT', expected WIDTH"},
       {with_pcd("WIDTH", "width"), "found 'width', expected WIDTH"},
       {with_pcd("WIDTH", "COLOUR red\nWIDTH"), "found 'COLOUR', expected WIDTH"},
-      {with_pcd("DATA ascii", "DATA ASCII"), "found DATA 'ASCII', expected ascii, binary or"},
+      {with_pcd("DATA ascii", "DATA text"), "found DATA 'text', expected ascii, binary or"},
       {with_pcd("DATA ascii", "DATA"), "found 0 values of DATA, expected 1"},
       {with_pcd("DATA ascii", "DATA binary_compressed_lzma"),
        "found DATA 'binary_compressed_lzma'"},
@@ -667,6 +706,19 @@ TEST(BadText, IsNotACloud) {
       {"\x89MCAP0\r\n", "found a recording (MCAP)"},
       {"#ROSBAG V2.0\n", "found a recording (ROS 1 bag)"},
       {"\x89PNG\r\n\x1a\n", "found a PNG image"},
+      {string("II*\0\x08\0\0\0", 8),
+       "found a TIFF image, expected a cloud as PCD, PLY, LAS or XYZ "
+       "text; convert it by gdal_translate -of XYZ"},
+      {string("MM\0*\0\0\0\x08", 8), "found a TIFF image"},
+      {string("II+\0\x08\0\0\0", 8), "found a TIFF image (BigTIFF)"},
+      {"ncols 4\nnrows 3\n", "found an ASCII grid"},
+      {"<?xml version=\"1.0\"?>\n<!-- of a survey -->\n<LandXML version=\"1.2\">\n",
+       "byte 0: found a LandXML file, expected a cloud"},
+      {"\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<gml>\n", "found an XML file"},
+      {"  0\r\nSECTION\r\n  2\r\nHEADER\r\n", "found a DXF drawing"},
+      {"0\nSECTION\n2\nENTITIES\n", "found a DXF drawing"},
+      {string("AutoCAD Binary DXF\r\n\x1A\0", 22), "found a DXF drawing"},
+      {"PK\x03\x04", "found a ZIP archive"},
       {"1 2 3\n" + string(9000, '1'), "line 2: found a line of more than 4096 bytes"},
       {"PLY\nformat ascii 1.0\n", "line 1: found 'PLY'"},
   });
@@ -1003,6 +1055,20 @@ TEST(RealScans, AreReadWhole) {
                   shared_file("site-terrain/rosbag2_static_terrain_0.db3"))
           .find("ROS 2 bag"),
       string::npos);
+}
+
+// Fields in capital letters, TYPE in small ones, DATA in capital ones: one scene.
+TEST(ReportedFiles, DialectsOfPcdHoldTheSameScene) {
+  const string folder = shared_file("reported/cloud-dialects/");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no reported files in " << folder;
+  for (const char* const scan : {"a", "b"}) {
+    std::vector<CloudSummary> found;
+    for (const char* const kind : {"_upper.pcd", "_lowertype.pcd", "_DATA.pcd"}) {
+      found.push_back(summarise(read_cloud(folder + scan + kind)));
+      EXPECT_EQ(found.back().finite_points, 16100U) << scan << kind;
+      EXPECT_LT((found.back().centroid - found.front().centroid).norm(), 1e-4);
+    }
+  }
 }
 
 TEST(CloudFile, ViewpointOfPcdIsWhereTheSensorStood) {

@@ -16,6 +16,8 @@
 #include <excavplan/clouds/cloud.hpp>
 #include "base/random.hpp"
 
+#include <excavplan/scans/scan_surface.hpp>
+
 #include "support/errors.hpp"
 #include "support/las_file.hpp"
 
@@ -319,6 +321,112 @@ TEST(BadLas, RecordsDoNotFit) {
        },
        "expected them between the points, which end at byte 569, and the end of the file at 629"},
   });
+}
+
+constexpr std::int32_t highest = std::numeric_limits<std::int32_t>::max();
+constexpr std::int32_t lowest = std::numeric_limits<std::int32_t>::min();
+
+TEST(BadLas, CoordinatesBeyondTheIntegersNameOffsetAndScale) {
+  LasFile file;
+  file.points.assign(20, {{1000, lowest, 3}});
+  const TempFile saturated(file.bytes());
+  EXPECT_EQ(
+      error_about([&] { read_cloud(saturated.path()); }, saturated.path()),
+      "found 20 of 20 points at the limit of a 32-bit integer in y: its offset 0 with the "
+      "scale factor 0.001 cannot hold the coordinates, which are lost; write it anew from its "
+      "source with an offset near the points, e.g. pdal translate in.laz out.las "
+      "--writers.las.offset_y=auto");
+  file.points.resize(900, {{1000, 2000, 3000}});
+  for (std::size_t i = 0; i < 20; ++i) file.points[i] = {{highest, 2, 3}};
+  const TempFile in_x(file.bytes());
+  EXPECT_NE(error_about([&] { read_cloud(in_x.path()); }, in_x.path()).find("20 of 900 points at"),
+            std::string::npos);
+  file.points.resize(2100, {{1000, 2000, 3000}});  // 0.95 %: stray points
+  EXPECT_EQ(read_bytes(file.bytes()).points.size(), 2100U);
+}
+
+/// A GeoKeyDirectoryTag of these keys and values.
+std::string geokeys(const std::vector<std::pair<int, int>>& keys) {
+  std::string record(8 + 8 * keys.size(), '\0');
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    LasFile::put(record, 8 + 8 * i, static_cast<std::uint16_t>(keys[i].first));
+    LasFile::put(record, 12 + 8 * i, std::uint16_t{1});
+    LasFile::put(record, 14 + 8 * i, static_cast<std::uint16_t>(keys[i].second));
+  }
+  return record;
+}
+
+/// What is wrong with a file whose coordinate system is said by this record, read in this unit.
+std::string error_of_system(const std::string& record, bool is_text, double unit = 1.0) {
+  LasFile file;
+  file.records = {record};
+  file.record_kind = is_text ? 2112 : 34735;
+  const TempFile las(file.bytes());
+  Scan scan;
+  scan.files = {las.path()};
+  scan.unit = unit;
+  return error_about([&] { outline(scan); }, las.path());
+}
+
+const std::string wgs84 =
+    "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257]],"
+    "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]";
+
+std::string projected(const std::string& unit) {
+  return "PROJCS[\"a plane\"," + wgs84 + ",PROJECTION[\"Transverse_Mercator\"],UNIT[" + unit +
+         ",AUTHORITY[\"EPSG\",\"9003\"]],AXIS[\"X\",EAST]]";
+}
+
+TEST(ReadLas, GeographicCoordinatesAreNamed) {
+  const std::string degrees =
+      "found geographic coordinates (degrees of longitude and latitude) by its coordinate system";
+  for (const std::string& error :
+       {error_of_system(geokeys({{1024, 2}, {2048, 4326}}), false), error_of_system(wgs84, true),
+        error_of_system("GEOGCRS[\"WGS 84\",CS[ellipsoidal,2],UNIT[\"degree\",0.017]]", true)}) {
+    EXPECT_EQ(error.substr(0, degrees.size()), degrees) << error;
+  }
+  EXPECT_NE(error_of_system(geokeys({{1024, 3}}), false).find("geocentric"), std::string::npos);
+}
+
+TEST(ReadLas, UnitsOfTheCoordinateSystemAreNamed) {
+  const std::string give_feet =
+      "m by its coordinate system, but they are read in units of 1 m: "
+      "give --unit ft";
+  for (const std::string& error :
+       {error_of_system(geokeys({{1024, 1}, {3076, 9002}}), false),
+        error_of_system(geokeys({{1024, 1}, {3076, 9003}}), false),
+        error_of_system(projected("\"US survey foot\",0.304800609601219"), true)}) {
+    EXPECT_NE(error.find(give_feet), std::string::npos) << error;
+  }
+  EXPECT_EQ(error_of_system(geokeys({{3076, 9003}}), false, 0.3048), "no error");
+  EXPECT_EQ(error_of_system(projected("\"metre\",1"), true), "no error");
+  EXPECT_EQ(error_of_system(geokeys({{1024, 1}, {3076, 9001}, {4099, 9001}}), false), "no error");
+  EXPECT_NE(error_of_system(projected("\"metre\",1"), true, 0.3048).find("give --unit m"),
+            std::string::npos);
+  EXPECT_NE(error_of_system("COMPD_CS[\"two\"," + projected("\"metre\",1") +
+                                ",VERT_CS[\"up\",VERT_DATUM[\"d\",2005],UNIT[\"foot\",0.3048]]]",
+                            true)
+                .find("found z in units of 0.3048 m and x, y in units of 1 m"),
+            std::string::npos);
+  EXPECT_NE(error_of_system(geokeys({{3076, 9001}, {4099, 9003}}), false).find("found z in units"),
+            std::string::npos);
+}
+
+TEST(ReadLas, ARecordThatSaysNothingIsNoUnit) {
+  for (const std::string text :
+       {"", "PROJCS[", "PROJCS[\"a\",UNIT[\"m\"", "PROJCS[\"a\",UNIT[\"m\",]]",
+        "UNIT[\"foot\",0.3]", "PROJCS[\"a\",UNIT[\"m\",-1]]", "PROJCS[\"a\",UNIT[\"m\",nan]]"}) {
+    EXPECT_EQ(error_of_system(text, true), "no error") << text;
+    EXPECT_EQ(error_of_system(text, false), "no error") << text;
+  }
+}
+
+TEST(BadLas, ReportedSaturationIsNamed) {
+  const std::string path = std::string(EXCAVPLAN_SHARED_DATA) + "/reported/las-saturated/a.las";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  EXPECT_NE(error_about([&] { read_cloud(path); }, path)
+                .find("found 44969 of 44969 points at the limit of a 32-bit integer in y"),
+            std::string::npos);
 }
 
 TEST(BadLas, CompressedPointsNameThePrograms) {

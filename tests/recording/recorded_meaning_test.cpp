@@ -116,7 +116,7 @@ TEST(RecordedMeaning, Transforms) {
   expect_no_wrong_answer({
       {"one transform, long before the scan",
        with([=](auto& r) { add_transform(r, 100 * ms, mast); }, "base", {1.0, 0.0, 0.0}),
-       {"found it from 0.100 s to 0.100 s"}},
+       {"found it from -59.900 s to -59.900 s"}},
       {"a static transform and others that disagree",
        with(
            [=](auto& r) {

@@ -153,6 +153,41 @@ TEST(LevelOnGround, AScanIsLevelledAsItsCloudWhateverItsUnitAndFrame) {
   EXPECT_NEAR(levelled(2, 3), plain.height, 1e-9);
 }
 
+/// Level ground with a heap, whose origin lies on it, as an app for phones lays it; z up, or y.
+Cloud at_origin(bool is_y_up, double above) {
+  Random random(3);
+  Cloud cloud;
+  for (int i = 0; i < 4000; ++i) {
+    Eigen::Vector3d p(random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0), -above);
+    if (i % 4 == 0) p.z() += random.uniform(0.05, 0.6);
+    p.z() += 0.01 * p.x() + 0.003 * random.normal();  // leans by 0.57 deg
+    cloud.points.push_back(is_y_up ? Eigen::Vector3d(-p.y(), p.z(), -p.x()) : p);
+  }
+  return cloud;
+}
+
+TEST(LevelOnGround, TheOriginMayLieOnTheGround) {
+  for (const double above : {0.0, 0.03, -0.03}) {
+    for (const bool is_y_up : {false, true}) {
+      SCOPED_TRACE(above);
+      const LevelPose pose = level_on_ground(at_origin(is_y_up, above));
+      EXPECT_NEAR(pose.height, above, 0.002);
+      EXPECT_NEAR(pose.residual_sd, 0.003, 0.001);
+      // a metre ahead, and above the ground there
+      const Eigen::Vector3d site(1.0, 0.0, 0.5);
+      const Eigen::Vector3d leaning(1.0 - 0.005, 0.0, 0.5 + 0.01);
+      const Eigen::Vector3d seen =
+          is_y_up ? Eigen::Vector3d(0.0, leaning.z(), -leaning.x()) : leaning;
+      const Eigen::Vector3d placed = (pose.site_from_scan * seen.homogeneous()).head<3>();
+      EXPECT_LT((placed - site - Eigen::Vector3d(0.0, 0.0, above)).norm(), 0.004);
+    }
+  }
+  Cloud told = at_origin(false, 0.0);
+  told.sensor_origin = Eigen::Vector3d::Zero();
+  EXPECT_NE(test::error_of([&] { level_on_ground(told); }).find("it is not the ground"),
+            std::string::npos);
+}
+
 TEST(PoseOfQuaternion, TurnsAndMoves) {
   const double half = std::sqrt(0.5);
   const Eigen::Matrix4d pose = pose_of_quaternion({1, 2, 3}, {0, 0, half, half});

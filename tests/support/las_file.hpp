@@ -31,6 +31,7 @@ struct LasFile {
   std::vector<std::string> records = {};   ///< contents of variable length records
   std::vector<std::string> extended = {};  ///< of those behind the points, from 1.4
   std::string record_user = "LASF_Projection";
+  int record_kind = 34735;      ///< GeoKeyDirectoryTag
   std::size_t extra_bytes = 0;  ///< behind the fields of a point
   std::size_t more_header = 0;  ///< behind the fields of the header
   bool has_old_count = true;    ///< since 1.4 it may be 0
@@ -90,7 +91,7 @@ struct LasFile {
   std::string record_of(const std::string& content, bool is_extended) const {
     std::string head(is_extended ? 60 : 54, '\0');
     head.replace(2, record_user.size(), record_user);
-    put(head, 18, std::uint16_t{34735});
+    put(head, 18, static_cast<std::uint16_t>(record_kind));
     if (is_extended) {
       put(head, 20, static_cast<std::uint64_t>(content.size()));
     } else {

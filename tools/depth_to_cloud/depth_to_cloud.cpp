@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 
 #include "base/text.hpp"
@@ -17,6 +18,7 @@ struct Inputs {
   std::string image;
   std::string intrinsics;
   std::string average;
+  std::optional<double> depth_unit;
   PoseInputs pose;
   std::string out;
 };
@@ -49,6 +51,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.text("average", "FILES", inputs.average,
                  "more frames of the same view, averaged with IMAGE pixel by pixel: files "
                  "separated by commas, or a folder, for all its .png files");
+  arguments.option("depth-unit", inputs.depth_unit, Quantity::length,
+                   "of a count: 0.25mm, 0.125mm (default: as the intrinsics say, else 1mm)");
   declare_pose(arguments, inputs.pose, "u_px,v_px (or scan_x_m,scan_y_m,scan_z_m)");
   arguments.output("out", inputs.out, "cloud to write: " + cloud_endings());
   arguments.require("out");
@@ -79,7 +83,11 @@ std::vector<std::string> frames_of(const Inputs& inputs) {
 Outcome convert(const Inputs& inputs) {
   check_pose(inputs.pose);
   const CloudFormat format = cloud_format_of_name(inputs.out);
-  const DepthIntrinsics intrinsics = load_intrinsics(inputs.intrinsics);
+  if (inputs.depth_unit && !(*inputs.depth_unit > 0.0)) {
+    usage_error("--depth-unit must be above 0 m");
+  }
+  DepthIntrinsics intrinsics = load_intrinsics(inputs.intrinsics);
+  if (inputs.depth_unit) intrinsics.depth_unit = *inputs.depth_unit;
   const std::vector<std::string> frames = frames_of(inputs);
   AveragedDepth average = average_depth_images(frames, intrinsics);
   Cloud& cloud = average.cloud;

@@ -119,7 +119,7 @@ Outcome work_on_scans(const Inputs& inputs) {
       naming_options(estimate_options, [&] { return with_frame_hint(pair_frame_hint, by_method); });
   const DensityEstimate& counts = options.method == VolumeMethod::paper ? both.paper : both.surface;
   Outcome outcome = estimate_outcome(counts, options.soil);
-  add_machine_warnings(counts, law, machine, scans.before.unit, outcome);
+  add_machine_warnings(counts, law, machine, {scans.before.unit, report.in_counts}, outcome);
   inputs.second.check(counts, outcome);
   report.add_to(outcome);
   draw_estimate(inputs.plots, inputs.report, counts, outcome);

@@ -3,6 +3,9 @@
 #include "estimate_density/estimate_outcome.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include <excavplan/scans/depth_intrinsics.hpp>
 
 #include "base/text.hpp"
 #include "clouds/cloud_units.hpp"
@@ -13,8 +16,26 @@
 namespace excavplan::tools {
 namespace {
 
+/// For counts of another unit than 1 mm.
+Warning other_counts(double volume, double bucket, const std::string& found) {
+  const auto as_counts = [&](const DepthUnit& unit) {
+    return volume * std::pow(unit.length / 1e-3, 3);
+  };
+  const auto miss = [&](const DepthUnit& unit) {
+    return std::abs(std::log(as_counts(unit) / bucket));
+  };
+  const DepthUnit likely =
+      *std::min_element(other_depth_units.begin(), other_depth_units.end(),
+                        [&](const DepthUnit& x, const DepthUnit& y) { return miss(x) < miss(y); });
+  const std::string word = likely.word;
+  return {WarningCode::units,
+          found + ": if it was one dig, a count of the depth images is not 1 mm; of " + word +
+              " it would be " + readable(as_counts(likely)) + " m3: --depth-unit " + word +
+              ", or 1mm if it is right"};
+}
+
 std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machine& machine,
-                                    double unit) {
+                                    const TakenUnits& units) {
   constexpr double most = 10.0;  // ours
   const double bucket = heaped_capacity(machine);
   const double buckets = estimate.change.excavated.value / bucket;
@@ -24,11 +45,14 @@ std::optional<Warning> many_buckets(const DensityEstimate& estimate, const Machi
   const std::vector<Warning>& known = estimate.warnings;
   if (!(buckets > most) || std::any_of(known.begin(), known.end(), names_units))
     return std::nullopt;
-  const std::string likely = likely_unit(estimate.change.excavated.value, unit, bucket).word;
+  const double volume = estimate.change.excavated.value;
+  const std::string found = "the hole of " + readable(volume) + " m3 is " + readable(buckets, 2) +
+                            " heaped buckets of " + readable(bucket, 2) + " m3 of the machine " +
+                            machine.name;
+  if (units.in_counts) return other_counts(volume, bucket, found);
+  const std::string likely = likely_unit(volume, units.coordinates, bucket).word;
   return Warning{WarningCode::many_buckets,
-                 "the hole of " + readable(estimate.change.excavated.value) + " m3 is " +
-                     readable(buckets, 2) + " heaped buckets of " + readable(bucket, 2) +
-                     " m3 of the machine " + machine.name +
+                 found +
                      ": right for a pit of many digs or another --machine; if it was one dig, the "
                      "scans may be in " +
                      likely + ": --unit " + likely};
@@ -48,10 +72,12 @@ Outcome estimate_outcome(const DensityEstimate& estimate, const SoilKnowledge& s
 }
 
 void add_machine_warnings(const DensityEstimate& estimate, const DensityLaw& law,
-                          const Machine& machine, double unit, Outcome& outcome) {
+                          const Machine& machine, const TakenUnits& units, Outcome& outcome) {
   for (Warning& each : unlike_law(law, machine.name)) outcome.warnings.push_back(each);
-  const auto many = many_buckets(estimate, machine, unit);
-  if (many) outcome.warnings.push_back(*many);
+  const auto many = many_buckets(estimate, machine, units);
+  if (!many) return;
+  outcome.warnings.push_back(*many);
+  outcome.trustworthy = outcome.trustworthy && !many->ends_trust;
 }
 
 void add_comparison(const BothEstimates& both, const DensityEstimate& counts, Outcome& outcome) {

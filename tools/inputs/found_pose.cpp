@@ -47,6 +47,12 @@ Eigen::Matrix4d frame_named(const std::string& what, const std::string& text) {
     axes(1, 0) = axes(2, 1) = -1.0;
     return axes;
   }
+  if (text == "y-up") {
+    Eigen::Matrix4d axes = Eigen::Matrix4d::Zero();
+    axes(2, 1) = axes(3, 3) = 1.0;
+    axes(0, 2) = axes(1, 0) = -1.0;
+    return axes;
+  }
   const bool is_pose = std::count(text.begin(), text.end(), ',') == 6 &&
                        text.find_first_not_of("0123456789+-.,eEcm ") == text.npos;
   return is_pose ? parse_pose(what, text) : read_frame(text);

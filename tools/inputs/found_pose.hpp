@@ -23,14 +23,16 @@ struct FoundPose {
 
 FoundPose found_pose(const LevelPose& level);
 
-/// The frame that an option gives: "camera" (x right, y down, z forward) or "lidar" (x forward, y
-/// left, z up) at the origin of the site, seven numbers X,Y,Z,QX,QY,QZ,QW, or a file that
-/// read_frame() reads. `what` names the option in messages.
+/// The frame that an option gives: "camera" (x right, y down, z forward), "lidar" (x forward, y
+/// left, z up) or "y-up" (x right, y up, z backward) at the origin of the site, seven numbers
+/// X,Y,Z,QX,QY,QZ,QW, or a file that read_frame() reads. `what` names the option in messages.
 /// @throws Error (bad_input) or (bad_file)
 Eigen::Matrix4d frame_named(const std::string& what, const std::string& text);
 inline constexpr const char* frame_forms =
-    "camera (x right, y down, z forward) or lidar (x forward, y left, z up) at the origin of the "
-    "site, X,Y,Z,QX,QY,QZ,QW, or a file (4 x 4 matrix; TF transform or pose as JSON or YAML)";
+    "camera (x right, y down, z forward), lidar (x forward, y left, z up) or y-up (x right, y up, "
+    "z "
+    "backward, as phone apps write) at the origin of the site, X,Y,Z,QX,QY,QZ,QW, or a file (4 x 4 "
+    "matrix; TF transform or pose as JSON or YAML)";
 
 /// How one scan is brought into the site frame.
 struct PoseInputs {

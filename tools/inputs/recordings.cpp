@@ -31,14 +31,24 @@ std::string line_of(const RecordedScan& scan) {
 
 }  // namespace
 
-std::optional<RecordedInput> recorded_input(const std::string& text, const std::string& tf_frame) {
+void declare_recorded(Arguments& arguments, RecordedOptions& options) {
+  arguments.text("tf-frame", "NAME", options.tf_frame,
+                 "frame of the transforms of a recording into which its scans are put");
+  arguments.option("depth-unit", options.depth_unit, Quantity::length,
+                   "of a count in the depth images of a recording: 0.25mm, 0.125mm (default: 1mm)");
+}
+
+std::optional<RecordedInput> recorded_input(const std::string& text,
+                                            const RecordedOptions& options) {
   std::optional<RecordingQuery> query = parse_recording_spec(text);
-  if (!query && is_recording(text)) query = RecordingQuery{text, {}, {}, 0.0, {}};
+  if (!query && is_recording(text)) query = RecordingQuery{text, {}, {}, 0.0, {}, {}};
   if (!query) return std::nullopt;
-  query->frame = tf_frame;
+  query->frame = options.tf_frame;
+  query->depth_unit = options.depth_unit;
   RecordedInput input;
   input.path = query->path;
-  const OptionNames names = {{"name the frame", "--tf-frame: name the frame"}};
+  const OptionNames names = {{"name the frame", "--tf-frame: name the frame"},
+                             {"depth_unit", "--depth-unit"}};
   input.scan = naming_options(names, [&] { return read_recorded_scan(*query); });
   const RecordedScan& scan = input.scan;
   input.json = recorded_scan_json(text, scan);
@@ -59,7 +69,7 @@ Scan scan_of_input(const std::string& text, std::optional<RecordedInput>& record
 }
 
 MachinePosture recorded_posture(const RecordedInput& input) {
-  auto joints = joint_positions(input.path, input.scan.first);
+  auto joints = joint_positions(input.path, input.scan.first, input.scan.topic);
   std::string names;
   for (const auto& [name, position] : joints) names += (names.empty() ? "" : ", ") + name;
   // "arm" last: names such as front_arm_boom hold it too.

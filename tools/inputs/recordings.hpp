@@ -11,12 +11,22 @@
 #include <excavplan/scans/machine_front.hpp>
 #include <excavplan/scans/scan_surface.hpp>
 
+#include "frame/arguments.hpp"
+
 namespace excavplan::tools {
 
 inline constexpr const char* recording_form =
     "of a recording (rosbag2, MCAP, ROS 1 bag) FILE:TOPIC@TIME+SPAN";
 
 inline constexpr std::size_t longest_frame = 100;  ///< of its name in a line [byte]
+
+/// How scans of recordings are read.
+struct RecordedOptions {
+  std::string tf_frame;              ///< of the transforms, into which they are put; empty: none
+  std::optional<double> depth_unit;  ///< of depths in counts [m]
+};
+/// --tf-frame and --depth-unit.
+void declare_recorded(Arguments& arguments, RecordedOptions& options);
 
 /// A scan out of a recording, with what was read for people and programs.
 struct RecordedInput {
@@ -28,7 +38,8 @@ struct RecordedInput {
 
 /// Reads what `text` names if it is FILE:TOPIC@TIME+SPAN, or a recording of one topic of scans; of
 /// a plain cloud file nothing. @throws Error as parse_recording_spec() and read_recorded_scan()
-std::optional<RecordedInput> recorded_input(const std::string& text, const std::string& tf_frame);
+std::optional<RecordedInput> recorded_input(const std::string& text,
+                                            const RecordedOptions& options);
 
 /// The scan that `text` names: that of the recording, or of a file, which is left where it is.
 Scan scan_of_input(const std::string& text, std::optional<RecordedInput>& recorded);

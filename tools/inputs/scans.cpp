@@ -44,10 +44,11 @@ void require_within(const Machine& machine, const MachinePosture& posture) {
 /// Reads the scan if it is of a recording; a file is left where it is.
 Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
   std::optional<MachinePosture> posture = side.posture ? side.posture : frames.view.both;
-  auto input = recorded_input(side.text, frames.tf_frame);
+  auto input = recorded_input(side.text, frames.recorded);
   Scan scan = scan_of_input(side.text, input);
   if (input) {
     if (frames.view.recorded) posture = recorded_posture(*input);
+    report.in_counts = report.in_counts || (input->scan.is_counted && !frames.recorded.depth_unit);
     report.recordings.push_back(std::move(input->json));
     report.lines.push_back("recorded   " + input->line);
   }
@@ -65,7 +66,7 @@ Scan scan_of(const Side& side, const ScanFrames& frames, ScanReport& report) {
 /// Brings a scan into the site frame if an option says how.
 void place(const Side& side, const ScanFrames& frames, Scan& scan) {
   const std::string option = "--" + std::string(side.name);
-  scan.z_is_up = side.frame || side.pose || frames.both || !frames.tf_frame.empty();
+  scan.z_is_up = side.frame || side.pose || frames.both || !frames.recorded.tf_frame.empty();
   if (side.pose) scan.site_from_scan = *side.pose;
   if (side.frame) scan.site_from_scan = frame_named(option + "-frame", *side.frame);
   if (frames.both) scan.site_from_scan = frame_named("--frame", *frames.both);
@@ -90,8 +91,7 @@ void declare_frames(Arguments& arguments, ScanFrames& frames) {
   }
   arguments.exclude("before-frame", {"before-pose"});
   arguments.exclude("after-frame", {"after-pose"});
-  arguments.text("tf-frame", "NAME", frames.tf_frame,
-                 "frame of the transforms of a recording into which its scans are put");
+  declare_recorded(arguments, frames.recorded);
   arguments.option("sensor-origin", frames.sensor_origin,
                    "where the sensor stood, in the frame of the scans (default: VIEWPOINT of PCD, "
                    "or what a recording tells)");
@@ -125,7 +125,7 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
   if (frames.level && frames.view.any()) {
     usage_error("--level excludes --machine-pose: it does not find the swing axis");
   }
-  if (frames.view.recorded && frames.tf_frame.empty()) {
+  if (frames.view.recorded && frames.recorded.tf_frame.empty()) {
     usage_error("--machine-recorded needs --tf-frame, with the swing axis as origin");
   }
   const auto placed = [&](const Side& side) {
@@ -138,8 +138,11 @@ ScanPair placed_pair(const std::string& before, const std::string& after, const 
   ScanPair pair = {std::move(first),
                    placed({"after", after, frames.after_unit, frames.after, frames.after_pose,
                            frames.after_origin, frames.view.after})};
-  if (!frames.tf_frame.empty() && report.recordings.empty()) {
+  if (!frames.recorded.tf_frame.empty() && report.recordings.empty()) {
     usage_error("--tf-frame needs scans of a recording, FILE:TOPIC@TIME+SPAN");
+  }
+  if (frames.recorded.depth_unit && report.recordings.empty()) {
+    usage_error("--depth-unit needs depth images of a recording; depth-to-cloud has one for PNG");
   }
   if (frames.level) {
     Scan whole = pair.before;

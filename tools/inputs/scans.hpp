@@ -11,6 +11,7 @@
 #include "frame/arguments.hpp"
 #include "frame/tool.hpp"
 #include "inputs/found_pose.hpp"
+#include "inputs/recordings.hpp"
 
 namespace excavplan::tools {
 
@@ -37,15 +38,15 @@ struct ScanFrames {
   std::string unit = "m";         ///< of the coordinates in all clouds
   std::string before_unit;        ///< of those before, if another
   std::string after_unit;
-  std::string tf_frame;                               ///< of the transforms of a recording
+  RecordedOptions recorded = {};
   std::optional<Eigen::Vector3d> sensor_origin = {};  ///< of all scans, in their frame and unit
   std::optional<Eigen::Vector3d> before_origin = {};  ///< of those before
   std::optional<Eigen::Vector3d> after_origin = {};
   MachineInView view = {};  ///< boom, arm and bucket are left out of the scans
 };
 
-/// --frame, --before-frame, --after-frame, --before-pose, --after-pose, --tf-frame, --level,
-/// --sensor-origin, --before-origin, --after-origin.
+/// --frame, --before-frame, --after-frame, --before-pose, --after-pose, --tf-frame, --depth-unit,
+/// --level, --sensor-origin, --before-origin, --after-origin.
 void declare_frames(Arguments& arguments, ScanFrames& frames);
 /// --machine, --machine-pose, --before-machine-pose and --after-machine-pose.
 void declare_machine_in_view(Arguments& arguments, MachineInView& view);
@@ -56,6 +57,7 @@ void declare_units(Arguments& arguments, ScanFrames& frames);
 struct ScanReport {
   std::optional<FoundPose> level;  ///< of the last pair, if it was levelled
   nlohmann::ordered_json recordings = nlohmann::ordered_json::array();
+  bool in_counts = false;  ///< depths of a recording, taken for millimetres as no unit is given
   std::vector<std::string> lines;  ///< of both, for people
 
   /// Into a tool's result, as `pose` and `recordings`.

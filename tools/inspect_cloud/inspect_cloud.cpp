@@ -20,7 +20,7 @@ struct Inputs {
   std::string file;
   std::optional<std::string> frame;
   std::string unit = "m";
-  std::string tf_frame;
+  RecordedOptions recorded;
   PoseInputs pose;
   std::optional<std::string> out;
   bool ascii = false;
@@ -45,8 +45,7 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.positional("FILE", inputs.file, std::string("scan to summarise, or ") + recording_form);
   declare_unit(arguments, "unit", inputs.unit, "unit of the coordinates in the cloud");
   arguments.text("frame", "FRAME", inputs.frame, "another name of --pose");
-  arguments.text("tf-frame", "NAME", inputs.tf_frame,
-                 "frame of the transforms of a recording into which its scan is put");
+  declare_recorded(arguments, inputs.recorded);
   declare_pose(arguments, inputs.pose, "scan_x_m,scan_y_m,scan_z_m");
   arguments.exclude("frame", {"pose", "level", "points"});
   arguments.output("out", inputs.out, "write the cloud here: " + cloud_endings());
@@ -56,7 +55,8 @@ void declare(Arguments& arguments, Inputs& inputs) {
 Outcome inspect(const Inputs& inputs) {
   if (!inputs.out && !inputs.pose.pose_out) {
     if (auto listing = recording_listing(inputs.file)) {
-      if (!inputs.tf_frame.empty()) usage_error("--tf-frame needs a topic: FILE:TOPIC@TIME+SPAN");
+      if (!inputs.recorded.tf_frame.empty())
+        usage_error("--tf-frame needs a topic: FILE:TOPIC@TIME+SPAN");
       Outcome outcome;
       outcome.json = std::move(listing->json);
       outcome.lines = std::move(listing->lines);
@@ -72,8 +72,9 @@ Outcome inspect(const Inputs& inputs) {
   CloudFormat format;
   if (inputs.out) format = cloud_format_of_name(*inputs.out);
   format.text = inputs.ascii;
-  auto recorded = recorded_input(inputs.file, inputs.tf_frame);
-  if (!recorded && !inputs.tf_frame.empty()) usage_error("--tf-frame needs a recording");
+  auto recorded = recorded_input(inputs.file, inputs.recorded);
+  if (!recorded && !inputs.recorded.tf_frame.empty()) usage_error("--tf-frame needs a recording");
+  if (!recorded && inputs.recorded.depth_unit) usage_error("--depth-unit needs a recording");
   Scan scan = scan_of_input(inputs.file, recorded);
   scan.unit = unit_length(inputs.unit);
   const auto pose = find_pose(

@@ -14,12 +14,13 @@
 namespace excavplan::tools {
 namespace {
 
-/// "* /points  sensor_msgs/PointCloud2, 12 at 0.000 .. 1.100 s, frame 'lidar'"
+/// "* /points  sensor_msgs/PointCloud2, 12 in 1.100 s from 0.250 s on, frame 'lidar'"
 std::string topic_line(const RecordingTopic& topic) {
   std::string line = std::string(topic.is_scan ? "* " : "  ") + topic.name + "  " + topic.type +
                      ", " + std::to_string(topic.messages);
   if (topic.messages > 0) {
-    line += " at " + decimals(topic.first, 3) + " .. " + decimals(topic.last, 3) + " s";
+    line += " in " + decimals(topic.last - topic.first, 3) + " s from " + decimals(topic.first, 3) +
+            " s on";
   }
   return line + (topic.frame.empty() ? "" : ", frame " + in_quotes(topic.frame));
 }
@@ -35,9 +36,14 @@ std::optional<RecordingListing> recording_listing(const std::string& text) {
     listing.lines.push_back(topic_line(topic));
   }
   if (contents.is_cut_off) listing.lines.emplace_back("its end is missing");
+  if (contents.damaged_parts > 0) {
+    listing.lines.push_back("damaged and left out: " + std::to_string(contents.damaged_parts) +
+                            ", the first: " + contents.first_damage);
+  }
   const auto is_scan = [](const RecordingTopic& topic) { return topic.is_scan; };
   const bool has_scans = std::any_of(contents.topics.begin(), contents.topics.end(), is_scan);
-  listing.lines.push_back(has_scans ? "* scans: name one as " + text + ":TOPIC@TIME+SPAN"
+  listing.lines.push_back(has_scans ? "* scans: name one as " + text +
+                                          ":TOPIC@TIME+SPAN, TIME from the first of the topic"
                                     : "no topic holds scans");
   if (!contents.frames.empty()) {
     std::string frames;

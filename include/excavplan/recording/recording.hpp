@@ -16,9 +16,11 @@
 /// @file
 /// Scans out of what a robot recorded: rosbag2 (SQLite or MCAP) and ROS 1 bags, without ROS.
 ///
-/// A time is counted from the first message of the recording [s], by the clock that recorded.
-/// Every function throws Error (bad_file) "file: message 17 of /topic at 12.5 s: found X, expected
-/// Y" if a recording is damaged, or needs a library that this build is without.
+/// A time is counted from the first message of its topic [s], by the clock that recorded. Messages
+/// over a year from the others of their topic (ours) bear a wrong time and are left out, as is what
+/// is damaged: a warning says so.
+/// Every function throws Error (bad_file) "file: message of /topic at 12.5 s: found X, expected Y"
+/// if nothing of what is asked for is whole, or a library is needed that this build is without.
 
 namespace excavplan {
 
@@ -27,20 +29,24 @@ struct RecordingTopic {
   std::string name;            ///< "/livox/lidar"
   std::string type;            ///< as ROS 2 spells it: "sensor_msgs/msg/PointCloud2"
   std::uint64_t messages = 0;  ///< of it
-  double first = 0.0;          ///< time of its first message [s]; NaN without one
-  double last = 0.0;           ///< time of its last message [s]; NaN without one
-  std::string frame;  ///< of its first message; empty if it has none, or the type is not read here
+  double first = 0.0;  ///< its first message from the start of the recording [s]; NaN without one
+  double last = 0.0;   ///< its last message, likewise
+  std::string frame;   ///< of its first message; empty if it has none, or the type is not read here
   bool is_scan = false;  ///< read_recorded_scan() reads it
 };
 
 /// What is in a recording.
 struct RecordingContents {
-  double start = 0.0;                  ///< when its first message was recorded [s since 1970]
-  double duration = 0.0;               ///< up to its last message [s]
+  /// When its first message was recorded [s since 1970], of the topics within a year of the one
+  /// with most messages; a topic of another clock does not count.
+  double start = 0.0;
+  double duration = 0.0;               ///< up to the last message of these topics [s]
   std::vector<RecordingTopic> topics;  ///< sorted by name
   /// Between which there are transforms: of /tf_static, and of the first second of /tf; sorted.
   std::vector<std::string> frames;
-  bool is_cut_off = false;  ///< its end is missing, as that of a recorder that was killed
+  bool is_cut_off = false;          ///< its end is missing, as that of a recorder that was killed
+  std::uint64_t damaged_parts = 0;  ///< that were left out, as far as they were met
+  std::string first_damage;         ///< "file: place: found X, expected Y"; empty without one
 };
 
 /// Reads the index of a recording and the first message of each topic.
@@ -54,6 +60,8 @@ struct RecordingQuery {
   double span = 0.0;           ///< 0: the first message at or after the time; else all of them from
                                ///< the time on for so long, >= 0 [s]
   std::string frame;           ///< into which the points are put; empty: as they were recorded
+  /// Of depth images in counts, > 0 [m]; unset: 1 mm, as ROS says (REP 118).
+  std::optional<double> depth_unit = {};
 };
 
 /// Reads `FILE:TOPIC\@TIME+SPAN`, e.g. "run.db3:/livox/lidar@12.5s+2s", in s, ms or min (s without
@@ -77,9 +85,11 @@ struct RecordedScan {
   /// messages, and where the frame of the messages is a leaf of the tree of transforms; not of a
   /// sensor that moved in between.
   Cloud cloud;
+  std::string topic;                    ///< of the messages
   std::string frame;                    ///< of the points
   std::string recorded_frame;           ///< of the first message
   std::size_t messages = 0;             ///< that were used
+  bool is_counted = false;              ///< depths in counts, in the unit of the query or 1 mm
   double first = 0.0;                   ///< time of the first of them [s]
   double last = 0.0;                    ///< time of the last of them [s]
   ScanMerge merge = ScanMerge::single;  ///< what became of several messages
@@ -87,12 +97,13 @@ struct RecordedScan {
   /// than two agree; empty unless averaged. What all frames have in common is not in it.
   std::vector<double> variance;
   double frame_sd = 0.0;  ///< median over the points of the sd of one frame [m]; 0 unless averaged
-  /// clocks_differ, frame_moved, recording_cut_off: for Scan::doubts.
+  /// clocks_differ, frame_moved, recording_cut_off, units (depths beyond 10 m, of another unit):
+  /// for Scan::doubts.
   std::vector<Warning> warnings;
 };
 
-/// Reads points of PointCloud2, of Livox's CustomMsg, or of depth images (16UC1, mono16, 32FC1)
-/// with the CameraInfo of the topic camera_info beside.
+/// Reads points of PointCloud2, of Livox's CustomMsg, or of depth images (16UC1, mono16, 32FC1, and
+/// PNG as compressedDepth writes it) with the CameraInfo of the topic camera_info beside.
 ///
 /// With a frame every message is transformed at its own stamp, by /tf and /tf_static. Where the
 /// stamps are over 0.4 s (ours) off the clock of the transforms and the sensor moved meanwhile, or
@@ -106,13 +117,15 @@ struct RecordedScan {
 /// @throws Error (bad_file) also if there is no such topic or no message at that time, no transform
 /// into the frame at the time of a message, no camera info, or if a clock jumped between the
 /// messages; (bad_input) if a time is out of range, the span holds more than
-/// most_recorded_points (ceilings.hpp) points or pixels, the frame is "/", or the sensor moved and
-/// no frame is named
+/// most_recorded_points (ceilings.hpp) points or pixels, the frame is "/", a depth unit is given
+/// for what has none, or the sensor moved and no frame is named
 RecordedScan read_recorded_scan(const RecordingQuery& query);
 
 /// Where the joints were: of every name on a topic of sensor_msgs/JointState the position [rad; m
 /// of a sliding joint] nearest to a time [s] within 0.5 s (ours).
+/// @param topic  from whose first message the time counts; empty: from the start of the recording
 /// @throws Error (bad_file) also if none was recorded then; (bad_input) if the time is out of range
-std::map<std::string, double> joint_positions(const std::string& path, double time);
+std::map<std::string, double> joint_positions(const std::string& path, double time,
+                                              const std::string& topic = "");
 
 }  // namespace excavplan

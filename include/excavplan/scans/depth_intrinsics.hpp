@@ -2,9 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 
 namespace excavplan {
+
+/// A unit of the counts in depth images.
+struct DepthUnit {
+  const char* word;  ///< "0.25mm"
+  double length;     ///< [m]
+};
+/// Those that cameras have besides 1 mm: RealSense L500 and SR300.
+inline constexpr std::array<DepthUnit, 2> other_depth_units = {
+    {{"0.25mm", 0.25e-3}, {"0.125mm", 0.125e-3}}};
 
 /// Pinhole intrinsics [pixel] and scale of a depth image.
 struct DepthIntrinsics {

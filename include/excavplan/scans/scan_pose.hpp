@@ -33,13 +33,15 @@ struct LevelPose {
 /// Levels a scan by its largest plane, which must be the ground: RANSAC within 1 % of the median
 /// range, then least squares over the points within 2.5 robust sd until they stay the same. Points
 /// count with 1 / range^4, as stereo errs. The sensor stood at Cloud::sensor_origin, or else at the
-/// origin. Same seed, same pose.
+/// origin. Where it is not told and the plane passes the origin within 5 cm, as of apps that lay
+/// the origin on the ground, all points count alike, up is the axis z or y of the scan (within 45
+/// deg) and x shows along its x or -z axis. Same seed, same pose.
 ///
 /// Ground that slopes is levelled too: volumes between two scans in one such frame stay right, but
 /// the direction of "down" is that of the plane, not of gravity.
 ///
 /// @throws Error (bad_input) with fewer than 100 finite points, if under a tenth of them lie on
-/// one plane, or if that plane passes the sensor within 5 cm
+/// one plane, or if that plane passes the sensor within 5 cm, and is no ground at the origin
 LevelPose level_on_ground(const Cloud& scan, std::uint64_t seed = 1);
 
 /// The same of a scan of any size, from a random choice of 32768 to 65536 of its points that is the
