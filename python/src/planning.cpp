@@ -282,7 +282,8 @@ void bind_plan(py::module_& module) {
           "to_json",
           [](const DigPlan& plan, const GroundDensity& density,
              const std::optional<DigObjective>& objective) {
-            return to_json(plan, density, objective.value_or(DigObjective{}));
+            return to_json(plan, density,
+                           objective.value_or(SearchOptionsInPython{}.options.objective));
           },
           arg("density"), arg("objective") = py::none(),
           "The text that plan-path prints with --json, but for its options.\n\n"

@@ -156,7 +156,7 @@ class Writer {
 };
 
 /// The shipped machines, and others in proportions of their own: a long front, a short arm, a
-/// boom pin on the swing axis, a large machine.
+/// boom pin behind the swing axis, a large machine.
 std::vector<Machine> fronts() {
   std::vector<Machine> all;
   for (const char* name : {"zx120", "zx200", "generic-20t", "generic-mini"}) {
@@ -174,7 +174,7 @@ std::vector<Machine> fronts() {
   };
   add({0.4, 1.9}, 8.2, 6.3, 1.4);
   add({0.53, 1.37}, 5.715, 2.1, 1.5);
-  add({0.0, 1.2}, 4.3, 2.25, 1.2);
+  add({-0.15, 1.2}, 4.3, 2.25, 1.2);
   add({0.2, 2.6}, 7.0, 3.4, 1.9);
   return all;
 }
@@ -371,6 +371,16 @@ TEST_F(UrdfLayouts, NamesAllThatIsMissingAtOnce) {
         "joints.bucket.lower_rad, joints.bucket.upper_rad, in the angles of excavplan (+-pi/2"}) {
     EXPECT_NE(then.find(part), std::string::npos) << then;
   }
+}
+
+TEST_F(UrdfLayouts, NothingTurnsAMachineWhoseBoomHangsOnTheRoot) {
+  Random random(9);
+  Layout layout;
+  layout.has_swing = false;
+  layout.has_mounts = true;
+  Written written = Writer(fronts()[0], layout, random).written();
+  written.beside["urdf"].erase("swing");
+  EXPECT_TRUE(read(written).machine.robot_joints[3].name.empty());
 }
 
 // One front in four layouts, with real ranges in the URDF or others in the JSON beside it.

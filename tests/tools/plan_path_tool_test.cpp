@@ -461,13 +461,10 @@ TEST_F(Tools, ABrokenDataFolderIsNamed) {
     return result.err;
   };
   const Words report = {"--report", folder.file("report.html")};
-  const std::string start = "plan-path: " + data + "/report/page.html: ";
-  for (const auto& [broken, why] :
-       {std::pair{"<p>{{nothing}}</p>", "'nothing' is no part of a report"},
-        {"<p>{{title", "'title' is not closed by '}}'"},
-        {"", "it has no place for 'app'"}}) {
+  for (const char* broken : {"<p>{{nothing}}</p>", "<p>{{title", "", "{{title}}"}) {
     folder.write("data/report/page.html", broken);
-    EXPECT_EQ(said(report), start + why + "\n");
+    EXPECT_EQ(said(report),
+              "plan-path: " + data + "/report/page.html: is not the template of the reports\n");
   }
   EXPECT_FALSE(fs::exists(report[1]));
   folder.write("data/machines/zx120.json", R"({"format": "excavplan-machine", "version": 1})");

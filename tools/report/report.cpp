@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/report.hpp"
 
-#include <algorithm>
 #include <map>
 #include <set>
 
@@ -45,31 +44,23 @@ std::string app() {
   return text;
 }
 
-/// Fills the template, not what replaces "{{name}}" in it.
-/// @throws Error (bad_file) unless it names each part, and nothing else
+/// Fills the template alone. @throws Error (bad_file) unless it names each part, and nothing else
 std::string filled(const std::map<std::string, std::string>& parts) {
-  const std::string file = find_data_file("report/page.html");
-  const std::string page = read_file(file);
+  const std::string file = find_data_file("report/page.html"), page = read_file(file);
   std::string text;
   std::size_t at = 0;
-  std::set<std::string> unused;
-  for (const auto& [name, part] : parts) unused.insert(name);
+  std::set<std::string> used;
   for (std::size_t open = page.find("{{"); open != std::string::npos; open = page.find("{{", at)) {
     const std::size_t close = page.find("}}", open);
-    const std::string name = page.substr(open + 2, std::min(close, page.size()) - open - 2);
-    if (close == page.npos) {
-      throw Error(ErrorKind::bad_file, file + ": " + in_quotes(name) + " is not closed by '}}'");
-    }
-    const auto part = parts.find(name);
-    if (part == parts.end()) {
-      throw Error(ErrorKind::bad_file, file + ": " + in_quotes(name) + " is no part of a report");
-    }
+    const auto part = parts.find(page.substr(open + 2, close - open - 2));
+    if (close == page.npos || part == parts.end()) break;
     text += page.substr(at, open - at) + part->second;
-    unused.erase(name);
+    used.insert(part->first);
     at = close + 2;
   }
-  if (unused.empty()) return text + page.substr(at);
-  throw Error(ErrorKind::bad_file, file + ": it has no place for " + in_quotes(*unused.begin()));
+  if (used.size() == parts.size() && page.find("{{", at) == page.npos)
+    return text + page.substr(at);
+  throw Error(ErrorKind::bad_file, file + ": is not the template of the reports");
 }
 
 std::string verdict(const Report& report, const ReportedRun& run) {
