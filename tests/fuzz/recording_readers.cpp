@@ -47,8 +47,9 @@ std::string read_recording(const std::string& path) {
                   return true;
                 });
     add_contents(path, said);
-    // What is left out is said, as an error says it.
+    // What is left out or missing is said, as an error says it.
     if (file->skipped().count() > 0) throw Error(ErrorKind::bad_file, file->skipped().first());
+    if (file->is_cut_off()) throw Error(ErrorKind::bad_file, path + ": its end is missing");
   }
   return said.text();
 }
