@@ -111,7 +111,7 @@ constexpr std::array code_rows = {
     CodeRow{WarningCode::previous_density, "previous_density", Trust::kept},
     CodeRow{WarningCode::prior_disagrees, "prior_disagrees", Trust::ended},
     CodeRow{WarningCode::prior_not_trustworthy, "prior_not_trustworthy", Trust::kept},
-    CodeRow{WarningCode::recording_cut_off, "recording_cut_off", Trust::kept},
+    CodeRow{WarningCode::recording_cut_off, "recording_cut_off", Trust::depends},
     CodeRow{WarningCode::registration_beyond_prior, "registration_beyond_prior", Trust::depends},
     CodeRow{WarningCode::repeated_run, "repeated_run", Trust::ended},
     CodeRow{WarningCode::scans_do_not_fit, "scans_do_not_fit", Trust::ended},

@@ -48,6 +48,7 @@ struct RecordedChunk {
   /// The channels that it has messages of, and where the file lists them (0: not told).
   std::vector<std::pair<std::uint32_t, std::uint64_t>> channels;
   std::vector<MessagePlace> places;  ///< where there was no index; else empty
+  bool is_endless = false;           ///< its record tells a wrong length
   std::string lost;                  ///< why nothing of it can be read; empty if it can
 
   TimeRange times() const { return {start, end}; }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "base/scalar.hpp"
 #include "base/text.hpp"
@@ -19,6 +20,8 @@ constexpr std::uint64_t footer_size = record_head + 20;  // [byte]
 constexpr std::uint64_t message_head = 22;               // before the data of a message [byte]
 constexpr std::uint64_t chunk_head = 32;                 // before the name of its compression
 constexpr std::uint64_t longest_compression_name = 64;   // ours [byte]
+constexpr unsigned first_unknown = 16;                   // opcode that version 0 does not have
+constexpr unsigned first_private = 128;                  // and of those that others may use
 
 enum Opcode : std::uint8_t {
   header = 1,
@@ -98,8 +101,9 @@ class McapRecording : public ChunkedContainer {
 
   void scan(std::uint64_t data_start);
   void scan_record(std::uint8_t opcode, std::uint64_t offset, std::uint64_t length);
-  void scan_chunk(std::uint64_t offset, std::uint64_t length);
+  void scan_chunk(std::uint64_t offset, std::uint64_t length, bool is_endless = false);
   void scan_message(std::uint64_t offset, ByteReader fields, std::vector<MessagePlace>& places);
+  std::optional<std::uint64_t> scan_endless_chunk(std::uint64_t offset, std::uint64_t end);
   void take_channels_of_damaged(std::uint64_t offset, std::uint64_t length);
 
   ByteReader reader_at(const MessagePlace& place);
@@ -357,7 +361,9 @@ ChunkHead McapRecording::head_of(std::uint64_t offset, std::uint64_t length) con
 }
 
 Bytes McapRecording::load(const RecordedChunk& chunk) const {
-  return load(chunk.offset + record_head,
+  const std::uint64_t content = chunk.offset + record_head;
+  if (chunk.is_endless) return load(content, chunk.length - record_head);
+  return load(content,
               content_length(chunk.offset, chunk.offset + chunk.length, Opcode::chunk, "chunk"));
 }
 
@@ -429,19 +435,24 @@ void McapRecording::scan(std::uint64_t data_start) {
     const std::uint64_t length = head.u64("length of a record");
     const std::uint64_t room = end - offset - record_head;
     if (opcode == Opcode::data_end) break;
-    if (opcode != 0 && length <= room) {
+    const bool is_whole = opcode != 0 && length <= room;
+    const bool is_known = opcode < first_unknown || opcode >= first_private;
+    std::uint64_t next = offset + record_head + length;
+    TimeRange lost = {last, latest};
+    if (is_whole && is_known) {
       scan_record(opcode, offset, length);
       if (!chunks_.empty()) last = chunks_.back().end;
-      offset += record_head + length;
-      continue;
+    } else if (!is_whole) {
+      const auto behind = opcode == Opcode::chunk ? scan_endless_chunk(offset, end) : std::nullopt;
+      lost = behind ? no_time : TimeRange{last, latest};
+      next = behind ? *behind : next_chunk(offset + 1, end);
     }
-    const std::uint64_t next = next_chunk(offset + 1, end);
-    if (is_closed_ || next < end) {
-      skipped_.guard({last, latest}, [&] {
+    if (!(is_whole && is_known) && (is_closed_ || next < end)) {
+      skipped_.guard(lost, [&] {
         file_.fail(offset,
                    "a record of opcode " + std::to_string(opcode) + " and " +
                        std::to_string(length) + " bytes",
-                   "one of opcode 1 to 255 and at most " + std::to_string(room));
+                   "one of opcode 1 to 15, or 128 to 255, and at most " + std::to_string(room));
       });
     }
     offset = next;
@@ -465,8 +476,9 @@ void McapRecording::scan_record(std::uint8_t opcode, std::uint64_t offset, std::
   }
 }
 
-void McapRecording::scan_chunk(std::uint64_t offset, std::uint64_t length) {
+void McapRecording::scan_chunk(std::uint64_t offset, std::uint64_t length, bool is_endless) {
   RecordedChunk chunk;
+  chunk.is_endless = is_endless;
   chunk.offset = offset;
   chunk.length = record_head + length;
   chunk.start = earliest;
@@ -483,6 +495,22 @@ void McapRecording::scan_chunk(std::uint64_t offset, std::uint64_t length) {
     keep_chunk(std::move(chunk));
   } else {
     take_channels_of_damaged(offset + record_head, length);
+  }
+}
+
+/// A chunk of which the record's length is damaged, by the lengths in it. @return where the next
+/// record begins; nothing if it is no chunk
+std::optional<std::uint64_t> McapRecording::scan_endless_chunk(std::uint64_t offset,
+                                                               std::uint64_t end) {
+  try {
+    const std::uint64_t content = offset + record_head;
+    const ChunkHead head = head_of(content, end - content);
+    scan_chunk(offset, head.data + head.length - content, true);
+    return head.data + head.length;
+  } catch (const Unsupported&) {
+    throw;
+  } catch (const Error&) {
+    return std::nullopt;
   }
 }
 

@@ -26,14 +26,14 @@ std::string scan_topics_text(const RecordingFile& recording) {
   return "topics that hold clouds or images: " + name_list(names);
 }
 
-const RecordedTopic& only_scan_topic(const RecordingFile& recording) {
+const RecordedTopic& only_scan_topic(RecordingFile& recording) {
   const auto& topics = recording.topics();
   const auto found = std::find_if(topics.begin(), topics.end(), holds_scans);
   const auto count = std::count_if(found, topics.end(), holds_scans);
   if (count != 1) {
     refuse_recording(recording, "found " + std::to_string(count) +
                                     " topics to choose from, expected one or the name of one; " +
-                                    scan_topics_text(recording));
+                                    scan_topics_text(recording) + damage_text(recording));
   }
   return *found;
 }
@@ -144,7 +144,7 @@ const RecordedTopic* find_topic(const RecordingFile& recording, const std::strin
   return found == topics.end() ? nullptr : &*found;
 }
 
-const RecordedTopic& scan_topic(const RecordingFile& recording, const std::string& name) {
+const RecordedTopic& scan_topic(RecordingFile& recording, const std::string& name) {
   if (name.empty()) return only_scan_topic(recording);
   const RecordedTopic* const topic = find_topic(recording, name);
   if (topic == nullptr) {
@@ -153,7 +153,7 @@ const RecordedTopic& scan_topic(const RecordingFile& recording, const std::strin
     const auto meant = nearest_word(name, names);
     refuse_recording(recording, "found no topic " + in_quotes(name) +
                                     (meant ? ", did you mean " + in_quotes(*meant) + "? " : "; ") +
-                                    scan_topics_text(recording));
+                                    scan_topics_text(recording) + damage_text(recording));
   }
   if (!holds_scans(*topic) && !holds_images(*topic)) {
     refuse_recording(recording, in_quotes(name) + ": found messages of type " +

@@ -39,7 +39,7 @@ std::vector<std::string> topics_for(const RecordingFile& recording, MessageUse u
 const RecordedTopic* find_topic(const RecordingFile& recording, const std::string& name);
 /// The topic of that name or, without one, the only one that holds scans.
 /// @throws Error (bad_file) naming those that do
-const RecordedTopic& scan_topic(const RecordingFile& recording, const std::string& name);
+const RecordedTopic& scan_topic(RecordingFile& recording, const std::string& name);
 
 /// What is known of a message before its points are read.
 struct MessageHead {

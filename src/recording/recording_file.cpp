@@ -101,7 +101,9 @@ class Recording : public RecordingFile {
     const auto files =
         fs::is_directory(path, none) ? files_of(path) : std::vector<std::string>{path};
     for (const std::string& file : files) {
-      skipped().guard({}, [&] { add(file, open_file(file, skipped())); });
+      const bool is_empty = ByteFile(file).size() == 0;  // its recorder was killed
+      skipped().guard(is_empty ? no_time : TimeRange(),
+                      [&] { add(file, open_file(file, skipped())); });
     }
     if (parts_.empty() && skipped().count() > 0) {
       throw Error(ErrorKind::bad_file, skipped().first());

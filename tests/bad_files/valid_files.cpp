@@ -171,6 +171,14 @@ const std::map<std::string, Maker>& makers() {
        [] {
          return message(depth_bytes(1000000007, "camera", 2, {500, 0, 1500, 2000}));
        }},
+      {"compressed_image",
+       [] {
+         const std::string png = png_of(2, {500, 0, 1500, 2000});
+         return message(RosBytes(cdr_little)
+                            .header(1000000007, "camera")
+                            .text("16UC1; compressedDepth png")
+                            .data(std::string(12, '\0') + png));
+       }},
       {"camera_info",
        [] {
          return message(camera_bytes({640, 480, 600.5, 601.5, {0.0, 0.0}}));

@@ -46,8 +46,11 @@ std::string read_recording(const std::string& path) {
                            time_of(message.time) + ' ' + checksum_text(std::string(message.bytes)));
                   return true;
                 });
+    add_contents(path, said);
+    // What is left out or missing is said, as an error says it.
+    if (file->skipped().count() > 0) throw Error(ErrorKind::bad_file, file->skipped().first());
+    if (file->is_cut_off()) throw Error(ErrorKind::bad_file, path + ": its end is missing");
   }
-  add_contents(path, said);
   return said.text();
 }
 
@@ -94,13 +97,21 @@ std::string read_livox(const std::string& path) {
   return points_of(path, "livox_ros_driver2/msg/CustomMsg");
 }
 
-std::string read_image(const std::string& path) {
-  const MessageFile file(path, "sensor_msgs/msg/Image");
+std::string depths_of(const std::string& path, const std::string& type) {
+  const MessageFile file(path, type);
+  const FrameSize size = decode_size(path, file.message());
   const DepthMessage image = decode_depths(path, file.message());
+  if (!(size == image.size)) throw std::logic_error("sizes of one message differ");
   return Said()
       .add("width", static_cast<double>(image.size.width))
       .all("depth", image.depths)
       .text();
+}
+
+std::string read_image(const std::string& path) { return depths_of(path, "sensor_msgs/msg/Image"); }
+
+std::string read_compressed_image(const std::string& path) {
+  return depths_of(path, "sensor_msgs/msg/CompressedImage");
 }
 
 std::string read_camera_info(const std::string& path) {
@@ -157,6 +168,7 @@ std::vector<FileReader> recording_readers() {
           {"point_cloud2", read_point_cloud},
           {"livox", read_livox},
           {"image_message", read_image},
+          {"compressed_image", read_compressed_image},
           {"camera_info", read_camera_info},
           {"joint_state", read_joints},
           {"transforms", read_transforms}};

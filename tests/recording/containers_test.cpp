@@ -400,6 +400,64 @@ TEST(SqliteRecordings, RunNothingThatAFileBringsAlong) {
   }
 }
 
+/// 2000 messages of 300 bytes and more on two topics, a millisecond apart.
+string many_messages() {
+  return string(topics_table) + messages_table +
+         "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
+         "INSERT INTO topics VALUES(1, '/a', 'std_msgs/msg/Empty', 'cdr', '');"
+         "INSERT INTO topics VALUES(2, '/b', 'std_msgs/msg/Empty', 'cdr', '');"
+         "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 2000) "
+         "INSERT INTO messages SELECT i, 1 + i % 2, 1700000000000000000 + i * 1000000, "
+         "CAST(i AS TEXT) || zeroblob(300) FROM n;";
+}
+
+TEST(SqliteRecordings, ABadTimeSpoilsItsMessageAlone) {
+  for (const char* time : {"0", "-5", "'now'", "1.7e18", "NULL", "9000000000000000000"}) {
+    SCOPED_TRACE(time);
+    const TempFolder folder;
+    const string path = folder.path() + "/times.db3";
+    Database(path).run(many_messages() +
+                       "CREATE TABLE copy AS SELECT * FROM messages; DROP TABLE messages; "
+                       "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data); "
+                       "INSERT INTO messages SELECT * FROM copy; DROP TABLE copy; "
+                       "UPDATE messages SET timestamp = " +
+                       time + " WHERE id = 7;");
+    const auto file = open_recording(path);
+    EXPECT_EQ(all_messages(*file).size(), 1999U);
+    EXPECT_EQ(messages_of(*file, {"/b"}).size(), 999U);
+    EXPECT_EQ(file->skipped().count(), 1U) << file->skipped().first();
+    EXPECT_EQ(file->start(), 1700000000001000000);
+  }
+}
+
+// Every page but the first and those of the schema in turn: of messages, of the index, and inner
+// ones.
+TEST(SqliteRecordings, APageSpoilsItsMessagesAlone) {
+  constexpr std::size_t page = 4096;
+  const TempFolder folder;
+  const string whole = folder.path() + "/whole.db3";
+  Database(whole).run(many_messages());
+  std::set<string> expected;
+  for (const test::KeptMessage& message : all_messages(*open_recording(whole))) {
+    expected.insert(message.bytes);
+  }
+  const string content = content_of(whole);
+  std::size_t least = expected.size();
+  for (std::size_t at = 4 * page; at < content.size(); at += 7 * page) {
+    SCOPED_TRACE(at / page);
+    string spoilt = content;
+    std::fill_n(spoilt.begin() + static_cast<std::ptrdiff_t>(at), page, '\xAB');
+    const auto file = open_recording(folder.write("spoilt.db3", spoilt));
+    std::set<string> found;
+    for (const test::KeptMessage& message : all_messages(*file)) found.insert(message.bytes);
+    EXPECT_TRUE(std::includes(expected.begin(), expected.end(), found.begin(), found.end()));
+    EXPECT_GT(found.size(), 1980U);
+    EXPECT_GT(file->skipped().count(), 0U);
+    least = std::min(least, found.size());
+  }
+  EXPECT_LT(least, expected.size());
+}
+
 TEST(SqliteRecordings, OfMoreThan16384TopicsAreRefused) {
   const TempFolder folder;
   const string path = folder.path() + "/topics.db3";

@@ -576,7 +576,9 @@ TEST(SpoiltRecordings, ARecordWithoutAnEndIsPassedOver) {
     const auto file = open_recording(folder.write("endless", content));
     const Messages found = readable_messages(*file, said);
     EXPECT_TRUE(std::includes(whole.begin(), whole.end(), found.begin(), found.end()));
-    EXPECT_LT(found.size(), whole.size());
+    // A chunk of MCAP tells its length twice.
+    const bool is_lost = string(name) == "scene_none.bag";
+    EXPECT_EQ(found.size() < whole.size(), is_lost);
     EXPECT_GT(found.size(), whole.size() / 2);
     EXPECT_GT(file->skipped().count(), 0U);
   }

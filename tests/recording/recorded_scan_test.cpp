@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "support/errors.hpp"
+#include "support/png_bytes.hpp"
 #include "support/recording_files.hpp"
 #include "support/recording_in_memory.hpp"
 
@@ -345,6 +346,181 @@ TEST(RecordedScan, ASensorThatStoodInTheFrameAskedForIsAveraged) {
   EXPECT_EQ(read_recorded_scan(recording, query_of("/points", 0.0, 1.0, "map")).merge,
             ScanMerge::joined);
 }
+
+// ---- What is damaged, and other clocks
+
+TEST(RecordedScan, ATopicOfAnotherClockMovesNoTime) {
+  for (const std::int64_t time : {std::int64_t{0}, epoch / 2, epoch + 3600000 * ms, ever}) {
+    RecordingInMemory recording;
+    recording.add_at(time, "/status", "std_msgs/msg/Bool", "");
+    for (int i = 0; i < 5; ++i) add_cloud(recording, (70 + i) * 1000 * ms, {{1.0 * i, 0.0, 0.0}});
+    const RecordedScan scan = read_recorded_scan(recording, query_of("/points", 2.0, 1.0));
+    EXPECT_EQ(scan.cloud.points, (Points{{2.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}));
+    EXPECT_EQ(scan.first, 2.0);
+  }
+}
+
+std::string cut_off(const std::string& bytes) { return bytes.substr(0, bytes.size() - 9); }
+
+TEST(RecordedScan, AMessageThatIsDamagedIsLeftOutAndSaid) {
+  RecordingInMemory recording = recording_from_zero();
+  for (int i = 0; i < 6; ++i) {
+    const std::string bytes = cloud_bytes(epoch + i * 100 * ms, "lidar", {{1.0 * i, 0.0, 0.0}});
+    recording.add("/points", cloud_type, i * 100 * ms, i % 3 == 0 ? cut_off(bytes) : bytes);
+  }
+  const RecordedScan one = read_recorded_scan(recording, query_of("/points"));
+  EXPECT_EQ(one.cloud.points, (Points{{1.0, 0.0, 0.0}}));
+  const RecordedScan all = read_recorded_scan(recording, query_of("/points", 0.0, 1.0));
+  EXPECT_EQ(all.cloud.points.size(), 4U);
+  ASSERT_EQ(all.warnings.size(), 1U);
+  EXPECT_EQ(all.warnings[0].code, WarningCode::recording_cut_off);
+  EXPECT_FALSE(all.warnings[0].ends_trust) << "the next one came at once";
+  EXPECT_NE(all.warnings[0].message.find("run: 2 parts are damaged and left out, the first: run: "
+                                         "message 1 of /points: found "),
+            std::string::npos)
+      << all.warnings[0].message;
+}
+
+TEST(RecordedScan, WhatMayBeAnotherTimeIsNotTrusted) {
+  RecordingInMemory recording = recording_from_zero();
+  recording.add("/points", cloud_type, 0, cut_off(cloud_bytes(epoch, "lidar", {{1.0, 0.0, 0.0}})));
+  add_cloud(recording, 60000 * ms, {{2.0, 0.0, 0.0}});
+  const RecordedScan late = read_recorded_scan(recording, query_of("/points"));
+  EXPECT_EQ(late.cloud.points, (Points{{2.0, 0.0, 0.0}}));
+  ASSERT_EQ(late.warnings.size(), 1U);
+  EXPECT_TRUE(late.warnings[0].ends_trust);
+  const RecordedScan meant = read_recorded_scan(recording, query_of("/points", 60.0));
+  ASSERT_EQ(meant.warnings.size(), 1U);
+  EXPECT_FALSE(meant.warnings[0].ends_trust);
+}
+
+TEST(RecordedScan, WhereNothingIsLeftTheDamageIsTheError) {
+  RecordingInMemory recording = recording_from_zero();
+  recording.add("/points", cloud_type, 0, cut_off(cloud_bytes(epoch, "lidar", {{1.0, 0.0, 0.0}})));
+  EXPECT_NE(
+      error_of_read(recording, query_of("/points"))
+          .find("the recording holds none; 1 part is damaged and left out: run: message 1 of"),
+      std::string::npos);
+}
+
+// ---- Units of depth ---------------------------------------------------------------------------
+
+RecordingInMemory recording_of_depths(const std::vector<std::uint16_t>& counts) {
+  RecordingInMemory recording = recording_from_zero();
+  const std::size_t width = counts.size() / 2;
+  recording.add("/camera/depth/camera_info", camera_type, 0,
+                camera_bytes({width, 2, 2.0, 2.0, {}}));
+  recording.add("/camera/depth/image_rect_raw", image_type, 0,
+                depth_bytes(epoch, "camera", width, counts));
+  return recording;
+}
+
+TEST(RecordedScan, DepthsAreInTheUnitThatIsSaid) {
+  RecordingInMemory recording = recording_of_depths({16000, 16400, 16800, 17200, 16000, 0});
+  RecordingQuery query = query_of("/camera/depth/image_rect_raw");
+  const RecordedScan wrong = read_recorded_scan(recording, query);
+  EXPECT_TRUE(wrong.is_counted);
+  ASSERT_EQ(wrong.warnings.size(), 1U);
+  EXPECT_EQ(wrong.warnings[0].code, WarningCode::units);
+  EXPECT_TRUE(wrong.warnings[0].ends_trust);
+  EXPECT_NE(wrong.warnings[0].message.find("--depth-unit, such as 0.25mm, which gives 4.1 m, or "
+                                           "0.125mm"),
+            std::string::npos)
+      << wrong.warnings[0].message;
+  for (const double unit : {0.25e-3, 0.125e-3}) {
+    query.depth_unit = unit;
+    const RecordedScan right = read_recorded_scan(recording, query);
+    EXPECT_TRUE(right.warnings.empty());
+    EXPECT_NEAR(right.cloud.points[0].z(), 16000 * unit, 1e-6);
+    EXPECT_TRUE(std::isnan(right.cloud.points[5].z()));
+  }
+  RecordingInMemory near = recording_of_depths({1600, 1640, 1680, 1720, 1600, 0});
+  EXPECT_TRUE(read_recorded_scan(near, query_of("/camera/depth/image_rect_raw")).warnings.empty());
+}
+
+TEST(RecordedScan, ADepthUnitIsOfDepthImages) {
+  RecordingInMemory recording = numbered_clouds();
+  RecordingQuery query = query_of("/points");
+  query.depth_unit = 0.25e-3;
+  EXPECT_NE(error_of_read(recording, query, ErrorKind::bad_input).find("holds points in metres"),
+            std::string::npos);
+  RecordingInMemory depths = recording_of_depths({1, 1});
+  query = query_of("/camera/depth/image_rect_raw");
+  for (const double unit : {0.0, -1.0, nan_value}) {
+    query.depth_unit = unit;
+    EXPECT_THROW(read_recorded_scan(depths, query), Error);
+  }
+}
+
+/// sensor_msgs/CompressedImage as compressed_depth_image_transport fills it.
+std::string compressed_bytes(const std::string& format, float a, float b, const std::string& png) {
+  RosBytes data({Serialization::ros1, false});
+  data.append(std::uint32_t{0}, false);
+  data.append(a, false);
+  data.append(b, false);
+  return RosBytes(cdr_little).header(epoch, "camera").text(format).data(data.bytes() + png);
+}
+
+TEST(RecordedScan, CompressedDepthIsReadAsTheRawImage) {
+  const std::vector<std::uint16_t> counts = {1600, 1640, 0, 1720};
+  const std::string type = "sensor_msgs/msg/CompressedImage";
+  const std::string png = png_of(2, counts);
+  const std::string name = "/camera/depth/image_rect_raw/compressedDepth";
+  RecordingInMemory raw = recording_of_depths(counts);
+  const RecordedScan expected = read_recorded_scan(raw, query_of("/camera/depth/image_rect_raw"));
+  const auto compressed = [&](const std::string& topic, const std::string& bytes) {
+    RecordingInMemory recording = recording_from_zero();
+    recording.add("/camera/depth/camera_info", camera_type, 0, camera_bytes({2, 2, 2.0, 2.0, {}}));
+    recording.add(topic, type, 0, bytes);
+    return recording;
+  };
+  const std::string plain =
+      RosBytes(cdr_little).header(epoch, "camera").text("16UC1; png compressed").data(png);
+  // inverse depths, 100 / (count - 20), of the second and the last pixel
+  const std::string inverse =
+      compressed_bytes("32FC1; compressedDepth png", 100.0F, 20.0F, png_of(2, {0, 70, 0, 45}));
+  for (const char* format : {"16UC1; compressedDepth png", "16UC1; compressedDepth"}) {
+    RecordingInMemory recording = compressed(name, compressed_bytes(format, 0.0F, 0.0F, png));
+    const RecordedScan scan = read_recorded_scan(recording, query_of(""));
+    EXPECT_TRUE(scan.is_counted);
+    ASSERT_EQ(scan.cloud.points.size(), 4U);
+    for (const std::size_t i : {0, 1, 3}) {
+      expect_near(scan.cloud.points[i], expected.cloud.points[i]);
+    }
+    EXPECT_TRUE(std::isnan(scan.cloud.points[2].x()));
+    EXPECT_TRUE(scan.cloud.sensor_origin);
+  }
+  RecordingInMemory as_png = compressed("/camera/depth/image_rect_raw/compressed", plain);
+  expect_near(read_recorded_scan(as_png, query_of("/camera/depth/image_rect_raw/compressed"))
+                  .cloud.points[1],
+              expected.cloud.points[1]);
+  RecordingInMemory as_inverse = compressed(name, inverse);
+  const RecordedScan scan = read_recorded_scan(as_inverse, query_of(name));
+  EXPECT_FALSE(scan.is_counted);
+  EXPECT_NEAR(scan.cloud.points[1].z(), 2.0, 1e-6);
+  EXPECT_NEAR(scan.cloud.points[3].z(), 4.0, 1e-6);
+  EXPECT_TRUE(std::isnan(scan.cloud.points[0].z()));
+}
+
+TEST(RecordedScan, CompressedDepthThatIsDamagedIsLeftOut) {
+  const std::string type = "sensor_msgs/msg/CompressedImage";
+  const std::string name = "/camera/depth/image/compressedDepth";
+  const std::string good =
+      compressed_bytes("16UC1; compressedDepth png", 0.0F, 0.0F, png_of(2, {1, 2, 3, 4}));
+  for (const std::size_t keep : {std::size_t{0}, good.size() - 50, good.size() - 20}) {
+    RecordingInMemory recording = recording_from_zero();
+    recording.add("/camera/depth/camera_info", camera_type, 0, camera_bytes({2, 2, 2.0, 2.0, {}}));
+    std::string bad = good;
+    for (std::size_t i = keep + 4; i < std::min(bad.size(), keep + 24); ++i) bad[i] ^= 0x55;
+    recording.add(name, type, 0, bad);
+    EXPECT_NE(error_of_read(recording, query_of(name)).find("1 part is damaged"),
+              std::string::npos);
+    recording.add(name, type, 100 * ms, good);
+    EXPECT_EQ(read_recorded_scan(recording, query_of(name)).cloud.points.size(), 4U);
+  }
+}
+
+// ---- Frames -----------------------------------------------------------------------------------
 
 TEST(RecordedScan, AMissingTransformNamesTheFrames) {
   RecordingInMemory recording = driving_machine();

@@ -49,6 +49,17 @@ TEST_F(Tools, DepthImageBecomesACloudInTheSiteFrame) {
   EXPECT_TRUE(found);
 }
 
+TEST_F(Tools, ACountIsOfTheUnitThatIsSaid) {
+  Words words = depth_run(folder);
+  folder.write("depth.png", png_of(16, std::vector<std::uint16_t>(16 * 12, 20000)));
+  for (const auto& [unit, depth] : {std::pair{"0.25mm", 5.0}, {"0.125mm", 2.5}}) {
+    answer("depth-to-cloud", words + Words{"--depth-unit", unit});
+    const json cloud = answer("inspect-cloud", {folder.file("cloud.xyz")});
+    EXPECT_NEAR(number(cloud, "/max_m/2"), depth, 1e-6);
+    EXPECT_NEAR(number(cloud, "/min_m/2"), depth, 1e-6);
+  }
+}
+
 TEST_F(BadInput, DepthImagesAreRefusedWithTheReason) {
   const Words words = depth_run(folder);
   refused(3, "not a PNG image", "depth-to-cloud",

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <string>
 
+#include "base/angles.hpp"
+#include "base/random.hpp"
 #include "support/recording_files.hpp"
 #include "support/tool_answers.hpp"
 
@@ -56,7 +60,7 @@ TEST_F(Recordings, AScanOfOneIsNoTerrainUntilItIsWritten) {
 }
 
 TEST_F(Recordings, AScanIsWrittenInTheFrameAskedFor) {
-  const std::string points = recording("scene.db3") + ":/lidar/points@1s+2s";
+  const std::string points = recording("scene.db3") + ":/lidar/points@0.75s+2s";
   const std::string out = folder.file("scan.pcd");
   const json result = answer("inspect-cloud", {points, "--tf-frame", "map", "--out", out});
   EXPECT_EQ(result.at("/recording/messages"_json_pointer), 3);
@@ -95,13 +99,70 @@ TEST_F(Recordings, TheMachineIsWhereItsJointStatesSay) {
            "site"});
 }
 
+/// The base scene of the reported files: hole 0.2522, heap 0.3077, factor 1.220.
+void expect_base_scene(const json& result) {
+  EXPECT_EQ(result.at("trustworthy"), true) << result.at("warnings");
+  EXPECT_NEAR(number(result, "/bulking_factor"), 1.220, 3.0 * number(result, "/bulking_factor_sd"));
+  EXPECT_NEAR(number(result, "/bulking_factor"), 1.220, 0.01);
+}
+
+TEST_F(Recordings, ReportedFilesGiveTheirDig) {
+  const std::string reported = std::string(EXCAVPLAN_SHARED_DATA) + "/reported/";
+  if (!std::filesystem::exists(reported)) GTEST_SKIP() << "no reported files in " << reported;
+  for (const char* const file :
+       {"stamps/zero.mcap", "stamps/u64.mcap", "spoilt-chunk/noindex.mcap"}) {
+    SCOPED_TRACE(file);
+    const std::string points = reported + file + ":/points@";
+    const json result = answer("estimate-density", {points + "0s+1s", points + "60s+1s"});
+    expect_base_scene(result);
+    const Words codes = warning_codes(result);
+    const bool is_said = std::count(codes.begin(), codes.end(), "recording_cut_off") > 0;
+    EXPECT_EQ(is_said, std::string(file) != "stamps/zero.mcap");
+  }
+  const std::string images = reported + "depth-scale/quarter.mcap:/camera/depth/image_rect_raw@";
+  expect_base_scene(answer("estimate-density",
+                           {images + "0s", images + "60s", "--level", "--depth-unit", "0.25mm"}));
+  const json wrong = answer("estimate-density", {images + "0s", images + "60s", "--level"});
+  EXPECT_EQ(wrong.at("trustworthy"), false);
+  EXPECT_TRUE(contains(wrong.at("warnings").dump(), "--depth-unit, such as 0.25mm"));
+}
+
+/// Level ground with a cone of this radius and height on it, as text.
+std::string ground_with_cone(double radius, double height) {
+  Random random(5);
+  std::string rows;
+  for (int i = 0; i < 30000; ++i) {
+    const double x = random.uniform(3.0, 7.0), y = random.uniform(-2.0, 2.0);
+    const double cone = height * std::max(0.0, 1.0 - std::hypot(x - 5.0, y) / radius);
+    rows += std::to_string(x) + ' ' + std::to_string(y) + ' ' +
+            std::to_string(cone + 0.003 * random.normal()) + '\n';
+  }
+  return rows;
+}
+
+TEST_F(Recordings, ALoneHeapHasAVolumeWhereItIsNamed) {
+  const std::string flat = folder.write("flat.xyz", ground_with_cone(0.8, 0.0));
+  const std::string heap = folder.write("heap.xyz", ground_with_cone(0.8, 0.5));
+  const json unnamed = answer("estimate-density", {flat, heap});
+  EXPECT_EQ(number(unnamed, "/volume/dumped_m3"), 0.0);
+  EXPECT_TRUE(contains(unnamed.at("warnings").dump(), "--dump-area take it in"));
+  const json named = answer("estimate-density", {flat, heap, "--dump-area", "4,-1,6,1"});
+  const double truth = pi * 0.8 * 0.8 * 0.5 / 3.0;
+  EXPECT_NEAR(number(named, "/volume/dumped_m3"), truth, 0.002);
+  EXPECT_GT(number(named, "/volume/dumped_sd_m3"), 0.0);
+}
+
 TEST_F(Recordings, WhatIsNotThereIsSaidWithWhatIs) {
   const std::string tool = "inspect-cloud";
   refused(3, "/lidar/points", tool, {recording("scene.db3") + ":/lidar/point@1s"});
-  refused(3, "at 4.750 s", tool, {recording("scene.db3") + ":/lidar/points@4.8s"});
+  refused(3, "at 4.500 s", tool, {recording("scene.db3") + ":/lidar/points@4.8s"});
   refused(3, "frames", tool, {recording("scene.db3") + ":/lidar/points", "--tf-frame", "site"});
   refused(2, "--tf-frame needs a recording", tool,
           {shipped("quickstart/before.pcd"), "--tf-frame", "map"});
+  refused(2, "--depth-unit needs a recording", tool,
+          {shipped("quickstart/before.pcd"), "--depth-unit", "0.25mm"});
+  refused(2, "holds points in metres", tool,
+          {recording("scene.db3") + ":/lidar/points", "--depth-unit", "0.25mm"});
   refused(3, "/camera/depth/image_raw", "estimate-density",
           {recording("scene.db3"), dig + ":/merged/points@59s"});
 }

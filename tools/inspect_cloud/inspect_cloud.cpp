@@ -52,6 +52,12 @@ void declare(Arguments& arguments, Inputs& inputs) {
   arguments.flag("ascii", inputs.ascii, "write PCD and PLY as text, with full precision");
 }
 
+/// Options that hold for recordings alone.
+void refuse_recorded(const RecordedOptions& options) {
+  if (!options.tf_frame.empty()) usage_error("--tf-frame needs a recording");
+  if (options.depth_unit) usage_error("--depth-unit needs a recording");
+}
+
 Outcome inspect(const Inputs& inputs) {
   if (!inputs.out && !inputs.pose.pose_out) {
     if (auto listing = recording_listing(inputs.file)) {
@@ -73,8 +79,7 @@ Outcome inspect(const Inputs& inputs) {
   if (inputs.out) format = cloud_format_of_name(*inputs.out);
   format.text = inputs.ascii;
   auto recorded = recorded_input(inputs.file, inputs.recorded);
-  if (!recorded && !inputs.recorded.tf_frame.empty()) usage_error("--tf-frame needs a recording");
-  if (!recorded && inputs.recorded.depth_unit) usage_error("--depth-unit needs a recording");
+  if (!recorded) refuse_recorded(inputs.recorded);
   Scan scan = scan_of_input(inputs.file, recorded);
   scan.unit = unit_length(inputs.unit);
   const auto pose = find_pose(

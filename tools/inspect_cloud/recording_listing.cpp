@@ -14,13 +14,13 @@
 namespace excavplan::tools {
 namespace {
 
-/// "* /points  sensor_msgs/PointCloud2, 12 in 1.100 s from 0.250 s on, frame 'lidar'"
+/// "* /points  sensor_msgs/PointCloud2, 12 at 0.000 .. 1.100 s, from 0.250 s on, frame 'lidar'"
 std::string topic_line(const RecordingTopic& topic) {
   std::string line = std::string(topic.is_scan ? "* " : "  ") + topic.name + "  " + topic.type +
                      ", " + std::to_string(topic.messages);
   if (topic.messages > 0) {
-    line += " in " + decimals(topic.last - topic.first, 3) + " s from " + decimals(topic.first, 3) +
-            " s on";
+    line += " at 0.000 .. " + decimals(topic.last - topic.first, 3) + " s";
+    if (topic.first != 0.0) line += ", from " + decimals(topic.first, 3) + " s on";
   }
   return line + (topic.frame.empty() ? "" : ", frame " + in_quotes(topic.frame));
 }
