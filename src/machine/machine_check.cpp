@@ -253,6 +253,7 @@ void require_machine(const Machine& machine) {
   rules.positive("", "arm_length", machine.arm_length, longest);
   rules.positive("", "bucket_length", machine.bucket_length, longest);
   rules.in("", "track_front", machine.track_front, -longest, longest);
+  if (machine.tail_radius) rules.positive("", "tail_radius", *machine.tail_radius, longest);
   if (machine.track_width) rules.positive("", "track_width", *machine.track_width, longest);
   for (const Joint joint : {Joint::boom, Joint::arm, Joint::bucket}) {
     const auto i = static_cast<std::size_t>(joint);

@@ -17,6 +17,7 @@
 #include "base/files.hpp"
 #include "base/statistics.hpp"
 #include "base/text.hpp"
+#include "ground/obstacles.hpp"
 #include "ground/terrain.hpp"
 #include "machine/dig_path_text.hpp"
 #include "planning/dig_layout.hpp"
@@ -102,23 +103,21 @@ void judge_ground(const Task& task, DigPlan& plan) {
                   "terrain those of the site frame?"});
 }
 
-/// The simulators dig all ground as soil: they do not know a post or a rock.
+/// What stands in the strip of the bucket is not dug; the dig is laid out clear of it.
 void judge_strip(const Task& task, DigPlan& plan) {
-  constexpr double inner = 0.7;  // of the bucket's width: beside it a wall may stand; ours
-  constexpr double most = 0.5;   // above the median of the width [m]; ours
-  const HeightMap map = task.ground.surface();
-  const Rectangle strip = swept_strip(task.machine, plan.path);
-  for (Eigen::Index col = 0; col < map.z.cols(); ++col) {
-    if (map.x(col) < strip.x_min || map.x(col) > strip.x_max) continue;
-    std::vector<double> heights;
-    add_known_heights(map, col, inner * strip.y_max, heights);
-    if (heights.empty()) continue;
-    const double above = *std::max_element(heights.begin(), heights.end()) - median(heights);
-    if (!(above > most)) continue;
-    warn(plan, {WarningCode::obstacle_in_strip,
-                "at x = " + readable(map.x(col)) + " m something stands " + readable(above, 2) +
-                    " m above the ground that the bucket passes; the plan takes it for soil"});
-    return;
+  const Eigen::ArrayXXd& tops = task.ground.obstacles;
+  const HeightMap& map = task.ground.bank;
+  const double half = 0.5 * task.machine.bucket.width_outside;
+  for (Eigen::Index col = 0; tops.size() > 0 && col < map.z.cols(); ++col) {
+    if (map.x(col) < task.machine.track_front) continue;
+    for (Eigen::Index row = 0; row < map.z.rows(); ++row) {
+      if (std::abs(map.y(row)) > half || std::isnan(tops(row, col))) continue;
+      warn(plan, {WarningCode::obstacle_in_strip,
+                  "at x = " + readable(map.x(col)) + " m something stands " +
+                      readable(tops(row, col), 2) + " m high where the bucket could dig: no dig " +
+                      "is planned there"});
+      return;
+    }
   }
 }
 
@@ -532,6 +531,7 @@ DigPlan plan_dig(const Task& task) {
   plan.method = task.options.method;
   judge_density(task, plan);
   if (!task.level) judge_ground(task, plan);
+  judge_strip(task, plan);
   std::optional<PossibleGround> ground;  // not for a density taken as known that is looked up
   if (plan.method == PlanMethod::search || task.uncertain()) {
     ground.emplace(task.options.simulator, task.machine, task.soil, task.density);
@@ -540,7 +540,6 @@ DigPlan plan_dig(const Task& task) {
   if (plan.method == PlanMethod::search) search_plan(task, ground->soils(), plan);
   if (!is_worth_making(plan)) return plan;
   judge_fill(task, plan);
-  if (!task.level) judge_strip(task, plan);
   plan.cycle = cycle_of(task.machine, plan.path, *plan.dig, task.objective());
   if (task.uncertain()) add_spread(task, ground->soils(), plan);
   add_result(task, plan);
@@ -574,7 +573,8 @@ PathLibrary shipped_library(const Machine& machine, const SoilKind& soil,
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,
                  const Terrain& terrain, const PlanOptions& options) {
-  return plan_dig(Task{machine, soil, density, terrain, false, options});
+  require_terrain(terrain, "ground to dig on");
+  return plan_dig(Task{machine, soil, density, with_obstacles(terrain), false, options});
 }
 
 DigPlan plan_dig(const Machine& machine, const SoilKind& soil, const GroundDensity& density,

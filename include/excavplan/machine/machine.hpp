@@ -95,6 +95,7 @@ struct Machine {
   std::optional<Engine> engine;          ///< nothing: its power sets no limit
   RobotJoints robot_joints = {{{"boom"}, {"arm"}, {"bucket"}, {"swing"}}};  ///< of its controller
   std::optional<double> track_width;  ///< over both tracks [m]; nothing: undercarriage_width()
+  std::optional<double> tail_radius;  ///< from the swing axis [m]; nothing: tail_swing_radius()
   /// Takes points from the root frame of the robot's URDF to the site frame: a shift and a turn
   /// about z. Affects no dig.
   Eigen::Isometry3d site_from_root = Eigen::Isometry3d::Identity();
@@ -106,6 +107,9 @@ struct Machine {
   /// Over both tracks [m]: track_width, without it as the zx120's in proportion to track_front;
   /// ours.
   double undercarriage_width() const;
+  /// Of the counterweight about the swing axis [m]: tail_radius, without it 1.35 times track_front;
+  /// ours, above the 1.18 of the zx120.
+  double tail_swing_radius() const;
   /// Angle between bucket floor and the line from tip to bucket pin [rad]; Error without a profile.
   double beta() const;
 };

@@ -100,7 +100,8 @@ struct DigPlan {
   /// density_as_fraction *, density_not_trustworthy *, law_of_other_soil *, library_unreadable (the
   /// search began with nothing), simulator_failed (at some digs of the search, which were left
   /// out), min_fill_relaxed (no dig was found that fills the bucket as asked),
-  /// ground_above_tracks *, obstacle_in_strip *, slope_outside_library *, ground_unlike_library *,
+  /// ground_above_tracks *, obstacle_in_strip (something stands there, which the dig keeps clear
+  /// of), slope_outside_library *, ground_unlike_library *,
   /// may_stall *, approach_blocked (the trajectory begins on the ground).
   std::vector<Warning> warnings;
 
